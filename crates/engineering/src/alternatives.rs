@@ -31,10 +31,10 @@ use phea_dynamics::watch::{Progress, Watch};
 
 use crate::catalogue::{self, Catalogue};
 use crate::design::{DesignError, ProjectDesign, design_project};
-use crate::error::ProcedureError;
 use crate::linearize::{Linearization, linearize};
+use crate::option::OptionError;
 use crate::parts::PartsCounted;
-use crate::project::{ImpedanceForm, Loaded, Project};
+use crate::project::{ImpedanceForm, Loaded, Project, Refusal};
 use crate::rig::{Rig, RigError};
 use crate::setup::{ControlError, Setup};
 use crate::simulate::{ScenarioRun, simulate_project};
@@ -42,6 +42,33 @@ use crate::sizing::{Question, Sizing, size, sizing_problem};
 use crate::source::Source;
 use crate::trial::Agreement;
 use asked::ReadingAgain;
+
+/// Why no alternatives are judged.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AlternativesError {
+    /// There is only the project itself.
+    #[error(
+        "the project has no [[alternative]]: add one with `name` and `set = {{ \"line.length\" = \"3 m\" }}`"
+    )]
+    NoAlternative,
+    /// There is no specification for a controller.
+    #[error(transparent)]
+    NoSpecification(DesignError),
+    /// The requested front is invalid.
+    #[error(transparent)]
+    Option(#[from] OptionError),
+    /// The catalogue, or a project that was changed, cannot be read.
+    #[error("{0}")]
+    Refused(Refusal),
+    /// An alternative that cannot be prepared.
+    #[error("alternative `{name}`: {reason}")]
+    Alternative {
+        /// Its name.
+        name: String,
+        /// What is wrong, and what to do.
+        reason: String,
+    },
+}
 
 /// The project as it is declared and its alternatives, judged.
 #[derive(Clone, Debug)]
@@ -153,20 +180,16 @@ impl JudgedAlternative {
 /// later ones are not reached.
 ///
 /// # Errors
-/// [`ProcedureError::NoAlternative`] for a project without alternatives,
-/// [`DesignError::NoSpecification`] for one without specifications, those of [`asked()`], and
-/// [`ProcedureError::Option`] for a front that cannot be. What an alternative lacks otherwise is
-/// reported of that alternative.
+/// [`AlternativesError`]. What an alternative lacks otherwise is reported of that alternative.
 ///
 /// # Example
 /// ```
-/// use phea_engineering::alternatives::{AlternativesOptions, judge};
-/// use phea_engineering::error::ProcedureError;
+/// use phea_engineering::alternatives::{AlternativesError, AlternativesOptions, judge};
 /// use phea_project::{self as project, source::Memory};
 /// let source = Memory::default().with("rig.toml", include_str!("../../../examples/ybitu/hose.toml"));
 /// let loaded = project::read(&source, "rig.toml", &[], &[])?;
 /// let none = judge(&source, &loaded, &[], &AlternativesOptions::default(), &mut |_| true);
-/// assert!(matches!(none, Err(ProcedureError::NoAlternative)));
+/// assert!(matches!(none, Err(AlternativesError::NoAlternative)));
 /// # Ok::<(), phea_project::Refusal>(())
 /// ```
 pub fn judge(
@@ -175,18 +198,18 @@ pub fn judge(
     catalogues: &[String],
     request: &AlternativesOptions,
     watch: Watch<'_>,
-) -> Result<Alternatives, ProcedureError> {
+) -> Result<Alternatives, AlternativesError> {
     if loaded.project.alternatives.is_empty() {
-        return Err(ProcedureError::NoAlternative);
+        return Err(AlternativesError::NoAlternative);
     }
     if loaded.project.specifications.is_empty() {
-        return Err(DesignError::NoSpecification.into());
+        return Err(AlternativesError::NoSpecification(DesignError::NoSpecification));
     }
     let motions = loaded.project.motions();
     let planned = request.front.as_ref().map(|asked| front::plan(asked, motions)).transpose()?;
     let (all, counted) = asked(source, loaded, catalogues)?;
     let cases = asked_cases(source, loaded, catalogues)?;
-    let catalogue = catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
+    let catalogue = catalogue::load(source, catalogues).map_err(AlternativesError::Refused)?;
     let impedance_at = request.impedance_at.as_slice();
     let judging = Judging { source, catalogue: &catalogue, all: &all, impedance_at, counted };
     let swept = planned.as_ref().map_or(0, |plan| plan.values.len());
@@ -236,7 +259,7 @@ impl Judging<'_> {
         let design = match no_hose {
             Some(reason) => Err(reason),
             None => match designed(self.source, setup.clone(), &mut designing) {
-                Err(ProcedureError::Stopped) => return None,
+                Err(DesignError::Stopped(_)) => return None,
                 Ok(view) if view.stopped => return None,
                 design => design.map_err(|error| error.to_string()),
             },
@@ -262,8 +285,8 @@ impl Judging<'_> {
             impedance_at: self.impedance_at.to_vec(),
             counted: self.counted,
             rig: rig.map_err(|error| error.to_string()),
-            sizing: sized(setup, self.catalogue).map_err(|error| error.to_string()),
-            linearization: linearized(last).map_err(|error| error.to_string()),
+            sizing: sized(setup, self.catalogue),
+            linearization: linearized(last),
             design,
             deployed,
             runs,
@@ -288,21 +311,21 @@ fn in_impedance_form(project: &Project) -> Project {
 
 type Lowered<'a> = Result<&'a Setup<'a>, ControlError>;
 
-fn designed(
-    source: &dyn Source,
-    setup: Lowered<'_>,
-    watch: Watch<'_>,
-) -> Result<ProjectDesign, ProcedureError> {
+fn designed(source: &dyn Source, setup: Lowered<'_>, watch: Watch<'_>) -> Result<ProjectDesign, DesignError> {
     design_project(source, setup?, None, watch)
 }
 
-fn sized(setup: Lowered<'_>, catalogue: &Catalogue) -> Result<Sizing, ProcedureError> {
-    Ok(size(&sizing_problem(setup?, catalogue)?, Question::Both))
+fn sized(setup: Lowered<'_>, catalogue: &Catalogue) -> Result<Sizing, String> {
+    let setup = setup.map_err(|error| error.to_string())?;
+    let problem = sizing_problem(setup, catalogue).map_err(|error| error.to_string())?;
+    Ok(size(&problem, Question::Both))
 }
 
-fn linearized(setup: Lowered<'_>) -> Result<Linearization, ProcedureError> {
-    let setup = setup?;
-    Ok(linearize(setup.rig()?, setup.controller.as_ref(), &setup.sensor)?)
+fn linearized(setup: Lowered<'_>) -> Result<Linearization, String> {
+    let setup = setup.map_err(|error| error.to_string())?;
+    let rig = setup.rig().map_err(|error| error.to_string())?;
+    let found = linearize(rig, setup.controller.as_ref(), &setup.sensor);
+    found.map_err(|error| format!("the linear models: {error}"))
 }
 
 fn driven(

@@ -2,27 +2,22 @@
 //! `phea_qft`, and their wording.
 
 mod alone;
-mod plant;
 mod proven;
 mod remark;
 mod stability;
 mod velocity_noise;
 mod words;
-pub(crate) use velocity_noise::declared as declared_velocity_noise;
 pub use velocity_noise::{VelocityNoise, VelocityNoiseEffect};
 pub(crate) use words::rounded;
 pub use words::{evidence_key, evidence_sentence, finding_sentence, place_words};
 
-pub use alone::outside;
-pub(crate) use alone::outside_of;
 pub(crate) use alone::{caveat as caveat_of_rig, unexamined as unexamined_rig};
-pub use plant::{NamedPlant, NamedValue, PlantNames};
 pub use proven::{prove_audit, standing_word, try_to_prove, why_not_proven};
 pub use remark::remark_sentences;
 pub use stability::{stability_reason, stability_sentence};
 pub use words::{
-    closed_loop_key, closed_loop_symbol, frequency_number, frequency_words, kind_key, kind_words,
-    margin_words, meaning, verdict_key, verdict_words, worst_at_design,
+    closed_loop_symbol, frequency_number, frequency_words, margin_words, meaning, verdict_key, verdict_words,
+    worst_at_design,
 };
 
 use phea_dynamics::portable;
@@ -33,16 +28,15 @@ use phea_qft::verification::{
 };
 
 use crate::caveat::Caveat;
-use crate::error::ProcedureError;
-use crate::project::Project;
+use crate::plant_names::PlantNames;
 use crate::quantity::DisplayUnit;
-use crate::robust::{RobustProblem, robust_problem};
+use crate::robust::{RobustError, RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::source::Source;
-use phea_dynamics::watch::{Watch, part};
+use phea_dynamics::watch::{Stopped, Watch, part};
 
 /// Why there is nothing to audit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AuditError {
     /// There is no controller.
     #[error("the project gives no [controller] to be verified")]
@@ -55,6 +49,12 @@ pub enum AuditError {
     /// There is no specification to audit.
     #[error("the project states no [[specification]] to verify the controller by")]
     NoSpecification,
+    /// The project is not a problem of the robust method.
+    #[error(transparent)]
+    Robust(#[from] RobustError),
+    /// The watch stopped it.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
 }
 
 /// Name of the stage in progress reports.
@@ -63,30 +63,30 @@ const STAGE: &str = "auditing";
 /// Audits the given controller and prefilter over the whole family and band.
 ///
 /// # Errors
-/// [`ProcedureError`] for a project without a controller, a part of it that is not a transfer
-/// function, a family that cannot be built, or a watcher that stops.
+/// [`AuditError`] for a project without a controller, a part of it that is not a transfer
+/// function, a family that cannot be built, or a watch that stops it.
 pub fn audit_project(
     source: &dyn Source,
     setup: &Setup<'_>,
     watch: Watch<'_>,
-) -> Result<ProjectAudit, ProcedureError> {
+) -> Result<ProjectAudit, AuditError> {
     let project = setup.project;
     match &project.controller {
-        None => return Err(AuditError::NoController.into()),
-        Some(controller) if !controller.has_law() => return Err(AuditError::NoLaw.into()),
+        None => return Err(AuditError::NoController),
+        Some(controller) if !controller.has_law() => return Err(AuditError::NoLaw),
         Some(_) => {}
     }
     if project.specifications.is_empty() {
-        return Err(AuditError::NoSpecification.into());
+        return Err(AuditError::NoSpecification);
     }
-    audit_problem(&robust_problem(source, setup)?, watch)
+    Ok(audit_problem(&robust_problem(source, setup)?, watch)?)
 }
 
 /// The same for an existing robust problem.
 ///
 /// # Errors
-/// [`ProcedureError::Stopped`] where the watcher stops it.
-pub fn audit_problem(problem: &RobustProblem, watch: Watch<'_>) -> Result<ProjectAudit, ProcedureError> {
+/// [`Stopped`] where the watch stops it.
+pub fn audit_problem(problem: &RobustProblem, watch: Watch<'_>) -> Result<ProjectAudit, Stopped> {
     let share = if problem.rig_outside.is_some() { 0.8 } else { 1.0 };
     let asked = asked(problem, &problem.family);
     let audit = phea_qft::audit::audit(&asked, &mut part(watch, STAGE, [0.0, share]))?;
@@ -105,19 +105,6 @@ fn asked<'a>(problem: &'a RobustProblem, family: &'a Family) -> AuditProblem<'a>
             false => TrackingJudgement::Spread,
         },
         tolerance_db: TOLERANCE_DB,
-    }
-}
-
-/// The names of the plants of a family.
-pub fn names(project: &Project, family: &Family) -> PlantNames {
-    match family {
-        Family::Uncertain(family) => PlantNames::of_parameters(
-            project,
-            family.plant().parameters().iter().map(|parameter| parameter.name.as_str()),
-        ),
-        Family::Measured(family) => {
-            PlantNames::Measured(family.plants().iter().map(|plant| plant.name.clone()).collect())
-        }
     }
 }
 

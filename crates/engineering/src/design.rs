@@ -23,19 +23,18 @@ pub use comparison::compared;
 pub use words::{status_sentence, structure_words};
 
 use phea_dynamics::controller::{Controller, RateSensor, Timing};
+use phea_dynamics::linear::LinearError;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{Design, DesignOptions, DesignOutcome, DesignProblem, PrefilterChoice};
 use phea_qft::verification::Verdict;
 
 use crate::audit::{ProjectAudit, audit_problem, caveat_of_rig, unexamined_rig};
-use crate::error::ProcedureError;
 use crate::project::{self, Project};
 use crate::quantity;
-use crate::robust::{RobustProblem, robust_problem};
-use crate::setup::Setup;
-use crate::setup::is_of_position;
+use crate::robust::{RobustError, RobustProblem, robust_problem};
+use crate::setup::{ControlError, Setup, is_of_position};
 use crate::source::Source;
-use crate::trial::{Agreement, Trial, tried};
+use crate::trial::{Agreement, Trial, TrialError, tried};
 use phea_dynamics::watch::{Stopped, Watch, part};
 
 /// Name of the file with the project that a design makes.
@@ -66,6 +65,30 @@ pub enum DesignError {
     /// A part of the problem cannot be searched with.
     #[error(transparent)]
     Search(#[from] phea_qft::design::LoopDesignError),
+    /// The controller, prefilter or sensor is not a transfer function.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// A linear system cannot be computed.
+    #[error("the linear models: {0}")]
+    Linear(#[from] LinearError),
+    /// The project is not a problem of the robust method.
+    #[error(transparent)]
+    Robust(#[from] RobustError),
+    /// The designed controller cannot be tried on the machine.
+    #[error(transparent)]
+    Trial(TrialError),
+    /// The watch stopped it before anything was found.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
+
+impl From<TrialError> for DesignError {
+    fn from(error: TrialError) -> DesignError {
+        match error {
+            TrialError::Stopped(stopped) => DesignError::Stopped(stopped),
+            error => DesignError::Trial(error),
+        }
+    }
 }
 
 /// A design, and the given controller for comparison.
@@ -111,7 +134,7 @@ impl ProjectDesign {
     /// solved.
     ///
     /// # Errors
-    /// [`ProcedureError`] for a controller or a sensor that is not a transfer function.
+    /// [`DesignError`] for a controller or a sensor that is not a transfer function.
     pub fn new(
         setup: &Setup<'_>,
         given: &RobustProblem,
@@ -119,7 +142,7 @@ impl ProjectDesign {
         design: Design,
         options: DesignOptions,
         watch: Watch<'_>,
-    ) -> Result<ProjectDesign, ProcedureError> {
+    ) -> Result<ProjectDesign, DesignError> {
         let project = setup.project;
         let has_prefilter = options.prefilter != PrefilterChoice::None;
         let law = design.law.clone();
@@ -194,7 +217,7 @@ pub fn design_and_repair(
     setup: &Setup<'_>,
     seed: Option<u32>,
     watch: Watch<'_>,
-) -> Result<ProjectDesign, ProcedureError> {
+) -> Result<ProjectDesign, DesignError> {
     let (run, told) = designed(source, setup, seed, watch)?;
     repair::repaired((source, setup), run, told, watch)
 }
@@ -202,14 +225,14 @@ pub fn design_and_repair(
 /// Designs a controller for the project, after the audit of the one that it gives.
 ///
 /// # Errors
-/// [`ProcedureError`] for a project without a specification, a part of it that is not a transfer
-/// function, a family that cannot be built, or a watcher that stops it before anything was found.
+/// [`DesignError`] for a project without a specification, a part of it that is not a transfer
+/// function, a family that cannot be built, or a watch that stops it before anything was found.
 pub fn design_project(
     source: &dyn Source,
     setup: &Setup<'_>,
     seed: Option<u32>,
     watch: Watch<'_>,
-) -> Result<ProjectDesign, ProcedureError> {
+) -> Result<ProjectDesign, DesignError> {
     designed(source, setup, seed, watch).map(|(_, told)| told)
 }
 
@@ -225,13 +248,13 @@ fn designed(
     setup: &Setup<'_>,
     seed: Option<u32>,
     watch: Watch<'_>,
-) -> Result<(DesignRun, ProjectDesign), ProcedureError> {
+) -> Result<(DesignRun, ProjectDesign), DesignError> {
     let project = setup.project;
     if project.specifications.is_empty() {
-        return Err(DesignError::NoSpecification.into());
+        return Err(DesignError::NoSpecification);
     }
     if is_of_position(project) {
-        return Err(DesignError::Admittance.into());
+        return Err(DesignError::Admittance);
     }
     let given = robust_problem(source, setup)?;
     let published = match &setup.controller {
@@ -243,8 +266,8 @@ fn designed(
     };
     let problem = design_problem(setup, &given);
     let options = design_options(setup, &given, seed)?;
-    let mut outcome = phea_qft::design::design(&problem, &options, watch).map_err(DesignError::from)?;
-    outcome.conclude().map_err(DesignError::from)?;
+    let mut outcome = phea_qft::design::design(&problem, &options, watch)?;
+    outcome.conclude()?;
     let (DesignRun { problem, outcome }, proven) =
         proven::proven((setup, &given), DesignRun { problem, outcome }, &options, watch)?;
     let stopped = outcome.stopped;
@@ -261,10 +284,10 @@ fn designed(
             let run = DesignRun { problem, outcome };
             Ok((run, ProjectDesign { stopped, published, explanations, continuous, trial, ..told }))
         }
-        None if stopped => Err(ProcedureError::Stopped),
+        None if stopped => Err(Stopped.into()),
         None => {
             let sentences = explanations.into_iter().map(|explanation| explanation.sentence).collect();
-            Err(DesignError::NoController(sentences).into())
+            Err(DesignError::NoController(sentences))
         }
     }
 }
@@ -275,9 +298,9 @@ fn tried_design(
     project: &Project,
     told: &ProjectDesign,
     watch: Watch<'_>,
-) -> Result<Option<Trial>, ProcedureError> {
+) -> Result<Option<Trial>, DesignError> {
     let deployed = told.deployed(project);
-    tried(source, &Setup::new(&deployed)?, &told.designed.problem, &told.designed.view, watch)
+    Ok(tried(source, &Setup::new(&deployed)?, &told.designed.problem, &told.designed.view, watch)?)
 }
 
 /// The effect of sampling and delay on a design that ignores them: made for the continuous loop,
@@ -287,7 +310,7 @@ fn continuous_as_sampled(
     sampled: &DesignProblem,
     told: &ProjectDesign,
     watch: Watch<'_>,
-) -> Result<Option<AuditedController>, ProcedureError> {
+) -> Result<Option<AuditedController>, DesignError> {
     let timing = sampled.timing;
     if timing.sample_time_s.is_none() {
         return Ok(None);
@@ -300,7 +323,7 @@ fn continuous_as_sampled(
     let problem = DesignProblem { timing: at_once, ..sampled.clone() };
     let stage = "designing without samples";
     let outcome = phea_qft::design::design(&problem, &told.options, &mut part(watch, stage, [0.0, 1.0]));
-    let outcome = outcome.map_err(DesignError::from)?;
+    let outcome = outcome?;
     let Some(design) = outcome.design.filter(|_| !outcome.stopped) else { return Ok(None) };
     let controller = Controller { timing, ..design.law };
     let compensation = setup.compensation(&controller)?;

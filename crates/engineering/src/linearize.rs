@@ -36,7 +36,7 @@ pub use linkage::{LinkagePlace, LinkagePosition, linkage_places};
 pub use over_force::{StiffnessOverForce, stiffness_over_force};
 pub(crate) use port::hidden_above;
 pub use port::{AskedAt, AskedImpedance, HidingMass, SHOWN_AT, WITHIN_PERCENT};
-pub use sweep::{POINTS, Sweep, SweepPoint, SweepRequest, Swept, sweep};
+pub use sweep::{POINTS, Sweep, SweepError, SweepPoint, SweepRequest, Swept, sweep};
 pub(crate) use sweep::{points, range, values};
 
 use crate::quantity::{DisplayUnit, MotionKind, TORSIONAL_STIFFNESS, fitting};

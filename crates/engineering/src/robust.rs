@@ -14,18 +14,17 @@ use phea_qft::specification::{LoopResponse, Specification};
 use phea_qft::template::{BuiltTemplate, TemplateError, TemplateOptions, Templates};
 use phea_qft::verification::PlantPoint;
 
-use crate::audit::{PlantNames, declared_velocity_noise, kind_words, names, outside};
 use crate::caveat::{Caveat, caveats};
-use crate::error::ProcedureError;
-use crate::family::family;
 use crate::family::measured::{WidestDisc, widest_disc};
+use crate::family::{ProjectFamilyError, family};
+use crate::plant_names::PlantNames;
 use crate::project::Project;
 use crate::quantity::MotionKind;
 use crate::quantity::significant;
-use crate::setup::Setup;
+use crate::setup::{ControlError, Setup, velocity_noise};
 use crate::source::Source;
-use crate::specification::{of_rounding, specifications};
-use phea_dynamics::watch::{Progress, Watch};
+use crate::specification::{SpecificationError, kind_words, of_rounding, specifications};
+use phea_dynamics::watch::{Stopped, Watch, tell};
 
 /// A family of plants within a loop, and the specifications of the loop.
 #[derive(Clone, Debug)]
@@ -76,9 +75,26 @@ pub struct DesignFrequency {
     pub filled_placement: Placement,
 }
 
-/// Why templates or bounds cannot be computed.
+/// Why a project is not a problem of the robust method.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RobustError {
+    /// The controller, prefilter or sensor is not a transfer function.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// The loop cannot be sampled.
+    #[error("the linear models: {0}")]
+    Linear(#[from] LinearError),
+    /// There is no family of plants.
+    #[error(transparent)]
+    Family(#[from] ProjectFamilyError),
+    /// A specification cannot be met by any loop, or is contradictory.
+    #[error(transparent)]
+    Specification(#[from] SpecificationError),
+}
+
+/// Why templates or bounds cannot be computed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BoundsError {
     /// A template.
     #[error("a template: {0}")]
     Template(#[from] TemplateError),
@@ -90,16 +106,16 @@ pub enum RobustError {
         /// What is wrong.
         error: BoundError,
     },
-    /// A member of the family cannot be put into the loop.
-    #[error("a plant of the family: {0}")]
-    Member(#[from] LinearError),
+    /// The watch stopped it.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
 }
 
 /// The robust problem of a project.
 ///
 /// # Errors
-/// [`ProcedureError`] for parts that are not valid transfer functions, families or limits.
-pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustProblem, ProcedureError> {
+/// [`RobustError`] for parts that are not valid transfer functions, families or limits.
+pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustProblem, RobustError> {
     let compensation = match &setup.controller {
         Some(given) => setup.compensation(given)?,
         None => {
@@ -113,18 +129,18 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
     let family = family(setup, source)?;
     Ok(RobustProblem {
         without_polynomials: without_polynomials(setup, &family),
-        names: names(setup.project, &family),
+        names: PlantNames::of_family(setup.project, &family),
         family,
         compensation,
         has_controller: setup.controller.is_some(),
         has_prefilter: setup.prefilter.is_some(),
         specifications,
         specification_names,
-        rig_outside: match outside(setup) {
+        rig_outside: match setup.outside() {
             Some((alone, beyond)) => Some((self::family(&Setup::new(&alone)?, source)?, beyond)),
             None => None,
         },
-        velocity_noise: declared_velocity_noise(setup.project),
+        velocity_noise: velocity_noise(setup.project),
         motion: setup.project.motion(),
         caveats: caveats(setup).into_iter().chain(discs(setup.project, source)).collect(),
     })
@@ -154,7 +170,7 @@ fn without_polynomials(setup: &Setup<'_>, family: &Family) -> Option<&'static st
 fn named_specifications(
     setup: &Setup<'_>,
     highest_frequency_rad_per_s: f64,
-) -> Result<(Vec<Specification>, Vec<String>), ProcedureError> {
+) -> Result<(Vec<Specification>, Vec<String>), SpecificationError> {
     let mut specifications = specifications(setup.project)?;
     let mut names: Vec<String> = specifications.iter().map(|one| kind_words(&one.requirement)).collect();
     let mut frequencies: Vec<f64> =
@@ -184,8 +200,8 @@ impl RobustProblem {
     /// Templates and bounds at every design frequency that the family reaches.
     ///
     /// # Errors
-    /// [`ProcedureError::Robust`], and [`ProcedureError::Stopped`] where the watcher stops it.
-    pub fn at_design_frequencies(&self, watch: Watch<'_>) -> Result<Vec<DesignFrequency>, ProcedureError> {
+    /// [`BoundsError`], also where the watch stops it.
+    pub fn at_design_frequencies(&self, watch: Watch<'_>) -> Result<Vec<DesignFrequency>, BoundsError> {
         let frequencies = self.design_frequencies();
         let options = TemplateOptions::default();
         let mut found = Vec::new();
@@ -194,19 +210,16 @@ impl RobustProblem {
             match built {
                 // nothing is known beyond a measurement, so there is no template either
                 Err(TemplateError::OutOfReach { .. }) => {}
-                built => found.push(self.at_template(built.map_err(RobustError::from)?)?),
+                built => found.push(self.at_template(built?)?),
             }
-            let share = (index + 1) as f64 / frequencies.len() as f64;
-            if !watch(Progress { stage: "templates and bounds", share }) {
-                return Err(ProcedureError::Stopped);
-            }
+            tell(watch, "templates and bounds", index + 1, frequencies.len())?;
         }
         Ok(found)
     }
 
-    fn at_template(&self, template: BuiltTemplate) -> Result<DesignFrequency, RobustError> {
+    fn at_template(&self, template: BuiltTemplate) -> Result<DesignFrequency, BoundsError> {
         let frequency_rad_per_s = template.template.frequency_rad_per_s;
-        let explain = |error| RobustError::Bound { frequency_rad_per_s, error };
+        let explain = |error| BoundsError::Bound { frequency_rad_per_s, error };
         let bounds =
             |fill| FrequencyBounds::new(&template.template, &self.specifications, fill).map_err(explain);
         let (points, filled) = (bounds(TemplateFill::Points)?, bounds(TemplateFill::Filled)?);

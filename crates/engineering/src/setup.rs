@@ -13,10 +13,10 @@ use phea_qft::closed_loop::Compensation;
 use phea_qft::design::quantization::{CoefficientFormat, Quantization, rounded};
 
 use crate::project::Project;
-use crate::rig::{Rig, RigError};
+use crate::rig::{Rig, RigError, outside};
 
 pub use control::ControlError;
-pub(crate) use control::{element, from_formulas, is_of_position};
+pub(crate) use control::{element, from_formulas, is_of_position, velocity_noise};
 
 /// The rig of a project with its controller, as values to compute with. A rig with a changed number
 /// is another setup.
@@ -113,6 +113,12 @@ impl<'a> Setup<'a> {
     /// equilibrium at its operating point.
     pub fn rig(&self) -> Result<&Rig, RigError> {
         self.rig.as_ref().map_err(Clone::clone)
+    }
+
+    /// The project without its uncertainty, and the parameters of the rig that the box does not
+    /// contain. `None` where the box contains the rig, or there is no rig.
+    pub fn outside(&self) -> Option<(Project, String)> {
+        outside(self.project, self.rig.as_ref().ok()?)
     }
 
     /// The same rig and controller for another question: the project may differ only in its

@@ -18,14 +18,13 @@ use phea_qft::stability::family_stability;
 use phea_qft::template::{TemplateError, TemplateOptions, Templates};
 use phea_qft::verification::{StabilityFinding, TrackingJudgement};
 
-use crate::audit::PlantNames;
-use crate::error::ProcedureError;
+use crate::plant_names::PlantNames;
 use crate::project::{self, DeclaredElement, Findings, Loaded, Refusal};
-use crate::robust::{RobustError, RobustProblem, robust_problem};
-use crate::setup::Setup;
-use crate::setup::is_of_position;
+use crate::robust::{BoundsError, RobustError, RobustProblem, robust_problem};
+use crate::setup::{ControlError, Setup, is_of_position};
 use crate::source::Source;
-use phea_dynamics::watch::{Watch, tell};
+use phea_dynamics::linear::LinearError;
+use phea_dynamics::watch::{Stopped, Watch, tell};
 use workpiece::Workpiece;
 
 /// Whether the controller or the prefilter is shaped.
@@ -75,6 +74,30 @@ pub enum ShapingError {
         /// Why.
         reason: String,
     },
+    /// The controller, prefilter or sensor is not a transfer function.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// The nominal plant cannot be sampled.
+    #[error("the linear models: {0}")]
+    Linear(#[from] LinearError),
+    /// The project is not a problem of the robust method.
+    #[error(transparent)]
+    Robust(#[from] RobustError),
+    /// Templates or bounds cannot be computed.
+    #[error(transparent)]
+    Bounds(BoundsError),
+    /// The watch stopped it.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
+
+impl From<BoundsError> for ShapingError {
+    fn from(error: BoundsError) -> ShapingError {
+        match error {
+            BoundsError::Stopped(stopped) => ShapingError::Stopped(stopped),
+            error => ShapingError::Bounds(error),
+        }
+    }
 }
 
 /// A project with its elements changed, and the margins of every plant.
@@ -105,21 +128,20 @@ pub struct ProjectShaping {
 /// Makes the changes in order, and judges the result.
 ///
 /// # Errors
-/// [`ProcedureError::Shaping`] for a change that cannot be made; those of [`robust_problem`];
-/// [`ProcedureError::Stopped`].
+/// [`ShapingError`], for a change that cannot be made among others.
 pub fn shape(
     source: &dyn Source,
     loaded: &Loaded,
     shaped: Shaped,
     changes: &[RequestedChange],
     watch: Watch<'_>,
-) -> Result<ProjectShaping, ProcedureError> {
+) -> Result<ProjectShaping, ShapingError> {
     let has_law = loaded.project.controller.as_ref().is_some_and(project::DeclaredController::has_law);
     if shaped == Shaped::Prefilter && !has_law {
-        return Err(ShapingError::NoController.into());
+        return Err(ShapingError::NoController);
     }
     if shaped == Shaped::Controller && is_of_position(&loaded.project) {
-        return Err(ShapingError::Admittance.into());
+        return Err(ShapingError::Admittance);
     }
     // without the elements, since the original ones may be such that they cannot be sampled
     let bare = workpiece::with_elements(&loaded.project, shaped, &[]);
@@ -156,7 +178,7 @@ pub fn shape(
 }
 
 /// Templates and bounds at the design frequencies, and those that the family does not reach.
-fn chart(problem: &RobustProblem, watch: Watch<'_>) -> Result<(DesignChart, Vec<f64>), ProcedureError> {
+fn chart(problem: &RobustProblem, watch: Watch<'_>) -> Result<(DesignChart, Vec<f64>), ShapingError> {
     let frequencies = problem.design_frequencies();
     let options = TemplateOptions::default();
     let (mut found, mut unreached) = (Vec::new(), Vec::new());
@@ -164,13 +186,13 @@ fn chart(problem: &RobustProblem, watch: Watch<'_>) -> Result<(DesignChart, Vec<
     for (index, built) in templates.enumerate() {
         match built {
             Err(TemplateError::OutOfReach { frequency_rad_per_s }) => unreached.push(frequency_rad_per_s),
-            built => found.push(built.map_err(RobustError::from)?.template),
+            built => found.push(built.map_err(BoundsError::from)?.template),
         }
         tell(watch, "templates", index + 1, frequencies.len())?;
     }
     let frequency_rad_per_s = found.first().map_or(f64::NAN, |template| template.frequency_rad_per_s);
     let chart = DesignChart::new(&problem.family, found, &problem.specifications)
-        .map_err(|error| RobustError::Bound { frequency_rad_per_s, error })?;
+        .map_err(|error| BoundsError::Bound { frequency_rad_per_s, error })?;
     Ok((chart, unreached))
 }
 
@@ -181,7 +203,7 @@ fn present(
     bare: &RobustProblem,
     compensator: &Compensator,
     frequency_rad_per_s: f64,
-) -> Result<Option<Complex64>, ProcedureError> {
+) -> Result<Option<Complex64>, ShapingError> {
     let own = workpiece.response(compensator, frequency_rad_per_s)?;
     if workpiece.shaped() == Shaped::Prefilter {
         return Ok(Some(own));

@@ -1,5 +1,6 @@
 //! From the specifications of a project to those of robust design.
 
+mod kind;
 mod limit;
 mod rounding;
 mod wish;
@@ -9,6 +10,7 @@ use phea_qft::specification::{
     ClosedLoop, LimitError, MarginError, Requirement, Specification, TimeDomainError, WishCheck, WishOutcome,
 };
 
+pub use self::kind::{closed_loop_key, kind_key, kind_words};
 use self::limit::TrackingSide;
 pub(crate) use self::rounding::of_rounding;
 use crate::project::{self, FormulaError, Project};

@@ -15,11 +15,33 @@ pub use rigs::with_waves;
 pub use run::{Agreement, StepResponse, TrialRun, TrialStep, agreement_word};
 
 use crate::audit::ProjectAudit;
-use crate::error::ProcedureError;
+use crate::rig::RigError;
 use crate::robust::RobustProblem;
-use crate::setup::Setup;
+use crate::setup::{ControlError, Setup};
 use crate::source::Source;
-use phea_dynamics::watch::{Progress, Watch};
+use phea_dynamics::linear::LinearError;
+use phea_dynamics::time_response::TimeResponseError;
+use phea_dynamics::watch::{Progress, Stopped, Watch};
+
+/// Why a verdict cannot be tried on the machine.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum TrialError {
+    /// The rig cannot be computed with.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// The controller, prefilter or sensor is not a transfer function.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// The linear loop cannot be sampled.
+    #[error("the linear models: {0}")]
+    Linear(#[from] LinearError),
+    /// The step response of the linear loop cannot be measured.
+    #[error("a response: {0}")]
+    Time(#[from] TimeResponseError),
+    /// The watch stopped it.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
 
 /// Every run, in the order in which they were driven: the rig as it is declared first.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,15 +63,15 @@ impl Trial {
 /// project without an actuator.
 ///
 /// # Errors
-/// [`ProcedureError`] for a controller or a sensor that is not a transfer function, and where the
-/// watcher stops it.
+/// [`TrialError`] for a controller or a sensor that is not a transfer function, and where the
+/// watch stops it.
 pub fn tried(
     source: &dyn Source,
     setup: &Setup<'_>,
     problem: &RobustProblem,
     view: &ProjectAudit,
     watch: Watch<'_>,
-) -> Result<Option<Trial>, ProcedureError> {
+) -> Result<Option<Trial>, TrialError> {
     if setup.project.actuator.is_none() {
         return Ok(None);
     }
@@ -63,7 +85,7 @@ pub fn tried(
         };
         match run::run(source, rig, problem, view, &mut within)? {
             Some(run) => runs.push(run),
-            None => return Err(ProcedureError::Stopped),
+            None => return Err(Stopped.into()),
         }
     }
     Ok(Some(Trial { runs, not_driven }))

@@ -19,7 +19,6 @@ pub use campaign::{CampaignRequest, CampaignRuns, campaign_watched};
 pub use friction::{FrictionRequest, friction_watched};
 pub use identify::{IdentifyRequest, identify_watched};
 pub use line_test::{LineRequest, line_watched};
-pub use phea_engineering::error::ProcedureError;
 pub use phea_engineering::identify::IdentifyError;
 pub use phea_engineering::response::ResponseSettings;
 pub use phea_hydraulics::servovalve::LeakageModel;
@@ -28,12 +27,13 @@ pub use response::{ResponseRequest, response_watched};
 pub use schema::{SCHEMA_FILE, schema};
 pub use simulate::{FrequencyOptions, SimulateRequest};
 
+use phea_dynamics::watch::Stopped;
 use phea_qft::family::Family;
 use phea_qft::verification::Verdict;
 
 use crate::alternatives::{AlternativesOptions as AskedOfAlternatives, judge};
 use crate::answer::{Answer, Object};
-use crate::audit::{self, CERTIFICATE_FILE, audit_project, certificate_of, outside, prove_audit};
+use crate::audit::{self, CERTIFICATE_FILE, audit_project, certificate_of, prove_audit};
 use crate::bench;
 use crate::caveat::caveats;
 use crate::derived::{self, derive};
@@ -43,6 +43,7 @@ use crate::family::{family, visited_box};
 use crate::identify::in_use;
 use crate::line_test::line_runs;
 use crate::linearize::SweepRequest;
+use crate::option::OptionError;
 use crate::project::Loaded;
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::report_beside;
@@ -163,7 +164,7 @@ pub fn answer(
 ///
 /// # Errors
 /// [`CommandError`] if the project lacks something that the command needs, something in it cannot
-/// be computed, or a table cannot be written; [`ProcedureError::Stopped`].
+/// be computed, or a table cannot be written; [`CommandError::Stopped`].
 pub fn answer_into(
     source: &dyn Source,
     loaded: &Loaded,
@@ -192,7 +193,7 @@ fn with_recordings(
     loaded: &Loaded,
     watch: Watch<'_>,
 ) -> Result<Option<Loaded>, CommandError> {
-    in_use(source, loaded, watch).map_err(CommandError::of_recordings)
+    Ok(in_use(source, loaded, watch)?)
 }
 
 fn answer_as_read(
@@ -270,7 +271,8 @@ fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<
 /// Effects that no verdict on the linear loop includes, and parameters of the rig outside its own
 /// family.
 fn told_first(setup: &Setup<'_>) -> Vec<String> {
-    let outside = outside(setup)
+    let outside = setup
+        .outside()
         .map(|(_, words)| format!("the family does not contain the rig as it is derived ({words})"));
     outside.into_iter().chain(caveats(setup).into_iter().map(|caveat| caveat.sentence)).collect()
 }
@@ -297,8 +299,8 @@ fn positive(
     text: &str,
     part: &str,
     dimension: &quantity::Dimension,
-) -> Result<f64, ProcedureError> {
-    let refuse = |message: String| ProcedureError::Option { option, text: text.to_string(), message };
+) -> Result<f64, OptionError> {
+    let refuse = |message: String| OptionError { option, text: text.to_string(), message };
     let bare = part.trim().parse::<f64>().ok().filter(|value| value.is_finite());
     let value = match bare {
         Some(value) => value,
@@ -320,7 +322,7 @@ fn size_answer(
     question: Question,
 ) -> Result<Unprinted, CommandError> {
     let setup = Setup::new(&loaded.project)?;
-    let catalogue = crate::catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
+    let catalogue = crate::catalogue::load(source, catalogues).map_err(CommandError::Refused)?;
     let problem = sizing_problem(&setup, &catalogue)?;
     let sizing = size(&problem, question);
     Ok(Unprinted {
@@ -437,7 +439,7 @@ fn report_answer(
     let problem = match loaded.project.sizing {
         None => None,
         Some(_) => {
-            let catalogue = crate::catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
+            let catalogue = crate::catalogue::load(source, catalogues).map_err(CommandError::Refused)?;
             match sizing_problem(&setup, &catalogue) {
                 Err(SizingError::Rig(error)) => return Err(error.into()),
                 problem => Some(problem),
@@ -448,7 +450,7 @@ fn report_answer(
         .then(|| judge(source, loaded, catalogues, &AskedOfAlternatives::default(), watch))
         .transpose()?;
     if judged.as_ref().is_some_and(|judged| !judged.not_reached.is_empty()) {
-        return Err(ProcedureError::Stopped.into());
+        return Err(Stopped.into());
     }
     let report = report_beside(source, loaded, (&setup, problem.as_ref()), judged.as_ref(), watch)?;
     let written = if files { report.files() } else { vec![report.page_file()] };

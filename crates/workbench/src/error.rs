@@ -1,18 +1,99 @@
 //! Why a command has no answer: the one error of everything that the workbench computes.
 
-use phea_engineering::error::ProcedureError;
+use phea_dynamics::linear::LinearError;
+use phea_dynamics::time_response::TimeResponseError;
+use phea_dynamics::watch::Stopped;
+use phea_engineering::alternatives::AlternativesError;
+use phea_engineering::audit::AuditError;
+use phea_engineering::bench::BenchError;
+use phea_engineering::campaign::CampaignError;
+use phea_engineering::design::DesignError;
+use phea_engineering::family::ProjectFamilyError;
 use phea_engineering::identify::IdentifyError;
+use phea_engineering::linear_loop::LoopError;
+use phea_engineering::linearize::SweepError;
+use phea_engineering::option::OptionError;
+use phea_engineering::replaced::ReplacedError;
+use phea_engineering::rig::RigError;
+use phea_engineering::robust::{BoundsError, RobustError};
+use phea_engineering::setup::ControlError;
+use phea_engineering::shaping::ShapingError;
+use phea_engineering::simulate::SimulateError;
+use phea_engineering::sizing::SizingError;
+use phea_engineering::specification::SpecificationError;
+use phea_engineering::trial::TrialError;
 
-use crate::project::{Loaded, Refusal, refused};
-use crate::simulate::SimulateError;
+use crate::project::{LateError, Loaded, Refusal, refused};
 use crate::source::Source;
 
 /// Why a valid project has no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum CommandError {
-    /// A procedure has no result.
+    /// The rig cannot be computed with.
     #[error(transparent)]
-    Procedure(ProcedureError),
+    Rig(#[from] RigError),
+    /// The controller is not a transfer function.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// A linear system cannot be computed.
+    #[error("the linear models: {0}")]
+    Linear(#[from] LinearError),
+    /// A response in time cannot be computed.
+    #[error("a response: {0}")]
+    Time(#[from] TimeResponseError),
+    /// The loop cannot be closed.
+    #[error("the linear loop: {0}")]
+    Loop(#[from] LoopError),
+    /// A value of an option is invalid.
+    #[error(transparent)]
+    Option(#[from] OptionError),
+    /// The catalogue, or a project that was changed, cannot be read.
+    #[error("{0}")]
+    Refused(Refusal),
+    /// The project does not say what to size for.
+    #[error("{0}")]
+    Sizing(#[from] SizingError),
+    /// No alternatives are judged.
+    #[error(transparent)]
+    Alternatives(AlternativesError),
+    /// There is nothing to audit.
+    #[error(transparent)]
+    Audit(AuditError),
+    /// There is nothing to design for, or nothing was found.
+    #[error(transparent)]
+    Design(DesignError),
+    /// There is no family of plants.
+    #[error(transparent)]
+    Family(#[from] ProjectFamilyError),
+    /// A specification cannot be met by any loop, or is contradictory.
+    #[error(transparent)]
+    Specification(#[from] SpecificationError),
+    /// Templates or bounds cannot be computed.
+    #[error(transparent)]
+    Bounds(BoundsError),
+    /// The family cannot be compared with what it replaces.
+    #[error(transparent)]
+    Replaced(#[from] ReplacedError),
+    /// A controller cannot be shaped in this way.
+    #[error(transparent)]
+    Shaping(ShapingError),
+    /// The machine cannot be simulated.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+    /// The machine of one project among several cannot be simulated.
+    #[error("{path}: {error}")]
+    Compare {
+        /// Path of the project.
+        path: String,
+        /// Why not.
+        error: SimulateError,
+    },
+    /// The valve cannot be tested.
+    #[error(transparent)]
+    Bench(#[from] BenchError),
+    /// There is no campaign.
+    #[error(transparent)]
+    Campaign(#[from] CampaignError),
     /// The recordings of the project say nothing of its valve.
     #[error("{0}")]
     Identify(IdentifyError),
@@ -39,56 +120,161 @@ pub enum CommandError {
         /// Path of the other.
         other: String,
     },
-    /// The machine of one project among several cannot be simulated.
-    #[error("{path}: {error}")]
-    Compare {
-        /// Path of the project.
-        path: String,
-        /// Why not.
-        error: SimulateError,
-    },
+    /// The watch stopped a long procedure.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
 }
 
 impl CommandError {
-    /// Why recordings give nothing that could take the place of what is declared.
-    pub(crate) fn of_recordings(error: IdentifyError) -> CommandError {
-        match error {
-            IdentifyError::Stopped => CommandError::Procedure(ProcedureError::Stopped),
-            error => CommandError::Identify(error),
-        }
-    }
-
     /// The same error; where a name of the catalogue was looked for late, as the refusal of the
     /// project.
     pub(crate) fn into_refusal(self, source: &dyn Source, loaded: &Loaded) -> CommandError {
-        let CommandError::Procedure(procedure) = &self else { return self };
-        match procedure.late() {
-            Some(late) => ProcedureError::Catalogue(refused(source, loaded, &late)).into(),
+        match self.late() {
+            Some(late) => CommandError::Refused(refused(source, loaded, &late)),
             None => self,
+        }
+    }
+
+    /// The error at the place of a key, where the project has one: known only where its rig is
+    /// computed.
+    fn late(&self) -> Option<LateError> {
+        let rig = match self {
+            CommandError::Rig(error)
+            | CommandError::Family(ProjectFamilyError::Rig(error))
+            | CommandError::Sizing(SizingError::Rig(error))
+            | CommandError::Simulate(SimulateError::Rig(error))
+            | CommandError::Bench(BenchError::Rig(error)) => error,
+            _ => return None,
+        };
+        match rig {
+            RigError::Accumulator(empty) => Some(empty.at()),
+            _ => None,
         }
     }
 
     /// The findings, if files that the project names were rejected, with a place for each.
     pub fn refusal(&self) -> Option<&Refusal> {
         match self {
-            CommandError::Procedure(error) => error.refusal(),
-            CommandError::Compare { error, .. } => error.refusal(),
-            CommandError::Identify(IdentifyError::Files(refusal)) => Some(refusal),
-            CommandError::Identify(_)
-            | CommandError::OfCylinders { .. }
-            | CommandError::MixedMotion { .. }
-            | CommandError::NothingToReport => None,
+            CommandError::Refused(refusal) | CommandError::Shaping(ShapingError::Refused(refusal)) => {
+                Some(refusal)
+            }
+            CommandError::Family(ProjectFamilyError::Measurement(refusal))
+            | CommandError::Campaign(CampaignError::Settings(refusal))
+            | CommandError::Identify(IdentifyError::Files(refusal)) => Some(refusal),
+            CommandError::Simulate(error)
+            | CommandError::Compare { error, .. }
+            | CommandError::Campaign(CampaignError::Simulate(error)) => error.refusal(),
+            _ => None,
         }
     }
 
     /// Whether a file could not be written or read back, although the request was valid.
     pub fn is_of_files(&self) -> bool {
-        matches!(self, CommandError::Procedure(error) if error.is_of_files())
+        matches!(
+            self,
+            CommandError::Simulate(SimulateError::Write(_))
+                | CommandError::Campaign(
+                    CampaignError::RowStore(_) | CampaignError::Simulate(SimulateError::Write(_))
+                )
+        )
     }
 }
 
-impl<E: Into<ProcedureError>> From<E> for CommandError {
-    fn from(error: E) -> CommandError {
-        CommandError::Procedure(error.into())
+// The error of a smaller procedure within another is that of the smaller one.
+
+impl From<RobustError> for CommandError {
+    fn from(error: RobustError) -> CommandError {
+        match error {
+            RobustError::Control(error) => error.into(),
+            RobustError::Linear(error) => error.into(),
+            RobustError::Family(error) => error.into(),
+            RobustError::Specification(error) => error.into(),
+        }
+    }
+}
+
+impl From<BoundsError> for CommandError {
+    fn from(error: BoundsError) -> CommandError {
+        match error {
+            BoundsError::Stopped(stopped) => stopped.into(),
+            error => CommandError::Bounds(error),
+        }
+    }
+}
+
+impl From<AuditError> for CommandError {
+    fn from(error: AuditError) -> CommandError {
+        match error {
+            AuditError::Robust(error) => error.into(),
+            AuditError::Stopped(stopped) => stopped.into(),
+            error => CommandError::Audit(error),
+        }
+    }
+}
+
+impl From<TrialError> for CommandError {
+    fn from(error: TrialError) -> CommandError {
+        match error {
+            TrialError::Rig(error) => error.into(),
+            TrialError::Control(error) => error.into(),
+            TrialError::Linear(error) => error.into(),
+            TrialError::Time(error) => error.into(),
+            TrialError::Stopped(stopped) => stopped.into(),
+        }
+    }
+}
+
+impl From<DesignError> for CommandError {
+    fn from(error: DesignError) -> CommandError {
+        match error {
+            DesignError::Control(error) => error.into(),
+            DesignError::Linear(error) => error.into(),
+            DesignError::Robust(error) => error.into(),
+            DesignError::Trial(error) => error.into(),
+            DesignError::Stopped(stopped) => stopped.into(),
+            error => CommandError::Design(error),
+        }
+    }
+}
+
+impl From<ShapingError> for CommandError {
+    fn from(error: ShapingError) -> CommandError {
+        match error {
+            ShapingError::Control(error) => error.into(),
+            ShapingError::Linear(error) => error.into(),
+            ShapingError::Robust(error) => error.into(),
+            ShapingError::Bounds(error) => error.into(),
+            ShapingError::Stopped(stopped) => stopped.into(),
+            error => CommandError::Shaping(error),
+        }
+    }
+}
+
+impl From<SweepError> for CommandError {
+    fn from(error: SweepError) -> CommandError {
+        match error {
+            SweepError::Option(error) => error.into(),
+            SweepError::Refused(refusal) => CommandError::Refused(refusal),
+        }
+    }
+}
+
+impl From<AlternativesError> for CommandError {
+    fn from(error: AlternativesError) -> CommandError {
+        match error {
+            AlternativesError::NoSpecification(error) => error.into(),
+            AlternativesError::Option(error) => error.into(),
+            AlternativesError::Refused(refusal) => CommandError::Refused(refusal),
+            error => CommandError::Alternatives(error),
+        }
+    }
+}
+
+impl From<IdentifyError> for CommandError {
+    fn from(error: IdentifyError) -> CommandError {
+        match error {
+            IdentifyError::Stopped => Stopped.into(),
+            error => CommandError::Identify(error),
+        }
     }
 }

@@ -14,7 +14,7 @@ use phea_workbench::campaign::{
     CampaignError, Effort, METRIC_NAMES, Plan, RequestedRuns, Row, RowOutcome, RowStore, STATUS_WORDS, Shard,
     Summary,
 };
-use phea_workbench::command::{self, CampaignRequest, CampaignRuns, CommandError, ProcedureError, Request};
+use phea_workbench::command::{self, CampaignRequest, CampaignRuns, CommandError, Request};
 use phea_workbench::project::{self, Loaded};
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::simulate_project;

@@ -9,7 +9,7 @@ use phea_qft::design::{
 };
 use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_workbench::audit::AuditError;
-use phea_workbench::command::{CommandError, ProcedureError, Request};
+use phea_workbench::command::{CommandError, Request};
 use phea_workbench::design::{DesignError, Explanation, design_options, design_problem};
 use phea_workbench::project;
 use phea_workbench::robust::robust_problem;
@@ -104,10 +104,7 @@ fn a_controller_may_give_its_timing_alone() {
     assert_eq!(object["command"], "check");
     let refused =
         try_answer(TIMED, &[], &[], &Request::Verify { proof: false, on_machine: false }).unwrap_err();
-    assert!(
-        matches!(refused, CommandError::Procedure(ProcedureError::Audit(AuditError::NoLaw))),
-        "{refused}"
-    );
+    assert!(matches!(refused, CommandError::Audit(AuditError::NoLaw)), "{refused}");
     assert!(refused.to_string().contains("phea design"), "{refused}");
 }
 
@@ -115,10 +112,7 @@ fn a_controller_may_give_its_timing_alone() {
 fn nothing_is_designed_for_no_specification() {
     let bare = include_str!("../../project/tests/valid/design_growing.toml");
     let refused = try_answer(bare, &[], &[], &DESIGN).unwrap_err();
-    assert!(
-        matches!(refused, CommandError::Procedure(ProcedureError::Design(DesignError::NoSpecification))),
-        "{refused}"
-    );
+    assert!(matches!(refused, CommandError::Design(DesignError::NoSpecification)), "{refused}");
 }
 
 /// An integrator of unknown gain at 100 Hz, with converters.

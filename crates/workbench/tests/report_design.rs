@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use crate::ask::{HOSE, contradictory_report, load};
-use phea_workbench::command::{CommandError, ProcedureError, Progress};
+use phea_workbench::command::{CommandError, Progress};
 use phea_workbench::report::{Report, report};
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
@@ -191,6 +191,6 @@ fn whoever_watches_the_search_may_stop_it() {
     let loaded = load(LAG, &[], &[]);
     let setup = Setup::new(&loaded.project).unwrap();
     let stopped = report(&Memory::default(), &loaded, &setup, None, &mut watch);
-    assert!(matches!(stopped, Err(CommandError::Procedure(ProcedureError::Stopped))));
+    assert!(matches!(stopped, Err(CommandError::Stopped(_))));
     assert!(searched);
 }

@@ -10,7 +10,7 @@ use phea_dynamics::controller::Timing;
 use phea_dynamics::linear::Discretization;
 use phea_engineering::shaping::pass_words;
 use phea_qft::manual_shaping::{ElementPattern, WantedPoint, pass_through};
-use phea_workbench::command::{CommandError, ProcedureError, Request};
+use phea_workbench::command::{CommandError, Request};
 use phea_workbench::project::{self, DeclaredElement, ElementKind, Loaded};
 use phea_workbench::shaping::{Change, RequestedChange, Shaped};
 use phea_workbench::source::Memory;
@@ -305,7 +305,7 @@ fn the_prefilter_is_shaped_by_itself() {
     assert!((pole - 4.0).abs() < 1e-9, "{pole}");
     assert!(saved.contains(POLYNOMIALS) && saved.contains("[prefilter] # soft\n"));
     let refused = try_answer(SERVO, &[], &[], &request);
-    assert!(matches!(refused, Err(CommandError::Procedure(ProcedureError::Shaping(_)))));
+    assert!(matches!(refused, Err(CommandError::Shaping(_))));
 }
 
 /// Message, column and help of a change that is refused.

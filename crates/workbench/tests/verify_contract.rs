@@ -5,7 +5,7 @@
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
 use crate::ask::{self, HOSE, answer, json, try_answer};
-use phea_workbench::command::{CommandError, ProcedureError, Progress, Request, answer_into};
+use phea_workbench::command::{CommandError, Progress, Request, answer_into};
 use phea_workbench::shaping::Shaped;
 use serde_json::Value;
 
@@ -126,7 +126,7 @@ fn a_feed_forward_is_told_to_be_left_out() {
 fn without_a_controller_there_is_nothing_to_verify() {
     let bare = HOSE.split("[controller]").next().unwrap();
     let refused = try_answer(bare, &[], &[], &Request::Verify { proof: false, on_machine: false });
-    assert!(matches!(refused, Err(CommandError::Procedure(ProcedureError::Audit(_)))), "{refused:?}");
+    assert!(matches!(refused, Err(CommandError::Audit(_))), "{refused:?}");
 }
 
 #[test]
@@ -146,7 +146,7 @@ fn a_watcher_sees_progress_rise_and_can_stop_it() {
         None,
         &mut watch,
     );
-    assert!(matches!(stopped, Err(CommandError::Procedure(ProcedureError::Stopped))));
+    assert!(matches!(stopped, Err(CommandError::Stopped(_))));
     assert_eq!(shares.len(), 50);
     assert!(shares.is_sorted() && shares.iter().all(|share| (0.0..=1.0).contains(share)));
 }
@@ -175,7 +175,7 @@ fn plants_are_named_with_the_units_of_their_numbers() {
         ["load={ model = \"spring_mass_damper\", mass = 80, stiffness = 2e6, damping = 500 }".to_string()];
     let loaded = phea_workbench::project::read(&source, "rig.toml", &settings, &[]).unwrap();
     let names = ["load.mass", "load.stiffness", "viscous_friction", "operating_point.velocity", "other"];
-    let names = phea_workbench::audit::PlantNames::of_parameters(&loaded.project, names.into_iter());
+    let names = phea_workbench::plant_names::PlantNames::of_parameters(&loaded.project, names.into_iter());
     let plant = phea_qft::verification::PlantPoint::Parameters(vec![80.0, 2e6, 100.0, 0.02, 3.0]);
     let expected = "load.mass 80 kg, load.stiffness 2 kN/mm, viscous_friction 100 N.s/m, \
                     operating_point.velocity 20 mm/s, other 3";

@@ -1,16 +1,15 @@
 //! The alternatives of a project as projects, ready to be judged: with their settings, with the
 //! hose that `[sizing]` finds where one asks for it, and with the ranges that follow their rig.
 
+use super::AlternativesError;
 use super::by_other_means::OtherPart;
 use super::recentred::{self, MovedRange};
-use crate::audit::outside_of;
 use crate::catalogue::{self, Catalogue, CatalogueKind};
-use crate::error::ProcedureError;
 use crate::parts::PartsCounted;
 use crate::project::{
     self, AS_DECLARED, Alternative, Component, DeclaredLine, Loaded, read_alternative, refused_alternative,
 };
-use crate::rig::{Rig, RigError};
+use crate::rig::{Rig, RigError, outside};
 use crate::setup::Setup;
 use crate::sizing::{Candidate, Question, own_hoses, size, sizing_problem};
 use crate::source::Source;
@@ -41,7 +40,7 @@ impl AskedAlternative {
     pub fn outside(&self, all: &[AskedAlternative]) -> Option<String> {
         let words = |one: &AskedAlternative| {
             let rig = one.rig.as_ref().ok()?;
-            outside_of(&one.loaded.project, rig).map(|(_, words)| words)
+            outside(&one.loaded.project, rig).map(|(_, words)| words)
         };
         words(self).filter(|own| all.first().and_then(words).as_ref() != Some(own))
     }
@@ -49,14 +48,14 @@ impl AskedAlternative {
     /// The same with its ranges moved from those of the rig of another project.
     ///
     /// # Errors
-    /// [`ProcedureError`] for a range that cannot be moved.
+    /// [`AlternativesError`] for a range that cannot be moved.
     pub(super) fn recentred(
         self,
         again: &ReadingAgain<'_>,
         base: &AskedAlternative,
-    ) -> Result<AskedAlternative, ProcedureError> {
+    ) -> Result<AskedAlternative, AlternativesError> {
         let moved = recentred::moved(base, &self)
-            .map_err(|reason| ProcedureError::Alternative { name: self.name.clone(), reason })?;
+            .map_err(|reason| AlternativesError::Alternative { name: self.name.clone(), reason })?;
         let loaded = again.with(&self.loaded, &recentred::settings(&moved))?;
         Ok(AskedAlternative { moved, ..AskedAlternative::new(&self.name, loaded, self.no_hose) })
     }
@@ -71,34 +70,35 @@ pub(super) struct ReadingAgain<'a> {
 
 impl ReadingAgain<'_> {
     /// A project with further settings.
-    pub(super) fn with(&self, loaded: &Loaded, further: &[String]) -> Result<Loaded, ProcedureError> {
+    pub(super) fn with(&self, loaded: &Loaded, further: &[String]) -> Result<Loaded, AlternativesError> {
         let settings = [loaded.all_settings().as_slice(), further].concat();
         project::read(self.source, &loaded.path, &settings, self.catalogues)
-            .map_err(ProcedureError::Catalogue)
+            .map_err(AlternativesError::Refused)
     }
 }
 
 /// The project as it is declared, and its alternatives in file order.
 ///
 /// # Errors
-/// [`ProcedureError::Catalogue`] for an alternative that is not a valid project, or whose gas is
-/// shut off, [`ProcedureError::Alternative`] for one that cannot be sized or whose ranges cannot be
-/// moved.
+/// [`AlternativesError::Refused`] for an alternative that is not a valid project, or whose gas is
+/// shut off, [`AlternativesError::Alternative`] for one that cannot be sized or whose ranges cannot
+/// be moved.
 pub fn asked(
     source: &dyn Source,
     loaded: &Loaded,
     catalogues: &[String],
-) -> Result<(Vec<AskedAlternative>, PartsCounted), ProcedureError> {
-    let catalogue = catalogue::load(source, catalogues).map_err(ProcedureError::Catalogue)?;
+) -> Result<(Vec<AskedAlternative>, PartsCounted), AlternativesError> {
+    let catalogue = catalogue::load(source, catalogues).map_err(AlternativesError::Refused)?;
     let again = ReadingAgain { source, catalogues };
     let itself = AskedAlternative::new(AS_DECLARED, loaded.clone(), None);
     let mut found = vec![];
     for (index, alternative) in loaded.project.alternatives.iter().enumerate() {
-        let other = read_alternative(source, loaded, catalogues, index).map_err(ProcedureError::Catalogue)?;
+        let other =
+            read_alternative(source, loaded, catalogues, index).map_err(AlternativesError::Refused)?;
         let mut one = sized(&again, alternative, (&itself, other), &catalogue)?;
         if let Err(RigError::Accumulator(empty)) = &one.rig {
             let refusal = refused_alternative(source, loaded, index, &empty.at());
-            return Err(ProcedureError::Catalogue(refusal));
+            return Err(AlternativesError::Refused(refusal));
         }
         if alternative.recentre {
             one = one.recentred(&again, &itself)?;
@@ -113,9 +113,9 @@ pub fn asked(
 /// What is counted of the parts of all of them.
 ///
 /// # Errors
-/// [`ProcedureError::Alternative`] for one whose prices are in another currency than those before
-/// it.
-fn counted(all: &[AskedAlternative]) -> Result<PartsCounted, ProcedureError> {
+/// [`AlternativesError::Alternative`] for one whose prices are in another currency than those
+/// before it.
+fn counted(all: &[AskedAlternative]) -> Result<PartsCounted, AlternativesError> {
     let projects = |count: usize| all.iter().take(count).map(|one| &one.loaded.project);
     for (index, one) in all.iter().enumerate() {
         if let Err([first, other]) = PartsCounted::of(projects(index + 1)) {
@@ -123,7 +123,7 @@ fn counted(all: &[AskedAlternative]) -> Result<PartsCounted, ProcedureError> {
             let reason = format!(
                 "it states a price in {other} where others are in {first}, and no rate is known: state all in one currency"
             );
-            return Err(ProcedureError::Alternative { name: one.name.clone(), reason });
+            return Err(AlternativesError::Alternative { name: one.name.clone(), reason });
         }
     }
     Ok(PartsCounted::of(projects(all.len())).unwrap_or_default())
@@ -135,13 +135,14 @@ fn sized(
     alternative: &Alternative,
     (declared, other): (&AskedAlternative, Loaded),
     catalogue: &Catalogue,
-) -> Result<AskedAlternative, ProcedureError> {
+) -> Result<AskedAlternative, AlternativesError> {
     let name = alternative.name.clone();
     let one = |loaded, no_hose| AskedAlternative::new(&name, loaded, no_hose);
     if !alternative.size {
         return Ok(one(other, None));
     }
-    let wrong = |reason: &str| ProcedureError::Alternative { name: name.clone(), reason: reason.to_string() };
+    let wrong =
+        |reason: &str| AlternativesError::Alternative { name: name.clone(), reason: reason.to_string() };
     let is_hose = |line: &DeclaredLine| matches!(line.component, Component::Hose { .. });
     let lines = other.project.actuator.as_ref().map(|actuator| [&actuator.line.a, &actuator.line.b]);
     let Some(lines) = lines.filter(|lines| lines.iter().all(|line| is_hose(line))) else {
@@ -155,10 +156,8 @@ fn sized(
     };
     let alike = lines[0] == lines[1];
     let named = lines[0].hose_name().map(str::to_string);
-    let problem = Setup::new(&other.project)
-        .map_err(ProcedureError::from)
-        .and_then(|setup| Ok(sizing_problem(&setup, catalogue)?))
-        .map_err(|error| wrong(&error.to_string()))?;
+    let setup = Setup::new(&other.project).map_err(|error| wrong(&error.to_string()))?;
+    let problem = sizing_problem(&setup, catalogue).map_err(|error| wrong(&error.to_string()))?;
     let sizing = size(&problem, Question::Both);
     // of unequal lines the lengths of their own hoses
     let own = other.project.actuator.as_ref().filter(|_| !alike).and_then(own_hoses);

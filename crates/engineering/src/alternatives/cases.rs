@@ -3,9 +3,8 @@
 use phea_dynamics::watch::{Progress, Watch};
 
 use super::asked::asked;
-use super::{AskedAlternative, JudgedAlternative, Judging};
+use super::{AlternativesError, AskedAlternative, JudgedAlternative, Judging};
 use crate::catalogue::Catalogue;
-use crate::error::ProcedureError;
 use crate::parts::PartsCounted;
 use crate::project::{Loaded, read_load_case};
 use crate::source::Source;
@@ -44,12 +43,12 @@ pub fn asked_cases(
     source: &dyn Source,
     loaded: &Loaded,
     catalogues: &[String],
-) -> Result<Vec<AskedCase>, ProcedureError> {
+) -> Result<Vec<AskedCase>, AlternativesError> {
     let each = loaded.project.load_cases.iter().enumerate().map(|(index, case)| {
-        let there = read_load_case(source, loaded, catalogues, index).map_err(ProcedureError::Catalogue)?;
-        let named = |error: ProcedureError| match error {
-            ProcedureError::Alternative { name, reason } => {
-                ProcedureError::Alternative { name: format!("{name}, {}", case.name), reason }
+        let there = read_load_case(source, loaded, catalogues, index).map_err(AlternativesError::Refused)?;
+        let named = |error: AlternativesError| match error {
+            AlternativesError::Alternative { name, reason } => {
+                AlternativesError::Alternative { name: format!("{name}, {}", case.name), reason }
             }
             other => other,
         };

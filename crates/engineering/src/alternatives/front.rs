@@ -2,11 +2,12 @@
 
 use phea_dynamics::watch::{Progress, Watch};
 
+use super::AlternativesError;
 use super::asked::ReadingAgain;
 use super::comparison::sense_of;
 use super::{AskedAlternative, COLUMN_SENSES, ColumnSense, JudgedAlternative, Judging, dominates};
-use crate::error::ProcedureError;
 use crate::linearize::{SweepRequest, points, range, values};
+use crate::option::OptionError;
 use crate::project::Motions;
 use crate::quantity::{self, DisplayUnit, MotionKind};
 use crate::spelling::nearest;
@@ -122,10 +123,10 @@ impl FrontPlan {
 /// Reads the request.
 ///
 /// # Errors
-/// [`ProcedureError::Option`] for columns or a sweep that do not exist.
-pub(super) fn plan(request: &FrontRequest, motions: Motions) -> Result<FrontPlan, ProcedureError> {
+/// [`OptionError`] for columns or a sweep that do not exist.
+pub(super) fn plan(request: &FrontRequest, motions: Motions) -> Result<FrontPlan, OptionError> {
     let text = request.columns.join(",");
-    let refused = |message: String| ProcedureError::Option { option: "front", text: text.clone(), message };
+    let refused = |message: String| OptionError { option: "front", text: text.clone(), message };
     if !(2..=3).contains(&request.columns.len()) {
         return Err(refused(
             "a front has two or three columns, such as disturbance_peak_n,swept".to_string(),
@@ -240,7 +241,7 @@ fn at(
     one: &AskedAlternative,
     path: &str,
     value: f64,
-) -> Result<AskedAlternative, ProcedureError> {
+) -> Result<AskedAlternative, AlternativesError> {
     let loaded = again.with(&one.loaded, &[format!("{path}={value:e}")])?;
     let there = AskedAlternative::new(&one.name, loaded, one.no_hose.clone());
     match there.loaded.project.actuator {

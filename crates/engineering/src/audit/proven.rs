@@ -1,11 +1,10 @@
 //! Proves or refutes what an audit found by searching; the verdict then rests on the proof.
 
-use phea_dynamics::watch::Watch;
+use phea_dynamics::watch::{Stopped, Watch};
 use phea_qft::proof::{NotProven, Proof, ProofOptions, Standing, prove};
 use phea_qft::verification::{Evidence, Verdict};
 
 use super::{ProjectAudit, asked, rounded};
-use crate::error::ProcedureError;
 use crate::robust::RobustProblem;
 
 /// Proves or refutes stability and every specification of an audit. What is neither proven nor
@@ -13,12 +12,12 @@ use crate::robust::RobustProblem;
 /// by a plant and a frequency.
 ///
 /// # Errors
-/// [`ProcedureError::Stopped`] where the watcher stops it.
+/// [`Stopped`] where the watch stops it.
 pub fn prove_audit(
     problem: &RobustProblem,
     view: &mut ProjectAudit,
     watch: Watch<'_>,
-) -> Result<(), ProcedureError> {
+) -> Result<(), Stopped> {
     let proof = prove(&asked(problem, &problem.family), &view.audit, ProofOptions::default(), watch)?;
     rest_on(view, proof, Verdict::NotProven);
     Ok(())
@@ -28,12 +27,12 @@ pub fn prove_audit(
 /// the result of the search, and less effort is spent.
 ///
 /// # Errors
-/// [`ProcedureError::Stopped`] where the watcher stops it.
+/// [`Stopped`] where the watch stops it.
 pub fn try_to_prove(
     problem: &RobustProblem,
     view: &mut ProjectAudit,
     watch: Watch<'_>,
-) -> Result<(), ProcedureError> {
+) -> Result<(), Stopped> {
     let options = ProofOptions { leaves_maximum: TRIED_LEAVES, ..ProofOptions::default() };
     let proof = prove(&asked(problem, &problem.family), &view.audit, options, watch)?;
     rest_on(view, proof, Verdict::Met);

@@ -5,7 +5,6 @@ use phea_qft::specification::{ClosedLoop, Requirement};
 use phea_qft::verification::{Evidence, SpecificationFinding, Verdict, WorstCase};
 
 use super::{LimitSide, ReachedLimit};
-use crate::project::{SPECIFICATION_KINDS, word_of};
 use crate::quantity::significant;
 use crate::quantity::{RATIO, display};
 
@@ -52,21 +51,6 @@ pub fn evidence_sentence(evidence: Evidence, verdict: Verdict, one_plant: bool) 
         }
         Evidence::Proof => "Proven for every plant of the box and every frequency of the band.",
     }
-}
-
-/// The word of a kind, as the project file spells it.
-pub fn kind_key(requirement: &Requirement) -> &'static str {
-    closed_loop_key(requirement.closed_loop())
-}
-
-/// The word of the kind that limits a closed loop.
-pub fn closed_loop_key(closed_loop: ClosedLoop) -> &'static str {
-    word_of(&SPECIFICATION_KINDS, &closed_loop)
-}
-
-/// The kind for people.
-pub fn kind_words(requirement: &Requirement) -> String {
-    kind_key(requirement).replace('_', " ")
 }
 
 /// The closed loop that a kind limits.

@@ -1,11 +1,12 @@
 //! From a project to the problem of a design.
 
 use phea_dynamics::controller::Element;
+use phea_dynamics::linear::LinearError;
 use phea_qft::design::{ControllerChoice, DesignOptions, DesignProblem, PrefilterChoice, gain_range};
 use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::verification::TOLERANCE_DB;
 
-use crate::error::ProcedureError;
+use super::DesignError;
 use crate::project::StructurePart;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
@@ -31,13 +32,13 @@ pub fn design_problem(setup: &Setup<'_>, given: &RobustProblem) -> DesignProblem
 /// How a design is made: by `[design]`, or its defaults; `seed` in place of the project's.
 ///
 /// # Errors
-/// [`ProcedureError`] for a prefilter that is not a transfer function, or a nominal plant that
+/// [`DesignError`] for a prefilter that is not a transfer function, or a nominal plant that
 /// cannot be sampled.
 pub fn design_options(
     setup: &Setup<'_>,
     given: &RobustProblem,
     seed: Option<u32>,
-) -> Result<DesignOptions, ProcedureError> {
+) -> Result<DesignOptions, DesignError> {
     let design = setup.project.design.clone().unwrap_or_default();
     let controller = if design.structure.is_empty() {
         ControllerChoice::Grow { maximum_order: count(design.maximum_order) }
@@ -66,7 +67,7 @@ fn prefilter_choice(
     setup: &Setup<'_>,
     given: &RobustProblem,
     maximum_order: u32,
-) -> Result<PrefilterChoice, ProcedureError> {
+) -> Result<PrefilterChoice, LinearError> {
     let tracks = |one: &phea_qft::specification::Specification| one.requirement.is_tracking();
     let is_designed = given.specifications.iter().any(tracks) && maximum_order > 0;
     let is_kept = setup.prefilter.is_some() && (!given.has_controller || !is_designed);

@@ -10,7 +10,6 @@ use phea_qft::verification::{PlantPoint, Verdict};
 
 use super::{AuditedController, DesignError, DesignRun, ProjectDesign};
 use crate::audit::{ProjectAudit, try_to_prove};
-use crate::error::ProcedureError;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
@@ -24,7 +23,7 @@ pub(super) fn proven(
     mut run: DesignRun,
     options: &DesignOptions,
     watch: Watch<'_>,
-) -> Result<(DesignRun, Option<ProjectAudit>), ProcedureError> {
+) -> Result<(DesignRun, Option<ProjectAudit>), DesignError> {
     for round in 0..=REFUTATIONS_MAXIMUM {
         let Some(design) = run.outcome.design.clone().filter(|_| !run.outcome.stopped) else { break };
         let was_met = design.audit.verdict == Verdict::Met;
@@ -36,8 +35,8 @@ pub(super) fn proven(
             return Ok((run, Some(designed.view)));
         }
         run.problem.beside.extend(refuting);
-        run.outcome = design_again(&run.problem, options, run.outcome, watch).map_err(DesignError::from)?;
-        run.outcome.conclude().map_err(DesignError::from)?;
+        run.outcome = design_again(&run.problem, options, run.outcome, watch)?;
+        run.outcome.conclude()?;
     }
     Ok((run, None))
 }

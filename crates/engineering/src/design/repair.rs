@@ -16,13 +16,12 @@ use phea_qft::verification::Verdict;
 
 use super::{DesignError, DesignRun, ProjectDesign, tried_design};
 use crate::audit::{ProjectAudit, audit_problem, try_to_prove};
-use crate::error::ProcedureError;
 use crate::family::family;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::source::Source;
 use crate::trial::{self, Agreement, TrialRun, waves_alone};
-use phea_dynamics::watch::{Watch, part};
+use phea_dynamics::watch::{Stopped, Watch, part};
 
 /// What became of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,12 +96,12 @@ pub(super) fn repaired(
     run: DesignRun,
     told: ProjectDesign,
     watch: Watch<'_>,
-) -> Result<ProjectDesign, ProcedureError> {
+) -> Result<ProjectDesign, DesignError> {
     if told.agreement() != Agreement::Contradicts {
         return Ok(told);
     }
     let mut repair = match with_waves((source, setup), run, &told, watch) {
-        Err(ProcedureError::Stopped) => Repair::without(RepairStatus::Stopped),
+        Err(DesignError::Stopped(_)) => Repair::without(RepairStatus::Stopped),
         other => other?,
     };
     let mut design = match repair.other.take() {
@@ -134,7 +133,7 @@ fn with_waves(
     run: DesignRun,
     told: &ProjectDesign,
     watch: Watch<'_>,
-) -> Result<Repair, ProcedureError> {
+) -> Result<Repair, DesignError> {
     let nothing = Repair::without(RepairStatus::NothingToTakeIn);
     let (Some(contradicting), Some(alone)) = (contradicting_waves(told), waves_alone(setup)) else {
         return Ok(nothing);
@@ -195,12 +194,12 @@ fn family_with_waves(
     (source, setup): (&dyn Source, &Setup<'_>),
     found: &ProjectDesign,
     watch: Watch<'_>,
-) -> Result<Option<ProjectAudit>, ProcedureError> {
+) -> Result<Option<ProjectAudit>, DesignError> {
     let Some(project) = trial::with_waves(setup.project) else { return Ok(None) };
     let Ok(family) = family(&Setup::new(&project)?, source) else { return Ok(None) };
     let problem =
         RobustProblem { family, rig_outside: None, caveats: vec![], ..found.designed.problem.clone() };
-    audit_problem(&problem, watch).map(Some)
+    Ok(Some(audit_problem(&problem, watch)?))
 }
 
 /// The design continued with the additional plant and tried on the machine; `None` where no
@@ -210,15 +209,15 @@ fn designed_again(
     run: DesignRun,
     (plant, told): (&UncertainPlant, &ProjectDesign),
     watch: Watch<'_>,
-) -> Result<Option<(RepairStatus, ProjectDesign)>, ProcedureError> {
+) -> Result<Option<(RepairStatus, ProjectDesign)>, DesignError> {
     let DesignRun { mut problem, outcome } = run;
     problem.beside.push(plant.clone());
     let options = told.options.clone();
     let outcome =
         phea_qft::design::design_again(&problem, &options, outcome, &mut part(watch, STAGE, [0.0, 1.0]));
-    let outcome = outcome.map_err(DesignError::from)?;
+    let outcome = outcome?;
     if outcome.stopped {
-        return Err(ProcedureError::Stopped);
+        return Err(Stopped.into());
     }
     let Some(design) = outcome.design else { return Ok(None) };
     let status = match &design.status {

@@ -1,10 +1,10 @@
 //! The effect of the converters of the controller's computer on its loop.
 
+use phea_dynamics::linear::LinearError;
 use phea_qft::design::quantization::{LimitCycle, RoundingEffect, RoundingEffects, rounding_effects};
 use phea_qft::family::Family;
 use phea_qft::verification::PlantPoint;
 
-use crate::error::ProcedureError;
 use crate::quantity::significant;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
@@ -18,10 +18,7 @@ pub struct Rounding {
 }
 
 /// `None` where no converter rounds.
-pub(super) fn rounding(
-    setup: &Setup<'_>,
-    problem: &RobustProblem,
-) -> Result<Option<Rounding>, ProcedureError> {
+pub(super) fn rounding(setup: &Setup<'_>, problem: &RobustProblem) -> Result<Option<Rounding>, LinearError> {
     let quantization = setup.quantization;
     if quantization.command.is_none() && quantization.measurement.is_none() {
         return Ok(None);

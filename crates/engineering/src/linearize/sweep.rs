@@ -12,9 +12,9 @@ use phea_dynamics::uncertain_plant::PlantCoefficients;
 
 use super::{Linearization, linearize, resonance};
 use crate::caveat::{Caveat, caveats};
-use crate::error::ProcedureError;
 use crate::linear_loop::{LinearLoop, LoopStability, linear_loop, linear_loop_of};
-use crate::project::{self, Key, KeyEntry, Loaded, Motions};
+use crate::option::OptionError;
+use crate::project::{self, Key, KeyEntry, Loaded, Motions, Refusal};
 use crate::quantity::{self, DisplayUnit, MotionKind, display};
 use crate::setup::Setup;
 use crate::source::Source;
@@ -39,6 +39,17 @@ const DECADES: f64 = 100.0;
 const MOVED: f64 = 1e-9;
 /// Band of the settling time with which a loop is computed, percent; steps are not reported.
 const BAND_PERCENT: f64 = 2.0;
+
+/// Why nothing is swept.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SweepError {
+    /// The key, the range or the number of points is invalid.
+    #[error(transparent)]
+    Option(#[from] OptionError),
+    /// One of the values makes the project invalid.
+    #[error("{0}")]
+    Refused(Refusal),
+}
 
 /// A sweep.
 #[derive(Clone, Debug)]
@@ -90,14 +101,13 @@ pub struct Swept {
 /// Sweeps a number of a project.
 ///
 /// # Errors
-/// [`ProcedureError::Option`] for an invalid key, range or number of points,
-/// [`ProcedureError::Catalogue`] for a project that one of the values makes invalid.
+/// [`SweepError`]
 pub fn sweep(
     source: &dyn Source,
     (loaded, setup): (&Loaded, &Setup<'_>),
     catalogues: &[String],
     request: &SweepRequest,
-) -> Result<Sweep, ProcedureError> {
+) -> Result<Sweep, SweepError> {
     let motion = loaded.project.motion();
     let asked = range(&request.range, loaded.project.motions())?;
     let by_ratio = asked.by_ratio();
@@ -108,7 +118,7 @@ pub fn sweep(
         let mut settings = loaded.all_settings();
         settings.push(format!("{path}={value:e}"));
         let there =
-            project::read(source, &loaded.path, &settings, catalogues).map_err(ProcedureError::Catalogue)?;
+            project::read(source, &loaded.path, &settings, catalogues).map_err(SweepError::Refused)?;
         found.push((value, linearized(&there)));
     }
     let plant_follows = moves(&found);
@@ -138,12 +148,12 @@ impl SweepRange {
     }
 }
 
-fn refused(text: &str, message: String) -> ProcedureError {
-    ProcedureError::Option { option: "sweep", text: text.to_string(), message }
+fn refused(text: &str, message: String) -> OptionError {
+    OptionError { option: "sweep", text: text.to_string(), message }
 }
 
 /// The range that a text states, in the units of the motions of rig and load.
-pub(crate) fn range(text: &str, motions: Motions) -> Result<SweepRange, ProcedureError> {
+pub(crate) fn range(text: &str, motions: Motions) -> Result<SweepRange, OptionError> {
     let form =
         || refused(text, "a sweep has the form KEY=FROM..TO, such as line.length=0.5 m..3 m".to_string());
     let (path, ends) = text.split_once('=').ok_or_else(form)?;
@@ -167,7 +177,7 @@ pub(crate) fn range(text: &str, motions: Motions) -> Result<SweepRange, Procedur
 }
 
 /// The entry of the key, or the nearest spelling.
-fn key(text: &str, path: &str) -> Result<Key, ProcedureError> {
+fn key(text: &str, path: &str) -> Result<Key, OptionError> {
     let keys = project::keys();
     let is_number = |entry: &&KeyEntry| entry.takes == entry.key.dimension.name;
     let named = |entry: &&KeyEntry| entry.path == path;
@@ -193,7 +203,7 @@ fn unit_of(text: &str) -> &str {
     number.and_then(|end| text.get(end..)).unwrap_or_default().trim()
 }
 
-fn number(text: &str, part: &str, key: &Key) -> Result<f64, ProcedureError> {
+fn number(text: &str, part: &str, key: &Key) -> Result<f64, OptionError> {
     let value = match bare(part) {
         Some(value) => value,
         None => quantity::parse(part, key.dimension).map_err(|error| {
@@ -209,10 +219,10 @@ fn number(text: &str, part: &str, key: &Key) -> Result<f64, ProcedureError> {
     Err(refused(text, format!("{shown} is outside of what `{}` may be", key.name)))
 }
 
-pub(crate) fn points(asked: Option<usize>) -> Result<usize, ProcedureError> {
+pub(crate) fn points(asked: Option<usize>) -> Result<usize, OptionError> {
     match asked.unwrap_or(POINTS) {
         count @ 2..=MOST_POINTS => Ok(count),
-        count => Err(ProcedureError::Option {
+        count => Err(OptionError {
             option: "points",
             text: count.to_string(),
             message: format!("a sweep has 2 to {MOST_POINTS} points"),
@@ -244,13 +254,12 @@ struct Models {
 }
 
 fn linearized(loaded: &Loaded) -> Result<Models, String> {
-    let found = || -> Result<Models, ProcedureError> {
-        let setup = Setup::new(&loaded.project)?;
-        let seen = setup.rig()?.in_loop().plant.coefficients();
-        let linearization = linearize(setup.rig()?, setup.controller.as_ref(), &setup.sensor)?;
-        Ok(Models { linearization, seen, given: setup.controller, sensor: setup.sensor })
-    };
-    found().map_err(|error| error.to_string())
+    let setup = Setup::new(&loaded.project).map_err(|error| error.to_string())?;
+    let rig = setup.rig().map_err(|error| error.to_string())?;
+    let seen = rig.in_loop().plant.coefficients();
+    let linearization = linearize(rig, setup.controller.as_ref(), &setup.sensor);
+    let linearization = linearization.map_err(|error| format!("the linear models: {error}"))?;
+    Ok(Models { linearization, seen, given: setup.controller, sensor: setup.sensor })
 }
 
 /// Whether a pole of the plant changes with the value.

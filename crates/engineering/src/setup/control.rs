@@ -268,3 +268,18 @@ fn general(
         }
     }
 }
+
+/// Noise of the velocity sensor at the samples in m/s rms, where it is fed forward; zero without.
+///
+/// ```text
+/// rms^2 = noise^2 + resolution^2/12            the rounding as noise that is independent from sample to sample
+/// ```
+pub(crate) fn velocity_noise(project: &Project) -> f64 {
+    let sensor = project.actuator.as_ref().and_then(|actuator| actuator.velocity_sensor.as_ref());
+    let controller = project.controller.as_ref();
+    let samples = controller.is_some_and(|controller| {
+        controller.sample_time.is_some() && controller.load_velocity_feed_forward.is_some()
+    });
+    let rms = |noise: f64, resolution: f64| (noise * noise + resolution * resolution / 12.0).sqrt();
+    sensor.filter(|_| samples).map_or(0.0, |sensor| rms(sensor.noise, sensor.resolution))
+}

@@ -3,12 +3,12 @@
 use phea_dynamics::controller::{Compensator, Element as Solved, Stage};
 use phea_qft::manual_shaping::{Edit, EditError, ElementPattern, apply, pass_through};
 
+use super::ShapingError;
 use super::piece::TextPiece;
 use super::present;
 use super::wish::{self, ElementWish};
 use super::words::pass_words;
 use super::workpiece::Workpiece;
-use crate::error::ProcedureError;
 use crate::project::{DeclaredElement, ElementKind, Findings, RawFinding, Refusal, value_or_finding};
 use crate::robust::RobustProblem;
 
@@ -78,7 +78,7 @@ pub(super) fn edit(
     now: &Compensator,
     bare: &RobustProblem,
     findings: &mut Findings,
-) -> Result<Option<Edit>, ProcedureError> {
+) -> Result<Option<Edit>, ShapingError> {
     let whole = taken_in(requested, findings);
     let count = now.stages.len();
     let stage = |piece: &TextPiece<'_>, workpiece: &mut Workpiece<'_>, findings: &mut Findings| {
@@ -130,7 +130,7 @@ fn pass(
     now: &Compensator,
     bare: &RobustProblem,
     findings: &mut Findings,
-) -> Result<Option<Edit>, ProcedureError> {
+) -> Result<Option<Edit>, ShapingError> {
     let replaced = match &wish.replaced {
         None => None,
         Some(piece) => match number(piece, now.stages.len(), findings) {

@@ -7,7 +7,6 @@ mod section;
 use std::ops::Range;
 
 use super::{Shaped, ShapingError};
-use crate::error::ProcedureError;
 use crate::project::{
     self, DeclaredElement, Entry, Findings, Loaded, Transfer, TreeNode, TreeValue, read_tree, with_law,
 };
@@ -41,12 +40,12 @@ pub(super) fn saved(
     loaded: &Loaded,
     shaped: Shaped,
     elements: &[DeclaredElement],
-) -> Result<Vec<u8>, ProcedureError> {
+) -> Result<Vec<u8>, ShapingError> {
     let bytes = &loaded.bytes;
     let table = shaped.table();
     let mut findings = Findings::default();
     let Some(root) = read_tree(&loaded.path, bytes, &mut findings) else {
-        return Err(ShapingError::Refused(findings.report()).into());
+        return Err(ShapingError::Refused(findings.report()));
     };
     let skipped = bytes.len() - findings.content(root.place.text).len();
     let content = findings.content(root.place.text).to_string();
@@ -65,7 +64,7 @@ fn read_back(
     shaped: Shaped,
     elements: &[DeclaredElement],
     saved: &[u8],
-) -> Result<(), ProcedureError> {
+) -> Result<(), ShapingError> {
     if !loaded.settings.is_empty() {
         return Ok(()); // the file alone need not be a valid project
     }
@@ -74,7 +73,7 @@ fn read_back(
         Ok(again) => again,
         // names of the user's own catalogue are known only to the command line
         Err(_) if !loaded.catalogue_files.iter().all(|file| file.starts_with("built-in:")) => return Ok(()),
-        Err(report) => return Err(ShapingError::Refused(report).into()),
+        Err(report) => return Err(ShapingError::Refused(report)),
     };
     let transfer = match shaped {
         Shaped::Controller => again.project.controller.map(|controller| controller.transfer),
@@ -83,8 +82,7 @@ fn read_back(
     if transfer.map(|transfer| transfer.as_elements()).unwrap_or_default() == elements {
         Ok(())
     } else {
-        Err(ShapingError::NotWritten { reason: "it would not read back as these elements".to_string() }
-            .into())
+        Err(ShapingError::NotWritten { reason: "it would not read back as these elements".to_string() })
     }
 }
 

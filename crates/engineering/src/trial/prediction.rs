@@ -9,9 +9,9 @@ use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::stability::{StabilityStatus, member_stability};
 
+use super::TrialError;
 use super::rigs::Tried;
 use super::run::{BAND_PERCENT, StepResponse};
-use crate::error::ProcedureError;
 use crate::linear_loop::of_responses::real_parts;
 use crate::linear_loop::{LinearLoop, LoopStability, linear_loop_of};
 use crate::robust::RobustProblem;
@@ -36,7 +36,7 @@ pub(super) fn predicted(
     tried: &Tried,
     setup: &Setup<'_>,
     problem: &RobustProblem,
-) -> Result<Prediction, ProcedureError> {
+) -> Result<Prediction, TrialError> {
     match &tried.plant {
         None => Ok(Prediction::Unknown),
         Some(PlantMember::Responding(plant)) => {
@@ -61,7 +61,7 @@ pub(super) fn predicted(
 fn of_responses(
     plant: &Arc<dyn RespondingPlant>,
     compensation: &Compensation,
-) -> Result<Prediction, ProcedureError> {
+) -> Result<Prediction, TrialError> {
     let member = compensation.responding(plant.clone());
     match member_stability(&member, compensation).status {
         StabilityStatus::Stable => {}

@@ -10,7 +10,8 @@ use phea_hydraulics::series::MOST_SEGMENTS;
 use phea_qft::family::Family;
 use phea_qft::verification::PlantPoint;
 
-use crate::audit::{NamedPlant, ProjectAudit};
+use crate::audit::ProjectAudit;
+use crate::plant_names::NamedPlant;
 use crate::project::{
     Component, DeclaredActuator, DeclaredLine, DeclaredSeries, LINEAR_PARAMETERS, LineMotion, Linear,
     Project, ValveCoefficients,

@@ -7,10 +7,11 @@ use phea_dynamics::time_response::{StepBaseline, step_metrics};
 use phea_qft::specification::ClosedLoop;
 use phea_qft::verification::Verdict;
 
+use super::TrialError;
 use super::prediction::{Prediction, predicted};
 use super::rigs::Tried;
-use crate::audit::{NamedPlant, ProjectAudit};
-use crate::error::ProcedureError;
+use crate::audit::ProjectAudit;
+use crate::plant_names::NamedPlant;
 use crate::project::{LineMotion, Project, Scenario, Signal};
 use crate::quantity::significant;
 use crate::quantity::{DisplayUnit, FORCE};
@@ -106,7 +107,7 @@ pub(super) fn run(
     problem: &RobustProblem,
     view: &ProjectAudit,
     watch: Watch<'_>,
-) -> Result<Option<TrialRun>, ProcedureError> {
+) -> Result<Option<TrialRun>, TrialError> {
     let setup = Setup::new(&tried.project)?;
     let predicted = predicted(tried, &setup, problem)?;
     let grows = matches!(predicted, Prediction::Grows);

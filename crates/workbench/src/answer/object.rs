@@ -1,10 +1,10 @@
 //! JSON as a value: what a command says to programs, key by key, and why a number is missing.
 
 use num_complex::Complex64;
-use phea_engineering::audit::{NamedPlant, NamedValue};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::Number;
+use crate::plant_names::{NamedPlant, NamedValue};
 
 /// A value of JSON. A number that is not finite is printed as [`Number`] does.
 #[derive(Clone, Debug, PartialEq)]

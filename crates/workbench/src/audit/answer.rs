@@ -1,13 +1,12 @@
 use phea_qft::proof::{Certificate, Proof, Standing};
 use phea_qft::verification::{SpecificationFinding, StabilityFinding, Verdict, WorstCase};
 
-use super::PlantNames;
 use super::{ProjectAudit, ReachedLimit, VelocityNoise};
-use super::{
-    evidence_key, kind_key, kind_words, remark_sentences, stability_reason, verdict_key, why_not_proven,
-};
+use super::{evidence_key, remark_sentences, stability_reason, verdict_key, why_not_proven};
 use crate::answer::{Csv, Object, OutputFile, envelope};
+use crate::plant_names::PlantNames;
 use crate::project::Loaded;
+use crate::specification::{kind_key, kind_words};
 
 /// The JSON object of `verify`, as a file.
 pub(crate) fn json(loaded: &Loaded, view: &ProjectAudit) -> String {

@@ -6,10 +6,11 @@ mod layout;
 use phea_dynamics::portable;
 use phea_qft::proof::{Certificate, CertificateSide, Claim, LimitedLoop, Rejection, check};
 
-use super::{ProjectAudit, closed_loop_key};
+use super::ProjectAudit;
 use crate::answer::{Answer, Object, OutputFile, SCHEMA};
 use crate::document::Document;
 use crate::project::Loaded;
+use crate::specification::closed_loop_key;
 pub use layout::CertificateError;
 use layout::File;
 

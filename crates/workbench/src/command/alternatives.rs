@@ -2,10 +2,10 @@
 
 use super::simulate::frequencies;
 use super::unprinted::Unprinted;
-use super::{CommandError, ProcedureError, Watch};
+use super::{CommandError, Watch};
 use crate::alternatives::{
-    self, AlternativesOptions as Asked, AskedAlternative, FrontRequest, IMPEDANCE_AT, asked, asked_cases,
-    judge, outside_words,
+    self, AlternativesError, AlternativesOptions as Asked, AskedAlternative, FrontRequest, IMPEDANCE_AT,
+    asked, asked_cases, judge, outside_words,
 };
 use crate::linearize::SweepRequest;
 use crate::project::{AS_DECLARED, Loaded};
@@ -77,7 +77,7 @@ fn rigs(all: &[AskedAlternative], case: &str) -> Result<Vec<String>, CommandErro
     for one in all.iter().filter(own).filter(|one| one.loaded.project.actuator.is_some()) {
         if let Err(error) = &one.rig {
             let name = format!("{}{case}", one.name);
-            return Err(ProcedureError::Alternative { name, reason: error.to_string() }.into());
+            return Err(AlternativesError::Alternative { name, reason: error.to_string() }.into());
         }
     }
     Ok(all

@@ -188,7 +188,7 @@ fn limit_row(
     let requirement = side.problem.specifications.get(specification).map(|one| &one.requirement);
     Object::new()
         .with("specification", specification)
-        .with("kind", requirement.map_or("", audit::kind_key))
+        .with("kind", requirement.map_or("", crate::specification::kind_key))
         .with("frequency_rad_per_s", frequency_rad_per_s)
         .with("margin_db", margin_db)
         .with("plant", side.view.names.named(plant))

@@ -11,10 +11,11 @@ use super::answer::factors;
 use super::{AuditedController, ProjectDesign, Repair};
 use super::{DESIGNED_CERTIFICATE, DESIGNED_PROJECT, NEAREST_PROJECT, structure_words};
 use crate::answer::{Csv, OutputFile};
-use crate::audit::{self, certificate_of, kind_key};
+use crate::audit::{self, certificate_of};
 use crate::error::CommandError;
 use crate::project::{Loaded, with_laws};
 use crate::robust::{DesignFrequency, RobustProblem};
+use crate::specification::kind_key;
 
 /// How far the drawn frequencies reach beyond the design frequencies.
 const BEYOND: [f64; 2] = [0.1, 30.0];

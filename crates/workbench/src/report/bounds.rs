@@ -8,13 +8,14 @@ use phea_qft::verification::Verdict;
 
 use super::chapter::Chapter;
 use crate::answer::significant;
-use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_number, kind_key};
+use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_number};
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
 use crate::figure::{
     BoundGroup, Figure, FrequencySeries, NicholsChart, OpenLoopViolation, USUAL_CONTOURS_DB, Words, templates,
 };
 use crate::robust::{DesignFrequency, RobustProblem};
+use crate::specification::kind_key;
 
 /// The chapter; `chart` is the Nichols chart of the given loop if it is shown nowhere else.
 pub(super) fn chapter(problem: &RobustProblem, found: &[DesignFrequency], chart: Option<Figure>) -> Chapter {

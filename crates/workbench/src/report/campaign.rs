@@ -1,8 +1,7 @@
 //! The chapter on the machine with numbers that deviate from those of the project: bands over time,
 //! and the worst runs.
 
-use phea_dynamics::watch::Watch;
-use phea_engineering::error::ProcedureError;
+use phea_dynamics::watch::{Stopped, Watch};
 
 use super::chapter::Chapter;
 use crate::answer::significant;
@@ -37,7 +36,7 @@ pub(super) struct CampaignChapter {
 /// The campaign of a report; `None` for a project without `[campaign]`.
 ///
 /// # Errors
-/// [`ProcedureError::Stopped`] where the watch stops it.
+/// [`CommandError::Stopped`] where the watch stops it.
 pub(super) fn driven(
     source: &dyn Source,
     loaded: &Loaded,
@@ -61,7 +60,7 @@ pub(super) fn driven(
             out.verdict(StatusMark::Bad, format!("Not simulated: {error}"), vec![]);
             (out, None)
         }
-        Ok((_, count, _, _)) if count < RUNS => return Err(ProcedureError::Stopped.into()),
+        Ok((_, count, _, _)) if count < RUNS => return Err(Stopped.into()),
         Ok((plan, _, summary, figures)) => {
             let words = words(&plan, &summary);
             (document(&plan, &summary, figures), Some(("Campaign", words)))

@@ -9,9 +9,10 @@ use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
 use crate::answer::significant;
-use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_words, kind_key};
+use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_words};
 use crate::figure::{FamilyEnvelope, FamilyMagnitude, Figure, MagnitudeCurve, MagnitudeMark, Words};
 use crate::robust::RobustProblem;
+use crate::specification::kind_key;
 
 /// Number of members that are drawn, in addition to the worst.
 pub(super) const DRAWN_MEMBERS: usize = 40;

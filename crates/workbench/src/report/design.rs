@@ -6,8 +6,7 @@ mod magnitudes;
 mod prefilter;
 mod sampling;
 
-use phea_dynamics::watch::Watch;
-use phea_engineering::error::ProcedureError;
+use phea_dynamics::watch::{Stopped, Watch};
 use phea_qft::design::DesignStatus;
 use phea_qft::verification::Verdict;
 
@@ -53,16 +52,16 @@ pub(super) fn designed(
     setup: &Setup<'_>,
     watch: Watch<'_>,
 ) -> Result<Designed, CommandError> {
-    let view = match design_project(source, setup, None, watch) {
-        Ok(view) if view.stopped => return Err(ProcedureError::Stopped.into()),
+    let view = match design_project(source, setup, None, watch).map_err(CommandError::from) {
+        Ok(view) if view.stopped => return Err(Stopped.into()),
         Ok(view) => view,
-        Err(ProcedureError::Design(DesignError::NoController(mut sentences))) => {
+        Err(CommandError::Design(DesignError::NoController(mut sentences))) => {
             sentences
                 .insert(0, "the search ended without a controller that makes every plant stable".to_string());
             return Ok(Designed::Nothing(sentences));
         }
-        Err(ProcedureError::Design(error)) => return Ok(Designed::Nothing(vec![error.to_string()])),
-        Err(error) => return Err(error.into()),
+        Err(CommandError::Design(error)) => return Ok(Designed::Nothing(vec![error.to_string()])),
+        Err(error) => return Err(error),
     };
     Ok(Designed::Found(Box::new(FoundDesign { view })))
 }

@@ -11,8 +11,7 @@ use crate::simulate::{
 };
 use crate::source::Source;
 use crate::specification::wishes;
-use phea_dynamics::watch::Watch;
-use phea_engineering::error::ProcedureError;
+use phea_dynamics::watch::{Stopped, Watch};
 
 /// Name of the controller that the project gives.
 pub(super) const GIVEN: &str = "given";
@@ -39,7 +38,7 @@ pub(super) struct DrivenSide {
 /// one; `None` without scenarios.
 ///
 /// # Errors
-/// [`ProcedureError::Stopped`] where the watch stops it, or where a wish in time is invalid.
+/// [`CommandError::Stopped`] where the watch stops it, or where a wish in time is invalid.
 pub(super) fn driven(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -57,7 +56,7 @@ pub(super) fn driven(
     for (name, setup) in given.into_iter().chain(designed) {
         let runs = simulate_project(source, &setup, watch);
         if runs.iter().flatten().any(ScenarioRun::was_cancelled) {
-            return Err(ProcedureError::Stopped.into());
+            return Err(Stopped.into());
         }
         sides.push(DrivenSide { name, runs });
     }

@@ -19,10 +19,9 @@ pub(super) fn chapter(
     if files.is_empty() {
         return Ok(None);
     }
-    let refused = CommandError::of_recordings;
-    let known = KnownCylinder::of(&loaded.project).map_err(refused)?;
-    let recordings = friction_recordings(source, &files, &known).map_err(refused)?;
-    let found = identify_friction(recordings, &known, watch).map_err(refused)?;
+    let known = KnownCylinder::of(&loaded.project)?;
+    let recordings = friction_recordings(source, &files, &known)?;
+    let found = identify_friction(recordings, &known, watch)?;
     let mut out = Document::default();
     out.explanation("The friction of the cylinder follows from runs at constant velocities, from a force that slowly presses the piston until it breaks away, and from one that shakes it before. One set of coefficients explains all recordings that the project declares. The other chapters take the friction that `[cylinder.friction]` states, not this one: compare them.");
     friction::tell(&found, &mut out);

@@ -1,8 +1,7 @@
 //! The appendix on uncertain quantities: the first scenario with multiples of the load cell's
 //! stiffness and of the friction.
 
-use phea_dynamics::watch::Watch;
-use phea_engineering::error::ProcedureError;
+use phea_dynamics::watch::{Stopped, Watch};
 
 use super::chapter::Chapter;
 use super::driven::MachineChapter;
@@ -23,7 +22,7 @@ const FRICTION_FACTORS: [(f64, &str); 4] = [(0.0, "none"), (0.5, "half"), (1.0, 
 /// was.
 ///
 /// # Errors
-/// [`ProcedureError::Stopped`] where the watch stops it.
+/// [`CommandError::Stopped`] where the watch stops it.
 pub(super) fn chapter(
     source: &dyn Source,
     project: &Project,
@@ -97,7 +96,7 @@ fn vary(
     watch: Watch<'_>,
 ) -> Result<VariedQuantity, CommandError> {
     let run = match simulate_project(source, &Setup::new(project)?, watch) {
-        Ok(runs) if runs.iter().any(ScenarioRun::was_cancelled) => return Err(ProcedureError::Stopped.into()),
+        Ok(runs) if runs.iter().any(ScenarioRun::was_cancelled) => return Err(Stopped.into()),
         Ok(runs) => runs.into_iter().next().ok_or_else(|| "no scenario".to_string()),
         Err(error) => Err(error.to_string()),
     };

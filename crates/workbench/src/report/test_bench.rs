@@ -25,8 +25,7 @@ pub(super) fn chapter(
     let known = Known::of(project);
     let RecordedFiles { recordings, contents, warnings } = recordings(source, &files, &known)
         .map_err(|report| CommandError::Identify(IdentifyError::Files(report)))?;
-    let found =
-        identify(recordings, &known, Search::default(), watch).map_err(CommandError::of_recordings)?;
+    let found = identify(recordings, &known, Search::default(), watch)?;
     Ok(Some(Chapter::of(
         "test_bench",
         "From the test bench to the model",

@@ -3,7 +3,8 @@ use phea_qft::bound::Placement;
 use super::ProjectShaping;
 use super::document::polar;
 use crate::answer::{Csv, Object, OutputFile};
-use crate::audit::{kind_key, stability_reason, stable, verdict_key};
+use crate::audit::{stability_reason, stable, verdict_key};
+use crate::specification::kind_key;
 
 /// What `shape` says to programs.
 pub(crate) fn body(view: &ProjectShaping) -> Object {

@@ -131,7 +131,7 @@ fn a_table_of_another_campaign_is_left_alone() {
     let before = page.text.clone();
     let other = CampaignRequest { seed: 2, ..asked };
     let refused = |result: Result<String, CommandError>| match result {
-        Err(CommandError::Procedure(ProcedureError::Campaign(error))) => error,
+        Err(CommandError::Campaign(error)) => error,
         other => panic!("{other:?}"),
     };
     assert_eq!(refused(kept(&loaded, &other, &mut page)), CampaignError::OtherCampaign { line: 2 });
@@ -147,7 +147,7 @@ fn a_table_of_another_campaign_is_left_alone() {
 
 fn refusal(result: Result<String, CommandError>) -> CampaignError {
     match result {
-        Err(CommandError::Procedure(ProcedureError::Campaign(error))) => error,
+        Err(CommandError::Campaign(error)) => error,
         other => panic!("{other:?}"),
     }
 }

@@ -3,7 +3,8 @@
 use phea_qft::design::quantization::LimitCycle;
 
 use crate::answer::Object;
-use crate::audit::PlantNames;
+use crate::plant_names::PlantNames;
+
 use crate::design::Rounding;
 
 pub(super) fn row(rounding: &Rounding, names: &PlantNames) -> Object {

@@ -4,9 +4,10 @@ use phea_dynamics::linear::LinearError;
 use phea_qft::specification::Requirement;
 
 use super::super::closed_loops::{LoopFamily, magnitudes};
-use crate::audit::kind_key;
+
 use crate::design::ProjectDesign;
 use crate::figure::{FamilyMagnitude, Figure, Words};
+use crate::specification::kind_key;
 
 /// One figure for each specification that a loop has a margin to.
 pub(super) fn figures(view: &ProjectDesign) -> Result<Vec<Figure>, LinearError> {

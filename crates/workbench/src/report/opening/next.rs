@@ -9,7 +9,7 @@ use phea_qft::verification::Verdict;
 use super::Contents;
 use super::side::Side;
 use crate::answer::significant;
-use crate::audit::{ProjectAudit, frequency_words, outside};
+use crate::audit::{ProjectAudit, frequency_words};
 use crate::caveat::caveats;
 use crate::design::{DESIGNED_PROJECT, ProjectDesign};
 use crate::project::Project;
@@ -239,7 +239,7 @@ fn wishes(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
 /// Effects that no verdict includes, and a rig outside its own family.
 fn uncounted(setup: &Setup<'_>) -> Vec<String> {
     let mut steps = Vec::new();
-    if let Some((_, words)) = outside(setup).filter(|_| !setup.project.specifications.is_empty()) {
+    if let Some((_, words)) = setup.outside().filter(|_| !setup.project.specifications.is_empty()) {
         steps.push(format!("Widen `[uncertainty]` until it contains the rig as it is derived: {words}."));
     }
     let open = caveats(setup).into_iter().filter(|caveat| caveat.unproven);

@@ -7,8 +7,9 @@ use phea_qft::proof::{
 use serde::{Deserialize, Serialize};
 
 use super::{CertificateError, CertificateRational, meaning};
-use crate::audit::closed_loop_key;
+
 use crate::project::SPECIFICATION_KINDS;
+use crate::specification::closed_loop_key;
 
 #[derive(Serialize, Deserialize)]
 #[serde(tag = "claim", rename_all = "snake_case", deny_unknown_fields)]

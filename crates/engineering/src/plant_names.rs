@@ -1,5 +1,6 @@
 //! The names of the plants of a family, for people and programs.
 
+use phea_qft::family::Family;
 use phea_qft::verification::PlantPoint;
 
 use crate::project::Project;
@@ -28,6 +29,19 @@ pub enum NamedValue {
 }
 
 impl PlantNames {
+    /// The names of the plants of a family.
+    pub fn of_family(project: &Project, family: &Family) -> PlantNames {
+        match family {
+            Family::Uncertain(family) => PlantNames::of_parameters(
+                project,
+                family.plant().parameters().iter().map(|parameter| parameter.name.as_str()),
+            ),
+            Family::Measured(family) => {
+                PlantNames::Measured(family.plants().iter().map(|plant| plant.name.clone()).collect())
+            }
+        }
+    }
+
     /// Names of the parameters of an uncertain plant, with the dimension of those that are numbers
     /// of the project or of its linear model.
     pub fn of_parameters<'a>(project: &Project, names: impl Iterator<Item = &'a str>) -> PlantNames {

@@ -1,0 +1,20 @@
+//! The words of the kinds of specifications.
+
+use phea_qft::specification::{ClosedLoop, Requirement};
+
+use crate::project::{SPECIFICATION_KINDS, word_of};
+
+/// The word of a kind, as the project file spells it.
+pub fn kind_key(requirement: &Requirement) -> &'static str {
+    closed_loop_key(requirement.closed_loop())
+}
+
+/// The word of the kind that limits a closed loop.
+pub fn closed_loop_key(closed_loop: ClosedLoop) -> &'static str {
+    word_of(&SPECIFICATION_KINDS, &closed_loop)
+}
+
+/// The kind for people.
+pub fn kind_words(requirement: &Requirement) -> String {
+    kind_key(requirement).replace('_', " ")
+}
