@@ -13,7 +13,7 @@ use super::reader::Reader;
 use super::text::Findings;
 use super::tree::TreeNode;
 use super::visitor::Visitor;
-use crate::catalogue::Catalogue;
+use crate::catalogue_entry::Catalogue;
 use phea_dynamics::controller::{AntiWindup, CoefficientFormat};
 use phea_dynamics::linear::Discretization;
 use phea_quantity::{FORCE, RATIO, TIME, VOLTAGE, VOLTAGE_PER_VELOCITY};

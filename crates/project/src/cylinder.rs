@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_4;
 
 use super::key::{key, plain};
 use super::visitor::{Variants, Visitor};
-use crate::catalogue::CatalogueKind;
+use crate::catalogue_kind::CatalogueKind;
 use phea_quantity::{
     AREA, DAMPING, FLOW_PRESSURE_COEFFICIENT, FORCE, INVERSE_VELOCITY, LENGTH, MASS, RATIO, STIFFNESS,
     VELOCITY, VOLUME,

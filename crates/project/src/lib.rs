@@ -20,6 +20,8 @@ mod alternative;
 mod bench;
 mod campaign;
 pub mod catalogue;
+mod catalogue_entry;
+mod catalogue_kind;
 mod controller;
 mod cost;
 mod cross_port;

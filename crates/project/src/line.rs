@@ -6,7 +6,7 @@ use super::interval::BoundedNumber;
 use super::key::{key, plain};
 use super::line_motion::LineMotion;
 use super::visitor::{Kinds, Visitor};
-use crate::catalogue::CatalogueKind;
+use crate::catalogue_kind::CatalogueKind;
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_quantity::{DENSITY, EXPANSION_SLOPE, LENGTH, PRESSURE, RATIO, VOLUME, VOLUME_PER_LENGTH};
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::formula::Formula;
 use super::key::{Key, Motions};
 use super::visitor::{FormulaShape, Kinds, NamedNumber, Variants, Visitor};
-use crate::catalogue::CatalogueKind;
+use crate::catalogue_kind::CatalogueKind;
 use phea_quantity::{MotionKind, Price, PricedBy};
 
 /// Walks a project without changing it, except for the numbers to be set.

@@ -6,7 +6,7 @@ use super::formula::Formula;
 use super::key::{Key, Motions};
 use super::toml_text::{bare_or_quoted, inline, list, quoted};
 use super::visitor::{FormulaShape, Kinds, NamedNumber, Variants, Visitor};
-use crate::catalogue::CatalogueKind;
+use crate::catalogue_kind::CatalogueKind;
 use phea_quantity::{self as quantity, MotionKind, Price, PricedBy};
 
 /// Writes tables; the innermost is the last of `open`.

@@ -14,7 +14,7 @@ use super::reader::Reader;
 use super::text::{Findings, Place, RawFinding};
 use super::tree::{self, TreeNode};
 use super::{DIRECTION, DeclaredActuator, Loaded, Project, UncertaintyDirection, setting, validate};
-use crate::catalogue::Catalogue;
+use crate::catalogue_entry::Catalogue;
 use crate::source::Source;
 use phea_quantity::spelling::nearest;
 use phea_quantity::{Dimension, MotionKind, RATIO, display};

@@ -10,7 +10,7 @@ use super::key::{Key, Motions};
 use super::text::{Findings, Place, RawFinding};
 use super::tree::{Entry, TreeNode, Value};
 use super::{Origin, Provenance};
-use crate::catalogue::Catalogue;
+use crate::catalogue_entry::Catalogue;
 use phea_quantity::MotionKind;
 use phea_quantity::spelling::nearest;
 
@@ -74,14 +74,14 @@ struct Layer<'a> {
     /// Its keys that do not count.
     hidden: Vec<&'static str>,
     /// The catalogue's entry it comes from.
-    entry: Option<&'a crate::catalogue::CatalogueEntry>,
+    entry: Option<&'a crate::catalogue_entry::CatalogueEntry>,
 }
 
 /// A value that was found.
 #[derive(Clone, Copy)]
 struct Hit<'a> {
     node: &'a TreeNode,
-    entry: Option<&'a crate::catalogue::CatalogueEntry>,
+    entry: Option<&'a crate::catalogue_entry::CatalogueEntry>,
 }
 
 impl<'a> Reader<'a> {

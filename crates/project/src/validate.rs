@@ -21,7 +21,7 @@ mod signal;
 mod specification;
 mod wishes;
 
-use super::catalogue::Catalogue;
+use super::catalogue_entry::Catalogue;
 use super::key::plain;
 use super::reader::Reader;
 use super::text::{Findings, Place, RawFinding};

@@ -3,7 +3,7 @@
 use super::key::{key, plain};
 use super::visitor::Visitor;
 use super::{DeclaredSupply, PartCost};
-use crate::catalogue::CatalogueKind;
+use crate::catalogue_kind::CatalogueKind;
 use phea_hydraulics::servovalve::LeakageModel;
 use phea_quantity::{
     ANGULAR_FREQUENCY, FLOW, FLOW_COEFFICIENT, PRESSURE, RATIO, TIME, VOLTAGE, VOLTAGE_RATE,

@@ -6,7 +6,7 @@
 
 use super::formula::Formula;
 use super::key::Key;
-use crate::catalogue::CatalogueKind;
+use crate::catalogue_kind::CatalogueKind;
 use phea_quantity::{MotionKind, Price, PricedBy};
 
 /// The word of a value, in the table of a choice; empty for a value that has none.

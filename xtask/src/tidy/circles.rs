@@ -6,29 +6,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::Violation;
 use crate::repository::{Repository, RustFile};
 
-/// Circles that are left, each with its reason.
-const KNOWN: &[(&str, &[&str])] = &[
-    // the catalogue is read as a project is, by the visitors of the tables that its entries fill in
-    (
-        "crates/project",
-        &[
-            "adjustment",
-            "catalogue",
-            "cost",
-            "cross_port",
-            "cylinder",
-            "fluid",
-            "interval",
-            "line",
-            "line_motion",
-            "listing",
-            "reader",
-            "valve",
-            "visitor",
-        ],
-    ),
-];
-
 /// For each top-level module those that it uses.
 type Uses = BTreeMap<String, BTreeSet<String>>;
 
@@ -44,17 +21,10 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
 }
 
 fn check_crate(folder: &str, files: &[&RustFile]) -> Vec<Violation> {
-    let found = circles(&uses(files));
-    let known: Vec<&[&str]> = KNOWN.iter().filter(|one| one.0 == folder).map(|one| one.1).collect();
-    let is_known = |circle: &Vec<String>| known.iter().any(|one| circle.iter().eq(one.iter()));
-    let new = found.iter().filter(|circle| !is_known(circle)).map(|circle| {
+    let told = |circle: &Vec<String>| {
         Violation::new(folder, 0, format!("these modules use each other in a circle: {}", circle.join(", ")))
-    });
-    let gone = known.iter().filter(|one| !found.iter().any(|circle| circle.iter().eq(one.iter())));
-    let gone = gone.map(|one| {
-        Violation::new(folder, 0, format!("there is no such circle any more: {}", one.join(", ")))
-    });
-    new.chain(gone).collect()
+    };
+    circles(&uses(files)).iter().map(told).collect()
 }
 
 /// The modules from the root of the crate to a file, the root's own file having none.

@@ -27,7 +27,7 @@ pub fn load(source: &dyn Source, paths: &[String]) -> Result<Catalogue, Refusal>
 impl Catalogue {
     /// Like [`load`], with the errors among other findings.
     pub(crate) fn gather(source: &dyn Source, paths: &[String], findings: &mut Findings) -> Catalogue {
-        let mut catalogue = Catalogue { has_built_in: true, own: vec![] };
+        let mut catalogue = Catalogue { built_in: Some(built_in), own: vec![] };
         for path in paths {
             let files = match source.list(path) {
                 Ok(None) => vec![path.clone()],
@@ -64,7 +64,7 @@ impl Catalogue {
 
 /// The built-in entries of a kind. Their files are checked by tests, so that no findings arise
 /// here.
-pub(super) fn built_in(kind: CatalogueKind) -> &'static [CatalogueEntry] {
+fn built_in(kind: CatalogueKind) -> &'static [CatalogueEntry] {
     static READ: [OnceLock<Vec<CatalogueEntry>>; CatalogueKind::ALL.len()] =
         [const { OnceLock::new() }; CatalogueKind::ALL.len()];
     let Some(read) = CatalogueKind::ALL.iter().position(|one| *one == kind).and_then(|place| READ.get(place))

@@ -2,7 +2,7 @@
 
 use super::{Hit, Layer, Reader};
 use crate::Origin;
-use crate::catalogue::CatalogueKind;
+use crate::catalogue_kind::CatalogueKind;
 use crate::formula::Formula;
 use crate::key::{Key, Motions};
 use crate::listing::keys_of;

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::quantity::{ANY, described, number, whole};
 use super::table::{SchemaTable, any_of};
-use crate::catalogue::CatalogueKind;
+use crate::catalogue_kind::CatalogueKind;
 use crate::formula::Formula;
 use crate::key::{Key, Motions};
 use crate::listing::{Listing, keys_of};

@@ -1,0 +1,74 @@
+//! Parts of the catalogue by kind and name.
+
+use std::sync::Arc;
+
+use super::catalogue_kind::CatalogueKind;
+use super::line::HoseProperties;
+use super::tree::TreeNode;
+
+/// Components by name.
+#[derive(Clone, Debug, Default)]
+pub struct Catalogue {
+    /// The entries of the built-in files, where they are part of it.
+    pub(crate) built_in: Option<BuiltInEntries>,
+    /// Entries of the user's files.
+    pub(crate) own: Vec<Arc<CatalogueEntry>>,
+}
+
+/// The built-in entries of a kind, read when they are first asked for.
+pub(crate) type BuiltInEntries = fn(CatalogueKind) -> &'static [CatalogueEntry];
+
+/// One product.
+#[derive(Clone, Debug)]
+pub struct CatalogueEntry {
+    /// What it is.
+    pub kind: CatalogueKind,
+    /// The name projects use.
+    pub name: String,
+    /// The name people use.
+    pub title: String,
+    /// Who makes it.
+    pub manufacturer: String,
+    /// The file it was read from; `built-in:` and a path for those that come with the workbench.
+    pub file: String,
+    /// For a hose that is complete by itself.
+    pub hose: Option<HoseProperties>,
+    /// Source of every number that has none of its own.
+    pub(crate) source: Option<String>,
+    /// Key and source.
+    pub(crate) sources: Vec<(String, String)>,
+    /// The whole file.
+    pub(crate) values: TreeNode,
+}
+
+impl CatalogueEntry {
+    /// Author, title and table a number comes from.
+    pub fn source_of(&self, key: &str) -> String {
+        let own = self.sources.iter().find(|(name, _)| name == key).map(|(_, source)| source);
+        own.or(self.source.as_ref()).cloned().unwrap_or_default()
+    }
+}
+
+impl Catalogue {
+    /// The entry of that kind and name.
+    pub fn find(&self, kind: CatalogueKind, name: &str) -> Option<&CatalogueEntry> {
+        self.entries(kind).find(|entry| entry.name == name)
+    }
+
+    /// The entries of that kind, built-in ones first, each group by name; an entry of the user's
+    /// takes the place of the built-in one of its name. The built-in files of a kind are read when
+    /// it is first asked for.
+    pub fn entries(&self, kind: CatalogueKind) -> impl Iterator<Item = &CatalogueEntry> {
+        let built_in = self.built_in.map_or(&[][..], |built_in| built_in(kind));
+        let own = move || self.own.iter().map(Arc::as_ref).filter(move |entry| entry.kind == kind);
+        let replaced =
+            move |entry: &'static CatalogueEntry| own().find(|one| one.name == entry.name).unwrap_or(entry);
+        let is_new = move |entry: &&CatalogueEntry| built_in.iter().all(|one| one.name != entry.name);
+        built_in.iter().map(replaced).chain(own().filter(is_new))
+    }
+
+    /// The names of that kind.
+    pub fn names(&self, kind: CatalogueKind) -> Vec<&str> {
+        self.entries(kind).map(|entry| entry.name.as_str()).collect()
+    }
+}
