@@ -129,15 +129,6 @@ impl LineMotion {
             LineMotion::Lumped | LineMotion::TransmissionLine { .. } | LineMotion::TwoWave { .. } => None,
         }
     }
-
-    /// Whether a path of the project leads to one of these keys.
-    pub(crate) fn owns(path: &str) -> bool {
-        let within = path.strip_prefix("line.").unwrap_or_default();
-        within
-            .split('.')
-            .find(|part| !["a", "b"].contains(part))
-            .is_some_and(|key| LineMotion::KEYS.contains(&key))
-    }
 }
 
 impl LineSegments {

@@ -3,36 +3,26 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+mod linear;
+mod rigs;
+mod unused;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 
 use num_complex::Complex64;
 use phea_workbench::catalogue::Catalogue;
-use phea_workbench::project::{self, KeyEntry, Project};
+use phea_workbench::project::{self, KeyEntry, LINEAR_PARAMETERS, Loaded, Project};
 use phea_workbench::rig::Rig;
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::ControlledMachine;
 use phea_workbench::sizing::{Question, size, sizing_problem};
 use phea_workbench::source::Memory;
 
-const SIMULATION: &str = include_str!("../../project/tests/valid/simulation.toml");
-const ACCUMULATORS: &str = include_str!("../../project/tests/valid/accumulators.toml");
-const NECK: &str = include_str!("../../project/tests/valid/accumulator_neck.toml");
-const HEAT: &str = include_str!("../../project/tests/valid/accumulator_heat.toml");
-const CROSS_PORT: &str = include_str!("../../project/tests/valid/cross_port.toml");
-const SERIES: &str = include_str!("../../project/tests/valid/series.toml");
-const SERIES_COIL: &str = include_str!("../../project/tests/valid/series_coil.toml");
-const TRANSMISSION: &str = include_str!("../../project/tests/valid/transmission.toml");
-const TRANSMISSION_PIPE: &str = include_str!("../../project/tests/valid/transmission_pipe.toml");
-const VOLUMES: &str = include_str!("../../project/tests/valid/volumes.toml");
-const LINKAGE: &str = include_str!("../../project/tests/valid/linkage.toml");
-const WEIGHT: &str = include_str!("../../project/tests/valid/linkage_weight.toml");
-const FOUR_BAR: &str = include_str!("../../project/tests/valid/linkage_four_bar.toml");
-const ANGLES: &str = include_str!("../../project/tests/valid/linkage_table.toml");
-const MOTOR: &str = include_str!("../../project/tests/valid/motor.toml");
-const TURNING: &str = include_str!("../../project/tests/valid/motor_turning.toml");
-const TELESCOPIC: &str = include_str!("../../project/tests/valid/telescopic.toml");
-const ASYMMETRIC: &str = include_str!("../../project/tests/valid/asymmetric.toml");
+use linear::linear_parameters_follow_from_what_is_listed;
+use rigs::{others, rigs};
+use unused::what_moves_nothing_is_used;
+
 const GUIDE: &str = include_str!("../../../book/src/guide/what_moves_what.md");
 /// Tables that declare the rig and its loop; the others state its requirements.
 const TABLES: [&str; 16] = [
@@ -56,290 +46,9 @@ const TABLES: [&str; 16] = [
 /// What a key may move, in the order of the columns.
 const PARTS: [&str; 5] = ["sizing", "plant", "loop", "sensor", "machine"];
 
-/// What rounds in the computer of a controller.
-const CONVERTERS: [&str; 2] = [
-    "controller.sample_time=1 ms",
-    "controller.quantization={ command_bits = 10, command_range = [\"-10 V\", \"10 V\"], measurement_bits = 10, measurement_range = [\"-10 kN\", \"10 kN\"] }",
-];
-
-/// Loads that move under force.
-const SPRUNG: [&str; 4] =
-    ["load.model=spring_mass_damper", "load.mass=100", "load.stiffness=2e5", "load.damping=500"];
-const WALL: [&str; 5] =
-    ["load.model=wall", "load.mass=10", "load.stiffness=1e6", "load.damping=10", "load.gap=0.001"];
-/// A sensor of the load's velocity.
-const SHOWN: &str = "velocity_sensor={ gain_error = \"2 %\", delay = \"1 ms\", filter_frequency = \"200 Hz\", filter_damping_ratio = 0.7, noise = \"1 mm/s\", resolution = \"0.1 mm/s\" }";
-
-/// A virtual impedance.
-const IMPEDANCE: &str = "controller.impedance={ stiffness = \"100 kN/m\", damping = \"2 kN.s/m\", mass = \"20 kg\", filter_time = \"2 ms\" }";
-
-/// Rigs that together have every key: examples, the projects of other tests, and the same with
-/// other words.
-fn rigs() -> Vec<(String, Vec<&'static str>)> {
-    let hose = || without_family(include_str!("../../../examples/ybitu/hose.toml"));
-    let pipe = || without_family(include_str!("../../../examples/ybitu/pipe.toml"));
-    let two_wave = ["line.model=two_wave", "line.wall={ mass_per_length = 0.21, axial_compliance = 1e-5 }"];
-    let wall_of_two =
-        ["line.wall.coupling_compliance=-1e-5", "line.wall.pressure_compliance=3e-9", "line.end_share=0.02"];
-    let factored = hose()
-        .replace(
-            "numerator = \"0.001*s + 0.008\"\ndenominator = \"s\"",
-            "gain = 0.001\nzeros = [-8]\npoles = [0]",
-        )
-        .replace(
-            "numerator = \"910\"\ndenominator = \"s^2 + 83*s + 910\"",
-            "gain = 910\npoles = [-12.9, -70.1]",
-        );
-    let sampled = [
-        "controller.sample_time=1 ms",
-        "controller.delay=0.5 ms",
-        "controller.load_velocity_feed_forward={ gain = 20 }",
-    ];
-    let others = vec![
-        (hose(), vec![]),
-        (hose(), [&SPRUNG[..], &["line.compliance=by_volume"]].concat()),
-        (hose(), [&two_wave[..], &wall_of_two].concat()),
-        (
-            hose(),
-            vec![
-                "line.model=segments",
-                "line.segments=3",
-                "line.relaxation_time=1 ms",
-                "line.friction=steady",
-            ],
-        ),
-        (hose(), sampled.to_vec()),
-        (hose(), vec!["controller.load_velocity_feed_forward={ gain = 20 }"]),
-        (hose(), [&sampled[..], &[SHOWN]].concat()),
-        (hose(), [&SPRUNG[..], &["controller.load_velocity_feed_forward={ gain = 20 }", SHOWN]].concat()),
-        (hose(), vec![IMPEDANCE]),
-        (hose(), CONVERTERS.to_vec()),
-        (factored, vec![]),
-        (pipe(), [&WALL[..], &["load.relative_damping=0.1"]].concat()),
-        (
-            pipe(),
-            vec!["line.compliance=by_volume", "operating_point.command=0.5", "fluid.entrained_air=0.01"],
-        ),
-        (hose(), vec!["series={ stiffness = \"2 MN/m\", damping = 100 }"]),
-        (ASYMMETRIC.to_string(), vec!["cylinder.friction.regular_velocity=1 mm/s"]),
-        (VOLUMES.split("[uncertainty]").next().unwrap().to_string(), vec!["load.mass=10"]),
-        (
-            pipe(),
-            vec![
-                "line.pipe={ bore = \"10.5 mm\", wall_thickness = \"2.75 mm\", youngs_modulus = \"206 GPa\" }",
-            ],
-        ),
-    ];
-    others
-        .into_iter()
-        .chain(with_accumulators())
-        .chain(between_chambers(hose(), pipe()))
-        .chain(on_springs())
-        .collect()
-}
-
-/// Rigs with accumulators, the same machine without, and a telescopic one.
-fn with_accumulators() -> Vec<(String, Vec<&'static str>)> {
-    vec![
-        (TELESCOPIC.to_string(), vec![]),
-        (SIMULATION.to_string(), vec![]),
-        (ACCUMULATORS.to_string(), vec![]),
-        (NECK.to_string(), vec![]),
-        (
-            NECK.to_string(),
-            vec![
-                "line.accumulator={ gas_volume = \"14 mL\", precharge_pressure = \"15 bar\", adjustment = { kind = \"gas\", gas_volume = \"20 mL\", precharge_pressure = \"12 bar\", setting = 0.25 } }",
-            ],
-        ),
-        (
-            NECK.to_string(),
-            vec![
-                "line.accumulator={ gas_volume = \"14 mL\", precharge_pressure = \"15 bar\", adjustment = { kind = \"valve\", diameter = \"3 mm\", discharge_coefficient = 0.7, setting = 0.5 } }",
-            ],
-        ),
-        (
-            NECK.to_string(),
-            vec![
-                "line.accumulator={ gas_volume = \"14 mL\", precharge_pressure = \"15 bar\", adjustment = { kind = \"valve\", flow = \"20 L/min\", pressure_drop = \"5 bar\", transition_pressure = \"0.1 bar\", dead_volume = \"0.2 mL\", setting = 0.5 } }",
-            ],
-        ),
-        (SIMULATION.to_string(), vec!["operating_point.load_force=2 kN"]),
-        (HEAT.to_string(), vec![]),
-        (
-            HEAT.to_string(),
-            vec![
-                "line.accumulator.precharge_temperature=20 degC",
-                "line.accumulator.working_temperature=45 degC",
-            ],
-        ),
-    ]
-}
-
-/// Rigs with a spring on the rod, and with a motor in place of the cylinder.
-fn on_springs() -> Vec<(String, Vec<&'static str>)> {
-    let springs = [
-        (without_uncertainty(SERIES), vec!["operating_point.load_force=2 kN"]),
-        (without_uncertainty(SERIES_COIL), vec![]),
-        (without_uncertainty(TRANSMISSION), vec!["fluid.kinematic_viscosity=46 cSt"]),
-        (TRANSMISSION_PIPE.to_string(), vec![]),
-        (ASYMMETRIC.to_string(), vec!["series={ stiffness = \"20 MN/m\" }"]),
-    ];
-    springs.into_iter().chain(with_motors()).chain(with_linkages()).collect()
-}
-
-/// Rigs with a linkage between rod and load.
-fn with_linkages() -> Vec<(String, Vec<&'static str>)> {
-    vec![
-        (without_uncertainty(LINKAGE), vec![]),
-        (FOUR_BAR.to_string(), vec!["operating_point.load_force=2 kN"]),
-        (ANGLES.to_string(), vec![]),
-        (without_uncertainty(WEIGHT), vec![]),
-        (
-            ANGLES.to_string(),
-            vec![
-                "load={ model = \"spring_mass_damper\", mass = 0.6, stiffness = 900, damping = 8 }",
-                "operating_point.load_force=2 kN",
-            ],
-        ),
-    ]
-}
-
-/// Rigs with a motor in place of the cylinder.
-fn with_motors() -> Vec<(String, Vec<&'static str>)> {
-    let vane = without_uncertainty(&MOTOR.replace("moving_mass = \"0.03 kg.m2\"", ""));
-    vec![(vane, vec![]), (TURNING.to_string(), vec![])]
-}
-
-/// Rigs with a valve between the chambers.
-fn between_chambers(hose: String, pipe: String) -> Vec<(String, Vec<&'static str>)> {
-    vec![
-        (CROSS_PORT.to_string(), vec![]),
-        (
-            hose,
-            vec![
-                "cross_port={ kind = \"orifice\", flow = \"0.2 L/min\", pressure_drop = \"25 bar\" }",
-                "operating_point.load_force=2 kN",
-            ],
-        ),
-        (ASYMMETRIC.to_string(), vec!["cross_port={ kind = \"laminar\", conductance = 1e-12 }"]),
-        (
-            ASYMMETRIC.to_string(),
-            vec!["cross_port={ kind = \"orifice\", flow = \"0.2 L/min\", pressure_drop = \"25 bar\" }"],
-        ),
-        (
-            ASYMMETRIC.to_string(),
-            vec!["cross_port={ kind = \"orifice\", diameter = \"0.5 mm\", discharge_coefficient = 0.62 }"],
-        ),
-        (
-            pipe,
-            vec![
-                "cross_port={ kind = \"dynamic_pressure_feedback\", conductance = 1e-10, capacity = 1e-12 }",
-            ],
-        ),
-    ]
-}
-
-/// The same rig with nothing that is stated of its linear model.
-fn without_family(text: &str) -> String {
-    let (before, rest) = text.split_once("[uncertainty]").unwrap();
-    let (_, after) = rest.split_once("[[specification]]").unwrap();
-    format!("{before}[[specification]]{after}")
-}
-
-/// The same without what is uncertain.
-fn without_uncertainty(text: &str) -> String {
-    let (before, rest) = text.split_once("[uncertainty]").unwrap();
-    let (_, after) = rest.split_once("[controller]").unwrap();
-    format!("{before}[controller]{after}")
-}
-
-/// Values of what may be absent, or is not a number.
-const STATED: [(&str, &str); 80] = [
-    ("cross_port.mass", "1 kg"),
-    ("cross_port.price", "100 EUR"),
-    ("line.accumulator.mass", "1 kg"),
-    ("line.accumulator.price", "100 EUR"),
-    ("line.mass", "1 kg"),
-    ("line.mass_per_length", "1 kg/m"),
-    ("line.price", "100 EUR"),
-    ("line.price_per_length", "100 EUR/m"),
-    ("line.pipe.burst_pressure", "900 bar"),
-    ("line.pipe.mass", "1 kg"),
-    ("line.pipe.mass_per_length", "1 kg/m"),
-    ("line.pipe.price", "100 EUR"),
-    ("line.pipe.price_per_length", "100 EUR/m"),
-    ("line.pipe.outer_diameter", "16 mm"),
-    ("line.pipe.wall_density", "7850 kg/m3"),
-    ("line.pipe.working_pressure", "300 bar"),
-    ("series.price", "100 EUR"),
-    ("series.spring_mass", "1 kg"),
-    ("series.segments", "4"),
-    ("series.line.dynamic_stiffening", "4.8"),
-    ("series.line.price", "100 EUR"),
-    ("series.line.price_per_length", "100 EUR/m"),
-    ("series.line.pipe.burst_pressure", "900 bar"),
-    ("series.line.pipe.outer_diameter", "16 mm"),
-    ("series.line.pipe.working_pressure", "300 bar"),
-    ("series.line.pipe.price", "100 EUR"),
-    ("series.line.pipe.price_per_length", "100 EUR/m"),
-    ("valve.mass", "1 kg"),
-    ("valve.price", "100 EUR"),
-    ("linkage.extensions", "[0, 0.0205, 0.04, 0.06, 0.08]"),
-    ("linkage.angles", "[0.08, 0.5, 0.95, 1.4, 1.9]"),
-    ("operating_point.position", "200 mm"),
-    ("operating_point.command", "1 V"),
-    ("operating_point.load_pressure", "10 bar"),
-    ("operating_point.load_force", "2 kN"),
-    ("operating_point.velocity", "20 mm/s"),
-    ("controller.numerator", "0.002*s + 0.01"),
-    ("controller.denominator", "s*(0.001*s + 1)"),
-    ("controller.gain", "0.002"),
-    ("controller.zeros", "[-9]"),
-    ("controller.poles", "[0, -900]"),
-    ("controller.saturation", "9 V"),
-    ("controller.sample_time", "2 ms"),
-    ("controller.delay", "1 ms"),
-    ("controller.load_velocity_feed_forward.gain", "21"),
-    ("controller.impedance.stiffness", "101 kN/m"),
-    ("controller.impedance.damping", "2.1 kN.s/m"),
-    ("controller.impedance.mass", "21 kg"),
-    ("controller.impedance.filter_time", "2.1 ms"),
-    ("controller.quantization.command_bits", "9"),
-    ("controller.quantization.command_range", "[\"-9 V\", \"9 V\"]"),
-    ("controller.quantization.measurement_bits", "9"),
-    ("controller.quantization.measurement_range", "[\"-9 kN\", \"9 kN\"]"),
-    ("prefilter.numerator", "900"),
-    ("prefilter.denominator", "s^2 + 80*s + 900"),
-    ("prefilter.gain", "900"),
-    ("prefilter.zeros", "[-100]"),
-    ("prefilter.poles", "[-10, -80]"),
-    ("cylinder.internal_leakage", "1e-12"),
-    ("fluid.kinematic_viscosity", "30 mm2/s"),
-    ("valve.rate_limit", "100 V/s"),
-    ("line.segments", "4"),
-    ("line.dynamic_stiffening", "4.8"),
-    ("line.pipe.wall_thickness", "3 mm"),
-    ("line.pipe.youngs_modulus", "190 GPa"),
-    ("line.volume", "2e-4"),
-    ("line.effective_bulk_modulus", "8e8"),
-    ("cylinder.dead_length", "300 mm"),
-    ("line.minimum_bend_radius", "150 mm"),
-    ("line.working_pressure", "260 bar"),
-    ("line.burst_pressure", "1200 bar"),
-    ("linear.viscous_friction", "150"),
-    ("linear.flow_gain", "5e-5"),
-    ("linear.flow_pressure_coefficient", "6e-13"),
-    ("linear.hydraulic_stiffness", "3e6"),
-    ("linear.valve_natural_frequency", "1000"),
-    ("linear.valve_damping_ratio", "0.8"),
-    ("linear.moving_mass", "15"),
-    ("linear.piston_area", "1.6e-3"),
-    ("linear.sensor_stiffness", "1.5e7"),
-];
-
-fn loaded(text: &str, settings: &[String]) -> Option<Project> {
+fn loaded(text: &str, settings: &[String]) -> Option<Loaded> {
     let source = Memory::default().with("rig.toml", text);
-    project::read(&source, "rig.toml", settings, &[]).ok().map(|loaded| loaded.project)
+    project::read(&source, "rig.toml", settings, &[]).ok()
 }
 
 /// What is computed of a project, one text for each part; `None` for a part that it does not have,
@@ -375,85 +84,91 @@ fn computed(project: &Project, asked: [bool; PARTS.len()]) -> [Option<String>; P
     std::array::from_fn(|index| asked[index].then(parts[index]).flatten())
 }
 
-/// Other values of a key where the rig states one, and whether one that is accepted is enough: each
-/// other word, a number a hundredth larger or, where that is refused, smaller.
-fn others(entry: &KeyEntry, project: &Project) -> (Vec<String>, bool) {
-    if let Some(words) = entry.takes.strip_prefix("one of ") {
-        return (words.split(", ").map(|word| word.trim_matches('"').to_string()).collect(), false);
-    }
-    if entry.takes == "true or false" {
-        return (vec!["true".to_string(), "false".to_string()], false);
-    }
-    let of_one_side = || {
-        let path = entry.path.strip_prefix("line.").map(|rest| format!("line.a.{rest}"));
-        path.and_then(|path| project.number(&path))
-    };
-    let values = match project.number(&entry.path).or_else(of_one_side) {
-        Some(0.0) => vec!["1e-3".to_string()],
-        Some(value) => vec![format!("{:?}", value * 1.01), format!("{:?}", value * 0.99)],
-        None => {
-            let stated = STATED.iter().filter(|(path, _)| *path == entry.path);
-            stated.map(|(_, value)| (*value).to_string()).collect()
-        }
-    };
-    (values, true)
+/// What changing a key changes, as far as it was tried.
+#[derive(Default)]
+struct Changes {
+    parts: BTreeSet<&'static str>,
+    /// Of each parameter of the linear model that is derived, the largest relative change.
+    linear: BTreeMap<&'static str, f64>,
 }
 
-/// What each key moves, as far as it was tried.
-type Moved = BTreeMap<String, BTreeSet<&'static str>>;
+impl Changes {
+    /// Whether nothing more can be learned of a key.
+    fn are_known(&self, path: &str, asked: [bool; PARTS.len()]) -> bool {
+        asked == [false; PARTS.len()] && sources(path).all(|name| self.linear.contains_key(name))
+    }
+}
 
-/// The keys of the tables above that can be changed, with what they move, and the others. Rigs are
-/// taken by as many threads as there are processors.
-fn moved() -> (Moved, BTreeSet<String>) {
-    let keys: Vec<KeyEntry> = project::keys()
+type Moved = BTreeMap<String, Changes>;
+
+/// The parameters of the linear model that are listed as derived from a path.
+fn sources(path: &str) -> impl Iterator<Item = &'static str> {
+    let from = LINEAR_PARAMETERS.iter().filter(move |parameter| parameter.follows_from(path));
+    from.map(|parameter| parameter.key.name)
+}
+
+/// Every key of the tables above that is changed by itself.
+fn keys() -> Vec<KeyEntry> {
+    project::keys()
         .into_iter()
         .filter(|entry| TABLES.iter().any(|table| entry.path.starts_with(&format!("{table}."))))
         .filter(|entry| !entry.path.contains("[]") && !entry.path.contains("NAME"))
-        .collect();
-    let (moved, rigs) = (Mutex::new(Moved::new()), Mutex::new(rigs().into_iter()));
+        .collect()
+}
+
+/// Takes the rigs one by one, by as many threads as there are processors.
+fn on_every_rig(take: impl Fn(&str, &[String]) + Sync) {
+    let rigs = Mutex::new(rigs().into_iter());
     std::thread::scope(|scope| {
         for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
             scope.spawn(|| {
                 loop {
                     let Some((text, settings)) = rigs.lock().unwrap().next() else { break };
                     let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
-                    try_keys(&text, &settings, &keys, &moved);
+                    take(&text, &settings);
                 }
             });
         }
     });
-    let moved = moved.into_inner().unwrap();
-    let untried = keys.into_iter().map(|entry| entry.path).filter(|path| !moved.contains_key(path)).collect();
-    (moved, untried)
 }
 
 /// Changes each key of one rig, and adds what it moves.
 fn try_keys(text: &str, settings: &[String], keys: &[KeyEntry], moved: &Mutex<Moved>) {
     let Some(own) = loaded(text, settings) else { panic!("{settings:?}") };
-    let before = computed(&own, [true; PARTS.len()]);
+    let before = computed(&own.project, [true; PARTS.len()]);
+    let derived = Setup::rig_of(&own.project).map(|rig| rig.parameters).unwrap_or_default();
     for entry in keys {
         // what is known to move is not tried again
-        let known = moved.lock().unwrap().get(&entry.path).cloned();
-        let open = |index: usize| {
-            before[index].is_some() && known.as_ref().is_none_or(|row| !row.contains(PARTS[index]))
+        let asked = {
+            let moved = moved.lock().unwrap();
+            let known = moved.get(&entry.path);
+            let open = |index: usize| {
+                before[index].is_some() && known.is_none_or(|row| !row.parts.contains(PARTS[index]))
+            };
+            let asked = std::array::from_fn(open);
+            if known.is_some_and(|known| known.are_known(&entry.path, asked)) {
+                continue;
+            }
+            asked
         };
-        let asked = std::array::from_fn(open);
-        if known.is_some() && asked == [false; PARTS.len()] {
-            continue;
-        }
-        let (others, one_is_enough) = others(entry, &own);
+        let (others, one_is_enough) = others(entry, &own.project);
         for other in others {
             let changed = [settings, &[format!("{}={other}", entry.path)]].concat();
-            let Some(project) = loaded(text, &changed).filter(|project| *project != own) else {
+            let Some(other) = loaded(text, &changed).filter(|other| other.project != own.project) else {
                 continue;
             };
-            let after = computed(&project, asked);
+            let after = computed(&other.project, asked);
+            let now = Setup::rig_of(&other.project).map(|rig| rig.parameters).unwrap_or_default();
             let mut moved = moved.lock().unwrap();
             let row = moved.entry(entry.path.clone()).or_default();
             for ((part, before), after) in PARTS.iter().zip(&before).zip(after) {
                 if before.is_some() && after.is_some() && *before != after {
-                    row.insert(part);
+                    row.parts.insert(part);
                 }
+            }
+            for (was, is) in derived.iter().zip(&now).filter(|(was, is)| was.derived != is.derived) {
+                let change = ((is.derived - was.derived) / was.derived).abs();
+                row.linear.entry(was.name).and_modify(|most| *most = most.max(change)).or_insert(change);
             }
             if one_is_enough {
                 break;
@@ -468,16 +183,20 @@ fn row(key: &str, moves: &BTreeSet<&str>) -> String {
     format!("| `{key}` | {} |", cells.join(" | "))
 }
 
-/// The guide's table is what happens, key by key; a key that moves nothing has its reason there.
+/// The guide's table is what happens, key by key; of a key that moves nothing it says why, and a
+/// command must answer differently because of it.
 #[test]
 fn the_table_of_the_guide_is_what_happens() {
-    let (moved, untried) = moved();
+    let keys = keys();
+    let moved = Mutex::new(Moved::new());
+    on_every_rig(|text, settings| try_keys(text, settings, &keys, &moved));
+    let moved = moved.into_inner().unwrap();
+    let untried: BTreeSet<&str> =
+        keys.iter().map(|entry| entry.path.as_str()).filter(|path| !moved.contains_key(*path)).collect();
     // items that begin with keys; what they say of them follows a colon
     let items = GUIDE.split("\n- `").skip(1).filter_map(|item| item.split_once(':')).map(|(keys, _)| keys);
-    let apart: BTreeSet<String> = items
-        .flat_map(|keys| keys.split('`').step_by(2).map(str::to_string))
-        .filter(|key| !key.is_empty())
-        .collect();
+    let apart: BTreeSet<&str> =
+        items.flat_map(|keys| keys.split('`').step_by(2)).filter(|key| !key.is_empty()).collect();
     assert_eq!(untried, apart, "keys that are not changed one by one");
     let told: BTreeMap<&str, &str> = GUIDE
         .lines()
@@ -485,16 +204,21 @@ fn the_table_of_the_guide_is_what_happens() {
         .map(|line| (line.split('`').nth(1).unwrap(), line))
         .collect();
     let mut wrong: Vec<String> = Vec::new();
-    for (key, moves) in &moved {
-        let expected = row(key, moves);
-        match told.get(key.as_str()).and_then(|line| line.strip_prefix(&expected)) {
+    let mut still: BTreeSet<&str> = BTreeSet::new();
+    for (key, Changes { parts, .. }) in &moved {
+        let expected = row(key, parts);
+        let reason = told.get(key.as_str()).and_then(|line| line.strip_prefix(&expected));
+        let reason = reason.map(|reason| reason.trim_matches([' ', '|']));
+        match reason {
+            None if parts.is_empty() => wrong.push(format!("{expected} why?")),
             None => wrong.push(expected),
-            Some(reason) if moves.is_empty() && reason.trim_matches([' ', '|']).is_empty() => {
-                wrong.push(format!("{expected} why?"));
-            }
+            Some("") if parts.is_empty() => wrong.push(format!("{expected} why?")),
+            Some(_) if parts.is_empty() => drop(still.insert(key)),
             Some(_) => {}
         }
     }
     let gone: Vec<&&str> = told.keys().filter(|key| !moved.contains_key(**key)).collect();
     assert!(wrong.is_empty() && gone.is_empty(), "{}\nnot tried: {gone:?}", wrong.join("\n"));
+    linear_parameters_follow_from_what_is_listed(&moved, &keys);
+    what_moves_nothing_is_used(&still, &keys);
 }

@@ -317,11 +317,12 @@ pub(super) fn line(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
     if stiffening && line.hose().is_none() {
         check.warning("line.dynamic_stiffening", "`dynamic_stiffening` has no effect without a hose");
     }
-    if let Some(hose) = line.hose()
-        && let (Some(working), Some(burst)) = (hose.working_pressure, hose.burst_pressure)
+    let of_hose = line.hose().map(|hose| ("burst_pressure", hose.working_pressure, hose.burst_pressure));
+    let of_pipe = line.pipe().map(|pipe| ("pipe.burst_pressure", pipe.working_pressure, pipe.burst_pressure));
+    if let Some((key, Some(working), Some(burst))) = of_hose.or(of_pipe)
         && burst < working
     {
-        check.error(&format!("{path}.burst_pressure"), "`burst_pressure` is below `working_pressure`");
+        check.error(&format!("{path}.{key}"), "`burst_pressure` is below `working_pressure`");
     }
     check.interval(&format!("{path}.dynamic_stiffening"), line.dynamic_stiffening);
 }

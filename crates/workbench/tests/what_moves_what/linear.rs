@@ -1,0 +1,73 @@
+//! What is listed as the source of a parameter of the linear model is compared with what a change
+//! of a number changes.
+
+use phea_workbench::project::KeyEntry;
+
+use super::{LINEAR_PARAMETERS, Moved};
+
+/// Relative change of a parameter above which a change of a number by a hundredth counts.
+const COUNTS: f64 = 1e-3;
+
+/// Numbers that are not listed although they change a parameter: a range of the parameter does not
+/// count their uncertainty twice.
+const NOT_LISTED: &[(&str, &[&str])] = &[
+    // through the pressures of the operating point and the command that holds it
+    ("flow_gain", &["cylinder.internal_leakage", "cylinder.piston_diameter", "operating_point.position"]),
+    (
+        "flow_pressure_coefficient",
+        &[
+            "cross_port.flow",
+            "cylinder.internal_leakage",
+            "cylinder.piston_diameter",
+            "cylinder.rod_diameter",
+            "operating_point.position",
+        ],
+    ),
+    (
+        "hydraulic_stiffness",
+        &[
+            "operating_point.command",
+            "operating_point.load_force",
+            "operating_point.load_pressure",
+            "operating_point.velocity",
+            "valve.tare_flow",
+        ],
+    ),
+    // through the stiffnesses by which the flows of both chambers are weighed
+    ("flow_gain", &["cylinder.stroke", "line.length"]),
+    // of a telescopic cylinder alone
+    ("piston_area", &["operating_point.position"]),
+];
+
+/// Numbers that are listed and change nothing where the spool is on the other side of its null.
+const OF_THE_OTHER_SIDE: [&str; 2] =
+    ["valve.flow_coefficients.a_to_tank", "valve.flow_coefficients.supply_to_b"];
+
+/// Every number that is listed changes the parameter on a rig, and every number that changes it by
+/// a tenth as much as itself is listed.
+pub(super) fn linear_parameters_follow_from_what_is_listed(moved: &Moved, keys: &[KeyEntry]) {
+    let is_number =
+        |path: &str| keys.iter().any(|entry| entry.path == path && entry.takes == entry.key.dimension.name);
+    let mut wrong = Vec::new();
+    for parameter in &LINEAR_PARAMETERS {
+        let name = parameter.key.name;
+        for (path, changes) in moved.iter().filter(|(path, _)| is_number(path)) {
+            let change = changes.linear.get(name).copied().unwrap_or(0.0);
+            let apart = NOT_LISTED.iter().any(|(of, paths)| *of == name && paths.contains(&path.as_str()));
+            let other_side = OF_THE_OTHER_SIDE.contains(&path.as_str());
+            match parameter.follows_from(path) {
+                true if change == 0.0 && !other_side => {
+                    wrong.push(format!("{name} does not depend on {path}"))
+                }
+                true if apart => wrong.push(format!("{name} is listed twice with {path}")),
+                false if change > COUNTS && !apart => {
+                    wrong.push(format!("{name} depends on {path}: {change:.1e}"))
+                }
+                _ => {}
+            }
+        }
+        let unknown = parameter.depends_on.iter().filter(|path| !moved.contains_key(**path));
+        wrong.extend(unknown.map(|path| format!("{name} is listed with {path}, which no rig states")));
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

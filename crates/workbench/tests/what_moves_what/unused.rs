@@ -1,0 +1,73 @@
+//! A key that moves no part of the model is used all the same: a command answers differently.
+
+use std::collections::BTreeSet;
+use std::sync::Mutex;
+
+use phea_workbench::alternatives::retracted_length;
+use phea_workbench::command::{Request, answer};
+use phea_workbench::project::{KeyEntry, Loaded};
+use phea_workbench::setup::Setup;
+use phea_workbench::source::Memory;
+
+use super::rigs::{others, stated};
+use super::{loaded, on_every_rig};
+
+/// The keys that no answer depends on: the guide says so.
+const UNUSED: [&str; 4] = [
+    "line.pipe.outer_diameter",
+    "series.line.minimum_bend_radius",
+    "series.line.pipe.outer_diameter",
+    "valve.response_time",
+];
+
+/// On some rig, another value of each of these keys is refused or answered differently, unless the
+/// key is one of [`UNUSED`].
+pub(super) fn what_moves_nothing_is_used(still: &BTreeSet<&str>, keys: &[KeyEntry]) {
+    let open = Mutex::new(still.clone());
+    on_every_rig(|text, settings| {
+        let own = loaded(text, settings).unwrap();
+        let mut answers_of_own = None;
+        for entry in keys {
+            if !open.lock().unwrap().contains(entry.path.as_str()) {
+                continue;
+            }
+            let with = |value: &String| {
+                let changed = [settings, &[format!("{}={value}", entry.path)]].concat();
+                loaded(text, &changed)
+            };
+            let is_used = |other: &Loaded| {
+                let before = answers_of_own.get_or_insert_with(|| answers(&own));
+                other.project != own.project && *before != answers(other)
+            };
+            let mut tried: Vec<Option<Loaded>> = others(entry, &own.project).0.iter().map(with).collect();
+            let Some(accepted) = tried.iter().flatten().next() else { continue };
+            tried.extend(far(entry, accepted).iter().map(with).collect::<Vec<_>>());
+            if tried.iter().any(Option::is_none) || tried.iter().flatten().any(is_used) {
+                open.lock().unwrap().remove(entry.path.as_str());
+            }
+        }
+    });
+    assert_eq!(open.into_inner().unwrap(), UNUSED.into(), "keys that no answer depends on");
+}
+
+/// Values within the range of a number, far from its own.
+fn far(entry: &KeyEntry, own: &Loaded) -> Vec<String> {
+    let Some(value) = stated(entry, &own.project) else { return vec![] };
+    let values = [0.01, 0.3, 3.0, 100.0].map(|factor| factor * value).into_iter();
+    values.filter(|value| entry.key.range.contains(*value)).map(|value| format!("{value:?}")).collect()
+}
+
+/// What the quick commands print of a project, what is said when it is read, and its length, which
+/// `alternatives` compares.
+fn answers(loaded: &Loaded) -> String {
+    let source = Memory::default();
+    let text = |request: &Request| match answer(&source, loaded, &[], request) {
+        Ok(answer) => answer.text,
+        Err(error) => error.to_string(),
+    };
+    let printed = [Request::Check, Request::Size { gain: None, length: None }].map(|request| text(&request));
+    let warned: Vec<&str> = loaded.warnings.iter().map(|warning| warning.message.as_str()).collect();
+    let rig = Setup::rig_of(&loaded.project).ok();
+    let length = loaded.project.actuator.as_ref().zip(rig).map(|(own, rig)| retracted_length(own, &rig));
+    format!("{warned:?} {printed:?} {length:?}")
+}
