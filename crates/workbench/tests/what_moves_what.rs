@@ -13,7 +13,7 @@ use std::sync::Mutex;
 use num_complex::Complex64;
 use phea_workbench::catalogue::Catalogue;
 use phea_workbench::project::{self, KeyEntry, LINEAR_PARAMETERS, Loaded, Project};
-use phea_workbench::rig::Rig;
+use phea_workbench::rig::{ResolvedParameter, Rig};
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::ControlledMachine;
 use phea_workbench::sizing::{Question, size, sizing_problem};
@@ -51,9 +51,12 @@ fn loaded(text: &str, settings: &[String]) -> Option<Loaded> {
     project::read(&source, "rig.toml", settings, &[]).ok()
 }
 
-/// What is computed of a project, one text for each part; `None` for a part that it does not have,
-/// or that is not asked for.
-fn computed(project: &Project, asked: [bool; PARTS.len()]) -> [Option<String>; PARTS.len()] {
+/// What is computed of a project: one text for each part, `None` for a part that it does not have,
+/// or that is not asked for; and the parameters of its linear model.
+fn computed(
+    project: &Project,
+    asked: [bool; PARTS.len()],
+) -> ([Option<String>; PARTS.len()], Vec<ResolvedParameter>) {
     let setup = Setup::new(project).unwrap();
     let sizing = || sizing_problem(&setup, &Catalogue::default()).ok();
     let plant = || {
@@ -81,7 +84,8 @@ fn computed(project: &Project, asked: [bool; PARTS.len()]) -> [Option<String>; P
         &|| Some(format!("{:?}", setup.sensor)),
         &machine,
     ];
-    std::array::from_fn(|index| asked[index].then(parts[index]).flatten())
+    let found = std::array::from_fn(|index| asked[index].then(parts[index]).flatten());
+    (found, setup.rig().map(|rig| rig.parameters.clone()).unwrap_or_default())
 }
 
 /// What changing a key changes, as far as it was tried.
@@ -135,8 +139,7 @@ fn on_every_rig(take: impl Fn(&str, &[String]) + Sync) {
 /// Changes each key of one rig, and adds what it moves.
 fn try_keys(text: &str, settings: &[String], keys: &[KeyEntry], moved: &Mutex<Moved>) {
     let Some(own) = loaded(text, settings) else { panic!("{settings:?}") };
-    let before = computed(&own.project, [true; PARTS.len()]);
-    let derived = Setup::rig_of(&own.project).map(|rig| rig.parameters).unwrap_or_default();
+    let (before, derived) = computed(&own.project, [true; PARTS.len()]);
     for entry in keys {
         // what is known to move is not tried again
         let asked = {
@@ -157,8 +160,7 @@ fn try_keys(text: &str, settings: &[String], keys: &[KeyEntry], moved: &Mutex<Mo
             let Some(other) = loaded(text, &changed).filter(|other| other.project != own.project) else {
                 continue;
             };
-            let after = computed(&other.project, asked);
-            let now = Setup::rig_of(&other.project).map(|rig| rig.parameters).unwrap_or_default();
+            let (after, now) = computed(&other.project, asked);
             let mut moved = moved.lock().unwrap();
             let row = moved.entry(entry.path.clone()).or_default();
             for ((part, before), after) in PARTS.iter().zip(&before).zip(after) {
