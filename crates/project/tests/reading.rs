@@ -226,8 +226,9 @@ fn catalogues_are_added_and_every_number_has_a_source() {
         assert_eq!(own.names(kind).len(), files.len());
         for file in files {
             let bytes = std::fs::read(&file).expect("readable");
-            let source = Memory::default().with("file.toml", bytes);
-            catalogue::load(&source, &["file.toml".to_string()]).unwrap_or_else(|report| panic!("{report}"));
+            let path = format!("catalogue/{}s/{}", kind.name(), file.file_name().unwrap().to_string_lossy());
+            let source = Memory::default().with(&path, bytes);
+            catalogue::load(&source, &[path]).unwrap_or_else(|report| panic!("{report}"));
         }
     }
 }

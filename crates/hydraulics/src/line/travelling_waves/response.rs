@@ -1,3 +1,5 @@
+//! The transfer matrix of a line with travelling waves and friction.
+
 use phea_dynamics::analytic::Analytic;
 
 use super::{TravellingWaves, Wave};
