@@ -47,7 +47,7 @@ pub enum AuditError {
     )]
     NoLaw,
     /// There is no specification to audit.
-    #[error("the project states no [[specification]] to verify the controller by")]
+    #[error("the project states no [[specification]] to verify the controller against")]
     NoSpecification,
     /// The project is not a problem of the robust method.
     #[error(transparent)]

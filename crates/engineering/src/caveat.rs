@@ -481,13 +481,13 @@ fn fed_in_loop(setup: &Setup<'_>) -> Option<String> {
     let declared = controller.load_velocity_feed_forward?;
     let why = match controller.sample_time {
         None if controller.delay > 0.0 => "as controller.delay delays it",
-        None if setup.velocity_sensor.delay_s > 0.0 => "as velocity_sensor.delay delays it",
-        None => "which have no controller",
-        Some(_) => "as the controller samples it",
+        None if setup.velocity_sensor.delay_s > 0.0 => "velocity_sensor.delay delays it",
+        None => "they have no controller",
+        Some(_) => "the controller samples it",
     };
     (declared.gain != Some(0.0) && feed_forward(setup.project).is_none()).then(|| {
         format!(
-            "the load velocity that [controller] feeds forward is not in these models, {why}: verify, design and simulate count it"
+            "these models leave out the load velocity that [controller] feeds forward, since {why}: verify, design and simulate include it"
         )
     })
 }

@@ -201,7 +201,7 @@ fn absence(controller: Option<&TransferFunction>, view: Option<&PortView>) -> Op
         (_, Some(_)) => return None,
         (None, None) => "the project gives no controller",
         (Some(_), None) => {
-            "the controller is sampled or the loop has dead time: its impedance is not a rational function"
+            "the controller is sampled or the loop has dead time, so that its impedance is not a rational function"
         }
     };
     Some(reason.to_string())
@@ -369,9 +369,9 @@ pub fn stiffness_sentence(linearization: &Linearization) -> String {
         );
     }
     format!(
-        "With one modulus for line and chamber (uniform) K_H is {} {place}; with the chamber's oil keeping its \
-         own (by_volume) it is {}, {} times as stiff at its least: {} % of the oil is in the chambers, and only {} % \
-         of the compliance is the lines'.{gas}",
+        "With one modulus for line and chamber (uniform) K_H is {} {place}; if the oil in the chambers \
+         keeps its own (by_volume) it is {}, and its least value {} times as high: {} % of the oil is in the chambers, \
+         and the lines account for only {} % of the compliance.{gas}",
         range(&difference.uniform),
         range(&difference.by_volume),
         crate::quantity::significant(difference.minimum_ratio, 3),

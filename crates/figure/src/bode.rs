@@ -79,7 +79,10 @@ pub(super) fn frequency_axis<'s>(series: impl IntoIterator<Item = &'s FrequencyS
 
 /// Title of the magnitude of a quantity in dB.
 pub(super) fn level_title(quantity: &str, unit: &str) -> String {
-    format!("|{quantity}| (dB re 1 {unit})")
+    match unit.split_once('/') {
+        Some((over, under)) if over == under => format!("|{quantity}| (dB)"),
+        _ => format!("|{quantity}| (dB re 1 {unit})"),
+    }
 }
 
 /// Adds an upright line at each frequency to every panel, its label to the first.

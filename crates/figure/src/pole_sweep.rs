@@ -74,7 +74,7 @@ impl PoleSweep {
         let bandwidth: Vec<(f64, f64)> = self.bandwidths().collect();
         let values =
             self.each().map(|(_, pole)| magnitude(pole)).chain(bandwidth.iter().map(|point| point.1));
-        let y = Axis::fit_logarithmic("Pole, rad/s", values.filter(|value| *value > 0.0));
+        let y = Axis::fit_logarithmic("Pole (rad/s)", values.filter(|value| *value > 0.0));
         let mut marks = Vec::new();
         if !bandwidth.is_empty() {
             marks.push(Mark::Line { points: bandwidth, stroke: series_stroke(BANDWIDTH) });

@@ -138,20 +138,27 @@ impl SvgWriter {
         } else {
             format!(" transform=\"rotate({} {} {})\"", number(text.rotation_degrees), number(x), number(y))
         };
-        let halo = text.halo.then_some(Role::Background);
-        out.push_str(&format!(
-            "<text x=\"{}\" y=\"{}\" font-size=\"{}\"{anchor}{rotation}{}{}",
+        let spans = spans(text);
+        let placed = format!(
+            "<text x=\"{}\" y=\"{}\" font-size=\"{}\"{anchor}{rotation}",
             number(x),
             number(y + letters),
-            number(text.size),
-            self.classes(halo, Some(text.role)),
-            self.paint("fill", text.role),
-        ));
-        if let Some(role) = halo {
-            out.push_str(&self.paint("stroke", role));
-            out.push_str(" stroke-width=\"3.5\" stroke-linejoin=\"round\" paint-order=\"stroke\"");
+            number(text.size)
+        );
+        let mut letter = |halo: Option<Role>, hidden: &str| {
+            let classes = self.classes(halo, Some(text.role));
+            out.push_str(&format!("{placed}{hidden}{classes}{}", self.paint("fill", text.role)));
+            if let Some(role) = halo {
+                out.push_str(&self.paint("stroke", role));
+                out.push_str(" stroke-width=\"3.5\" stroke-linejoin=\"round\" paint-order=\"stroke\"");
+            }
+            out.push_str(&format!(">{spans}</text>\n"));
+        };
+        letter(text.halo.then_some(Role::Background), "");
+        // the halo of one piece lies over the piece before it
+        if text.halo && spans.contains("<tspan") {
+            letter(None, " aria-hidden=\"true\"");
         }
-        out.push_str(&format!(">{}</text>\n", spans(text)));
     }
 }
 

@@ -12,6 +12,7 @@ use std::sync::OnceLock;
 use skrifa::MetadataProvider;
 use skrifa::instance::{LocationRef, Size};
 
+use super::SMALL_SIZE;
 use super::scene::{Anchor, Baseline, Point, Rectangle, Text, point};
 
 /// The embedded font, a subset of DejaVu Sans 2.37; its licence is in the same folder.
@@ -183,6 +184,23 @@ pub fn fitted(content: &str, size: f64, limit: f64) -> String {
         }
     }
     String::new()
+}
+
+/// The title of an axis and its size, made to fit `limit`: down to [`SMALL_SIZE`], and then with
+/// fewer words before its unit.
+pub fn fitted_title(content: &str, size: f64, limit: f64) -> (String, f64) {
+    // less than fits to the last bit
+    let fitting = 0.99 * size * limit / width(content, size);
+    if fitting >= SMALL_SIZE {
+        return (content.to_string(), size.min(fitting));
+    }
+    let (words, unit) = content.split_at(content.find(" (").unwrap_or(content.len()));
+    let room = limit - width(unit, SMALL_SIZE);
+    let title = match room > 0.0 {
+        true => format!("{}{unit}", fitted(words, SMALL_SIZE, room)),
+        false => fitted(content, SMALL_SIZE, limit),
+    };
+    (title, SMALL_SIZE)
 }
 
 /// Advance of a letter in font sizes; a letter the font lacks counts as one.

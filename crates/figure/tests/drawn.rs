@@ -2,6 +2,7 @@
 
 use crate::gallery;
 use crate::legibility::check;
+use phea_figure::scene::Text;
 use phea_figure::{Figure, FigureError, Theme};
 use resvg::usvg::{self, roxmltree};
 
@@ -69,8 +70,11 @@ fn text_is_as_wide_as_the_rasteriser_sets_it() {
         let tree = usvg::Tree::from_str(&figure.to_svg_standalone(), &options).unwrap();
         let mut set = Vec::new();
         texts(tree.root(), &mut set);
-        assert_eq!(set.len(), figure.scene.texts().count(), "{}: a text got lost", figure.name);
-        for (ours, theirs) in figure.scene.texts().zip(set) {
+        // a text of several pieces is drawn again over the halo that it has
+        let times = |text: &Text| if text.halo && text.content.contains(['_', '^']) { 2 } else { 1 };
+        let drawn = || figure.scene.texts().flat_map(|text| std::iter::repeat_n(text, times(text)));
+        assert_eq!(set.len(), drawn().count(), "{}: a text got lost", figure.name);
+        for (ours, theirs) in drawn().zip(set) {
             let (a, b) = (ours.bounds(), theirs.abs_bounding_box());
             let x = [a.left - f64::from(b.left()), a.right - f64::from(b.right())];
             let y = [a.top - f64::from(b.top()), a.bottom - f64::from(b.bottom())];

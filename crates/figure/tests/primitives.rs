@@ -7,7 +7,7 @@ use phea_figure::axis::{Axis, Scale};
 use phea_figure::scene::{Anchor, Baseline, Point, Rectangle, Text, point};
 use phea_figure::svg::{escaped, number};
 use phea_figure::ticks::{Tick, decimal_power, floor_log10};
-use phea_figure::typeset::{Level, fitted, pieces, width};
+use phea_figure::typeset::{Level, fitted, fitted_title, pieces, width};
 use phea_figure::{clip, simplify};
 
 /// A linear congruential generator (Knuth's MMIX constants); the tests need no better one.
@@ -289,4 +289,21 @@ fn distance(p: Point, a: Point, b: Point) -> f64 {
     let t = if length > 0.0 { ((p.x - a.x) * dx + (p.y - a.y) * dy) / length } else { 0.0 };
     let t = t.clamp(0.0, 1.0);
     hypot(p.x - a.x - t * dx, p.y - a.y - t * dy)
+}
+
+/// What is too long for its panel becomes smaller and loses words, and neither its unit nor the
+/// power of ten.
+#[test]
+fn the_title_of_an_axis_keeps_its_unit() {
+    for (title, limit) in [
+        ("Angle (deg), \u{d7}10^3", 120.0),
+        ("Torque \u{3c4}_x (N.m)", 100.0),
+        ("The angle of a shaft that turns (deg), \u{d7}10^3", 106.0),
+    ] {
+        let (fitting, size) = fitted_title(title, 13.5, limit);
+        let unit = &title[title.find(" (").unwrap()..];
+        assert!(fitting.ends_with(unit) && width(&fitting, size) <= limit, "{fitting} in {size}");
+        assert!((phea_figure::SMALL_SIZE..=13.5).contains(&size));
+    }
+    assert_eq!(fitted_title("U (V)", 13.5, 100.0), ("U (V)".to_string(), 13.5));
 }

@@ -96,7 +96,7 @@ pub enum OperatingPointError {
     },
     /// No command within the nominal voltage holds this load (force in N, or load pressure in Pa).
     #[error(
-        "a load of {} cannot be held: from {} to {} can (N, or Pa of a load pressure)",
+        "a load of {} cannot be held: the valve holds {} to {} (N, or Pa of a load pressure)",
         whole(*load),
         whole(*minimum),
         whole(*maximum)

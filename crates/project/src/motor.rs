@@ -34,7 +34,11 @@ impl DeclaredMotor {
         v.moves(Some(MotionKind::Rotary));
         let k = key("displacement", &DISPLACEMENT, "What a chamber takes for an angle; torque per pressure.");
         v.quantity(k.positive(), &mut self.displacement);
-        let k = key("stroke", &ANGLE, "From end to end, 0 at the end of chamber A; absent: it turns on.");
+        let k = key(
+            "stroke",
+            &ANGLE,
+            "From end to end, 0 at the end of chamber A; absent: it rotates without limit.",
+        );
         v.optional(k.positive(), &mut self.stroke);
         let k = key("inertia", &INERTIA, "Inertia of shaft, rotor and what turns with them.").positive();
         v.quantity(k, &mut self.inertia);

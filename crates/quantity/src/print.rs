@@ -68,10 +68,13 @@ pub fn print_bare(value: f64) -> String {
     if value.is_nan() { "nan".to_string() } else { text }
 }
 
-/// The largest of the dimension's units that is not above the value; the smallest for zero and
-/// below.
+/// The largest of the dimension's units that is not above the value, or the smallest; for zero that
+/// of the SI, where it is one of them.
 fn fitting_unit(value: f64, dimension: &Dimension) -> Option<&'static str> {
     let fits = |unit: &&&str| factor(unit, dimension) <= value.abs() * (1.0 + 1e-12);
+    if value == 0.0 && dimension.units.contains(&dimension.si) {
+        return Some(dimension.si);
+    }
     dimension.units.iter().rev().find(fits).or(dimension.units.first()).copied()
 }
 

@@ -104,7 +104,7 @@ pub enum CommandError {
     NothingToReport,
     /// A command that does nothing with a motor.
     #[error(
-        "`phea {command}` is for a [cylinder], and this project has a [motor]: check, linearize, verify, design, simulate, compare, campaign, alternatives and report treat one"
+        "`phea {command}` is for a [cylinder], and this project has a [motor]: check, linearize, verify, design, simulate, compare, campaign, alternatives and report accept one"
     )]
     OfCylinders {
         /// As it is called.

@@ -69,6 +69,7 @@ fn said_in(file: OutputFile, words: &Vocabulary) -> OutputFile {
     let Ok(text) = String::from_utf8(bytes.clone()) else { return OutputFile { name, bytes } };
     let said = match name.rsplit('.').next() {
         Some("html" | "svg") => markup::said(&text, words),
+        Some("csv") if name.ends_with("derived.csv") => words.of(&text),
         Some("csv") => headings(&text),
         _ => return OutputFile { name, bytes },
     };

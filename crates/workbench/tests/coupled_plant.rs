@@ -305,8 +305,8 @@ fn a_family_that_does_not_contain_the_rig_says_so_first() {
     let [outside] = &view.caveats[..] else { panic!("{:?}", view.caveats) };
     assert_eq!(
         outside.sentence,
-        "the family does not contain the rig as it is derived (flow_pressure_coefficient is 5.929e-13, the box has 6.420e-13 to \
-         7.000e-11): the loop with it is stable and satisfies every specification"
+        "the family does not contain the rig as it is derived (flow_pressure_coefficient is 5.929e-13 m3/(s.Pa), the box has \
+         6.42e-13 m3/(s.Pa) to 7e-11 m3/(s.Pa)): the loop with it is stable and satisfies every specification"
     );
     // half the flow gain of the rig, and a limit that holds for that alone
     let range = "uncertainty.flow_gain={ nominal = 2.5e-5, minimum = 2.4e-5, maximum = 2.6e-5 }";

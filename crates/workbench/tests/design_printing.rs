@@ -136,7 +136,7 @@ fn people_read_the_status_first_and_the_law_as_it_is_pasted() {
         "[controller]\ngain = 50\nzeros = [-50]\npoles = [-500]\nsaturation = \"10 V\"\n",
         "[prefilter]\ngain = 6\npoles = [-6]\n",
         "given        designed",
-        "begun at random points of seed 7; a local optimum: other seeds may need less relaxation",
+        "started from random points (seed 7); a local optimum: other seeds may need less relaxation",
         "1 robust stability  10     -1.25 dB  10",
         "zero, pole",
     ] {

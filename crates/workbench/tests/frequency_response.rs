@@ -10,6 +10,7 @@ use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, FrequencyOptions, Request, SimulateRequest};
 use phea_workbench::linearize::linearize;
 use phea_workbench::project::{self, Loaded};
+use phea_workbench::quantity::MotionKind;
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{FrequencyRequest, MachineResponses, ResponsePoint, frequency_response};
 use phea_workbench::source::Memory;
@@ -302,7 +303,8 @@ fn an_open_loop_needs_no_controller() {
 #[test]
 fn a_unit_holds_for_the_numbers_before_it() {
     let frequencies = |text: &str| {
-        FrequencyOptions { frequencies: Some(text.to_string()), ..FrequencyOptions::default() }.request()
+        FrequencyOptions { frequencies: Some(text.to_string()), ..FrequencyOptions::default() }
+            .request(MotionKind::Linear)
     };
     // ORIGIN: analytic, 2 pi rad/s is 1 Hz
     let turn = std::f64::consts::TAU;
@@ -320,4 +322,18 @@ fn a_unit_holds_for_the_numbers_before_it() {
     for text in ["", "1,", "0", "-1 Hz", "1 kN", "fast"] {
         assert!(frequencies(text).is_err(), "{text}");
     }
+}
+
+#[test]
+fn the_amplitude_of_a_motor_s_reference_is_a_torque() {
+    let asked = |text: &str, motion: MotionKind| {
+        FrequencyOptions { reference_amplitude: Some(text.to_string()), ..FrequencyOptions::default() }
+            .request(motion)
+            .map(|request| request.reference_amplitude_n)
+            .map_err(|error| error.to_string())
+    };
+    assert_eq!(asked("400 N.m", MotionKind::Rotary), Ok(Some(400.0)));
+    assert_eq!(asked("4 kN", MotionKind::Linear), Ok(Some(4000.0)));
+    let refused = asked("400 N", MotionKind::Rotary).unwrap_err();
+    assert!(refused.contains("expected a torque, found a force"), "{refused}");
 }

@@ -11,11 +11,12 @@ use phea_workbench::command::Request;
 use phea_workbench::family::family;
 use phea_workbench::linearize::{LinkagePosition, linkage_places};
 use phea_workbench::project::Project;
+use phea_workbench::report::report;
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{ControlledMachine, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 
-use super::ask::{HOSE, project_of, try_answer};
+use super::ask::{HOSE, load, project_of, try_answer};
 
 const KNEE: &str = include_str!("../../../examples/leg/knee.toml");
 const FREQUENCIES: [f64; 6] = [0.1, 3.0, 30.0, 300.0, 2000.0, 9000.0];
@@ -228,4 +229,16 @@ fn a_straight_table_is_a_load_in_other_units() {
         let (one, other) = (end(&one, name), end(&other, name));
         assert!((one / other - 1.0).abs() < 1e-5, "{name}: {one} {other}");
     }
+}
+
+/// The load turns, and its weight is a mass at a length.
+#[test]
+fn a_report_says_what_the_load_is() {
+    let weight = include_str!("../../project/tests/valid/linkage_weight.toml");
+    let loaded = load(weight, &[], &[]);
+    let setup = Setup::new(&loaded.project).unwrap();
+    let found = report(&Memory::default(), &loaded, &setup, None, &mut |_| true).unwrap();
+    let load = found.summary.iter().find(|(name, _)| *name == "Load").unwrap();
+    assert!(load.1.starts_with("spring, inertia and damper: 0.6 kg.m2"), "{}", load.1);
+    assert!(load.1.ends_with("weighs 3 kg, 400 mm from its joint"), "{}", load.1);
 }

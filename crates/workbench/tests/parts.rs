@@ -89,5 +89,5 @@ fn parts_cost_and_weigh_what_they_state() {
         assert_eq!(columns(index)["parts_currency"], "EUR");
     }
     let text = &judged().0.text;
-    assert!(text.contains("170.0 EUR") && text.contains("price 24.00 EUR for 170.0 EUR"), "{text}");
+    assert!(text.contains("170.0 EUR") && text.contains("price 24.00 EUR instead of 170.0 EUR"), "{text}");
 }

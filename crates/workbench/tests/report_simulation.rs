@@ -92,7 +92,7 @@ fn every_event_has_its_row_and_what_was_published() {
     assert_eq!(of("hydraulic force"), [false, true, true, false, true]);
     assert_eq!(of("Position"), [true, false, true, true, false]);
     // each quantity of the sensitivity is named once for each event of the first scenario
-    let symbol = "Load stiffness <span class=\"equation\"><i>K</i><sub>S</sub></span>";
+    let symbol = "Sensor stiffness <span class=\"equation\"><i>K</i><sub>S</sub></span>";
     let sensitivity = self::chapter(&report, "sensitivity");
     let declared = "20.0 MN/m, as declared";
     assert_eq!((sensitivity.matches(symbol).count(), sensitivity.matches(declared).count()), (2, 2));

@@ -235,7 +235,7 @@ fn a_force_from_outside_moves_the_load_by_its_spring() {
     assert_eq!(last(pushed.record.external_force_n.clone()), 800.0);
     assert!(alone.record.external_force_n.is_empty());
     let (window, metrics) = pushed.windows.last().unwrap();
-    assert_eq!((window.cause, window.start_s), (Cause::ExternalForce, 1.0));
+    assert_eq!((window.cause, window.start_s), (Cause::ExternalForce { about_joint: false }, 1.0));
     assert!(metrics.disturbance_peak_n.unwrap() > 1.0);
     // before it begins nothing of it is known
     let before = row(&alone, 0.9);

@@ -96,7 +96,7 @@ fn the_text_says_the_verdict_first_and_what_it_rests_on() {
 /// that model.
 #[test]
 fn a_feed_forward_is_told_to_be_left_out() {
-    let words = "feeds forward is not";
+    let words = "that [controller] feeds forward";
     let shape = Request::Shape { shaped: Shaped::Controller, changes: vec![] };
     for (text, request) in [
         (HOSE, Request::Linearize { sweep: None }),

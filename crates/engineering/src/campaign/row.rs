@@ -129,8 +129,10 @@ pub fn meaningful(window: &Window, open_loop: bool) -> impl Iterator<Item = usiz
             &["overshoot_percent", "rise_time_s", "settling_time_s", "disturbance_peak_n", "force_peak_n"]
         }
         Cause::CommandStep { .. } | Cause::CommandMotion { .. } => &OF_A_REFERENCE,
-        Cause::LoadMotion | Cause::ExternalForce | Cause::SettingChange if open_loop => &OF_A_REFERENCE,
-        Cause::LoadMotion | Cause::ExternalForce | Cause::SettingChange => {
+        Cause::LoadMotion | Cause::ExternalForce { .. } | Cause::SettingChange if open_loop => {
+            &OF_A_REFERENCE
+        }
+        Cause::LoadMotion | Cause::ExternalForce { .. } | Cause::SettingChange => {
             &["overshoot_percent", "rise_time_s", "tracking_error_peak_n", "force_peak_n"]
         }
     };

@@ -48,7 +48,7 @@ pub(super) fn linkage(project: &Project, rig: &Rig, list: &mut List) {
             "F_w",
             -weight.torque / arm,
             "N",
-            "F_w = -τ_g/r, which holds it here",
+            "F_w = -τ_g/r, which holds the weight at the operating point",
         );
         let equation = "k_w = -m g d sin(θ - θ_l)/r^2";
         list.add("linkage.weight_stiffness", "k_w", weight.stiffness / (arm * arm), "N/m", equation);

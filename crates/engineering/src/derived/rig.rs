@@ -218,7 +218,7 @@ fn equilibrium(rig: &Rig, list: &mut List) {
     let point = &rig.point;
     let [command, pressure_a, pressure_b] = match rig.condition {
         Condition::Command(_) => {
-            ["null", "q_A(U, p_A) = 0, blocked piston", "q_B(U, p_B) = 0, blocked piston"]
+            ["the null of the valve", "q_A(U, p_A) = 0, blocked piston", "q_B(U, p_B) = 0, blocked piston"]
         }
         Condition::Load(_) => [
             "the command that holds the load",
@@ -273,7 +273,7 @@ fn linear_parameters(rig: &Rig, list: &mut List) {
 fn dynamics(rig: &Rig, list: &mut List) {
     let linear = &rig.leaking();
     let factors = decompose(linear, MechanicalDamping::Corrected);
-    list.group("Dynamics, with the values that hold");
+    list.group("Dynamics, with the values in use");
     list.add(
         "dynamics.equivalent_stiffness",
         "K_eq",

@@ -62,8 +62,16 @@ pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
         }
     }
     for (name, direction, equation) in [
-        ("extending", SpoolDirection::Extending, "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U from above"),
-        ("retracting", SpoolDirection::Retracting, "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U from below"),
+        (
+            "extending",
+            SpoolDirection::Extending,
+            "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U to 0 from above",
+        ),
+        (
+            "retracting",
+            SpoolDirection::Retracting,
+            "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U to 0 from below",
+        ),
     ] {
         let parameters = reduce(&two_pressure_linear_parameters(&rig.model, &rig.point, direction));
         let name = format!("valve.flow_pressure_coefficient_{name}");

@@ -2,7 +2,6 @@
 
 use super::{ParameterOrigin, ResolvedParameter, Rig};
 use crate::project::Project;
-use crate::quantity::significant;
 
 /// Relative amount by which a derived value may lie outside bounds that are printed to three
 /// digits.
@@ -19,8 +18,8 @@ pub(crate) fn outside(project: &Project, rig: &Rig) -> Option<(Project, String)>
                 .is_some_and(|[least, most]| one.derived < least - slack || one.derived > most + slack)
     };
     let words = |name: &str, value: f64, bounds: [f64; 2]| {
-        let [least, most] = bounds.map(|bound| significant(bound, 4));
-        format!("{name} is {}, the box has {least} to {most}", significant(value, 4))
+        let [least, most] = bounds.map(|bound| project.in_words(name, bound));
+        format!("{name} is {}, the box has {least} to {most}", project.in_words(name, value))
     };
     let derived = rig.parameters.iter().filter(beyond);
     let mut outside: Vec<String> =

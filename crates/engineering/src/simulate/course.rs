@@ -93,7 +93,8 @@ pub fn driven(
     let setting_change =
         signal::profile(source, project, &scenario.name, &scenario.setting_change, &CHANGES)?;
     within_its_way(project, scenario, &setting_change)?;
-    let windows = windows(scenario, [&reference, &command, &external_force, &setting_change]);
+    let about_joint = project.actuator.as_ref().is_some_and(|actuator| actuator.linkage.is_some());
+    let windows = windows(scenario, about_joint, [&reference, &command, &external_force, &setting_change]);
     let file = scenario.start.as_ref().and_then(|start| start.file.as_ref());
     let begins = setting_change.value(0.0);
     let read =
@@ -279,7 +280,11 @@ fn loop_start(bench: &ControlledMachine, beginning: &InitialCondition, held_at: 
 
 /// One window for each event in reference, command, external force and setting, and for the motion
 /// of the load, each lasting until the next.
-fn windows(scenario: &Scenario, [reference, command, external, setting]: [&Profile; 4]) -> Vec<Window> {
+fn windows(
+    scenario: &Scenario,
+    about_joint: bool,
+    [reference, command, external, setting]: [&Profile; 4],
+) -> Vec<Window> {
     let end_s = scenario.duration;
     let window = |cause: Cause, start_s: f64| Window { cause, start_s, end_s };
     let referred = |begun: Begun| match begun {
@@ -293,7 +298,7 @@ fn windows(scenario: &Scenario, [reference, command, external, setting]: [&Profi
     let begun = signal::beginnings(&scenario.reference, reference, end_s).into_iter().map(referred);
     let of_command = signal::beginnings(&scenario.command, command, end_s).into_iter().map(commanded);
     let outside = signal::beginnings(&scenario.external_force, external, end_s).into_iter();
-    let outside = outside.map(|begun| window(Cause::ExternalForce, begun.time_s()));
+    let outside = outside.map(|begun| window(Cause::ExternalForce { about_joint }, begun.time_s()));
     let adjusted = signal::beginnings(&scenario.setting_change, setting, end_s).into_iter();
     let adjusted = adjusted.map(|begun| window(Cause::SettingChange, begun.time_s()));
     // a loop that starts in equilibrium starts with the inputs at time zero

@@ -159,7 +159,7 @@ pub fn words(exceeded: &Exceeded) -> String {
             "from {first} s on the force sensor is overloaded: its capacity is {limit}, the force comes to {peak} at {at} s"
         ),
         RigLimit::StallForce => format!(
-            "from {first} s on the reference exceeds what the supply can push: the piston stalls at {limit}, asked for are {peak} at {at} s"
+            "from {first} s on the reference exceeds the force that the supply can produce: the piston stalls at {limit}, and {peak} is asked for at {at} s"
         ),
         RigLimit::NominalVoltage => format!(
             "from {first} s on the command is beyond the valve's {limit}, and comes to {peak} at {at} s: the rig clips it, so state \

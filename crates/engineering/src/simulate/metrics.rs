@@ -41,7 +41,10 @@ pub enum Cause {
     /// The load begins to move.
     LoadMotion,
     /// An external force on the load begins or changes.
-    ExternalForce,
+    ExternalForce {
+        /// Whether it is a torque about the joint of a linkage.
+        about_joint: bool,
+    },
     /// The setting of accumulators begins to move, or steps.
     SettingChange,
 }
@@ -55,7 +58,7 @@ impl Cause {
             Cause::CommandStep { .. } => "command_step",
             Cause::CommandMotion { .. } => "command_motion",
             Cause::LoadMotion => "load_motion",
-            Cause::ExternalForce => "external_force",
+            Cause::ExternalForce { .. } => "external_force",
             Cause::SettingChange => "setting_change",
         }
     }
@@ -66,7 +69,8 @@ impl Cause {
             Cause::ReferenceStep { .. } | Cause::CommandStep { .. } => "step",
             Cause::ReferenceMotion { kind } | Cause::CommandMotion { kind } => kind,
             Cause::LoadMotion => "load moves",
-            Cause::ExternalForce => "force from outside",
+            Cause::ExternalForce { about_joint: false } => "external force",
+            Cause::ExternalForce { about_joint: true } => "external torque",
             Cause::SettingChange => "setting",
         }
     }

@@ -254,7 +254,7 @@ impl Tally {
                 ..common
             },
             Cause::ReferenceMotion { .. } | Cause::CommandStep { .. } | Cause::CommandMotion { .. } => common,
-            Cause::LoadMotion | Cause::ExternalForce | Cause::SettingChange => Metrics {
+            Cause::LoadMotion | Cause::ExternalForce { .. } | Cause::SettingChange => Metrics {
                 overshoot_percent: Err(NO_STEP),
                 rise_time_s: Err(NO_STEP),
                 settling_time_s,
@@ -277,7 +277,9 @@ impl Tally {
     fn settling_time(&self) -> Measured {
         match (self.window.cause, self.outside_s) {
             _ if self.moves => Err(MOVES),
-            (Cause::LoadMotion | Cause::ExternalForce | Cause::SettingChange, _) if self.width == 0.0 => {
+            (Cause::LoadMotion | Cause::ExternalForce { .. } | Cause::SettingChange, _)
+                if self.width == 0.0 =>
+            {
                 Err(NO_REFERENCE)
             }
             _ if self.ends_outside => Err(NOT_SETTLED),

@@ -80,9 +80,9 @@ fn draw_panel(scene: &mut Scene, plot: &Plot, panel: &Panel, frame: Rectangle, l
     paint::marks(scene, &placed, &panel.marks, &mut occupancy);
     scene.rectangle(frame, Some(Stroke::solid(Role::Axis, 1.0)), None);
     tick_labels(scene, &placed, &x_ticks, &y_ticks, last);
-    let title = typeset::fitted(&panel.y.full_title(), TITLE_SIZE, panel.height + BETWEEN);
+    let (title, size) = typeset::fitted_title(&panel.y.full_title(), TITLE_SIZE, panel.height + BETWEEN);
     let at = point(EDGE, frame.centre().y);
-    scene.text(Text::new(at, title, TITLE_SIZE).held(Anchor::Middle, Baseline::Top).rotated(-90.0));
+    scene.text(Text::new(at, title, size).held(Anchor::Middle, Baseline::Top).rotated(-90.0));
     labels::draw_at_edge(scene, &placed, &panel.marks);
     labels::draw(scene, &placed, &panel.marks, &mut occupancy);
 }

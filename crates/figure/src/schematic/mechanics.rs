@@ -4,7 +4,7 @@ use super::super::SMALL_SIZE;
 use super::super::colour::Role;
 use super::super::scene::{Anchor, Baseline, Fill, Rectangle, Scene, Stroke, Text, point};
 use super::super::typeset;
-use super::pen::{MOTION, OUTLINE, ROW, arrow, block, ground, lines, rows, spring, word, wrapped};
+use super::pen::{MOTION, OUTLINE, ROW, arrow, block, ground, lines, rows, spring, turn, word, wrapped};
 use super::{Environment, Rods, STAGES, Schematic, SeriesKind, SeriesSymbol, lever};
 
 /// Height of the rod's axis.
@@ -206,9 +206,14 @@ fn environment(
                 Rectangle { left: wall - 6.0, top: axis - 32.0, right: wall + 6.0, bottom: axis + 32.0 };
             scene.rectangle(plate, Some(OUTLINE), Some(Fill::solid(Role::Surface)));
             let y = axis - 44.0;
-            arrow(scene, (wall, y), (wall + 26.0, y), MOTION);
-            arrow(scene, (wall, y), (wall - 26.0, y), MOTION);
-            word(scene, position, (wall, y - 13.0), Role::Accent);
+            if schematic.motion.is_rotary() {
+                turn(scene, (wall, y + 4.0));
+                word(scene, position, (wall, y - 17.0), Role::Accent);
+            } else {
+                arrow(scene, (wall, y), (wall + 26.0, y), MOTION);
+                arrow(scene, (wall, y), (wall - 26.0, y), MOTION);
+                word(scene, position, (wall, y - 13.0), Role::Accent);
+            }
         }
         Environment::Wall => {
             spring(scene, from, wall, axis, 9.0, OUTLINE);

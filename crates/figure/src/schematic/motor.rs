@@ -3,11 +3,11 @@
 
 use super::super::SMALL_SIZE;
 use super::super::colour::Role;
-use super::super::scene::{Anchor, Baseline, Fill, PathStep, Rectangle, Scene, Shape, Text, point};
+use super::super::scene::{Anchor, Baseline, Fill, Rectangle, Scene, Text, point};
 use super::super::typeset;
 use super::Schematic;
 use super::mechanics::{AXIS, HALF, MASS, PISTON, PORT_FAR, PORT_NEAR, ROD};
-use super::pen::{MOTION, OUTLINE, PIPE, head, lines, word};
+use super::pen::{OUTLINE, PIPE, head, lines, turn, word};
 
 /// Height of the ports.
 const PORTS: f64 = AXIS + 16.0;
@@ -35,15 +35,7 @@ pub(super) fn motor(scene: &mut Scene, schematic: &Schematic) {
     // as wide as the inertia of the load leaves room for
     let text = typeset::fitted(&schematic.cylinder, SMALL_SIZE, 220.0);
     scene.text(Text::new(point(PISTON - 18.0, 4.0), text, SMALL_SIZE).held(Anchor::Middle, Baseline::Top));
-    angle_arrow(scene, &schematic.motion.formula("x_p"));
-}
-
-/// The angle grows while oil enters chamber A.
-fn angle_arrow(scene: &mut Scene, name: &str) {
-    let (from, to, top) = (point(PISTON - 24.0, AXIS - 24.0), point(PISTON + 24.0, AXIS - 24.0), AXIS - 40.0);
-    let bend = [point(PISTON - 12.0, top), point(PISTON + 12.0, top)];
-    let path = vec![PathStep::Move(from), PathStep::Curve(bend[0], bend[1], to)];
-    scene.shape(Shape::Path(path), Some(MOTION), None);
-    head(scene, (to.x + 2.0, to.y + 3.0), (0.6, 0.8), MOTION.role);
-    word(scene, name, (PISTON + 44.0, AXIS - 30.0), Role::Accent);
+    // the angle grows while oil enters chamber A
+    turn(scene, (PISTON, AXIS - 24.0));
+    word(scene, &schematic.motion.formula("x_p"), (PISTON + 44.0, AXIS - 30.0), Role::Accent);
 }

@@ -42,6 +42,15 @@ pub(super) fn head(scene: &mut Scene, tip: (f64, f64), direction: (f64, f64), ro
     scene.polygon(&corners, None, Some(Fill::solid(role)));
 }
 
+/// The arrow of an angle, over what turns.
+pub(super) fn turn(scene: &mut Scene, (x, y): (f64, f64)) {
+    let (from, to, top) = (point(x - 24.0, y), point(x + 24.0, y), y - 16.0);
+    let bend = [point(x - 12.0, top), point(x + 12.0, top)];
+    let path = vec![PathStep::Move(from), PathStep::Curve(bend[0], bend[1], to)];
+    scene.shape(Shape::Path(path), Some(MOTION), None);
+    head(scene, (to.x + 2.0, to.y + 3.0), (0.6, 0.8), MOTION.role);
+}
+
 /// A line with a head at its end; the line stops inside the head.
 pub(super) fn arrow(scene: &mut Scene, from: (f64, f64), to: (f64, f64), stroke: Stroke) {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);

@@ -105,7 +105,7 @@ pub enum MachineError {
     #[error("static Stribeck friction jumps at standstill: state a regular velocity, or use LuGre friction")]
     StaticFriction,
     /// A force from outside on a load whose motion is prescribed: it would move nothing.
-    #[error("a force from outside moves no load whose motion is prescribed: it needs one with a mass")]
+    #[error("an external force moves no load whose motion is prescribed: it needs one with a mass")]
     UnyieldingLoad,
     /// Pressed into its end stop by the whole supply pressure, the piston would leave no fluid in
     /// the chamber.

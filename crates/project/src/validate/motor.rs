@@ -6,7 +6,7 @@ use crate::{DeclaredActuator, MotionShape, Project, Scenario, Signal};
 pub(super) fn motor(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     let Some(motor) = &actuator.motor else { return };
     if motor.end_stops.is_some() && motor.stroke.is_none() && !check.declared("motor.stroke") {
-        let message = "a motor without `stroke` turns on: it has no ends to stop at";
+        let message = "a motor without `stroke` rotates without limit: it has no ends to stop at";
         check.error_with_help("motor.end_stops", message, "state the `stroke`, or remove [motor.end_stops]");
     }
     let absent = [

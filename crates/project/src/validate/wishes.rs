@@ -122,7 +122,7 @@ fn one_scenario(scenario: &Scenario, actuator: &DeclaredActuator, path: &str, ch
     signals(external, unit, [path, "external_force"], scenario.duration, check);
     if !external.is_empty() && actuator.load == Load::Prescribed {
         let message = "an `external_force` moves no load whose motion is prescribed";
-        let help = "give [load] a model with a mass: \"spring_mass_damper\" or \"wall\"";
+        let help = "give [load] a model that moves: \"spring_mass_damper\" or \"wall\"";
         check.error_with_help(&format!("{path}.external_force"), message, help);
     }
     adjustment::course(scenario, actuator, path, check);

@@ -268,7 +268,7 @@ fn cost(
             continue;
         }
         let side = if (own > given) == measure.is_more() { &mut better } else { &mut worse };
-        side.push(format!("{} {shown} for {instead}", measure.words));
+        side.push(format!("{} {shown} instead of {instead}", measure.words));
     }
     let side =
         |word: &str, parts: &[String]| (!parts.is_empty()).then(|| format!("{word} in {}", parts.join(", ")));

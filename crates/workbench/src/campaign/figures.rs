@@ -47,7 +47,7 @@ fn worst_metric(window: &Window, open_loop: bool) -> [&'static str; 2] {
         Cause::ReferenceStep { .. } => ["overshoot_percent", "overshoot"],
         Cause::ReferenceMotion { .. } => ["tracking_error_peak_n", "tracking error"],
         Cause::CommandStep { .. } | Cause::CommandMotion { .. } => ["force_peak_n", "force"],
-        Cause::LoadMotion | Cause::ExternalForce | Cause::SettingChange => {
+        Cause::LoadMotion | Cause::ExternalForce { .. } | Cause::SettingChange => {
             ["disturbance_peak_n", "disturbance"]
         }
     }
@@ -86,7 +86,7 @@ fn picture(
     let event = |window: &Window| (window.start_s, window.cause.label().to_string());
     FanChart {
         quantity: "Force F_e".to_string(),
-        unit: DisplayUnit::KILONEWTON,
+        unit: plan.motion().unit(DisplayUnit::KILONEWTON),
         bands: vec![
             TimeBand { name: "90 % of the runs".to_string(), lower: series(0), upper: series(4) },
             TimeBand { name: "50 % of the runs".to_string(), lower: series(1), upper: series(3) },

@@ -4,6 +4,7 @@ use super::unprinted::Unprinted;
 use super::{CommandError, Watch, positive};
 use crate::answer::{OutputFile, TableFormat, picture_files};
 use crate::project::Loaded;
+use crate::quantity::MotionKind;
 use crate::quantity::{ANGULAR_FREQUENCY, Dimension, FORCE, VOLTAGE};
 use crate::setup::Setup;
 use crate::simulate::{
@@ -47,18 +48,23 @@ impl FrequencyOptions {
     /// # Example
     /// ```
     /// use phea_workbench::command::FrequencyOptions;
+    /// use phea_workbench::quantity::MotionKind;
     /// let options = FrequencyOptions { amplitude: Some("100 mV".to_string()), ..FrequencyOptions::default() };
-    /// assert_eq!(options.request()?.command_amplitude_v, Some(0.1));
+    /// assert_eq!(options.request(MotionKind::Linear)?.command_amplitude_v, Some(0.1));
     /// # Ok::<(), phea_workbench::command::CommandError>(())
     /// ```
-    pub fn request(&self) -> Result<FrequencyRequest, CommandError> {
+    pub fn request(&self, motion: MotionKind) -> Result<FrequencyRequest, CommandError> {
         let one = |option: &'static str, text: &Option<String>, dimension: &'static Dimension| {
             text.as_deref().map(|text| positive(option, text, text, dimension)).transpose()
         };
         Ok(FrequencyRequest {
             frequencies_rad_per_s: self.frequencies.as_deref().map_or(Ok(vec![]), frequencies)?,
             command_amplitude_v: one("amplitude", &self.amplitude, &VOLTAGE)?,
-            reference_amplitude_n: one("reference-amplitude", &self.reference_amplitude, &FORCE)?,
+            reference_amplitude_n: one(
+                "reference-amplitude",
+                &self.reference_amplitude,
+                motion.dimension(&FORCE),
+            )?,
         })
     }
 }
@@ -71,7 +77,7 @@ pub(super) fn simulate_answer(
     watch: Watch<'_>,
 ) -> Result<Unprinted, CommandError> {
     if let Some(options) = &asked.frequency_response {
-        return frequency_answer(loaded, asked, &options.request()?, watch);
+        return frequency_answer(loaded, asked, &options.request(loaded.project.motion())?, watch);
     }
     let table = destination.map(|destination| (destination, asked.table));
     let setup = Setup::new(&loaded.project)?;

@@ -233,22 +233,20 @@ fn seed_sentence(view: &ProjectDesign) -> String {
         (DesignStatus::Met, Objective::BestWorstMargin) => "may end with more margin",
         (DesignStatus::Met, _) => "may end lower",
     };
-    format!("begun at random points of seed {}; a local optimum: other seeds {better}", view.options.seed)
+    format!("started from random points (seed {}); a local optimum: other seeds {better}", view.options.seed)
 }
 
 /// How much the result depends on its starts: where the descents of the last search ended.
 fn starts_sentence(starts: &Starts) -> String {
     let mut sentence = format!("{} of {} starts stabilise every plant", starts.stabilised, starts.tried);
-    let three = |[best, median, worst]: [String; 3]| {
-        format!("{best} at best, {median} in the middle, {worst} at worst")
-    };
+    let three = |[best, median, worst]: [String; 3]| format!("best {best}, median {median}, worst {worst}");
     if let Some(margins_db) = starts.margins_db {
         let (descents, margins) = (starts.ended, three(margins_db.map(margin_words)));
         sentence.push_str(&format!("; worst margin where {descents} descents ended: {margins}"));
     }
     if let Some(objectives_db) = starts.objectives_db {
         let objectives = three(objectives_db.map(|value| format!("{} dB", significant(value, 4))));
-        sentence.push_str(&format!("; objective of those that keep the limits: {objectives}"));
+        sentence.push_str(&format!("; objective of those that satisfy the limits: {objectives}"));
     }
     sentence
 }

@@ -29,7 +29,8 @@ pub(crate) fn output(setup: &Setup<'_>, linearization: &Linearization) -> Docume
     out.heading("Driving-point impedance Z = -F_e/(s X_L)");
     let closed = match (&linearization.closed_loop, &linearization.closed_loop_absent) {
         (Some(view), _) => passivity_sentence(&view.passivity),
-        (None, reason) => format!("none, {}", reason.as_deref().unwrap_or("not computed")),
+        (None, Some(reason)) => format!("not computed, because {reason}"),
+        (None, None) => "not computed".to_string(),
     };
     let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
     out.sentences([

@@ -77,7 +77,7 @@ const TOLD_EVENTS: usize = 2;
 
 /// How many were completed, and the range of most of them in the first events.
 fn words(plan: &Plan, summary: &Summary) -> String {
-    let mut told = vec![format!("{} of {RUNS} runs to their end", summary.statuses[0])];
+    let mut told = vec![format!("{} of {RUNS} runs completed", summary.statuses[0])];
     let windows = plan.windows().iter().zip(&summary.metrics);
     let of_window = |(window, spreads): (&Window, &[Option<Spread>; METRIC_NAMES.len()])| {
         let place = |name: &&str| METRIC_NAMES.iter().position(|known| known == name);
@@ -88,7 +88,7 @@ fn words(plan: &Plan, summary: &Summary) -> String {
     };
     told.extend(windows.filter_map(of_window).take(TOLD_EVENTS));
     let [least, .., most] = QUANTILES;
-    format!("{} ({least} to {most} %)", told.join("; "))
+    format!("{} ({least}th to {most}th percentile)", told.join("; "))
 }
 
 fn document(plan: &Plan, summary: &Summary, figures: Vec<Figure>) -> Document {
@@ -108,7 +108,7 @@ fn document(plan: &Plan, summary: &Summary, figures: Vec<Figure>) -> Document {
     out.explanations(refused.into_iter().chain(ended).chain(occurred));
     out.figures(figures);
     out.heading("Metrics over the runs");
-    out.explanation("That share of the runs that have such a number lies below each; the worst is that of largest magnitude. Runs that have none are counted next to the name.");
+    out.explanation("Each column gives the value below which that share of the runs lies; the worst is the value of largest magnitude. Runs without a value are counted next to the name.");
     out.table(metrics(plan, summary));
     out.heading("Linear models that were visited");
     out.explanation("Stiffness, flow gain and flow-pressure coefficient do not exist in the nonlinear machine: these are those of its linear model at the operating point, for each draw, next to the box for which the controller is judged.");

@@ -112,12 +112,11 @@ fn told(runs: &[ScenarioRun]) -> Option<String> {
     let is_step = |window: &Window| matches!(window.cause, Cause::ReferenceStep { .. });
     let step = windows().find(|(window, _)| is_step(window)).map(|(window, metrics)| {
         let cells = cells_of(metrics);
-        format!(
-            "{}: {} overshoot, settling {}",
-            cause_words(window),
-            cells[OVERSHOOT].text(),
-            cells[SETTLING].text()
-        )
+        let settling = match metrics.settling_time_s {
+            Ok(_) => format!("settling {}", cells[SETTLING].text()),
+            Err(_) => cells[SETTLING].text(),
+        };
+        format!("{}: {} overshoot, {settling}", cause_words(window), cells[OVERSHOOT].text())
     });
     let greatest = runs.iter().flat_map(disturbances).max_by(|one, other| one.2.total_cmp(&other.2));
     let disturbed = greatest.map(|(run, window, peak_n)| {

@@ -65,10 +65,11 @@ pub(super) fn chapter(
         "Largest change of the force: {}.",
         peaks(&forces, motion.unit(DisplayUnit::KILONEWTON))
     ));
-    let step = if motion.is_rotary() { "1 mrad" } else { "1 mm" };
+    let of = if linearization.linkage.is_empty() { "the load" } else { "the rod's end" };
+    let step = motion.unit(DisplayUnit::MILLIMETRE).text(1e-3, 3);
     let remaining: Vec<String> =
         views(linearization).iter().map(|(name, view)| format!("{name} {}", remains(view))).collect();
-    out.explanation(format!("Proposition 6.2: with leakage or feedback the zero at the origin makes the force return. After a load step of {step} there remains, {}.", remaining.join(", ")));
+    out.explanation(format!("Proposition 6.2: with leakage or feedback the zero at the origin makes the force return. After a step of {of} by {step} there remains, {}.", remaining.join(", ")));
     out.heading("Asymptotes");
     out.table(asymptotes(linearization));
     Ok(Chapter::of("impedance", "The impedance at the load", out))
@@ -124,8 +125,8 @@ fn asymptotes(linearization: &Linearization) -> Table {
                 name.to_string(),
                 regime.to_string(),
                 behaviour(asymptote.power).to_string(),
-                format!("{} {}", significant(asymptote.coefficient, 4), unit.replace('.', "·")),
-                format!("{} to {}", significant(asymptote.from, 3), significant(asymptote.to, 3)),
+                format!("{} {}", significant(asymptote.coefficient, 4), unit),
+                between(asymptote.from, asymptote.to),
             ]);
         }
     }
@@ -177,4 +178,15 @@ fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
     let caption =
         "Magnitude and phase of Z with its straight lines; shaded where the closed loop is not passive.";
     Ok(chart.draw(&Words::new("impedance", "Driving-point impedance", caption)))
+}
+
+/// A range of frequencies, whose upper end may be infinite.
+fn between(from: f64, to: f64) -> String {
+    let [low, high] = [from, to].map(|frequency| significant(frequency, 3));
+    match (from > 0.0, to.is_finite()) {
+        (true, true) => format!("{low} to {high}"),
+        (true, false) => format!("from {low}"),
+        (false, true) => format!("to {high}"),
+        (false, false) => "all".to_string(),
+    }
 }

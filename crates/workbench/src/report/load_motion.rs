@@ -127,8 +127,10 @@ fn end(forces: &[Moved], unit: DisplayUnit) -> String {
 pub(super) fn figure(project: &Project, forces: &[Moved]) -> Figure {
     let (distance, duration) = motion(project);
     let unit = project.motion().unit(DisplayUnit::KILONEWTON);
+    let linked = project.actuator.as_ref().is_some_and(|actuator| actuator.linkage.is_some());
+    let moved = if linked { "the rod's end" } else { "the load" };
     let caption = format!(
-        "Change of the force while the load moves {} in {} s (a smooth step of fifth order), linear and with no limit on the command. {}",
+        "Change of the force while {moved} moves {} in {} s (a smooth step of fifth order), linear and with no limit on the command. {}",
         project.motion().unit(DisplayUnit::MILLIMETRE).text(distance, 3),
         significant(duration, 3),
         end(forces, unit)

@@ -47,17 +47,18 @@ fn paths(loaded: &Loaded, keep: impl Fn(&Origin) -> bool) -> Vec<&str> {
 }
 
 /// What this report does not cover.
-fn not_proven(project: &Project) -> &'static str {
+fn not_proven(project: &Project) -> String {
     let law = project.controller.as_ref().is_some_and(|controller| controller.has_law());
     match (law && !project.specifications.is_empty(), project.actuator.is_some()) {
         (true, true) => {
-            "What is not proven of the linear models was searched for, and a search is not a proof. What the nonlinear machine does is shown for the steps and scenarios that were driven, and for no others."
+            "What is not proven of the linear models was searched for, and a search is not a proof. What the nonlinear machine does is shown for the steps and scenarios that were driven, and for no others.".to_string()
         }
-        (true, false) => "What is not proven was searched for, and a search is not a proof.",
+        (true, false) => "What is not proven was searched for, and a search is not a proof.".to_string(),
         (false, true) => {
-            "This report computes nominal linear models and a sizing. It does not say that a controller holds for every plant of the declared uncertainty; what the nonlinear machine does is shown for the scenarios that were driven, and for no others."
+            let computed = if project.sizing.is_some() { "linear models and a sizing" } else { "linear models" };
+            format!("This report computes nominal {computed}. It does not say that a controller holds for every plant of the declared uncertainty; what the nonlinear machine does is shown for the scenarios that were driven, and for no others.")
         }
-        (false, false) => "No controller was given, and none was judged.",
+        (false, false) => "No controller was given, and none was judged.".to_string(),
     }
 }
 

@@ -46,7 +46,7 @@ fn moving_words(actuator: &project::DeclaredActuator, beside: Beside) -> String 
     let displacement = shown(motor.displacement, &quantity::DISPLACEMENT);
     match motor.stroke {
         Some(stroke) => format!("{displacement}, stroke {}", shown(stroke, &quantity::ANGLE)),
-        None => format!("{displacement}, turns on"),
+        None => format!("{displacement}, continuous rotation"),
     }
 }
 
@@ -104,13 +104,14 @@ fn line_alone(declared: &project::DeclaredLine) -> LineSymbol {
 pub(super) fn load_words(actuator: &project::DeclaredActuator) -> String {
     let not_zero = |value: f64| Some(value).filter(|value| *value != 0.0);
     let cell = shown(actuator.force_sensor.stiffness, actuator.motion().dimension(&STIFFNESS));
-    let shown = |value, dimension| shown(value, actuator.load_motion().dimension(dimension));
+    let motion = actuator.load_motion();
+    let of_load = |value, dimension| shown(value, motion.dimension(dimension));
     let words = |mass: Option<f64>, stiffness: f64, damping: f64, gap: f64| {
         let parts = [
-            mass.map(|mass| shown(mass, &MASS)),
-            Some(shown(stiffness, &STIFFNESS)),
-            not_zero(damping).map(|damping| shown(damping, &quantity::DAMPING)),
-            not_zero(gap).map(|gap| format!("gap {}", shown(gap, &LENGTH))),
+            mass.map(|mass| of_load(mass, &MASS)),
+            Some(of_load(stiffness, &STIFFNESS)),
+            not_zero(damping).map(|damping| of_load(damping, &quantity::DAMPING)),
+            not_zero(gap).map(|gap| format!("gap {}", of_load(gap, &LENGTH))),
         ];
         parts.into_iter().flatten().collect::<Vec<String>>().join(", ")
     };
@@ -119,7 +120,8 @@ pub(super) fn load_words(actuator: &project::DeclaredActuator) -> String {
             format!("moves as prescribed, behind {cell}")
         }
         Load::SpringMassDamper { mass, stiffness, damping } => {
-            format!("spring, mass and damper: {}", words(Some(mass), stiffness, damping, 0.0))
+            let mass_words = if motion.is_rotary() { "inertia" } else { "mass" };
+            format!("spring, {mass_words} and damper: {}", words(Some(mass), stiffness, damping, 0.0))
         }
         Load::Wall { mass, damping, stiffness, gap, .. } => {
             format!("a wall: {}", words(mass, stiffness, damping, gap))

@@ -35,7 +35,10 @@ pub(super) fn chapter(
         return Ok(None);
     }
     let mut out = Document::default();
-    out.explanation(format!("The first scenario again with one quantity changed: the stiffness K_S of load cell and environment, and all friction. Neither is known accurately for a real rig, and the overshoot depends on both. The controller is the {} one.", side.name));
+    let prescribed =
+        project.actuator.as_ref().is_some_and(|actuator| actuator.load == crate::project::Load::Prescribed);
+    let stands = if prescribed { "of force sensor and environment" } else { "of the force sensor" };
+    out.explanation(format!("The first scenario again with one quantity changed: the stiffness K_S {stands}, and all friction. Neither is known accurately for a real rig, and the overshoot depends on both. The controller is the {} one.", side.name));
     let refused = varied.iter().filter_map(|varied| Some((varied, varied.run.as_ref().err()?)));
     out.explanations(
         refused.map(|(varied, reason)| format!("{}, {}: {reason}.", varied.quantity, varied.value)),
@@ -68,7 +71,7 @@ fn sensitivity(
             actuator.force_sensor.stiffness *= factor;
             let unit = actuator.motion().unit(DisplayUnit::MEGANEWTON_PER_METRE);
             let shown = unit.text(actuator.force_sensor.stiffness, 3);
-            varied.push(vary(source, &project, ("Load stiffness K_S", factor, shown), watch)?);
+            varied.push(vary(source, &project, ("Sensor stiffness K_S", factor, shown), watch)?);
         }
     }
     for (factor, word) in FRICTION_FACTORS {

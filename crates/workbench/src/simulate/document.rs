@@ -183,7 +183,7 @@ pub(crate) fn cause_words(window: &Window) -> String {
         Cause::CommandStep { to_v, .. } => format!("command to {} at {at}", display(to_v, &VOLTAGE, 4)),
         Cause::CommandMotion { kind } => format!("{kind} of the command at {at}"),
         Cause::LoadMotion => format!("load motion at {at}"),
-        Cause::ExternalForce => format!("force from outside at {at}"),
+        Cause::ExternalForce { .. } => format!("{} at {at}", window.cause.label()),
         Cause::SettingChange => format!("setting of the accumulators at {at}"),
     }
 }

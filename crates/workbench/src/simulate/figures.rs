@@ -4,6 +4,7 @@ use super::{Cause, GAS_TEMPERATURES, Metrics, Record, ScenarioComparison, Scenar
 use crate::answer::{OutputFile, picture_files, significant};
 use crate::figure::{CurveChart, CurvePanel, CurveStyle, DisplayUnit, Figure, SettlingBand, Words};
 use crate::over_time::{ForceStep, Trace, behind, chart, panel, trace};
+use crate::quantity::MotionKind;
 use phea_hydraulics::machine::{GAS_PRESSURE_SIGNALS, HEAT_SIGNALS};
 
 /// Time drawn before and after the start of a window, s.
@@ -67,13 +68,11 @@ fn overview(words: &Words, run: &ScenarioRun, span_s: [f64; 2]) -> Figure {
     panels.extend(gas(record));
     panels.extend(from_outside(record));
     panels.extend(settings(record));
-    let legend = match run.open_loop {
-        false => ["force, command, p_A, piston", "prefiltered reference, spool, p_B, load"],
-        true => ["force, command, p_A, piston", "spool, p_B, load"],
-    };
-    let mut legend = legend.map(String::from);
+    let reference = if run.open_loop { "" } else { "prefiltered reference, " };
+    let load = load_words(record);
+    let mut legend = ["force, command, p_A, piston".to_string(), format!("{reference}spool, p_B, {load}")];
     if !record.external_force_n.is_empty() {
-        legend[0] = format!("{}, force from outside", legend[0]);
+        legend[0] = format!("{}, {}", legend[0], external_words(record));
     }
     drawn(run, panels, with_gas(legend, record), span_s).draw(words)
 }
@@ -93,15 +92,15 @@ pub(super) fn close_up(words: &Words, run: &ScenarioRun, window: &Window, span_s
     if moves_load(window) {
         panels.push(positions(record));
         panels.extend(joint(record));
-        legend = [format!("{}, piston", legend[0]), format!("{}, load", legend[1])];
+        legend = [format!("{}, piston", legend[0]), format!("{}, {}", legend[1], load_words(record))];
     }
     panels.extend(gas(record));
     if window.cause == Cause::SettingChange {
         panels.extend(settings(record));
     }
-    if window.cause == Cause::ExternalForce {
+    if matches!(window.cause, Cause::ExternalForce { .. }) {
         panels.extend(from_outside(record));
-        legend[0] = format!("{}, force from outside", legend[0]);
+        legend[0] = format!("{}, {}", legend[0], external_words(record));
     }
     drawn(run, panels, with_gas(legend, record), span_s).draw(words)
 }
@@ -121,7 +120,17 @@ pub(super) fn asked_for(record: &Record) -> Option<Trace> {
 
 /// Whether the event of a window moves the load.
 pub(super) fn moves_load(window: &Window) -> bool {
-    matches!(window.cause, Cause::LoadMotion | Cause::ExternalForce)
+    matches!(window.cause, Cause::LoadMotion | Cause::ExternalForce { .. })
+}
+
+/// What acts on the load from outside.
+fn external_words(record: &Record) -> &'static str {
+    if turns(record) { "external torque" } else { "external force" }
+}
+
+/// What the position of the load is called: behind a linkage it is that of the rod's end.
+fn load_words(record: &Record) -> &'static str {
+    if turns(record) { "rod's end" } else { "load" }
 }
 
 /// The external force on the load, if there is one.
@@ -335,7 +344,8 @@ fn side_by_side(words: &Words, titles: &[String], runs: &[&ScenarioRun], span_s:
     };
     let reference = runs.iter().find_map(|run| asked_for(&run.record));
     let windows = runs.first().map(|run| run.windows.as_slice()).unwrap_or_default();
-    let unit = DisplayUnit::KILONEWTON;
+    let motion = runs.first().map_or(MotionKind::Linear, |run| run.record.motion);
+    let unit = motion.unit(DisplayUnit::KILONEWTON);
     let forces = panel("Force F_e", unit, 230.0, each(|record| record.signal("force_n")));
     let panels = vec![
         behind(forces, unit, CurveStyle::Reference, reference),

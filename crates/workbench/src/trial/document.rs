@@ -16,7 +16,7 @@ pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Docume
         Agreement::Contradicts => "contradicts the verdict",
     };
     out.explanation(format!(
-        "The machine {did}. The nonlinear rig under this controller: a step of the reference by a tenth of the force that the supply can push with, compared with the same step of the linear loop."
+        "The machine {did}. The nonlinear rig under this controller: a step of the reference by a tenth of the force that the supply can produce, compared with the same step of the linear loop."
     ));
     out.table(
         Table::new(["machine", "", "overshoot", "linear", "settles in", "linear"])

@@ -54,7 +54,7 @@ fn taken<'a, 's>(sides: &'s [Side<'a>]) -> Option<&'s Side<'a>> {
 
 fn controller(contents: &Contents<'_>, sides: &[Side<'_>]) -> Option<String> {
     let Some(judged) = contents.judged else {
-        let commands = "state what the loop has to do in `[[specification]]`: nothing is required of it yet, and so nothing is judged";
+        let commands = "state what the loop has to do in `[[specification]]`: nothing is required of it yet, and so nothing is judged.";
         return Some(capital(commands));
     };
     let given = sides.iter().find(|side| side.name == GIVEN);
