@@ -236,7 +236,6 @@ fn answer_as_read(
 }
 
 fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<Unprinted, CommandError> {
-    let of_alternatives = read_alternatives(source, loaded, catalogues)?;
     let setup = Setup::new(&loaded.project)?;
     let derived = match derive(&setup) {
         Ok(derived) => derived,
@@ -244,6 +243,7 @@ fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<
         Err(RigError::NoActuator) => vec![],
         Err(error) => return Err(error.into()),
     };
+    let of_alternatives = read_alternatives(source, loaded, catalogues)?;
     specifications(&loaded.project)?;
     let wishes = wishes(&loaded.project)?;
     let visited = visited_box(&setup)?;

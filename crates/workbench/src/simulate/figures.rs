@@ -207,7 +207,12 @@ fn pressures(record: &Record) -> CurvePanel {
 
 fn positions(record: &Record) -> CurvePanel {
     let series = ["position_m", "load_position_m"].map(|name| over_time(record, record.signal(name)));
-    panel("Position", record.motion.unit(DisplayUnit::MILLIMETRE), 90.0, series.into())
+    panel(
+        if record.motion.is_rotary() { "Angle" } else { "Position" },
+        record.motion.unit(DisplayUnit::MILLIMETRE),
+        90.0,
+        series.into(),
+    )
 }
 
 /// Panels of one run, with its events.

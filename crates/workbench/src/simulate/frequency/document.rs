@@ -38,8 +38,12 @@ fn response(response: &MachineResponse, unit: &str) -> Table {
         heads.extend(["less linearised machine, dB", "deg"]);
     }
     heads.extend(["distortion, %", "periods"]);
+    let mut last: Option<f64> = None;
     let row = |point: &ResponsePoint| {
         let [decibels, degrees] = own(point);
+        // no jump by a turn from row to row
+        let degrees = degrees - 360.0 * last.map_or(0.0, |last| ((degrees - last) / 360.0_f64).round());
+        last = Some(degrees);
         let mut cells = vec![
             Cell::number(point.frequency_rad_per_s, 4),
             Cell::number(point.amplitude, 3),
