@@ -152,17 +152,21 @@ pub(crate) fn unwrapped_degrees(response: &[Complex64], start: Option<f64>) -> V
         .collect()
 }
 
+/// A difference in dB or degrees below which models agree to within rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// Panels of |difference| in dB and degrees: models that agree to 1e-4 dB and models that part by
-/// 40 dB in one picture.
+/// 40 dB in one picture; none where all agree to within rounding.
 fn difference_panels(curves: &[BodeCurve]) -> Vec<Panel> {
     let differences = differences(curves);
-    if differences.is_empty() {
+    let both = |curve: &BodeCurve| [curve.decibels.as_slice(), &curve.degrees].concat();
+    if differences.iter().flat_map(both).all(|difference| difference < ROUNDING) {
         return Vec::new();
     }
     let axis = |title: &str, of: fn(&BodeCurve) -> &Vec<f64>| {
         let (_, largest) = extent(all(&differences, of));
         let floor = largest * 1e-7;
-        Axis::fit_logarithmic(title, all(&differences, of).map(|v| v.max(floor).max(1e-9)))
+        Axis::fit_logarithmic(title, all(&differences, of).map(|v| v.max(floor).max(ROUNDING)))
     };
     vec![
         panel(axis("|Δ| (dB)", |c| &c.decibels), 105.0, &differences, |c| &c.decibels),

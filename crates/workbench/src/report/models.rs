@@ -8,6 +8,7 @@ use crate::figure::{
 };
 use crate::linearize::{Linearization, document, frequency_grid, resonance};
 use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::portable;
 
 pub(super) fn chapter(linearization: &Linearization) -> Result<Chapter, LinearError> {
     let figures = vec![poles(linearization), responses(linearization)?, reduction(linearization)?];
@@ -65,10 +66,20 @@ fn responses(linearization: &Linearization) -> Result<Figure, LinearError> {
     diagram(words, &models, &linearization.plant.command)
 }
 
+/// Relative difference of responses up to which they agree to within rounding.
+const AGREE: f64 = 1e-10;
+
 /// The error of the model with one load pressure: both models with derived parameters.
 fn reduction(linearization: &Linearization) -> Result<Figure, LinearError> {
-    let caption = "The fifth-order model instead of the two-pressure model, both with derived parameters.";
-    let words = Words::new("bode-reduction", "What one load pressure leaves out", caption);
+    let mut caption =
+        "The fifth-order model instead of the two-pressure model, both with derived parameters.".to_string();
+    let [both, one] = [&linearization.two_pressure.command, &linearization.derived_full.command];
+    let differs =
+        |at: &f64| portable::magnitude(one.at_frequency(*at) / both.at_frequency(*at) - 1.0) > AGREE;
+    if !frequency_grid(both)?.iter().any(differs) {
+        caption.push_str(" They agree to within rounding.");
+    }
+    let words = Words::new("bode-reduction", "What one load pressure leaves out", &caption);
     let models = [
         ("two-pressure, derived parameters", &linearization.two_pressure.command),
         ("fifth order (6.7), derived parameters", &linearization.derived_full.command),
