@@ -19,7 +19,7 @@ use phea_qft::template::{TemplateError, TemplateOptions, Templates};
 use phea_qft::verification::{StabilityFinding, TrackingJudgement};
 
 use crate::plant_names::PlantNames;
-use crate::project::{self, DeclaredElement, Findings, Loaded, Refusal};
+use crate::project::{self, DeclaredElement, Findings, Loaded, Refusal, RewriteError};
 use crate::robust::{BoundsError, RobustError, RobustProblem, robust_problem};
 use crate::setup::{ControlError, Setup, is_of_position};
 use crate::source::Source;
@@ -62,12 +62,9 @@ pub enum ShapingError {
          shape with form = \"impedance\", which is the same loop with G = C_x/(M_v s^2 + B_v s + K_v)"
     )]
     Admittance,
-    /// Elements in tables with others between them.
-    #[error("the elements of [{table}] are separated by other tables: bring them together first")]
-    Scattered {
-        /// `controller` or `prefilter`.
-        table: &'static str,
-    },
+    /// The file cannot be rewritten.
+    #[error(transparent)]
+    Rewrite(RewriteError),
     /// A file that would not read back as the intended elements.
     #[error("the project file cannot be rewritten: {reason}")]
     NotWritten {
@@ -89,6 +86,15 @@ pub enum ShapingError {
     /// The watch stopped it.
     #[error(transparent)]
     Stopped(#[from] Stopped),
+}
+
+impl From<RewriteError> for ShapingError {
+    fn from(error: RewriteError) -> ShapingError {
+        match error {
+            RewriteError::Refused(refusal) => ShapingError::Refused(refusal),
+            error => ShapingError::Rewrite(error),
+        }
+    }
 }
 
 impl From<BoundsError> for ShapingError {

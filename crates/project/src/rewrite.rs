@@ -1,13 +1,16 @@
-//! A project's text with another controller and prefilter in it, everything else byte for byte as
-//! it was.
+//! A project's text with another controller and prefilter in it, or with other elements of one,
+//! everything else byte for byte as it was.
 //!
 //! It rests on the tokens of `toml_parser`. The crate `toml_edit` (0.25) does not keep every byte:
 //! it drops all carriage returns, ends the last line where it had no end, and does not keep the
 //! order of dotted keys. Settings (`--set`) change the tree that was read, to whose positions
 //! errors refer, and not the text.
 
+mod elements;
 mod statement;
 mod surgery;
+
+pub use elements::{RewriteError, with_elements};
 
 use std::collections::BTreeMap;
 
@@ -58,7 +61,7 @@ pub fn with_laws(
 }
 
 /// The text with these lines in place of the transfer function of the table.
-pub fn with_law(text: &str, table: &str, lines: &[(String, String)]) -> String {
+fn with_law(text: &str, table: &str, lines: &[(String, String)]) -> String {
     replaced(text, table, &law_keys(), lines)
 }
 

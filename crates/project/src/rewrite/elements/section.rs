@@ -1,7 +1,8 @@
 //! `[[controller.elements]]`, a table for each element.
 
-use super::{Draft, Replacement, ShapingError, WrittenElement, matched};
-use crate::project::{DeclaredElement, TreeNode};
+use super::{Draft, Replacement, RewriteError, WrittenElement, matched};
+use crate::DeclaredElement;
+use crate::tree::TreeNode;
 
 /// An element's table in the file.
 struct ElementTable<'a> {
@@ -17,7 +18,7 @@ pub(super) fn rewritten(
     draft: &Draft<'_>,
     table: &TreeNode,
     written: &[WrittenElement<'_>],
-) -> Result<Vec<Replacement>, ShapingError> {
+) -> Result<Vec<Replacement>, RewriteError> {
     let part = |from: usize, to: usize| draft.content.get(from..to).unwrap_or_default();
     let mut sections = Vec::new();
     let mut from = None;
@@ -25,7 +26,7 @@ pub(super) fn rewritten(
         let start = one.node.place.start;
         let above = from.map_or("", |from| part(from, start));
         if above.lines().any(|line| !line.trim().is_empty() && !line.trim_start().starts_with('#')) {
-            return Err(ShapingError::Scattered { table: draft.table });
+            return Err(RewriteError::Scattered { table: draft.table });
         }
         let end = end_of_line(draft.content, one.last_value());
         let last_line = if part(start, end).ends_with('\n') { "" } else { draft.newline };

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::{Draft, WrittenElement, matched};
-use crate::project::DeclaredElement;
+use crate::DeclaredElement;
 
 /// An element in an array, with the comments that belong to it.
 #[derive(Default)]
