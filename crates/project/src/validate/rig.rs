@@ -3,8 +3,8 @@
 use super::{Check, adjustment, cross_port, line_motion};
 use crate::{
     BoundedNumber, Component, DeclaredAccumulator, DeclaredActuator, DeclaredCylinder, DeclaredFriction,
-    DeclaredLine, DeclaredLines, DeclaredSupply, FrictionLaw, NullLeakage, Project, Pump, StribeckCurve,
-    SupplyModel, Valve,
+    DeclaredLine, DeclaredLines, DeclaredPipe, DeclaredSupply, FrictionLaw, NullLeakage, Project, Pump,
+    StribeckCurve, SupplyModel, Valve,
 };
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE as ATMOSPHERE;
 use phea_hydraulics::stroke::FURTHER_STAGES;
@@ -324,7 +324,22 @@ pub(super) fn line(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
     {
         check.error(&format!("{path}.{key}"), "`burst_pressure` is below `working_pressure`");
     }
+    line.pipe().into_iter().for_each(|pipe| outer_diameter(pipe, path, check));
     check.interval(&format!("{path}.dynamic_stiffening"), line.dynamic_stiffening);
+}
+
+/// Part of the outer diameter by which bore and walls may differ from it: data sheets round.
+const OUTER_ROUNDED: f64 = 0.02;
+
+/// The outer diameter of a pipe is its bore and both walls.
+fn outer_diameter(pipe: &DeclaredPipe, path: &str, check: &mut Check<'_, '_>) {
+    let (Some(outer), Some(wall)) = (pipe.outer_diameter, &pipe.wall) else { return };
+    let made = pipe.bore + 2.0 * wall.thickness;
+    if (made - outer).abs() > OUTER_ROUNDED * outer {
+        let [outer, made] = [outer, made].map(|size| quantity::display(size, &LENGTH, 4));
+        let message = format!("`outer_diameter` is {outer}, and bore and walls make {made}");
+        check.warning(&format!("{path}.pipe.outer_diameter"), message);
+    }
 }
 
 impl Check<'_, '_> {

@@ -13,12 +13,7 @@ use super::rigs::{others, stated};
 use super::{loaded, on_every_rig};
 
 /// The keys that no answer depends on: the guide says so.
-const UNUSED: [&str; 4] = [
-    "line.pipe.outer_diameter",
-    "series.line.minimum_bend_radius",
-    "series.line.pipe.outer_diameter",
-    "valve.response_time",
-];
+const UNUSED: [&str; 2] = ["series.line.minimum_bend_radius", "valve.response_time"];
 
 /// On some rig, another value of each of these keys is refused or answered differently, unless the
 /// key is one of [`UNUSED`].
