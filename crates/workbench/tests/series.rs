@@ -12,6 +12,7 @@ use phea_workbench::family::family;
 use phea_workbench::linearize::{Linearization, linearize};
 use phea_workbench::project::Project;
 use phea_workbench::setup::Setup;
+use phea_workbench::simulate::simulate_project;
 use phea_workbench::sizing::sizing_problem;
 use phea_workbench::source::Memory;
 use serde_json::Value;
@@ -19,6 +20,7 @@ use serde_json::Value;
 use super::ask::{answer, project_of};
 
 const SERIES: &str = include_str!("../../../examples/ybitu/series.toml");
+const STIFFENING: &str = include_str!("../../project/tests/valid/series.toml");
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 const SPRUNG: [&str; 4] =
     ["load.model=spring_mass_damper", "load.mass=100", "load.stiffness=2e5", "load.damping=500"];
@@ -212,4 +214,42 @@ fn what_is_not_counted_is_told() {
     assert!(said.text.contains("series.progression is counted for small motions"), "{}", said.text);
     let said = answer(SERIES, &[], &[], &Request::Linearize { sweep: None });
     assert!(said.text.contains("series.damping and series.mass are counted in the plant"), "{}", said.text);
+}
+
+/// The force of a spring that stiffens, or that comes to its end, is no multiple of a state: the
+/// metrics of a run are those of its rows all the same.
+#[test]
+fn metrics_are_those_of_the_rows() {
+    let alone = |text: &str| {
+        text.replace("damping = \"300 N.s/m\"\nmass = \"1.5 kg\"\n", "").replace("stop_damping = 0.3\n", "")
+    };
+    let sensed = |text: &str| text.replace("force_from = \"deflection\"\n", "");
+    // with nothing else that a family needs
+    let plain = STIFFENING.split_once("[uncertainty]").unwrap();
+    let plain = format!("{}[controller]{}", plain.0, plain.1.split_once("[controller]").unwrap().1);
+    let even = |text: &str| text.replace("progression = 0.2\n", "");
+    for (text, settings) in [
+        (plain.clone(), vec![]),
+        (even(&plain), vec!["series.travel=5.6 mm"]),
+        (alone(&plain), vec!["series.progression=1"]),
+        (even(&sensed(&alone(&plain))), vec!["series.travel=5.6 mm"]),
+        (sensed(&alone(&plain)), vec!["series.progression=1"]),
+        (sensed(&plain), vec!["series.progression=1"]),
+    ] {
+        let project = project_of(&text, &settings);
+        let runs =
+            simulate_project(&Memory::default(), &Setup::new(&project).unwrap(), &mut |_| true).unwrap();
+        let [(_, metrics)] = runs[0].windows[..] else { panic!("{settings:?}") };
+        let record = &runs[0].record;
+        let largest = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let force = record.signal("force_n");
+        let near = |found: f64, rows: f64, slack: f64| {
+            assert!((found - rows).abs() < slack, "{settings:?}: {found} and {rows} of the rows\n{text}");
+        };
+        near(metrics.overshoot_percent.unwrap(), (largest(&force) / 10.0 - 100.0).max(0.0), 0.05);
+        near(metrics.control_peak_v.unwrap(), largest(&record.control_v), 0.005);
+        let last = force.len() - force.len() / 11..;
+        let mean = force[last.clone()].iter().sum::<f64>() / force[last].len() as f64;
+        near(metrics.steady_state_error_n.unwrap(), 1000.0 - mean, 0.1);
+    }
 }

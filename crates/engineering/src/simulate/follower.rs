@@ -21,14 +21,14 @@ const SAME: f64 = 1e-9;
 pub(super) enum CommandSource<'a> {
     /// The command that a continuous controller demands, with its limit in V, or the stated command
     /// of an open loop.
-    Continuously(WeightedSum, f64),
+    Continuously(WeightedSum<'a>, f64),
     /// The last command of a sampled controller.
     Sampled(&'a RefCell<ControllerSamples>),
 }
 
 /// Accumulates the metrics of the windows of a run.
 pub struct Follower<'a> {
-    force: WeightedSum,
+    force: WeightedSum<'a>,
     commanded: CommandSource<'a>,
     /// None in an open loop.
     reference: Option<&'a Profile>,
@@ -43,7 +43,7 @@ impl<'a> Follower<'a> {
     /// Of a loop with this number of inputs, in windows in the order of their starts; the band of
     /// settling times in percent.
     pub(super) fn new(
-        force: WeightedSum,
+        force: WeightedSum<'a>,
         commanded: CommandSource<'a>,
         inputs: usize,
         reference: Option<&'a Profile>,

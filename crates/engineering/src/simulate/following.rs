@@ -14,7 +14,7 @@ impl<'a> Follower<'a> {
     /// Of the loop of a bench whose observer wants these states, in windows in the order of their
     /// starts; the band of settling times in percent.
     pub fn of(
-        bench: &ControlledMachine,
+        bench: &'a ControlledMachine,
         wanted: &[usize],
         samples: &'a RefCell<ControllerSamples>,
         reference: &'a Profile,

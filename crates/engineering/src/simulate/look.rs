@@ -65,7 +65,7 @@ pub(super) struct Looking<'a> {
     gas: Vec<GasWatch>,
     follower: Follower<'a>,
     /// Pressures of chambers A and B; below, the highest so far, Pa.
-    pressures: [WeightedSum; 2],
+    pressures: [WeightedSum<'a>; 2],
     peak_pressures_pa: [f64; 2],
     overlays: Vec<Overlaying<'a>>,
     /// The error of the table, if it accepts no more rows.

@@ -1,52 +1,80 @@
 //! A signal as a sum of states and inputs.
 
+use std::rc::Rc;
+
 use phea_dynamics::simulation::{Quartic, Stretch};
 
-/// The terms of a signal: indices of the observed states, and of inputs, each with its weight.
+/// The terms of a signal: indices of the observed states, and of inputs, each with its weight; and
+/// of states that it depends on in another way, as on the deflection of a progressive spring.
 ///
 /// ```text
-/// s = sum of a_i y_i + sum of b_j w_j
+/// s = sum of a_i y_i + sum of f_k(y_k) + sum of b_j w_j
 /// ```
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct WeightedSum {
+#[derive(Default)]
+pub(super) struct WeightedSum<'a> {
     states: Vec<(usize, f64)>,
+    curved: Vec<(usize, Term<'a>)>,
     inputs: Vec<(usize, f64)>,
 }
 
-impl WeightedSum {
+/// What a state contributes.
+type Term<'a> = Box<dyn Fn(f64) -> f64 + 'a>;
+
+/// A value of a state for which a term that is a multiple of it has this share of its weight.
+const SMALL: f64 = 1e-3;
+/// Relative deviation from a multiple up to which it is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Parts of a step through whose values a polynomial of degree four is laid.
+const QUARTERS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+
+impl<'a> WeightedSum<'a> {
     /// From a signal that is such a sum: its value for each of these states, and for each input,
     /// alone.
     pub(super) fn of(
         wanted: &[usize],
         [states, inputs]: [usize; 2],
-        signal: impl Fn(&[f64], &[f64]) -> f64,
-    ) -> WeightedSum {
-        let unit = |count: usize, place: Option<usize>| {
-            (0..count).map(|index| f64::from(u8::from(Some(index) == place))).collect::<Vec<f64>>()
+        signal: impl Fn(&[f64], &[f64]) -> f64 + 'a,
+    ) -> WeightedSum<'a> {
+        let only = |count: usize, place: usize, value: f64| {
+            let mut alone = vec![0.0; count];
+            alone[place] = value;
+            alone
         };
-        let of_state = |&state: &usize| signal(&unit(states, Some(state)), &unit(inputs, None));
-        let of_input = |input: usize| signal(&unit(states, None), &unit(inputs, Some(input)));
-        let some = |weights: Vec<f64>| -> Vec<(usize, f64)> {
-            weights.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0).collect()
-        };
-        WeightedSum {
-            states: some(wanted.iter().map(of_state).collect()),
-            inputs: some((0..inputs).map(of_input).collect()),
+        let signal = Rc::new(signal);
+        let mut sum = WeightedSum::default();
+        for (index, &state) in wanted.iter().enumerate() {
+            let signal = signal.clone();
+            let term = move |value: f64| signal(&only(states, state, value), &vec![0.0; inputs]);
+            let (weight, small) = (term(1.0), term(SMALL));
+            if (small - SMALL * weight).abs() > ROUNDING * small.abs() {
+                sum.curved.push((index, Box::new(term)));
+            } else if weight != 0.0 {
+                sum.states.push((index, weight));
+            }
         }
+        let weights = (0..inputs).map(|input| signal(&vec![0.0; states], &only(inputs, input, 1.0)));
+        sum.inputs = weights.enumerate().filter(|(_, weight)| *weight != 0.0).collect();
+        sum
     }
 
     /// The contribution of the states over a step.
     #[inline]
     pub(super) fn over(&self, states: &[Quartic]) -> Quartic {
-        self.states.iter().fold(Quartic::constant(0.0), |sum, &(place, weight)| {
+        let straight = self.states.iter().fold(Quartic::constant(0.0), |sum, &(place, weight)| {
             states.get(place).map_or(sum, |state| sum.plus(weight, state))
+        });
+        self.curved.iter().fold(straight, |sum, (place, term)| {
+            let through = |state: &Quartic| Quartic::through(QUARTERS.map(|part| term(state.at(part))));
+            states.get(*place).map_or(sum, |state| sum.plus(1.0, &through(state)))
         })
     }
 
     /// The contribution of the states at one time.
     pub(super) fn at(&self, states: &[f64]) -> f64 {
-        let part = |&(place, weight): &(usize, f64)| weight * states.get(place).copied().unwrap_or(f64::NAN);
-        self.states.iter().map(part).sum()
+        let value = |place: usize| states.get(place).copied().unwrap_or(f64::NAN);
+        let straight: f64 = self.states.iter().map(|&(place, weight)| weight * value(place)).sum();
+        straight + self.curved.iter().map(|(place, term)| term(value(*place))).sum::<f64>()
     }
 
     /// Whether inputs contribute to it.
@@ -63,9 +91,9 @@ impl WeightedSum {
 }
 
 #[cfg(test)]
-impl WeightedSum {
+impl WeightedSum<'_> {
     /// One state by itself.
-    pub(super) fn single(place: usize) -> WeightedSum {
-        WeightedSum { states: vec![(place, 1.0)], inputs: Vec::new() }
+    pub(super) fn single(place: usize) -> Self {
+        WeightedSum { states: vec![(place, 1.0)], ..WeightedSum::default() }
     }
 }

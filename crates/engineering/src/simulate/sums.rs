@@ -8,25 +8,26 @@ use super::bench::ControlledMachine;
 use super::sum::WeightedSum;
 
 /// The pressures of chambers A and B.
-pub(super) fn pressures(bench: &ControlledMachine, wanted: &[usize]) -> [WeightedSum; 2] {
+pub(super) fn pressures<'a>(bench: &'a ControlledMachine, wanted: &[usize]) -> [WeightedSum<'a>; 2] {
     let others = bench.control.leading_inputs();
     ["pressure_a_pa", "pressure_b_pa"].map(|name| {
         let place = SIGNALS.iter().position(|signal| *signal == name).unwrap_or_default();
-        let pressure = |state: &[f64], inputs: &[f64]| bench.machine.outputs(state, &inputs[others..])[place];
+        let pressure =
+            move |state: &[f64], inputs: &[f64]| bench.machine.outputs(state, &inputs[others..])[place];
         WeightedSum::of(wanted, bench.control.size(), pressure)
     })
 }
 
 /// The machine's own force, before the sensor.
-pub(super) fn force(bench: &ControlledMachine, wanted: &[usize]) -> WeightedSum {
+pub(super) fn force<'a>(bench: &'a ControlledMachine, wanted: &[usize]) -> WeightedSum<'a> {
     let others = bench.control.leading_inputs();
-    let force = |state: &[f64], inputs: &[f64]| bench.machine.measurement(state, &inputs[others..]);
+    let force = move |state: &[f64], inputs: &[f64]| bench.machine.measurement(state, &inputs[others..]);
     WeightedSum::of(wanted, bench.control.size(), force)
 }
 
 /// The command of a continuous controller before its limit, or the stated command of an open loop;
 /// zero for a sampled controller.
-pub(super) fn command(bench: &ControlledMachine, wanted: &[usize]) -> WeightedSum {
+pub(super) fn command<'a>(bench: &'a ControlledMachine, wanted: &[usize]) -> WeightedSum<'a> {
     match &bench.control {
         Control::Continuous(closed) => {
             let wants = |state: &[f64], inputs: &[f64]| closed.signals::<f64, f64>(state, inputs).wanted;
