@@ -6,7 +6,7 @@ use phea_dynamics::simulation::Status;
 
 use crate::compare::{Compared, Ours, TOLERANCE};
 use crate::roughness::Roughness;
-use crate::{Described, LARGEST_ERROR, Outcome};
+use crate::{Described, FINER, LARGEST_ERROR, Outcome};
 
 /// Between the machine and `closed_loop.h`, part of the peak.
 const LARGEST_DIFFERENCE: f64 = 1e-4;
@@ -41,6 +41,8 @@ pub(crate) struct Tally {
     twins: Vec<f64>,
     /// CVODE's seconds and evaluations over phea's: with its stability limit, and by Adams' method.
     ratios: [[Vec<f64>; 2]; 2],
+    /// Ill-posed rigs that fail at the tolerance at which they are judged, and not at a finer one.
+    ill_posed: Vec<String>,
     failures: Vec<String>,
 }
 
@@ -70,7 +72,7 @@ impl Tally {
                 for feature in &described.features {
                     *self.features.entry(feature).or_default() += 1;
                 }
-                self.judge(number, compared);
+                self.judge(number, described, compared);
             }
             Err(refusal) => {
                 println!("rig {number}: refused: {refusal}");
@@ -84,7 +86,7 @@ impl Tally {
         self.failures.is_empty()
     }
 
-    fn judge(&mut self, number: u64, compared: &Compared) {
+    fn judge(&mut self, number: u64, described: &Described, compared: &Compared) {
         let Some(ours) = compared.ours else { return };
         if let Some(reason) = &compared.without_reference {
             self.without_reference += 1;
@@ -101,7 +103,16 @@ impl Tally {
             println!("rig {number}: {:?}, where a chamber has no fluid any more", ours.status);
             self.without_model += 1;
         } else {
-            self.failures.extend(ours.fault().map(|fault| format!("rig {number}: {fault}")));
+            match (ours.fault(), &described.at_finer) {
+                (None, _) => {}
+                (Some(fault), None) => self.failures.push(format!("rig {number}: {fault}")),
+                (Some(fault), Some(Ok(()))) => {
+                    self.ill_posed.push(format!("rig {number}, ill posed: {fault}; none at {FINER:e}"));
+                }
+                (Some(fault), Some(Err(finer))) => {
+                    self.failures.push(format!("rig {number}: {fault}; at {FINER:e} {finer}"));
+                }
+            }
             self.take_default(number, compared);
         }
         if let Some(twin) = compared.twin {
@@ -194,6 +205,9 @@ impl Tally {
         println!("steps at {TOLERANCE:e}: {}", self.default_steps);
         for fault in &self.default_faults {
             println!("{fault}");
+        }
+        for agreed in &self.ill_posed {
+            println!("{agreed}");
         }
         for failure in &self.failures {
             println!("FAILED {failure}");
