@@ -193,7 +193,7 @@ pub(crate) enum Command {
     /// Coefficients of a servovalve (or frequency responses, or the friction of the cylinder) from
     /// recorded tests, with confidence intervals and what the data do not determine
     Identify(IdentifyArguments),
-    /// Everything above as one self-contained HTML page; a controller is designed where the project
+    /// All results as one self-contained HTML page; a controller is designed where the project
     /// has a design section or gives no law
     Report {
         #[command(flatten)]
@@ -275,20 +275,20 @@ pub(crate) struct IdentifyArguments {
     /// Intervals by a bootstrap of this many repetitions too, 50 or more
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(50..=1_000_000))]
     pub(crate) bootstrap: Option<u32>,
-    /// The model of the leakage, if the recordings are not to decide
+    /// The model of the leakage, in place of the one that the recordings prefer
     #[arg(long, value_name = "MODEL")]
     pub(crate) leakage_model: Option<LeakageWord>,
-    /// Of a response: the period of the input ("2 s"), if it is not to be found
+    /// For a response: the period of the input ("2 s"), in place of the one that is found
     #[arg(long, value_name = "TIME")]
     pub(crate) period: Option<String>,
-    /// Of a response: what is left out at the beginning ("1 s"); absent: one period of a periodic
+    /// For a response: time discarded at the beginning ("1 s"); absent: one period of a periodic
     /// input
     #[arg(long, value_name = "TIME")]
     pub(crate) settling: Option<String>,
-    /// Of a response: length of a segment ("4 s"), of an input that is not periodic
+    /// For a response: length of a segment ("4 s"), of an input that is not periodic
     #[arg(long, value_name = "TIME", conflicts_with = "period")]
     pub(crate) segment: Option<String>,
-    /// Of a response: squared coherence below which a frequency is left out (0.8)
+    /// For a response: squared coherence below which a frequency is left out (0.8)
     #[arg(long, value_name = "NUMBER")]
     pub(crate) coherence: Option<f64>,
     /// Of a line: the one to chamber A or to chamber B; absent: `bench.line.side` of the project,

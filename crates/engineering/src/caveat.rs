@@ -463,8 +463,8 @@ fn impedance(setup: &Setup<'_>) -> Option<Caveat> {
     let sentence = match yields {
         true => {
             "controller.impedance is counted, and the load can move under force: loop and specifications are of y = F_e + Z_v (x_L - x_0), \
-             which the loop makes follow the reference; load_motion limits by how much y misses it, and the force by itself is told by a \
-             simulation"
+             which the loop makes follow the reference; load_motion limits by how much y misses it, and only a simulation shows the force \
+             itself"
         }
         false => {
             "controller.impedance is counted: load_motion limits y = F_e + Z_v (x_L - x_0) per motion, by which the force misses the impedance \

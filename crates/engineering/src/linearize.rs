@@ -371,7 +371,7 @@ pub fn stiffness_sentence(linearization: &Linearization) -> String {
     format!(
         "With one modulus for line and chamber (uniform) K_H is {} {place}; if the oil in the chambers \
          keeps its own (by_volume) it is {}, and its least value {} times as high: {} % of the oil is in the chambers, \
-         and the lines account for only {} % of the compliance.{gas}",
+         and the lines account for {} % of the compliance.{gas}",
         range(&difference.uniform),
         range(&difference.by_volume),
         crate::quantity::significant(difference.minimum_ratio, 3),

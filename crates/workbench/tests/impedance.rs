@@ -377,7 +377,7 @@ fn every_answer_speaks_of_it() {
     let models: Value = serde_json::from_str(&of(&Request::Linearize { sweep: None }).json).unwrap();
     assert_eq!(models["virtual_impedance"]["stiffness_n_per_m"], 1e5);
     assert_eq!(models["virtual_impedance"]["points"].as_array().unwrap().len(), 5);
-    assert!(of(&Request::Linearize { sweep: None }).text.contains("Impedance asked and shown"));
+    assert!(of(&Request::Linearize { sweep: None }).text.contains("Impedance requested and achieved"));
     assert!(of(&Request::Check).json.contains("impedance.spring_below"));
     let design = Request::Design { seed: None, stages: false, repair: false };
     let refused = try_answer(&yielding(), &[position, law], &[], &design).unwrap_err().to_string();

@@ -382,7 +382,7 @@ fn contradictions_are_refused() {
             "[operating_point]\ncommand = 1\n[family.operating_region]\nload_force = [0, 1000]\n",
             "determines its pressures",
         ),
-        ("", "[operating_point]\nload_pressure = 1e5\nload_force = 100\n", "one says it all"),
+        ("", "[operating_point]\nload_pressure = 1e5\nload_force = 100\n", "state only one of the two"),
         ("\"operating_point.load_force\" = { nominal = 0, minimum = 0, maximum = 1 }", force, "too"),
         ("flow_gain = { nominal = 5e-5, minimum = 4e-5, maximum = 6e-5 }", force, "both cannot be uncertain"),
     ] {

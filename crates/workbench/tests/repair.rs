@@ -45,7 +45,7 @@ fn what_cannot_be_had_with_waves_is_told() {
     assert!(!said.affirmative);
     assert_eq!((&object["status"], &object["machine"]["verdict"]), (&"met".into(), &"contradicts".into()));
     assert_eq!((&repair["status"], &repair["plant_before"]["stable"]), (&"infeasible".into(), &false.into()));
-    assert_eq!(repair["taken_in"], "the same with waves in its lines");
+    assert_eq!(repair["taken_in"], "the rig with waves in its lines");
     // the controller that is printed comes as near as is printed, to the family and to the plant
     // with waves
     let relaxation = number(repair, "relaxation_db");

@@ -199,7 +199,7 @@ fn every_chapter_is_there() {
         "6.12",
         "6.13",
         "compliance plateau",
-        "rejects",
+        "rejected",
         "warns",
         "SHA-256",
         "eaton_synflex_3130_08",
@@ -356,7 +356,7 @@ fn controllers_are_shown_on_the_machine() {
     let fact =
         |name: &str| report.summary.iter().find(|(known, _)| *known == name).map(|(_, text)| text.as_str());
     assert!(fact("Audit of the controller").unwrap().starts_with("met"));
-    assert_eq!(fact("Controller on the machine"), Some("contradicts: the same with waves in its lines"));
+    assert_eq!(fact("Controller on the machine"), Some("contradicts: the rig with waves in its lines"));
     assert!(report.figures.iter().any(|found| found.name == "machine_steps"));
     // by word, form and colour
     for shown in [

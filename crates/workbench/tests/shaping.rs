@@ -341,10 +341,10 @@ fn what_cannot_be_changed_is_refused_with_its_place() {
         30,
         "",
     );
-    check(Change::Remove, "0", "`0` is not the number of an element", 1, "there is one element");
-    check(Change::Remove, "one", "`one` is not the number of an element", 1, "elements are counted from 1");
+    check(Change::Remove, "0", "there is no element `0`", 1, "there is one element");
+    check(Change::Remove, "one", "there is no element `one`", 1, "elements are counted from 1");
     check(Change::Move, "1", "there is no `=` in it", 1, "for instance 3=1");
-    check(Change::Move, "1 = 2", "`2` is not the number of an element", 5, "there is one element");
+    check(Change::Move, "1 = 2", "there is no element `2`", 5, "there is one element");
     let needs = "missing `frequency` in [elements]: kind \"pole\" needs it";
     check(Change::Replace, "1={ kind = \"pole\" }", needs, 3, "Corner or natural frequency.");
     let example = "for instance: lead through -6 dB, -130 deg at 20 rad/s";

@@ -64,7 +64,7 @@ fn a_met_verdict_that_waves_contradict_is_no() {
         (Some("met"), Some("contradicts"))
     );
     assert!(!yes && text.contains("On the machine: contradicts"));
-    let waves = run(&object, "the same with waves in its lines");
+    let waves = run(&object, "the rig with waves in its lines");
     assert_eq!(waves["machine"]["settling_time_s"], Value::Null);
     assert!(overshoot(waves, "machine") > 100.0, "{waves}");
     // ORIGIN: analytic, pi c/(2 L) with the wave's speed in the hose at 35 bar

@@ -191,7 +191,7 @@ fn pair<'a>(piece: &TextPiece<'a>, example: &str, findings: &mut Findings) -> Op
 
 /// The number of an element, from 1, as an index.
 fn number(piece: &TextPiece<'_>, count: usize, findings: &mut Findings) -> Option<usize> {
-    let message = format!("`{}` is not the number of an element", piece.words);
+    let message = format!("there is no element `{}`", piece.words);
     let Ok(number) = piece.words.parse::<usize>() else {
         return piece.refuse(findings, message, "elements are counted from 1");
     };

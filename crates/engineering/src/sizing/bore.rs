@@ -110,13 +110,13 @@ pub(super) fn assess(problem: &SizingProblem, decisions: &mut Vec<SizingStep>) -
     let [slowest, fastest] = problem.oil_velocity;
     decisions.push(SizingStep {
         step: "c.2",
-        text: format!("Oil velocity {slowest} to {fastest} m/s: above rejects a bore, below only warns."),
+        text: format!("Oil velocity {slowest} to {fastest} m/s: a bore with faster oil is rejected, one with slower oil only warned of."),
     });
     decisions.push(low_pressure_lines(problem));
     decisions.push(SizingStep {
         step: "c.3",
         text: format!(
-            "Largest flow {} L/min ({}): bores from {smallest} to {largest} mm, of those on the market {}.",
+            "Largest flow {} L/min ({}): bores from {smallest} to {largest} mm; on the market there are {}.",
             DisplayUnit::LITRE_PER_MINUTE.number(problem.maximum_flow, 4),
             problem.maximum_flow_origin,
             if feasible.is_empty() { "none".to_string() } else { feasible.join(", ") }

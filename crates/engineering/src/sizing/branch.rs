@@ -196,7 +196,7 @@ impl Branch {
                 if self.is_alike() { "per line" } else { "in line A" },
                 if trials.len() > 1 {
                     format!(
-                        "; so does every half of it down to {} V/N with {} m, {} trials",
+                        "; so does every successive halving down to {} V/N with {} m, {} trials",
                         number(last.gain_v_per_n),
                         number(last.length_m),
                         trials.len()

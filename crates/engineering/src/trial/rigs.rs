@@ -62,7 +62,7 @@ pub(super) fn rigs(
     };
     let mut rigs = vec![of("the rig as declared", project.clone(), None)];
     let waves = with_waves(project);
-    rigs.extend(waves.map(|project| of("the same with waves in its lines", project, quarter_wave(rig))));
+    rigs.extend(waves.map(|project| of("the rig with waves in its lines", project, quarter_wave(rig))));
     let mut missing = Vec::new();
     let mut known: Vec<&PlantPoint> = Vec::new();
     for (index, finding) in view.audit.specifications.iter().enumerate() {

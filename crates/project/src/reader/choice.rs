@@ -90,7 +90,7 @@ impl<'a> Reader<'a> {
         let Some((first, _)) = written.next() else { return };
         for (name, place) in written.collect::<Vec<_>>() {
             if !self.findings.has_error_within(place) {
-                let message = format!("both `{first}` and `{name}`: one says it all");
+                let message = format!("both `{first}` and `{name}`: state only one of the two");
                 self.findings.push(RawFinding::error(place, message));
             }
         }

@@ -314,7 +314,9 @@ pub(super) fn line(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
     if length && matches!(line.component, Component::Volume(_)) {
         check.warning("line.length", "`length` has no effect together with `volume`");
     }
-    if stiffening && line.hose().is_none() {
+    let sized = ["time_constant", "settling_time"].iter().any(|key| check.declared(&format!("sizing.{key}")));
+    // [sizing] takes it for the hoses that it looks at
+    if stiffening && line.hose().is_none() && !sized {
         check.warning("line.dynamic_stiffening", "`dynamic_stiffening` has no effect without a hose");
     }
     let of_hose = line.hose().map(|hose| ("burst_pressure", hose.working_pressure, hose.burst_pressure));

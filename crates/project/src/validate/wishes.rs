@@ -63,7 +63,7 @@ fn operating_point(project: &Project, actuator: &DeclaredActuator, check: &mut C
         );
     }
     if known.load_pressure.is_some() && known.load_force.is_some() {
-        let message = "both `load_pressure` and `load_force`: one says it all";
+        let message = "both `load_pressure` and `load_force`: state only one of the two";
         check.error("operating_point.load_pressure", message);
     }
     if point.position.is_some_and(|position| actuator.is_beyond(position)) {

@@ -73,8 +73,7 @@ pub(crate) fn replaced_table(ranges: &[ReplacedRange]) -> Table {
         let share = Cell::from(format!("{} %", significant(100.0 * range.share, 2)));
         [range.symbol.into(), least, most, low, high, Cell::Unit(range.unit), share]
     };
-    let headings =
-        ["quantity", "replaced from", "to", "visited from", "to", "unit", "of the range is visited"];
+    let headings = ["quantity", "replaced from", "to", "visited from", "to", "unit", "share visited"];
     Table::new(headings).with(ranges.iter().map(row))
 }
 
@@ -89,7 +88,7 @@ pub(crate) fn replaced_sentences(ranges: &[ReplacedRange]) -> Vec<String> {
         };
         let symbol = range.symbol;
         Some(format!(
-            "The rig reaches values of {symbol} {side} the range: a controller that serves the range alone is judged for fewer plants than there are."
+            "The rig reaches values of {symbol} {side} the range: a controller designed for the stated range has not been judged for all plants of the rig."
         ))
     };
     ranges.iter().filter_map(sentence).collect()

@@ -5,7 +5,7 @@ use phea_hydraulics::servovalve::LeakageModel;
 use super::answer::{correlations, word};
 use super::numbers;
 use super::region::{self, FoundRegion};
-use super::{Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, Read, SignalFit, SimpleCalculations};
+use super::{Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, Read, SignalFit};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
@@ -43,8 +43,16 @@ pub(crate) fn tell_coefficients(found: &Identification, out: &mut Document) {
 
 /// How well the signals are explained, and what the data do not determine.
 pub(crate) fn tell_signals(found: &Identification, out: &mut Document) {
-    let headings =
-        ["file", "signal", "rows", "rms of residuals", "by hand", "range", "unit", "neighbours correlate"];
+    let headings = [
+        "file",
+        "signal",
+        "rows",
+        "rms of residuals",
+        "by hand",
+        "range",
+        "unit",
+        "correlation of neighbours",
+    ];
     out.section(
         "How well the recordings are explained",
         Table::new(headings).with(found.signals.iter().map(|one| signal(found, one))),
@@ -107,7 +115,7 @@ fn bootstrap(found: &Bootstrap) -> String {
 
 fn coefficients(found: &Identification) -> Vec<Vec<Cell>> {
     let numbers = found.coefficients.to_array();
-    let by_hand = by_hand(&found.simple);
+    let by_hand = by_hand(found);
     let all = COEFFICIENT_NAMES.iter().zip(numbers).zip(found.intervals).zip(by_hand).enumerate();
     all.map(|(index, ((((name, unit), value), interval), by_hand))| {
         let number = |value: Option<f64>| value.map_or(Cell::Missing, |value| Cell::number(value, 4));
@@ -127,12 +135,20 @@ fn coefficients(found: &Identification) -> Vec<Vec<Cell>> {
 }
 
 /// The simple calculations in the order of the coefficients.
-fn by_hand(simple: &SimpleCalculations) -> [Option<f64>; 12] {
+/// The tare flow is that at the pressure of the identified one.
+///
+/// ```text
+/// q_tare sqrt(dp_identified/dp_read)
+/// ```
+fn by_hand(found: &Identification) -> [Option<f64>; 12] {
+    let simple = &found.simple;
     let [extending, retracting] = simple.flow_coefficients.map(|one| one.map(|one| one.value));
     let leak = simple.leakage_coefficient().map(|one| one.value);
     let shape = simple.leakage_shape;
     let [tare, bias, width] =
         [simple.tare_flow, simple.null_bias(), simple.hysteresis()].map(|one| one.map(|one| one.value));
+    let read_at = simple.leakage_pressure.unwrap_or(found.tested.tare_reference_drop);
+    let tare = tare.map(|tare| tare * (found.tested.tare_reference_drop / read_at).sqrt());
     [extending, retracting, retracting, extending, leak, leak, leak, leak, shape, tare, bias, width]
 }
 

@@ -163,7 +163,7 @@ fn lines(simple: &SimpleCalculations) -> Vec<(NumberLine, Option<CurveReading>)>
         Some("2.97e-7"),
     );
     let ret = line("flow coefficient K_vp, negative command", "likewise", COEFFICIENT, Some("2.97e-7"));
-    let rated = line("flow over the rated one", "K_vp sqrt(p_n/2)/q_n", "%", Some("88"));
+    let rated = line("flow, share of the rated one", "K_vp sqrt(p_n/2)/q_n", "%", Some("88"));
     let width = line("hysteresis", "U_rising - U_falling", "V", Some("0.128"));
     let gain = line("flow gain at null K_qU, positive command", "dq/dU", "m3/(s.V)", Some("5.4e-5"));
     let back = line("flow gain at null K_qU, negative command", "likewise", "m3/(s.V)", Some("5.4e-5"));

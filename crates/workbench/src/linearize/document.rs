@@ -40,7 +40,7 @@ pub(crate) fn output(setup: &Setup<'_>, linearization: &Linearization) -> Docume
     ]);
     out.sentences(impedance_at_joint(linearization));
     if let Some(asked) = &linearization.asked {
-        out.section("Impedance asked and shown", asked_table(asked));
+        out.section("Impedance requested and achieved", asked_table(asked));
         out.sentences([asked_sentence(asked)]);
     }
     out
@@ -73,7 +73,7 @@ pub(crate) fn document(linearization: &Linearization, figures: Vec<Figure>) -> D
     out.heading("Dominance");
     out.explanation("Share: greatest amplitude of the mode in the step response over its final value. The slowest mode dominates when every other share is small.");
     out.table(
-        Table::new(["mode, rad/s", "share of the step response", "decays faster than the slowest by"])
+        Table::new(["mode, rad/s", "share of the step response", "decay rate over the slowest"])
             .with(linearization.modes.iter().map(mode_cells)),
     );
     out
@@ -116,7 +116,7 @@ pub(crate) fn asked_table(asked: &AskedImpedance) -> Table {
             Cell::number(turned, 2),
         ]
     };
-    let headings = ["frequency, rad/s", "asked, N·s/m", "shown, N·s/m", "turned by, °"];
+    let headings = ["frequency, rad/s", "requested, N.s/m", "achieved, N.s/m", "phase difference, deg"];
     Table::new(headings).with(asked.points.iter().map(row))
 }
 

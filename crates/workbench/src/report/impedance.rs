@@ -175,8 +175,12 @@ fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
             .collect(),
         with_phase: true,
     };
-    let caption =
-        "Magnitude and phase of Z with its straight lines; shaded where the closed loop is not passive.";
+    let caption = match bands {
+        [] => "Magnitude and phase of Z with its asymptotes; a passive port stays between the lines at ±90°.",
+        _ => {
+            "Magnitude and phase of Z with its asymptotes; a passive port stays between the lines at ±90°; shaded where the closed loop is not passive."
+        }
+    };
     Ok(chart.draw(&Words::new("impedance", "Driving-point impedance", caption)))
 }
 

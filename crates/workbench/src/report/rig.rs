@@ -226,7 +226,7 @@ fn facts(actuator: &project::DeclaredActuator, rig: &Rig) -> Table {
         (
             "supply",
             format!(
-                "{} over {}",
+                "{}, tank at {}",
                 shown(actuator.supply.pressure, &PRESSURE),
                 shown(actuator.supply.tank_pressure, &PRESSURE)
             ),

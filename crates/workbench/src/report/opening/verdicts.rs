@@ -119,7 +119,7 @@ fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
 fn wished(words: &str, steps: Option<usize>) -> Cell {
     let steps =
         steps.filter(|steps| *steps > 1).map_or("the step".to_string(), |steps| format!("all {steps} steps"));
-    Cell::from(format!("wished of {steps}: {words}"))
+    Cell::from(format!("required of {steps}: {words}"))
 }
 
 fn held(held: HeldWish) -> Cell {

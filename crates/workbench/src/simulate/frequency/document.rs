@@ -33,9 +33,9 @@ pub(crate) fn document(found: &MachineResponses) -> Document {
 fn response(response: &MachineResponse, unit: &str) -> Table {
     let with_machine = response.points.iter().any(|point| point.linearised_machine.is_some());
     let amplitude = format!("amplitude, {unit}");
-    let mut heads = vec!["rad/s", &amplitude, "machine, dB", "phase, deg", "less linear plant, dB", "deg"];
+    let mut heads = vec!["rad/s", &amplitude, "machine, dB", "phase, deg", "minus linear plant, dB", "deg"];
     if with_machine {
-        heads.extend(["less linearised machine, dB", "deg"]);
+        heads.extend(["minus linearised machine, dB", "deg"]);
     }
     heads.extend(["distortion, %", "periods"]);
     let mut last: Option<f64> = None;
@@ -80,7 +80,6 @@ fn remark(point: &ResponsePoint) -> Option<String> {
         let percent = significant(100.0 * point.change, 2);
         return Some(format!("{at} rad/s: not settled, the last two windows differ by {percent} %"));
     }
-    (!point.reached.is_empty()).then(|| {
-        format!("{at} rad/s: {} on the way, so that this is not a small motion", point.reached.join(", "))
-    })
+    (!point.reached.is_empty())
+        .then(|| format!("{at} rad/s: this is not a small motion, as it meets {}", point.reached.join(", ")))
 }
