@@ -96,14 +96,21 @@ pub enum OperatingPointError {
     },
     /// No command within the nominal voltage holds this load (force in N, or load pressure in Pa).
     #[error(
-        "a load of {} cannot be held: the valve holds {} to {} (N, or Pa of a load pressure)",
+        "a load {} of {} {unit} cannot be held{}: the valve holds {} to {} {unit}",
+        if *is_force { "force" } else { "pressure" },
         whole(*load),
+        if *moves { " at this velocity" } else { "" },
         whole(*minimum),
-        whole(*maximum)
+        whole(*maximum),
+        unit = if *is_force { "N" } else { "Pa" }
     )]
     LoadOutOfReach {
         /// The load asked for.
         load: f64,
+        /// Whether it is a force in N, or else a load pressure in Pa.
+        is_force: bool,
+        /// Whether the piston moves.
+        moves: bool,
         /// The least that can be held.
         minimum: f64,
         /// The greatest that can be held.

@@ -123,7 +123,7 @@ fn what_cannot_be_is_refused_with_numbers() {
         refused(0.1, Condition::Motion(-11.0, SteadyLoad::Force(0.0))),
         OperatingPointError::CommandBeyondNominal { command: -11.0, nominal: 10.0 }
     );
-    let OperatingPointError::LoadOutOfReach { load, minimum, maximum } =
+    let OperatingPointError::LoadOutOfReach { load, minimum, maximum, .. } =
         refused(0.1, Condition::Load(SteadyLoad::Force(12e3)))
     else {
         panic!()

@@ -242,7 +242,7 @@ fn points_without_balance_are_refused_by_name() {
     };
     let far = refused(&[("operating_point.load_force", [0.0, 1000.0, 12e3])]);
     assert!(
-        far.starts_with("no operating point at operating_point.load_force = 12 kN: a load of 12000"),
+        far.starts_with("no operating point at operating_point.load_force = 12 kN: a load force of 12000 N"),
         "{far}"
     );
     let both = [("operating_point.load_force", [0.0, 0.0, 8e3]), ("supply.pressure", [45e5, 70e5, 70e5])];
@@ -252,7 +252,12 @@ fn points_without_balance_are_refused_by_name() {
         "{found}"
     );
     let sucked = refused(&[("operating_point.velocity", [0.0, 0.1, 0.8])]);
-    assert!(sucked.contains("operating_point.velocity = 800 mm/s: a load of 0 cannot be held"), "{sucked}");
+    assert!(
+        sucked.contains(
+            "operating_point.velocity = 800 mm/s: a load force of 0 N cannot be held at this velocity"
+        ),
+        "{sucked}"
+    );
 }
 
 fn range<'a>(ranges: &'a [VisitedRange], name: &str) -> &'a VisitedRange {

@@ -96,7 +96,14 @@ impl Balance {
         let held = |command: f64| self.pressures(command, velocity).map(|p| self.held(load, p));
         let (minimum, maximum) = (held(-nominal)?, held(nominal)?);
         if !(minimum..=maximum).contains(&wanted) {
-            return Err(OperatingPointError::LoadOutOfReach { load: wanted, minimum, maximum });
+            let (is_force, moves) = (matches!(load, SteadyLoad::Force(_)), velocity != 0.0);
+            return Err(OperatingPointError::LoadOutOfReach {
+                load: wanted,
+                is_force,
+                moves,
+                minimum,
+                maximum,
+            });
         }
         let shortfall = |command: f64| held(command).map_or(f64::NAN, |held| wanted - held);
         let command =
