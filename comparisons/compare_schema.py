@@ -22,7 +22,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 # What a schema cannot see, and the malformed projects that have nothing else wrong with them.
 UNSEEN = {
     "two numbers, or two tables, against each other": """
-        adjustment_way line_accumulator_ranges line_accumulator_wide controller_conjugate design_improper family_case_outside friction_static_below_coulomb line_stiffening_order operating_point_outside
+        adjustment_way burst_pressure line_accumulator_ranges line_accumulator_wide controller_conjugate design_improper family_case_outside friction_static_below_coulomb line_stiffening_order operating_point_outside
         operating_region physics_rod_thicker physics_rods_thicker physics_tank_above_supply piston_area_unequal_rods scenario_rows
         scenario_rows_together scenario_start scenario_times scenario_twice sizing_range_reversed specification_band_reversed
         specification_frequencies_empty specification_frequencies_falling specification_limit_table uncertainty_both_sides

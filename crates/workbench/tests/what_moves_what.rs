@@ -20,7 +20,7 @@ use phea_workbench::sizing::{Question, size, sizing_problem};
 use phea_workbench::source::Memory;
 
 use linear::linear_parameters_follow_from_what_is_listed;
-use rigs::{others, rigs};
+use rigs::{absent_tables, is_within, others, rigs};
 use unused::what_moves_nothing_is_used;
 
 const GUIDE: &str = include_str!("../../../book/src/guide/what_moves_what.md");
@@ -140,7 +140,8 @@ fn on_every_rig(take: impl Fn(&str, &[String]) + Sync) {
 fn try_keys(text: &str, settings: &[String], keys: &[KeyEntry], moved: &Mutex<Moved>) {
     let Some(own) = loaded(text, settings) else { panic!("{settings:?}") };
     let (before, derived) = computed(&own.project, [true; PARTS.len()]);
-    for entry in keys {
+    let absent = absent_tables(keys, &own.project);
+    for entry in keys.iter().filter(|entry| !is_within(entry, &absent)) {
         // what is known to move is not tried again
         let asked = {
             let moved = moved.lock().unwrap();

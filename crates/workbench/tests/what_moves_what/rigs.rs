@@ -342,3 +342,28 @@ pub(super) fn stated(entry: &KeyEntry, project: &Project) -> Option<f64> {
     };
     project.number(&entry.path).or_else(of_one_side)
 }
+
+/// Tables that a rig may lack, with keys that are refused where it does.
+const TABLES: [&str; 8] = [
+    "series.",
+    "cross_port.",
+    "linkage.",
+    "motor.",
+    "velocity_sensor.",
+    "line.accumulator.",
+    "line.pipe.",
+    "supply.accumulator.",
+];
+
+/// Those of which a rig states no number.
+pub(super) fn absent_tables(keys: &[KeyEntry], project: &Project) -> Vec<&'static str> {
+    let has = |table: &str| {
+        keys.iter().any(|entry| entry.path.starts_with(table) && stated(entry, project).is_some())
+    };
+    TABLES.into_iter().filter(|table| !has(table)).collect()
+}
+
+/// Whether a key is one of these tables.
+pub(super) fn is_within(entry: &KeyEntry, tables: &[&str]) -> bool {
+    tables.iter().any(|table| entry.path.starts_with(table))
+}

@@ -1,5 +1,6 @@
 //! A key that moves no part of the model is used all the same: a command answers differently.
 
+use std::cell::OnceCell;
 use std::collections::BTreeSet;
 use std::sync::Mutex;
 
@@ -9,7 +10,7 @@ use phea_workbench::project::{KeyEntry, Loaded};
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
-use super::rigs::{others, stated};
+use super::rigs::{absent_tables, is_within, others, stated};
 use super::{loaded, on_every_rig};
 
 /// The keys that no answer depends on: the guide says so.
@@ -21,8 +22,9 @@ pub(super) fn what_moves_nothing_is_used(still: &BTreeSet<&str>, keys: &[KeyEntr
     let open = Mutex::new(still.clone());
     on_every_rig(|text, settings| {
         let own = loaded(text, settings).unwrap();
-        let mut answers_of_own = None;
-        for entry in keys {
+        let before = OnceCell::new();
+        let absent = absent_tables(keys, &own.project);
+        for entry in keys.iter().filter(|entry| !is_within(entry, &absent)) {
             if !open.lock().unwrap().contains(entry.path.as_str()) {
                 continue;
             }
@@ -31,13 +33,16 @@ pub(super) fn what_moves_nothing_is_used(still: &BTreeSet<&str>, keys: &[KeyEntr
                 loaded(text, &changed)
             };
             let is_used = |other: &Loaded| {
-                let before = answers_of_own.get_or_insert_with(|| answers(&own));
-                other.project != own.project && *before != answers(other)
+                let before = || before.get_or_init(|| answers(&own));
+                other.project != own.project && *before() != answers(other)
             };
-            let mut tried: Vec<Option<Loaded>> = others(entry, &own.project).0.iter().map(with).collect();
-            let Some(accepted) = tried.iter().flatten().next() else { continue };
-            tried.extend(far(entry, accepted).iter().map(with).collect::<Vec<_>>());
-            if tried.iter().any(Option::is_none) || tried.iter().flatten().any(is_used) {
+            let near: Vec<Option<Loaded>> = others(entry, &own.project).0.iter().map(with).collect();
+            let Some(accepted) = near.iter().flatten().next() else { continue };
+            let differs = |other: Option<&Loaded>| other.is_none_or(is_used);
+            let far = || far(entry, accepted).into_iter();
+            if near.iter().map(Option::as_ref).any(differs)
+                || far().any(|value| differs(with(&value).as_ref()))
+            {
                 open.lock().unwrap().remove(entry.path.as_str());
             }
         }
