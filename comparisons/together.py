@@ -1,4 +1,4 @@
-"""Runs scripts one after the other, each in a process of its own that finds NumPy and SciPy imported.
+"""Runs scripts, each in a process of its own that finds NumPy and SciPy imported; two at once.
 
     python comparisons/together.py SCRIPT ...
 
@@ -9,6 +9,7 @@ import os
 import pathlib
 import runpy
 import sys
+import tempfile
 import traceback
 
 import control  # noqa: F401
@@ -36,22 +37,37 @@ def status_of(script):
     return 0
 
 
-def run(script):
-    """Whether a script ended well."""
-    print(f"$ python {script}", flush=True)
+# as many at once as there are processors on the machine that the test command is made for
+AT_ONCE = 2
+
+
+def begun(script):
+    """The process that runs a script, and the file with what it prints."""
+    printed = tempfile.TemporaryFile()
     child = os.fork()
     if child == 0:
+        os.dup2(printed.fileno(), sys.stdout.fileno())
+        os.dup2(printed.fileno(), sys.stderr.fileno())
         status = status_of(script)
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(status)
-    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    return child, printed
 
 
 def main(scripts):
-    # what goes wrong is printed where it does
-    os.dup2(sys.stdout.fileno(), sys.stderr.fileno())
-    failed = [script for script in scripts if not run(script)]
+    waiting, running, failed = list(scripts), {}, []
+    while waiting or running:
+        while waiting and len(running) < AT_ONCE:
+            script = waiting.pop(0)
+            child, printed = begun(script)
+            running[child] = script, printed
+        child, status = os.wait()
+        script, printed = running.pop(child)
+        printed.seek(0)
+        print(f"$ python {script}", printed.read().decode(errors="replace"), sep="\n", end="", flush=True)
+        if status != 0:
+            failed.append(script)
     print("failed:", ", ".join(failed) or "none")
     return 1 if failed else 0
 

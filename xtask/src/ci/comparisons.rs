@@ -22,7 +22,7 @@ const RANDOM_VALVES: &str = "comparisons/compare_identify.py";
 /// So much memory that was given back is kept by a script for its next array.
 const KEPT_BYTES: &str = "1000000000";
 
-/// Runs scripts one after the other; its last line names those that failed.
+/// Runs scripts; its last line names those that failed.
 const TOGETHER: &str = "comparisons/together.py";
 const FAILED: &str = "failed: ";
 
