@@ -135,7 +135,7 @@ pub(crate) enum Command {
         /// Amplitude of the command of the open loop ("0.1 V")
         #[arg(long, value_name = "VOLTAGE", requires = "frequency_response", allow_hyphen_values = true)]
         amplitude: Option<String>,
-        /// Amplitude of the reference of the closed loop ("100 N")
+        /// Amplitude of the reference of the closed loop ("100 N"; of a motor a torque, "40 N.m")
         #[arg(long, value_name = "FORCE", requires = "frequency_response", allow_hyphen_values = true)]
         reference_amplitude: Option<String>,
         /// Run each scenario a second time at a tenth of the tolerance: how far the two differ

@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use phea_dynamics::simulation::{Profile, ProfilePiece, Quartic, Stretch};
 use phea_machine::ControllerSamples;
 
-use super::sum::WeightedSum;
+use super::sum::SignalSum;
 use super::tally::{CommandStretch, Passed, Tally};
 use super::{Metrics, Window};
 
@@ -21,14 +21,14 @@ const SAME: f64 = 1e-9;
 pub(super) enum CommandSource<'a> {
     /// The command that a continuous controller demands, with its limit in V, or the stated command
     /// of an open loop.
-    Continuously(WeightedSum<'a>, f64),
+    Continuously(SignalSum<'a>, f64),
     /// The last command of a sampled controller.
     Sampled(&'a RefCell<ControllerSamples>),
 }
 
 /// Accumulates the metrics of the windows of a run.
 pub struct Follower<'a> {
-    force: WeightedSum<'a>,
+    force: SignalSum<'a>,
     commanded: CommandSource<'a>,
     /// None in an open loop.
     reference: Option<&'a Profile>,
@@ -43,7 +43,7 @@ impl<'a> Follower<'a> {
     /// Of a loop with this number of inputs, in windows in the order of their starts; the band of
     /// settling times in percent.
     pub(super) fn new(
-        force: WeightedSum<'a>,
+        force: SignalSum<'a>,
         commanded: CommandSource<'a>,
         inputs: usize,
         reference: Option<&'a Profile>,
@@ -239,8 +239,8 @@ mod tests {
     ) -> Metrics {
         let course =
             InputSchedule { duration_s: 3.0, output_step_s, inputs: vec![Input::Value(driving.clone())] };
-        let commanded = CommandSource::Continuously(WeightedSum::single(1), limit);
-        let follower = Follower::new(WeightedSum::single(0), commanded, 1, Some(reference), (&[window], 1.0));
+        let commanded = CommandSource::Continuously(SignalSum::single(1), limit);
+        let follower = Follower::new(SignalSum::single(0), commanded, 1, Some(reference), (&[window], 1.0));
         let observer = Following(follower);
         let task = Task { start: start.to_vec(), course: &course, sampler: None, observer };
         let settings = SimulationSettings { tolerance: 1e-11, ..SimulationSettings::default() };
@@ -352,9 +352,8 @@ mod tests {
             output_step_s: 1.0,
             inputs: vec![Input::Value(Profile::sine(0.1, 1e-9, 7.0).unwrap())],
         };
-        let commanded = CommandSource::Continuously(WeightedSum::single(1), f64::INFINITY);
-        let follower =
-            Follower::new(WeightedSum::single(0), commanded, 1, Some(&reference), (&[window], 1.0));
+        let commanded = CommandSource::Continuously(SignalSum::single(1), f64::INFINITY);
+        let follower = Follower::new(SignalSum::single(0), commanded, 1, Some(&reference), (&[window], 1.0));
         let observer = Following(follower);
         let task = Task { start: vec![0.0; 2], course: &course, sampler: None, observer };
         let (_, seen) = drive_one(&swing, task, &SimulationSettings::default(), &mut |_| true).unwrap();

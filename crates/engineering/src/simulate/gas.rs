@@ -4,7 +4,7 @@ use phea_dynamics::simulation::Stretch;
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 
 use super::bench::ControlledMachine;
-use super::sum::WeightedSum;
+use super::sum::SignalSum;
 
 /// What became of the gas at a chamber over a run, of the solution itself, between its rows too.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,9 +22,9 @@ pub struct GasRange {
 
 /// Watches the gas at one chamber.
 pub(super) struct GasWatch {
-    pressure: WeightedSum<'static>,
+    pressure: SignalSum<'static>,
     /// theta - 1 of gas that exchanges heat.
-    warming: Option<WeightedSum<'static>>,
+    warming: Option<SignalSum<'static>>,
     range: GasRange,
     warmings: [f64; 2],
 }
@@ -34,7 +34,7 @@ impl GasWatch {
     pub(super) fn of(bench: &ControlledMachine, wanted: &[usize]) -> Vec<GasWatch> {
         let names = bench.machine.state_names();
         let place = |name: &str| names.iter().position(|known| known == name);
-        let one = |place: usize| WeightedSum::of(wanted, bench.control.size(), move |state, _| state[place]);
+        let one = |place: usize| SignalSum::of(wanted, bench.control.size(), move |state, _| state[place]);
         let gas = bench.rig.actuator.components().accumulators;
         let watch = |(side, chamber): (usize, char)| {
             gas[side]?;

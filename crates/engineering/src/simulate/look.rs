@@ -17,7 +17,7 @@ use super::gas::{GasRange, GasWatch};
 use super::measured::{Measurement, Overlay, Overlaying};
 use super::parts::SignalParts;
 use super::record::{Look, Record};
-use super::sum::WeightedSum;
+use super::sum::SignalSum;
 use super::sums;
 use super::{Metrics, SimulateError};
 use crate::source::WriteError;
@@ -65,7 +65,7 @@ pub(super) struct Looking<'a> {
     gas: Vec<GasWatch>,
     follower: Follower<'a>,
     /// Pressures of chambers A and B; below, the highest so far, Pa.
-    pressures: [WeightedSum<'a>; 2],
+    pressures: [SignalSum<'a>; 2],
     peak_pressures_pa: [f64; 2],
     overlays: Vec<Overlaying<'a>>,
     /// The error of the table, if it accepts no more rows.

@@ -11,7 +11,7 @@ use phea_dynamics::simulation::{Quartic, Stretch};
 /// s = sum of a_i y_i + sum of f_k(y_k) + sum of b_j w_j
 /// ```
 #[derive(Default)]
-pub(super) struct WeightedSum<'a> {
+pub(super) struct SignalSum<'a> {
     states: Vec<(usize, f64)>,
     curved: Vec<(usize, Term<'a>)>,
     inputs: Vec<(usize, f64)>,
@@ -28,21 +28,21 @@ const ROUNDING: f64 = 1e-9;
 /// Parts of a step through whose values a polynomial of degree four is laid.
 const QUARTERS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
-impl<'a> WeightedSum<'a> {
+impl<'a> SignalSum<'a> {
     /// From a signal that is such a sum: its value for each of these states, and for each input,
     /// alone.
     pub(super) fn of(
         wanted: &[usize],
         [states, inputs]: [usize; 2],
         signal: impl Fn(&[f64], &[f64]) -> f64 + 'a,
-    ) -> WeightedSum<'a> {
+    ) -> SignalSum<'a> {
         let only = |count: usize, place: usize, value: f64| {
             let mut alone = vec![0.0; count];
             alone[place] = value;
             alone
         };
         let signal = Rc::new(signal);
-        let mut sum = WeightedSum::default();
+        let mut sum = SignalSum::default();
         for (index, &state) in wanted.iter().enumerate() {
             let signal = signal.clone();
             let term = move |value: f64| signal(&only(states, state, value), &vec![0.0; inputs]);
@@ -91,9 +91,9 @@ impl<'a> WeightedSum<'a> {
 }
 
 #[cfg(test)]
-impl WeightedSum<'_> {
+impl SignalSum<'_> {
     /// One state by itself.
     pub(super) fn single(place: usize) -> Self {
-        WeightedSum { states: vec![(place, 1.0)], ..WeightedSum::default() }
+        SignalSum { states: vec![(place, 1.0)], ..SignalSum::default() }
     }
 }

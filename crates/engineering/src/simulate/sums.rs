@@ -5,38 +5,38 @@ use phea_hydraulics::machine::SIGNALS;
 use phea_machine::Control;
 
 use super::bench::ControlledMachine;
-use super::sum::WeightedSum;
+use super::sum::SignalSum;
 
 /// The pressures of chambers A and B.
-pub(super) fn pressures<'a>(bench: &'a ControlledMachine, wanted: &[usize]) -> [WeightedSum<'a>; 2] {
+pub(super) fn pressures<'a>(bench: &'a ControlledMachine, wanted: &[usize]) -> [SignalSum<'a>; 2] {
     let others = bench.control.leading_inputs();
     ["pressure_a_pa", "pressure_b_pa"].map(|name| {
         let place = SIGNALS.iter().position(|signal| *signal == name).unwrap_or_default();
         let pressure =
             move |state: &[f64], inputs: &[f64]| bench.machine.outputs(state, &inputs[others..])[place];
-        WeightedSum::of(wanted, bench.control.size(), pressure)
+        SignalSum::of(wanted, bench.control.size(), pressure)
     })
 }
 
 /// The machine's own force, before the sensor.
-pub(super) fn force<'a>(bench: &'a ControlledMachine, wanted: &[usize]) -> WeightedSum<'a> {
+pub(super) fn force<'a>(bench: &'a ControlledMachine, wanted: &[usize]) -> SignalSum<'a> {
     let others = bench.control.leading_inputs();
     let force = move |state: &[f64], inputs: &[f64]| bench.machine.measurement(state, &inputs[others..]);
-    WeightedSum::of(wanted, bench.control.size(), force)
+    SignalSum::of(wanted, bench.control.size(), force)
 }
 
 /// The command of a continuous controller before its limit, or the stated command of an open loop;
 /// zero for a sampled controller.
-pub(super) fn command<'a>(bench: &'a ControlledMachine, wanted: &[usize]) -> WeightedSum<'a> {
+pub(super) fn command<'a>(bench: &'a ControlledMachine, wanted: &[usize]) -> SignalSum<'a> {
     match &bench.control {
         Control::Continuous(closed) => {
             let wants = |state: &[f64], inputs: &[f64]| closed.signals::<f64, f64>(state, inputs).wanted;
-            WeightedSum::of(wanted, bench.control.size(), wants)
+            SignalSum::of(wanted, bench.control.size(), wants)
         }
-        Control::Sampled(_) => WeightedSum::default(),
+        Control::Sampled(_) => SignalSum::default(),
         Control::Open(_) => {
             let stated = |_: &[f64], inputs: &[f64]| inputs.first().copied().unwrap_or_default();
-            WeightedSum::of(wanted, bench.control.size(), stated)
+            SignalSum::of(wanted, bench.control.size(), stated)
         }
     }
 }

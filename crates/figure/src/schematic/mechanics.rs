@@ -206,7 +206,7 @@ fn environment(
                 Rectangle { left: wall - 6.0, top: axis - 32.0, right: wall + 6.0, bottom: axis + 32.0 };
             scene.rectangle(plate, Some(OUTLINE), Some(Fill::solid(Role::Surface)));
             let y = axis - 44.0;
-            if schematic.motion.is_rotary() {
+            if schematic.motion.is_rotary() || schematic.linkage.is_some() {
                 turn(scene, (wall, y + 4.0));
                 word(scene, position, (wall, y - 17.0), Role::Accent);
             } else {
