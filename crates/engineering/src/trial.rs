@@ -2,17 +2,19 @@
 //! compared with what the linear loop predicts.
 //!
 //! ```text
-//! project, audit -> rigs::rigs -> Rigs { project, plant } -> run::run -> Run { linear, machine, agreement, reason } -> answer
+//! project, audit -> rigs::rigs -> Rigs { project, plant } -> run::runs, at two sizes of the step -> judge -> Run { linear, machine, agreement, reason } -> answer
 //! ```
 
+mod judge;
 mod prediction;
 mod rigs;
 mod run;
-pub use run::percent_words;
+mod steps;
+pub use judge::percent_words;
 
 pub(crate) use rigs::waves_alone;
 pub use rigs::with_waves;
-pub use run::{Agreement, StepResponse, TrialRun, TrialStep, agreement_word};
+pub use run::{Agreement, Leg, StepResponse, StepSize, TrialRun, TrialStep, agreement_word};
 
 use crate::audit::ProjectAudit;
 use crate::rig::RigError;
@@ -42,6 +44,9 @@ pub enum TrialError {
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }
+
+/// The stage of a trial, for the watch.
+const STAGE: &str = "on the machine";
 
 /// Every run, in the order in which they were driven: the rig as it is declared first.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,10 +86,10 @@ pub fn tried(
     let mut runs = Vec::new();
     for (index, rig) in rigs.iter().enumerate() {
         let mut within = |progress: Progress| {
-            watch(Progress { stage: "on the machine", share: (index as f64 + progress.share) / count })
+            watch(Progress { stage: STAGE, share: (index as f64 + progress.share) / count })
         };
-        match run::run(source, rig, problem, view, &mut within)? {
-            Some(run) => runs.push(run),
+        match run::runs(source, rig, problem, view, &mut within)? {
+            Some(of_machine) => runs.extend(of_machine),
             None => return Err(Stopped.into()),
         }
     }

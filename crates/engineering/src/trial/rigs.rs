@@ -73,6 +73,10 @@ pub(super) fn rigs(
         }
         known.push(&worst.plant);
         let (names, values): (Vec<&str>, Vec<f64>) = numbers.map(|(name, _, value)| (name, value)).unzip();
+        // the one plant of a family without parameters is the rig as declared
+        if names.is_empty() {
+            continue;
+        }
         let what = format!("the worst plant of {}", view.numbered(index));
         match made(setup, rig, &names, &values) {
             Ok(project) => rigs.push(Tried {

@@ -1,6 +1,6 @@
 //! The key `machine` of an answer.
 
-use super::{Agreement, Trial, TrialRun, TrialStep, agreement_word};
+use super::{Agreement, Leg, StepSize, Trial, TrialRun, TrialStep, agreement_word};
 use crate::answer::Object;
 
 /// A trial in JSON.
@@ -21,8 +21,29 @@ fn row(run: &TrialRun) -> Object {
         .with("agreement", agreement_word(run.agreement))
         .with("reason", run.reason.as_str())
         .with("reference_n", run.reference_n)
+        .with("step", size_word(run.size))
+        .with("worst_step", leg_word(run.worst))
+        .known("remaining_amplitude_n", run.remaining_amplitude_n, "the run ended before")
         .known("linear", run.linear.as_ref().map(step), no_step)
         .known("machine", run.machine.as_ref().map(step), "it does not start")
+        .each("steps", &run.legs, |(leg, of_leg)| {
+            Object::new().with("step", leg_word(*leg)).and(step(of_leg))
+        })
+}
+
+fn size_word(size: StepSize) -> &'static str {
+    match size {
+        StepSize::Tenth => "tenth_of_supply_force",
+        StepSize::Largest => "largest_unsaturated",
+    }
+}
+
+fn leg_word(leg: Leg) -> &'static str {
+    match leg {
+        Leg::There => "there",
+        Leg::Back => "back",
+        Leg::Again => "there_again",
+    }
 }
 
 fn step(step: &TrialStep) -> Object {

@@ -1,9 +1,9 @@
 //! The trial of a verdict on the machine, for people.
 
-use super::{Agreement, StepResponse, Trial, TrialRun, TrialStep, agreement_word, percent_words};
+use super::{Agreement, StepResponse, StepSize, Trial, TrialRun, TrialStep, agreement_word, percent_words};
 use crate::document::{Cell, Document, Table};
 use crate::figure::{FamilySteps, Figure, TimeSeries, Words};
-use crate::quantity::DisplayUnit;
+use crate::quantity::{DisplayUnit, FORCE, display};
 
 /// A trial, with its figure if that has a name and a title.
 pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Document {
@@ -16,10 +16,10 @@ pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Docume
         Agreement::Contradicts => "contradicts the verdict",
     };
     out.explanation(format!(
-        "The machine {did}. The nonlinear rig under this controller: a step of the reference by a tenth of the force that the supply can produce, compared with the same step of the linear loop."
+        "The machine {did}. The nonlinear rig under this controller: steps of the reference there, back and there again, by a tenth of the force that the supply can produce and then as large as the command allows, compared with those of the linear loop. Of the three steps the worst numbers are given."
     ));
     out.table(
-        Table::new(["machine", "", "overshoot", "linear", "settles in", "linear"])
+        Table::new(["machine", "step", "", "overshoot", "linear", "settles in", "linear", "remains"])
             .with(trial.runs.iter().map(cells)),
     );
     out.sentences(reasons(trial));
@@ -27,7 +27,7 @@ pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Docume
     out
 }
 
-fn cells(run: &TrialRun) -> [Cell; 6] {
+fn cells(run: &TrialRun) -> [Cell; 8] {
     let settling = |step: Option<&TrialStep>| {
         let time_s = step.and_then(|step| step.settling_time_s);
         time_s.map_or(Cell::Missing, |time_s| Cell::quantity(time_s, 3, DisplayUnit::MILLISECOND))
@@ -38,12 +38,21 @@ fn cells(run: &TrialRun) -> [Cell; 6] {
     let (linear, machine) = (run.linear.as_ref(), run.machine.as_ref());
     [
         run.what.as_str().into(),
+        step_words(run).into(),
         Cell::agreement(run.agreement),
         overshoot(machine),
         overshoot(linear),
         settling(machine),
         settling(linear),
+        run.remaining_amplitude_n
+            .map_or(Cell::Missing, |amplitude| format!("±{}", display(amplitude, &FORCE, 2)).into()),
     ]
+}
+
+/// From one reference to the other.
+fn step_words(run: &TrialRun) -> String {
+    let [from, to] = run.reference_n.map(|force| display(force, &FORCE, 3));
+    format!("{from} to {to}")
 }
 
 /// Why a machine does not behave like the linear loop, and which plants were not driven.
@@ -72,10 +81,11 @@ fn figure(trial: &Trial, [name, title]: [&str; 2]) -> Option<Figure> {
         (!times_s.is_empty()).then(|| TimeSeries { name: name.to_string(), times_s, values })
     };
     let nominal = series("linear loop, nominal plant", &first.linear_response);
-    let named = runs.iter().filter_map(|run| series(&run.what, &run.machine_response)).collect();
+    let drawn = runs.iter().filter(|run| run.size == StepSize::Tenth || run.agreement != Agreement::Agrees);
+    let named = drawn.filter_map(|run| series(&run.what, &run.machine_response)).collect();
     let quantity = "Force, part of the step".to_string();
     let chart = FamilySteps { quantity, nominal, named, ..FamilySteps::default() };
-    let caption = "A step of the reference on the nonlinear machine: the rig as declared, with waves in its lines, and its worst plants made into rigs. A force that leaves the frame is drawn up to there.";
+    let caption = "The worst of three steps of the reference (there, back and there again) on the nonlinear machine: the rig as declared, with waves in its lines, and its worst plants made into rigs. A force that leaves the frame is drawn up to there.";
     Some(chart.draw(&Words::new(name, title, caption)))
 }
 

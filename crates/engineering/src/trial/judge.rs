@@ -1,0 +1,181 @@
+//! The judgement of a machine that was driven: how its steps compare with those that the linear
+//! loop predicts, and with what a met verdict promises.
+
+use std::f64::consts::PI;
+
+use phea_dynamics::portable::exp;
+use phea_qft::specification::ClosedLoop;
+use phea_qft::verification::Verdict;
+
+use super::run::{Agreement, Leg, StepSize, TrialStep};
+use super::steps::Steps;
+use crate::audit::ProjectAudit;
+use crate::quantity::{DisplayUnit, FORCE, significant};
+use crate::robust::RobustProblem;
+use crate::simulate::{ScenarioRun, SimulateError};
+
+/// Motion of a force that counts as settled, as a share of the step.
+const STILL: f64 = 0.01;
+/// Factor by which settling times may differ.
+const SETTLING_RATIO: f64 = 2.0;
+/// Percent of the step by which an overshoot may differ: friction has an effect of this size on a
+/// small step.
+const OVERSHOOT_ROOM_PERCENT: f64 = 5.0;
+
+/// A run of a machine, its steps, and what is known of the linear loop.
+pub(super) struct Driven<'a> {
+    pub(super) run: &'a ScenarioRun,
+    pub(super) steps: &'a Steps,
+    pub(super) size: StepSize,
+    /// Of each leg.
+    pub(super) legs: [TrialStep; 3],
+    /// What the linear loop predicts.
+    pub(super) linear: Option<TrialStep>,
+    /// Whether the linear loop is unstable.
+    pub(super) grows: bool,
+}
+
+impl Driven<'_> {
+    /// The greatest overshoot and the longest settling time; without one where a step does not
+    /// settle.
+    pub(super) fn whole(&self) -> TrialStep {
+        let overshoots = self.legs.iter().filter_map(|leg| leg.overshoot_percent);
+        let settled: Option<Vec<f64>> = self.legs.iter().map(|leg| leg.settling_time_s).collect();
+        TrialStep {
+            overshoot_percent: overshoots.reduce(f64::max),
+            settling_time_s: settled.and_then(|times_s| times_s.into_iter().reduce(f64::max)),
+        }
+    }
+
+    /// The leg that does not settle, or else overshoots most; the first of equals.
+    pub(super) fn worst(&self) -> Leg {
+        self.first_most(|leg| match leg.settling_time_s {
+            Some(_) => leg.overshoot_percent.unwrap_or(0.0),
+            None => f64::INFINITY,
+        })
+    }
+
+    fn first_most(&self, of: impl Fn(&TrialStep) -> f64) -> Leg {
+        let values = self.legs.each_ref().map(of);
+        let most = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        let legs = Leg::ALL.into_iter().zip(values);
+        legs.into_iter().find(|(_, value)| *value >= most).map_or(Leg::There, |(leg, _)| leg)
+    }
+
+    /// The range of the force at the end of the step after which it moves most, N.
+    pub(super) fn remains(&self) -> Option<[f64; 2]> {
+        let ranges = Leg::ALL.into_iter().filter_map(|leg| self.steps.remains(self.run, leg));
+        ranges.reduce(|widest, range| if width(range) > width(widest) { range } else { widest })
+    }
+}
+
+/// A machine without an equilibrium under its controller, or without equations.
+pub(super) fn not_started(error: &SimulateError, view: &ProjectAudit) -> (Agreement, String) {
+    let agreement =
+        if view.audit.verdict == Verdict::Met { Agreement::Contradicts } else { Agreement::Differs };
+    (agreement, format!("the machine does not start: {error}"))
+}
+
+/// How well it agrees, and why.
+pub(super) fn judge(
+    driven: &Driven<'_>,
+    problem: &RobustProblem,
+    view: &ProjectAudit,
+) -> (Agreement, String) {
+    let promised = view.audit.verdict != Verdict::Violated;
+    let broken = if promised { Agreement::Contradicts } else { Agreement::Differs };
+    if let Some(stopped) = driven.run.stopped() {
+        let time = DisplayUnit::MILLISECOND.text(stopped.time_s, 3);
+        return (broken, format!("the run ended after {time} as {}", stopped.word));
+    }
+    let (whole, linear) = (driven.whole(), driven.linear);
+    if whole.settling_time_s.is_none() {
+        let settles = !driven.grows && linear.is_none_or(|step| step.settling_time_s.is_some());
+        return match settles {
+            true => (broken, unsettled(driven)),
+            false => (Agreement::Agrees, "neither the linear loop nor the machine settles".to_string()),
+        };
+    }
+    let overshoot = whole.overshoot_percent.unwrap_or(0.0);
+    let predicted = linear.and_then(|step| step.overshoot_percent);
+    let beside = predicted.map_or(String::new(), |predicted| {
+        format!(", where the linear loop has {}", percent_words(predicted))
+    });
+    let highest = driven.first_most(|leg| leg.overshoot_percent.unwrap_or(0.0));
+    let told = format!("it overshoots by {}{}{beside}", percent_words(overshoot), leg_words(highest));
+    let more = overshoot - predicted.unwrap_or(overshoot);
+    let most = most_overshoot_percent(problem).filter(|_| driven.size == StepSize::Tenth);
+    if more > OVERSHOOT_ROOM_PERCENT && most.is_some_and(|most| overshoot > most) {
+        return (broken, format!("{told}: more than the limit on |L/(1+L)| lets a loop overshoot"));
+    }
+    if let Some(range) = driven.remains().filter(|range| width(*range) > STILL * driven.steps.size()) {
+        return (Agreement::Differs, format!("{told}, and does not come to rest: {}", range_words(range)));
+    }
+    if more.abs() > OVERSHOOT_ROOM_PERCENT {
+        return (Agreement::Differs, told);
+    }
+    if let Some((own, predicted)) = whole.settling_time_s.zip(linear.and_then(|step| step.settling_time_s))
+        && !(predicted / SETTLING_RATIO..=predicted * SETTLING_RATIO).contains(&own)
+    {
+        let [own, predicted] = [own, predicted].map(|time_s| DisplayUnit::MILLISECOND.text(time_s, 3));
+        return (Agreement::Differs, format!("it settles in {own}, where the linear loop takes {predicted}"));
+    }
+    match met(driven.run).first() {
+        Some(kind) => (Agreement::Differs, format!("{told}, and meets {}", kind.replace('_', " "))),
+        None => (Agreement::Agrees, told),
+    }
+}
+
+fn unsettled(driven: &Driven<'_>) -> String {
+    let words = driven.remains().map_or(String::new(), |range| format!(": {}", range_words(range)));
+    format!("the force does not settle{}{words}", leg_words(driven.worst()))
+}
+
+/// The limits and ends that the machine reached, in order.
+pub(super) fn met(driven: &ScenarioRun) -> Vec<&'static str> {
+    driven.occurrences.iter().filter(|one| one.begins).map(|one| one.kind).collect()
+}
+
+fn width([low, high]: [f64; 2]) -> f64 {
+    high - low
+}
+
+/// `2.10 %`; values below a hundredth count as zero.
+pub fn percent_words(percent: f64) -> String {
+    if percent < 0.01 { "0 %".to_string() } else { format!("{} %", significant(percent, 3)) }
+}
+
+fn leg_words(leg: Leg) -> &'static str {
+    match leg {
+        Leg::There => "",
+        Leg::Back => " on the way back",
+        Leg::Again => " when the step is repeated",
+    }
+}
+
+fn range_words([low, high]: [f64; 2]) -> String {
+    let newton = |force| crate::quantity::display(force, &FORCE, 3);
+    format!("at the end it swings between {} and {}", newton(low), newton(high))
+}
+
+/// The overshoot of a system of second order whose resonance reaches the least limit on |L/(1+L)|,
+/// percent; `None` without such a limit.
+///
+/// ```text
+/// M = 1/(2 zeta sqrt(1 - zeta^2)),     overshoot = exp(-pi zeta/sqrt(1 - zeta^2))
+/// ```
+fn most_overshoot_percent(problem: &RobustProblem) -> Option<f64> {
+    let limits = problem.specifications.iter().filter_map(|one| match one.requirement.closed_loop() {
+        ClosedLoop::RobustStability => one.requirement.limits().1.magnitude(0.0),
+        _ => None,
+    });
+    let peak =
+        limits.fold(None, |least: Option<f64>, limit| Some(least.map_or(limit, |least| least.min(limit))))?;
+    if peak <= 1.0 {
+        return Some(0.0);
+    }
+    let cosine_of_twice = (1.0 - 1.0 / (peak * peak)).sqrt();
+    let damping_squared = 0.5 * (1.0 - cosine_of_twice);
+    let ratio = (damping_squared / (1.0 - damping_squared)).sqrt();
+    Some(100.0 * exp(-PI * ratio))
+}

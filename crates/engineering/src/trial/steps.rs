@@ -1,0 +1,191 @@
+//! The steps of the reference through which a machine is driven: there, back, and there again.
+//!
+//! ```text
+//! project, Steps -> stepped project -> ScenarioRun -> metrics and response of each leg
+//! ```
+
+use phea_dynamics::time_response::{StepBaseline, step_metrics};
+
+use super::run::{BAND_PERCENT, Leg, StepResponse, TrialStep};
+use crate::project::{Project, Scenario, Signal};
+use crate::rig::Rig;
+use crate::simulate::ScenarioRun;
+
+/// The first step over the force that the supply can produce.
+const STEP_SHARE: f64 = 0.1;
+/// The reference stays within this share of that force.
+const REACH: f64 = 0.8;
+/// s, before the first step.
+const BEFORE_S: f64 = 0.05;
+/// Rows of a scenario for each step.
+const ROWS: f64 = 2000.0;
+/// Share of a step, at its end, over which the remaining oscillation is measured.
+const LATE_SHARE: f64 = 0.2;
+/// Share of the estimated largest step that is driven first: the machine is not linear.
+const ESTIMATE_SHARE: f64 = 0.95;
+
+/// Three steps between two references, each held equally long.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Steps {
+    /// N.
+    pub(super) from_n: f64,
+    /// N.
+    pub(super) to_n: f64,
+    /// s.
+    pub(super) hold_s: f64,
+}
+
+impl Steps {
+    /// Steps by a tenth of the force that the supply can produce, from the force of the operating
+    /// point in the direction with more room.
+    pub(super) fn tenth(rig: &Rig, hold_s: f64) -> Steps {
+        let push = push(rig);
+        let from_n = rig.point.hydraulic_force;
+        let step = STEP_SHARE * push;
+        let towards = if from_n + step <= REACH * push { step } else { -step };
+        Steps { from_n, to_n: from_n + towards, hold_s }
+    }
+
+    /// Steps in the same direction, as large as the supply, the force sensor, and the room that a
+    /// run of these steps left between its command and the limit allow.
+    pub(super) fn enlarged(&self, rig: &Rig, limits: CommandLimits, driven: &ScenarioRun) -> Steps {
+        let towards = (self.to_n - self.from_n).signum();
+        let reach = (REACH * push(rig)).min(limits.force_n);
+        let most = reach - towards * self.from_n;
+        let estimated = ESTIMATE_SHARE * room(&driven.record.control_v, limits.command_v) * self.size();
+        Steps { to_n: self.from_n + towards * most.min(estimated), ..*self }
+    }
+
+    /// The same steps, smaller or larger by a factor.
+    pub(super) fn scaled(&self, factor: f64) -> Steps {
+        Steps { to_n: self.from_n + factor * (self.to_n - self.from_n), ..*self }
+    }
+
+    /// Magnitude of a step, N.
+    pub(super) fn size(&self) -> f64 {
+        (self.to_n - self.from_n).abs()
+    }
+
+    /// The project with one scenario: in equilibrium under the first reference, then the steps.
+    pub(super) fn project(&self, project: &Project) -> Project {
+        let at = |at, value| Signal::Step { at, value, published: None };
+        let steps = Leg::ALL.map(|leg| at(self.begins_s(leg), self.ends(leg)[1]));
+        let scenario = Scenario {
+            name: "step".to_string(),
+            duration: self.begins_s(Leg::Again) + self.hold_s,
+            output_step: self.hold_s / ROWS,
+            reference: std::iter::once(at(0.0, self.from_n)).chain(steps).collect(),
+            settling_band_percent: BAND_PERCENT,
+            ..Scenario::default()
+        };
+        Project { scenarios: vec![scenario], ..project.clone() }
+    }
+
+    fn begins_s(&self, leg: Leg) -> f64 {
+        BEFORE_S + leg as usize as f64 * self.hold_s
+    }
+
+    /// The reference before and after a step, N.
+    fn ends(&self, leg: Leg) -> [f64; 2] {
+        match leg {
+            Leg::There | Leg::Again => [self.from_n, self.to_n],
+            Leg::Back => [self.to_n, self.from_n],
+        }
+    }
+
+    /// Properties of the response of what the loop controls: of the force, or with a virtual
+    /// impedance and a load that yields of the force together with what the impedance makes of the
+    /// motion. A force that is still outside the band in the last fifth of the step is not settled:
+    /// an oscillation is within the band at some moment too.
+    pub(super) fn step(&self, driven: &ScenarioRun, leg: Leg) -> TrialStep {
+        let step = self.measured(driven, leg);
+        let late_s = (1.0 - LATE_SHARE) * self.hold_s;
+        TrialStep { settling_time_s: step.settling_time_s.filter(|time_s| *time_s < late_s), ..step }
+    }
+
+    fn measured(&self, driven: &ScenarioRun, leg: Leg) -> TrialStep {
+        if driven.record.signal("virtual_force_n").iter().any(|force| *force != 0.0) {
+            let StepResponse { times_s, values } = self.response(driven, leg);
+            let metrics = step_metrics(&times_s, &values, StepBaseline::to_value(1.0), BAND_PERCENT).ok();
+            return TrialStep {
+                overshoot_percent: metrics.as_ref().map(|metrics| metrics.overshoot_percent),
+                settling_time_s: metrics.and_then(|metrics| metrics.settling.time_s()),
+            };
+        }
+        let metrics = driven.windows.get(leg as usize).map(|(_, metrics)| metrics);
+        TrialStep {
+            overshoot_percent: metrics.and_then(|metrics| metrics.overshoot_percent.ok()),
+            settling_time_s: metrics.and_then(|metrics| metrics.settling_time_s.ok()),
+        }
+    }
+
+    /// The controlled force during a step, as a share of it.
+    pub(super) fn response(&self, driven: &ScenarioRun, leg: Leg) -> StepResponse {
+        let [from, to] = self.ends(leg);
+        let (begins_s, held) = (self.begins_s(leg), controlled(driven));
+        let rows = driven.record.times_s.iter().zip(held);
+        let during = rows
+            .filter(|(time_s, _)| (begins_s..begins_s + self.hold_s).contains(*time_s))
+            .map(|(time_s, force)| (time_s - begins_s, (force - from) / (to - from)));
+        let (times_s, values) = during.unzip();
+        StepResponse { times_s, values }
+    }
+
+    /// The range of the controlled force at the end of a step, N; `None` if the run ended before.
+    pub(super) fn remains(&self, driven: &ScenarioRun, leg: Leg) -> Option<[f64; 2]> {
+        let [from, to] = self.ends(leg);
+        let StepResponse { times_s, values } = self.response(driven, leg);
+        let late_s = (1.0 - LATE_SHARE) * self.hold_s;
+        let late = times_s.iter().zip(values).filter(|(time_s, _)| **time_s >= late_s);
+        let widest = |[low, high]: [f64; 2], value: f64| [low.min(value), high.max(value)];
+        let forces = late.map(|(_, value)| from + value * (to - from));
+        let range = forces.fold([f64::INFINITY, f64::NEG_INFINITY], widest);
+        (driven.stopped().is_none() && range[0] <= range[1]).then_some(range)
+    }
+}
+
+/// The limits of a step: of the command in V, and of the force in N.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct CommandLimits {
+    command_v: f64,
+    force_n: f64,
+}
+
+impl CommandLimits {
+    /// The limit of the controller, or else of the valve, and the capacity of the force sensor.
+    pub(super) fn of(project: &Project, rig: &Rig) -> CommandLimits {
+        let stated = project.controller.as_ref().and_then(|controller| controller.saturation);
+        let capacity = project.actuator.as_ref().and_then(|actuator| actuator.force_sensor.capacity);
+        let nominal_v = rig.actuator.components().valve.nominal_voltage;
+        CommandLimits { command_v: stated.unwrap_or(nominal_v), force_n: capacity.unwrap_or(f64::INFINITY) }
+    }
+}
+
+/// The force that the supply can produce, N.
+fn push(rig: &Rig) -> f64 {
+    let components = rig.actuator.components();
+    let [area_a, area_b] = components.cylinder.areas_at(rig.point.position);
+    0.5 * (area_a + area_b) * (components.supply.pressure - components.supply.tank_pressure)
+}
+
+/// Factor by which a linear loop's command may grow, about its first value, until it meets the
+/// limit in V: at least zero.
+fn room(commands_v: &[f64], limit_v: f64) -> f64 {
+    let rest_v = commands_v.first().copied().unwrap_or(0.0);
+    let factors = commands_v.iter().filter(|command| **command != rest_v).map(|command| {
+        let moved = command - rest_v;
+        (limit_v - moved.signum() * rest_v) / moved.abs()
+    });
+    factors.fold(f64::INFINITY, f64::min).max(0.0)
+}
+
+/// What the loop controls, N.
+fn controlled(driven: &ScenarioRun) -> Vec<f64> {
+    let record = &driven.record;
+    let forces = record.signal("force_n");
+    if !record.parts.impedance {
+        return forces;
+    }
+    let virtual_forces = record.signal("virtual_force_n");
+    forces.into_iter().zip(virtual_forces).map(|(force, virtual_force)| force + virtual_force).collect()
+}
