@@ -60,6 +60,9 @@ const FAR: f64 = 2.0;
 const FAST: f64 = 0.25;
 /// Slower growth than this part of its frequency is rounding.
 const LEAST_GROWTH: f64 = 1e-10;
+/// Of the largest eigenvalue of a block: what rounding may make of one that is zero, as that of an
+/// integrator.
+const ZERO: f64 = 1e-12;
 /// Turning by less in a step, in rad, no mode's growth is off by more than 3e-6 of its frequency,
 /// whatever its damping.
 const SMALL_ANGLE: f64 = 0.8;
@@ -331,9 +334,11 @@ impl GrowthWatch {
         for block in &self.blocks {
             let order = block.len();
             let matrix = DMatrix::from_fn(order, order, |row, column| jacobian[(block[row], block[column])]);
-            for value in working_eigenvalues(matrix).unwrap_or_default() {
+            let values = working_eigenvalues(matrix).unwrap_or_default();
+            let zero = ZERO * values.iter().map(|value| portable::magnitude(*value)).fold(0.0, f64::max);
+            for value in values {
                 let mode = Mode { magnitude: portable::magnitude(value), growth: value.re };
-                if value.im > 0.0 || (value.im == 0.0 && value.re > 0.0) {
+                if mode.magnitude > zero && (value.im > 0.0 || (value.im == 0.0 && value.re > 0.0)) {
                     eigenvalues.push(mode);
                     let mode = self.told(mode, value.im);
                     self.fastest = self.fastest.max(mode.magnitude);

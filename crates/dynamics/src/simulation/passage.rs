@@ -40,6 +40,8 @@ pub(super) struct Passage<'a> {
     longest_s: f64,
     /// The mode that grows and asks for the shortest step, if any does.
     pub(super) growing: Option<GrowingMode>,
+    /// Whether the step being tried is shorter for it.
+    held_back: bool,
     /// Where the step being tried ends, if at a break.
     target_s: Option<f64>,
     /// The next break, sample or arrival.
@@ -85,6 +87,7 @@ impl<'a> Passage<'a> {
             proposed_s: longest_s,
             longest_s,
             growing: None,
+            held_back: false,
             target_s: None,
             goal_s: course.duration_s,
             step_s: 0.0,
@@ -135,6 +138,7 @@ impl<'a> Passage<'a> {
         let left = target - self.time_s;
         let longest_s = self.growing.map_or(self.longest_s, |growing| growing.step_s.min(self.longest_s));
         let wanted = self.proposed_s.min(longest_s);
+        self.held_back = wanted < self.proposed_s.min(self.longest_s);
         let nearly = wanted >= 0.99 * left && left <= longest_s;
         (self.step_s, self.target_s) = if wanted >= left || nearly {
             (left, Some(target))
@@ -155,7 +159,7 @@ impl<'a> Passage<'a> {
     /// How it ends when it may take no more steps.
     pub(super) fn out_of_steps(&self) -> Status {
         let time_s = self.time_s;
-        match self.growing.filter(|growing| growing.growth_per_s > 0.0) {
+        match self.growing.filter(|growing| self.held_back && growing.growth_per_s > 0.0) {
             None => Status::TooManySteps { time_s },
             Some(GrowingMode { frequency_rad_per_s, growth_per_s, .. }) => {
                 Status::UnresolvedOscillation { time_s, frequency_rad_per_s, growth_per_s }

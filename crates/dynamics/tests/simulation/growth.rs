@@ -1,6 +1,7 @@
 //! Modes that grow are seen to grow, however small they are and however loose the tolerance.
 
 use phea_dynamics::portable;
+use phea_dynamics::random;
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
     Input, Method, Profile, Sampler, SimulationSettings, Sliding, Status, System,
@@ -189,6 +190,61 @@ fn what_cannot_be_resolved_is_told() {
     // The faster mode asks for the shorter steps.
     assert!((frequency_rad_per_s / (1e4 * 3.0_f64.sqrt()) - 1.0).abs() < 1e-6);
     assert!((growth_per_s / 20.0 - 1.0).abs() < 1e-6);
+}
+
+/// A decaying oscillation, a fast decay and an integrator of both, seen in coordinates that are
+/// turned at random: one eigenvalue is zero but for rounding, and none grows.
+#[derive(Clone)]
+struct Turned([[f64; 4]; 4]);
+
+impl Turned {
+    fn drawn(number: u64) -> Turned {
+        let mut chance = random::stream(91, number);
+        let mut draw = |most: f64| most * (2.0 * random::share(&mut chance) - 1.0);
+        let (turning, decay) = (2e4 + draw(1e4), 300.0 + draw(200.0));
+        let mut matrix = [[0.0; 4]; 4];
+        (matrix[0][1], matrix[1][0], matrix[1][1]) = (turning, -turning, -decay);
+        matrix[2][2] = -1e5 + draw(5e4);
+        for column in 0..3 {
+            matrix[3][column] = draw(1e3);
+        }
+        for (one, other) in [(0, 3), (1, 3), (2, 3), (0, 2), (1, 2), (0, 1)] {
+            let angle = draw(3.0);
+            let [cosine, sine] = [portable::cos(angle), portable::sin(angle)];
+            for row in &mut matrix {
+                (row[one], row[other]) =
+                    (cosine * row[one] - sine * row[other], sine * row[one] + cosine * row[other]);
+            }
+            for column in 0..4 {
+                let [first, second] = [matrix[one][column], matrix[other][column]];
+                matrix[one][column] = cosine * first - sine * second;
+                matrix[other][column] = sine * first + cosine * second;
+            }
+        }
+        Turned(matrix)
+    }
+}
+
+impl Law for Turned {
+    const STATES: usize = 4;
+
+    fn rates<T: Scalar>(&self, y: &[T], _: &[T], rates: &mut [T]) {
+        for (rate, row) in rates.iter_mut().zip(&self.0) {
+            *rate = row.iter().zip(y).fold(T::from(0.0), |sum, (entry, value)| sum + value.times(*entry));
+        }
+    }
+}
+
+/// A run that takes too many steps says no more than that where nothing grows.
+#[test]
+fn an_integrator_does_not_grow() {
+    for number in 0..64 {
+        let settings = SimulationSettings { maximum_steps: 6, ..settings(1e-9, Method::Rosenbrock) };
+        let law = Lawful(Turned::drawn(number), 1.0);
+        let course = course(10.0, 10.0, vec![]);
+        let run = simulate(&law, &[1.0, -0.5, 0.3, 0.2], &course, None, &settings, &mut |_| true).unwrap();
+        assert!(matches!(run.outcome.status, Status::TooManySteps { .. }), "{number}: {:?}", run.outcome);
+    }
 }
 
 /// A mass that creeps against friction far above critical, without any oscillation, until friction
