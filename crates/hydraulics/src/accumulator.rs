@@ -1,11 +1,13 @@
 //! A gas-charged accumulator: at the supply, or at the line of a chamber.
 
 mod adjustment;
+mod bladder;
 mod branch;
 mod heat;
 mod neck;
 
 pub use adjustment::{AdjustedPart, Adjustment, GasValve, MovedGas};
+pub use bladder::Bladder;
 pub use branch::{GasBranch, NeckImpedance};
 pub use heat::{GasRelaxation, HEAT_CAPACITY_RATIO, HeatedGas, RelaxingGas};
 pub use neck::Neck;

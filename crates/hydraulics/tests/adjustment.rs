@@ -7,7 +7,7 @@ use phea_dynamics::portable::{exp, pow, sin};
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::accumulator::{
-    Accumulator, AdjustedPart, Adjustment, GasBranch, GasValve, MovedGas, Neck,
+    Accumulator, AdjustedPart, Adjustment, Bladder, GasBranch, GasValve, MovedGas, Neck,
 };
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::machine::{ENERGY_ACCOUNTS, INDICATORS, Machine, MachineOptions, SIGNALS, StartValues};
@@ -15,7 +15,7 @@ use phea_hydraulics::reference_rig::{components, pipe_line};
 use phea_hydraulics::stiffness::StiffnessModel;
 
 use super::machine_conservation::{machine_of, random, step};
-use super::neck::responses;
+use super::neck::{bladder, responses};
 
 const ATMOSPHERE: f64 = 101_325.0;
 const GAS: Accumulator = Accumulator { gas_volume: 2e-5, precharge_pressure: 15e5, polytropic_exponent: 1.3 };
@@ -59,7 +59,7 @@ fn a_frozen_setting_is_the_declared_accumulator() {
             let declared = machine_of(declared, &MachineOptions::default());
             for _ in 0..50 {
                 let mut of = |middle: f64, scale: f64| middle + scale * random(&mut seed);
-                let mut state = vec![
+                let state = vec![
                     of(0.0, 5.0),
                     of(0.0, 10.0),
                     of(20e5, 15e5),
@@ -67,10 +67,24 @@ fn a_frozen_setting_is_the_declared_accumulator() {
                     of(0.0, 1e-4),
                     of(0.0, 0.1),
                 ];
-                state.extend(neck.iter().flat_map(|_| [of(0.0, 1e-4), of(20e5, 15e5)]).collect::<Vec<_>>());
+                // each machine has its own state of the gas at a pressure of the oil
+                let (flow, pressure) = (of(0.0, 1e-4), of(20e5, 15e5));
+                let bladders = neck.map(|neck| {
+                    let softness = bladder(&GAS, &neck).softness;
+                    [Bladder { softness, ..bladder(&gas, &neck) }, bladder(&gas, &neck)]
+                });
+                let states = [0, 1].map(|machine| {
+                    let own = bladders.map(|of| [flow, of[machine].within(pressure)]);
+                    [&state[..], own.as_ref().map_or(&[], |own| &own[..])].concat()
+                });
+                let state = &states[0];
                 let mut rates = [vec![0.0; state.len()], vec![0.0; state.len()]];
-                machine.rates(&state, 1.0, &[0.25, 0.05, change, 0.0], &mut rates[0]);
-                declared.rates(&state, 1.0, &[0.25, 0.05], &mut rates[1]);
+                machine.rates(&states[0], 1.0, &[0.25, 0.05, change, 0.0], &mut rates[0]);
+                declared.rates(&states[1], 1.0, &[0.25, 0.05], &mut rates[1]);
+                for (rates, of) in rates.iter_mut().zip(bladders.into_iter().flatten()) {
+                    // that of the pressure of the oil
+                    rates[7] /= of.rate(pressure, [1.0, 0.0]);
+                }
                 for (one, other) in rates[0].iter().zip(&rates[1]) {
                     assert!((one - other).abs() <= 1e-9 * other.abs().max(1e-9), "{change}: {one} {other}");
                 }

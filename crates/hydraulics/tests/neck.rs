@@ -9,7 +9,7 @@ use num_complex::Complex64;
 use phea_dynamics::portable::{exp, pow, sin};
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::simulation::Plant;
-use phea_hydraulics::accumulator::{Accumulator, GasBranch, Neck, NeckImpedance};
+use phea_hydraulics::accumulator::{Accumulator, Bladder, GasBranch, Neck, NeckImpedance};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::machine::{ENERGY_ACCOUNTS, INDICATORS, Machine, MachineOptions, StartValues};
 use phea_hydraulics::plant::{ChamberDynamics, LinearLoad, LinearPlant, PlantInMotion, YieldingSupply};
@@ -27,6 +27,13 @@ const NECK_FLOW: usize = 6;
 fn machine(gas: [Option<Accumulator>; 2], necks: [Option<Neck>; 2]) -> Machine {
     let rig = components(pipe_line(), StiffnessModel::ByVolume);
     machine_of(Components { accumulators: gas, necks, ..rig }, &MachineOptions::default())
+}
+
+/// The bladder of gas behind a neck.
+pub(super) fn bladder(gas: &Accumulator, neck: &Neck) -> Bladder {
+    let absolute = gas.precharge_pressure + 101_325.0;
+    let softness = neck.compliance * gas.polytropic_exponent * absolute / gas.gas_volume;
+    Bladder { precharge_pressure: gas.precharge_pressure, softness }
 }
 
 /// The plants with these compliances and this gas behind necks: lumped, and without polynomials;
@@ -215,8 +222,10 @@ fn accounts_close_where_its_gas_is_shut_off() {
         let parts = drawn(number);
         let machine = machine(parts.map(|(gas, _)| Some(gas)), parts.map(|(_, neck)| Some(neck)));
         for _ in 0..50 {
-            let [gas_a, gas_b] =
-                parts.map(|(gas, _)| gas.precharge_pressure * (1.0 + 0.1 * random(&mut seed)));
+            let [gas_a, gas_b] = parts.map(|(gas, neck)| {
+                let pressure = gas.precharge_pressure * (1.0 + 0.1 * random(&mut seed));
+                bladder(&gas, &neck).within(pressure)
+            });
             let mut of = |scale: f64| scale * random(&mut seed);
             let pressures = [35e5 + of(34e5), 35e5 + of(34e5)];
             let state = [of(10.0), of(1e3), pressures[0], pressures[1], of(1e-4), of(0.1)];
@@ -235,7 +244,7 @@ fn it_is_empty_at_the_pressure_of_its_gas() {
     let machine = machine([Some(gas), Some(gas)], [Some(neck), None]);
     let place = |name: &str| INDICATORS.iter().position(|known| *known == name).unwrap();
     for (chamber, behind) in [(19e5, 21e5), (21e5, 19e5)] {
-        let state = [1.0, 0.0, chamber, chamber, 1e-4, 0.05, 1e-5, behind];
+        let state = [1.0, 0.0, chamber, chamber, 1e-4, 0.05, 1e-5, bladder(&gas, &neck).within(behind)];
         let mut indicators = vec![0.0; machine.indicators()];
         machine.indicate(&state, &[0.25, 0.0], &mut indicators);
         assert_eq!(indicators[place("accumulator_empty_a")] > 0.0, behind > 20e5);
@@ -249,16 +258,18 @@ fn it_is_empty_at_the_pressure_of_its_gas() {
 #[test]
 fn oil_in_a_neck_cavitates() {
     let gas = Accumulator { gas_volume: 2e-5, precharge_pressure: 20e5, polytropic_exponent: 1.4 };
-    let machine = machine([Some(gas); 2], [Some(Neck::round([6e-3, 0.04], OIL, 1.5)), None]);
+    let neck = Neck::round([6e-3, 0.04], OIL, 1.5);
+    let machine = machine([Some(gas); 2], [Some(neck), None]);
     let place = INDICATORS.iter().position(|known| *known == "cavitation_a").unwrap();
     let told = |chamber: f64, behind: f64| {
-        let state = [1.0, 0.0, chamber, 30e5, 1e-4, 0.05, 1e-5, behind];
+        let state = [1.0, 0.0, chamber, 30e5, 1e-4, 0.05, 1e-5, bladder(&gas, &neck).within(behind)];
         let mut indicators = vec![0.0; machine.indicators()];
         machine.indicate(&state, &[0.25, 0.0], &mut indicators);
         indicators[place]
     };
     assert!(told(20e5, 20e5) > 0.0 && told(20e5, -2e5) < 0.0 && told(-2e5, 20e5) < 0.0);
-    assert_eq!(told(20e5, -2e5), told(-2e5, 20e5));
+    // but for the rounding of the state over the softness of the oil
+    assert!((told(20e5, -2e5) - told(-2e5, 20e5)).abs() < 1e-3);
 }
 
 /// Without flow through it a neck is not seen: the machine rests where it rests with the gas at its

@@ -81,7 +81,7 @@ impl<S: Scalar> Machine<S> {
         let setting = self.layout.setting(inputs);
         let own = self.layout.read(state);
         let chambers = [own.pressure_a, own.pressure_b];
-        let behind = self.gas_pressures(chambers, &self.layout.read_gas(state));
+        let behind = self.gas_pressures(chambers, &self.layout.read_gas(state), setting);
         let of = |side: usize| {
             let drop = chambers[side] - behind[side];
             let flow: Option<S> = self.through_gas_valve(side, setting, drop);

@@ -5,14 +5,15 @@ use phea_dynamics::scalar::{Parameters, Scalar};
 
 use super::Machine;
 use super::equations::constant;
-use crate::accumulator::{HeatedGas, RelaxingGas};
+use crate::accumulator::{Bladder, HeatedGas, RelaxingGas};
+use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 
 /// States of the gas at both chambers, or their rates; those that a machine lacks are zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct GasStates<T> {
     /// Flow q_n in m3/s through the neck of the accumulator at each chamber, into its gas.
     pub(super) neck_flows: [T; 2],
-    /// Pressure p_g in Pa of the gas behind each neck or valve.
+    /// Pressure s in Pa of the gas behind each neck or valve, within its bladder: [`Bladder`].
     pub(super) pressures: [T; 2],
     /// theta - 1 of the gas at each chamber, by which its absolute temperature is above that of its
     /// wall, where it exchanges heat.
@@ -39,11 +40,42 @@ struct Content<T> {
 }
 
 impl<S: Scalar> Machine<S> {
-    /// Pressures of the gas at either chamber, in Pa.
+    /// Pressures p_g of the oil at the gas of either chamber, in Pa.
     #[inline(always)]
-    pub(super) fn gas_pressures<T: Scalar>(&self, chambers: [T; 2], gas: &GasStates<T>) -> [T; 2] {
-        let behind = self.layout.behind();
-        [0, 1].map(|side| if behind[side] { gas.pressures[side] } else { chambers[side] })
+    pub(super) fn gas_pressures<T: Scalar + From<S>>(
+        &self,
+        chambers: [T; 2],
+        gas: &GasStates<T>,
+        setting: [T; 2],
+    ) -> [T; 2] {
+        let bladders = self.bladders(gas, setting);
+        [0, 1].map(|side| bladders[side].map_or(chambers[side], |of| of.pressure(gas.pressures[side])))
+    }
+
+    /// The states of the gas where the pressures of the oil at it are these in Pa, the gas at the
+    /// temperature of its wall and its setting at rest.
+    pub(super) fn resting_gas<T: Scalar + From<S>>(&self, chambers: [T; 2]) -> GasStates<T> {
+        let zero = GasStates::zero();
+        let bladders = self.bladders(&zero, [T::from(0.0); 2]);
+        let pressures =
+            [0, 1].map(|side| bladders[side].map_or(zero.pressures[side], |of| of.within(chambers[side])));
+        GasStates { pressures, ..zero }
+    }
+
+    /// The bladders of gas behind a neck or a valve; `None` at a chamber without.
+    #[inline(always)]
+    fn bladders<T: Scalar + From<S>>(&self, gas: &GasStates<T>, setting: [T; 2]) -> [Option<Bladder<T>>; 2] {
+        let (behind, precharges) = (self.layout.behind(), self.precharges(gas, setting));
+        [0, 1].map(|side| {
+            let precharge_pressure = precharges[side].filter(|_| behind[side])?;
+            let stated = self.accumulators[side]?;
+            let absolute = stated.precharge_pressure + S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
+            let of_gas = stated.gas_volume / (stated.polytropic_exponent * absolute);
+            Some(Bladder {
+                precharge_pressure,
+                softness: self.before_gas::<T>(side) / constant::<S, T>(of_gas),
+            })
+        })
     }
 
     /// Pressures in Pa gauge at which the gas at either chamber has its precharge, P_0 theta;
@@ -60,32 +92,31 @@ impl<S: Scalar> Machine<S> {
             Some(match self.thermal_time_constants[side] {
                 None => precharge,
                 Some(_) => {
-                    let atmosphere = T::from(crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE);
-                    precharge + (precharge + atmosphere) * gas.warmings[side]
+                    precharge + (precharge + T::from(ATMOSPHERIC_PRESSURE_ABSOLUTE)) * gas.warmings[side]
                 }
             })
         })
     }
 
-    /// Pressures in Pa of the gas behind the necks, and theta of the gas that exchanges heat; zero
-    /// at a chamber without.
-    pub(super) fn told_of_gas<T: Scalar>(&self, vector: &[T]) -> [[T; 2]; 2] {
+    /// Pressures in Pa of the oil at the gas behind the necks, and theta of the gas that exchanges
+    /// heat; zero at a chamber without.
+    pub(super) fn told_of_gas<T: Scalar + From<S>>(&self, vector: &[T], setting: [T; 2]) -> [[T; 2]; 2] {
         let gas = self.layout.read_gas(vector);
         let zero = T::from(0.0);
         let ratios = [0, 1].map(|side| match self.thermal_time_constants[side] {
             Some(_) => T::from(1.0) + gas.warmings[side],
             None => zero,
         });
-        [gas.pressures, ratios]
+        [self.gas_pressures([zero; 2], &gas, setting), ratios]
     }
 
-    /// The gas that exchanges heat, at these pressures of the chambers in Pa.
+    /// The gas that exchanges heat, at these pressures of the oil at it in Pa.
     pub(super) fn heated<T: Scalar + From<S>>(
         &self,
-        chambers: [T; 2],
+        pressures: [T; 2],
         states: &GasStates<T>,
     ) -> HeatedSides<T> {
-        let (pressures, warmings) = (self.gas_pressures(chambers, states), states.warmings);
+        let warmings = states.warmings;
         [0, 1].map(|side| {
             let (gas, time_constant) = self.accumulators[side].zip(self.thermal_time_constants[side])?;
             let gas = gas.convert(&mut constant::<S, T>);
@@ -107,9 +138,8 @@ impl<S: Scalar> Machine<S> {
         rates: &mut [T],
     ) -> [T; 2] {
         let gas = self.layout.read_gas(vector);
-        let heated = self.heated(chambers, &gas);
         let setting = self.layout.setting(inputs);
-        let (own, gas) = self.gas_rates((&gas, setting), &heated, [chambers, into, compliances]);
+        let (own, gas) = self.gas_rates((&gas, setting), [chambers, into, compliances]);
         self.layout.write_gas(gas, rates);
         own
     }
@@ -135,21 +165,21 @@ impl<S: Scalar> Machine<S> {
     /// ```text
     /// (C_oil + C) dp/dt = into - q                     gas at its chamber; q: at a pressure that is held
     /// C_oil dp/dt = into - q_n                         gas behind a neck or a valve
-    /// (C + C_n) dp_g/dt = q_n - q
+    /// (C + C_n) dp_g/dt = q_n - q                      which gives the rate of its state s: Bladder
     /// I dq_n/dt = p - p_g - drop(q_n)                  of a neck
     /// ```
     fn gas_rates<T: Scalar + From<S>>(
         &self,
         (gas, setting): (&GasStates<T>, [T; 2]),
-        heated: &HeatedSides<T>,
         [chambers, into, compliances]: [[T; 2]; 3],
     ) -> ([T; 2], GasStates<T>) {
         let mut own = [T::from(0.0); 2];
         let mut rates = GasStates::zero();
-        let (apart, pressures) = (self.layout.gas_at(), self.gas_pressures(chambers, gas));
+        let (apart, pressures) = (self.layout.gas_at(), self.gas_pressures(chambers, gas, setting));
+        let (heated, bladders) = (self.heated(pressures, gas), self.bladders(gas, setting));
         for side in [0, 1] {
             let (pressure, oil) = (pressures[side], compliances[side]);
-            let content = self.content(side, (pressure, setting), heated).filter(|_| apart[side]);
+            let content = self.content(side, (pressure, setting), &heated).filter(|_| apart[side]);
             let Some(Content { compliance, held }) = content else {
                 own[side] = into[side] / oil;
                 continue;
@@ -164,8 +194,7 @@ impl<S: Scalar> Machine<S> {
                 }
                 Some(flow) => {
                     own[side] = (into[side] - flow) / oil;
-                    rates.pressures[side] = (flow - held) / (compliance + self.before_gas(side));
-                    rates.pressures[side]
+                    (flow - held) / (compliance + self.before_gas(side))
                 }
             };
             if let Some(neck) = neck {
@@ -174,7 +203,18 @@ impl<S: Scalar> Machine<S> {
             if let Some(gas) = &heated[side] {
                 rates.warmings[side] = gas.warming_rate(gas.flow(of_gas));
             }
+            if let Some(bladder) = &bladders[side] {
+                let precharge_rate = self.precharge_rate(side, setting, rates.warmings[side]);
+                rates.pressures[side] = bladder.rate(pressure, [of_gas, precharge_rate]);
+            }
         }
         (own, rates)
+    }
+    /// Rate in Pa/s of the pressure at which the gas at a chamber has its precharge, P_0 theta,
+    /// with this rate of theta in 1/s.
+    fn precharge_rate<T: Scalar + From<S>>(&self, side: usize, setting: [T; 2], warming_rate: T) -> T {
+        let Some(moved) = self.moved_gas(side, setting) else { return T::from(0.0) };
+        let absolute = moved.gas.precharge_pressure + T::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
+        moved.precharge_rate + absolute * warming_rate
     }
 }

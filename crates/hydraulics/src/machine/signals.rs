@@ -140,15 +140,14 @@ impl<S: Scalar> Machine<S> {
         let (settings, power) = if self.layout.is_adjusted() {
             let setting = self.layout.setting(inputs);
             let pressures = [state.pressure_a, state.pressure_b];
-            let pressures = self.gas_pressures(pressures, &self.layout.read_gas(vector));
+            let pressures = self.gas_pressures(pressures, &self.layout.read_gas(vector), setting);
             (self.settings(setting), self.adjustment_power(pressures, setting))
         } else {
             ([zero; 2], zero)
         };
         let (turning, torque) =
             if self.linkage.is_some() { (load, end.on_load(joint.on_load)) } else { (still, zero) };
-        let [gas_pressures, ratios] =
-            if self.layout.has_gas() { self.told_of_gas(vector) } else { [[zero; 2]; 2] };
+        let [gas_pressures, ratios] = self.told_of_gas(vector, self.layout.setting(inputs));
         let oil_pressures = self.oil_pressures([joint.sensed, joint.on_load]);
         [
             self.measured_force(&state),
@@ -214,13 +213,14 @@ impl<S: Scalar> Machine<S> {
         };
         let [compliance_a, compliance_b] = self.oil_compliance(&state, position);
         let supply = self.supply_of(&state);
-        let [precharge_a, precharge_b] = self.precharges(&gas, self.layout.setting(inputs));
+        let setting = self.layout.setting(inputs);
+        let [precharge_a, precharge_b] = self.precharges(&gas, setting);
         let charged = |precharge: Option<T>, pressure: T| {
             precharge.map_or(T::from(1.0), |precharge| pressure - precharge)
         };
         let below = |limit: Option<T>, pressure: T| limit.map_or(T::from(1.0), |limit| limit - pressure);
-        let [behind_a, behind_b] = self.gas_pressures([state.pressure_a, state.pressure_b], &gas);
-        let [limit_a, limit_b] = self.gas_limits(self.layout.setting(inputs));
+        let [behind_a, behind_b] = self.gas_pressures([state.pressure_a, state.pressure_b], &gas, setting);
+        let [limit_a, limit_b] = self.gas_limits(setting);
         [
             state.pressure_a.minimum(behind_a) - vapour,
             state.pressure_b.minimum(behind_b) - vapour,

@@ -1,7 +1,6 @@
 use phea_dynamics::simulation::Plant;
 
 use super::balance::Kept;
-use super::gas::GasStates;
 use super::series::HeldJoint;
 use super::{LoadModel, Machine, MachineError, MachineState};
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
@@ -191,7 +190,7 @@ impl Machine {
         let mut vector = vec![0.0; self.layout.count()];
         self.layout.write(*state, &mut vector);
         let pressures = [state.pressure_a, state.pressure_b];
-        self.layout.write_gas(GasStates { pressures, ..GasStates::zero() }, &mut vector);
+        self.layout.write_gas(self.resting_gas(pressures), &mut vector);
         self.layout.columns_mut(&mut vector).copy_from_slice(columns);
         let flows = self.steady_flows(state, self.areas_at(position));
         let mut waves = Vec::new();

@@ -200,7 +200,11 @@ impl<S: Scalar> Machine<S> {
         let setting = self.layout.setting(inputs);
         let gas = self.gas_instants((&state, &states, setting), position, &flows, &lines);
         Some(Instant {
-            necks: self.neck_instants(&state, &states, &gas),
+            necks: self.neck_instants(
+                &state,
+                self.gas_pressures([state.pressure_a, state.pressure_b], &states, setting),
+                &gas,
+            ),
             gas,
             lines,
             supply: self.supply_instant(&state, &flows, &sides),
@@ -260,7 +264,8 @@ impl<S: Scalar> Machine<S> {
         let [into_a, into_b] =
             self.entering_chambers(state, position, flows, [line_a.into_chamber, line_b.into_chamber]);
         let chambers = [state.pressure_a, state.pressure_b];
-        let (heated, pressures) = (self.heated(chambers, states), self.gas_pressures(chambers, states));
+        let pressures = self.gas_pressures(chambers, states, setting);
+        let heated = self.heated(pressures, states);
         let own = |side: usize, arriving, beside| {
             let pressure = pressures[side];
             match (&heated[side], self.moved_gas(side, setting)) {
@@ -284,7 +289,7 @@ impl<S: Scalar> Machine<S> {
     fn neck_instants<T: Scalar + From<S>>(
         &self,
         state: &MachineState<T>,
-        states: &GasStates<T>,
+        pressures: [T; 2],
         gas: &[GasInstant<T>; 2],
     ) -> [NeckInstant<T>; 2] {
         let (zero, half) = (T::from(0.0), T::from(0.5));
@@ -294,7 +299,7 @@ impl<S: Scalar> Machine<S> {
                 let none = Account { stored: zero, inflow: zero, lost: zero };
                 return NeckInstant { oil: none, energy: none };
             }
-            let (flow, behind) = (gas[side].taken, states.pressures[side]);
+            let (flow, behind) = (gas[side].taken, pressures[side]);
             let before = [state.pressure_a, state.pressure_b][side];
             let (into_gas, compliance) = (gas[side].inflow, self.before_gas::<T>(side));
             let [inertance, drop] = match neck {
