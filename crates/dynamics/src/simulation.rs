@@ -109,6 +109,17 @@ pub trait System<S: Scalar> {
     /// They are compared at the ends of each step: one that changes its sign twice within a step is
     /// not seen.
     fn indicate<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T], _indicators: &mut [T]) {}
+
+    /// Number of kinks.
+    fn kinks(&self) -> usize {
+        0
+    }
+
+    /// Quantities that change their sign where a derivative of the rates jumps: where a motion with
+    /// friction reverses, where a stop is touched. The error of a step that crosses such a place is
+    /// looked at there, and a step that fails by it ends there. A kink that is not listed costs
+    /// accuracy: the error estimate of a step may not see it.
+    fn mark<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T], _marks: &mut [T]) {}
 }
 
 /// A plant that a controller commands.
@@ -181,6 +192,14 @@ pub trait Plant<S: Scalar> {
 
     /// As [`System::indicate`].
     fn indicate<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T], _indicators: &mut [T]) {}
+
+    /// As [`System::kinks`].
+    fn kinks(&self) -> usize {
+        0
+    }
+
+    /// As [`System::mark`].
+    fn mark<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T], _marks: &mut [T]) {}
 }
 
 /// A scalar that is one or several numbers side by side.

@@ -119,8 +119,15 @@ impl<S: Scalar> Accumulator<S> {
 
     /// The lowest pressure in Pa gauge at which the bladder is off the shell, 1.01 P_0.
     pub fn least_pressure(&self) -> S {
+        let [_, lifted] = self.lifting_pressures();
+        lifted
+    }
+
+    /// The pressures in Pa gauge between which the bladder lifts, 0.99 and 1.01 P_0.
+    pub fn lifting_pressures(&self) -> [S; 2] {
         let precharge = self.precharge_pressure + S::from(ATMOSPHERIC_PRESSURE_ABSOLUTE);
-        self.precharge_pressure + precharge * S::from(LIFTING)
+        let band = precharge * S::from(LIFTING);
+        [self.precharge_pressure - band, self.precharge_pressure + band]
     }
 
     fn lifted(&self, pressure: S) -> Lifted<S> {

@@ -32,6 +32,7 @@ mod chambers;
 mod end;
 mod equations;
 mod gas;
+mod kinks;
 mod ledger;
 mod load;
 mod options;
@@ -396,5 +397,18 @@ impl<S: Scalar> Plant<S> for Machine<S> {
         for (slot, value) in indicators.iter_mut().zip(self.indicated(state, inputs)) {
             *slot = value;
         }
+    }
+
+    fn kinks(&self) -> usize {
+        self.kink_count()
+    }
+
+    fn mark<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], marks: &mut [T]) {
+        let mut places = marks.iter_mut();
+        self.write_kinks(state, inputs, &mut |value| {
+            if let Some(place) = places.next() {
+                *place = value;
+            }
+        });
     }
 }

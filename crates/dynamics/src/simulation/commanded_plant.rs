@@ -269,6 +269,9 @@ impl<P> CommandedPlant<P> {
 /// Part of the limit over which clamping takes hold.
 const HOLDING: f64 = 1e-4;
 
+/// Kinks that a limited command has.
+const LIMITED: usize = 3;
+
 /// Signals of a control loop at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopSignals<T> {
@@ -352,6 +355,27 @@ impl<S: Scalar, P: Plant<S>> System<S> for CommandedPlant<P> {
         self.plant.indicate(&state[..self.plant.states()], own, &mut indicators[..of_plant]);
         if let Some(limited) = indicators.get_mut(of_plant) {
             *limited = self.signals::<S, T>(state, inputs).wanted.abs() - T::from(self.limit());
+        }
+    }
+
+    fn kinks(&self) -> usize {
+        self.plant.kinks() + if self.limit().is_finite() { LIMITED } else { 0 }
+    }
+
+    /// Those of the plant; where the command reaches its limit, where clamping holds, and where the
+    /// error reverses, at which clamping lets go.
+    fn mark<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], marks: &mut [T]) {
+        let own = self.own::<S, T>(inputs);
+        let limited = if self.limit().is_finite() { LIMITED } else { 0 };
+        let (of_plant, own_marks) = marks.split_at_mut(marks.len() - limited);
+        self.plant.mark(&state[..self.plant.states()], own, of_plant);
+        if limited > 0 {
+            let LoopSignals { wanted, error, .. } = self.signals::<S, T>(state, inputs);
+            let beyond = wanted.abs() - T::from(self.limit());
+            let held = beyond - T::from(HOLDING * self.limit());
+            // of no account within the limit
+            let reversal = T::select(beyond.less_than(T::from(0.0)), T::from(1.0), error * wanted);
+            own_marks.copy_from_slice(&[beyond, held, reversal]);
         }
     }
 }

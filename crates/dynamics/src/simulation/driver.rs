@@ -1,5 +1,6 @@
 //! Drives systems through their courses, one in each lane.
 
+mod between;
 mod joined;
 mod queued;
 
@@ -10,7 +11,7 @@ use super::course::{Attention, Event, Observer, Outcome, SimulationError, Simula
 use super::growth::GrowthWatch;
 use super::history::NODES;
 use super::kernel::Kernel;
-use super::method::{Extension, LOOKED_AT, StepInputs, Stepper};
+use super::method::{Extension, StepInputs, Stepper};
 use super::passage::Passage;
 use super::propagator::Propagator;
 use super::quartic::Quartic;
@@ -33,6 +34,8 @@ struct Drive<'a, S, O> {
     step: S,
     inputs: StepInputs<S>,
     indicators: Vec<S>,
+    /// At the start of the step, of the kinks.
+    marks: Vec<S>,
     /// Points inside a step at which it is evaluated.
     between: ErrorBetween<S>,
 }
@@ -53,12 +56,16 @@ struct ErrorBetween<S> {
     indicators: Vec<S>,
     /// Indicators at the end of the step.
     ends: Vec<S>,
+    /// Marks at the end of the step, and within it.
+    marks: Vec<S>,
+    marked: Vec<S>,
     waves: Vec<S>,
 }
 
 impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
     fn new(system: &dyn Kernel<S>, settings: &SimulationSettings) -> Result<Self, SimulationError> {
         let (states, inputs, zero) = (system.states(), system.inputs(), S::from(0.0));
+        let kinks = system.kinks();
         let method =
             Stepper::new(settings.method, system).ok_or(SimulationError::TooLarge { states, inputs })?;
         let none = vec![zero; inputs];
@@ -76,6 +83,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
             step: S::from(1e-6),
             inputs: StepInputs { stages, slopes: none.clone(), moving: false },
             indicators: vec![zero; system.indicators()],
+            marks: vec![zero; kinks],
             between: ErrorBetween {
                 extensions: vec![None; states],
                 propagated: false,
@@ -86,6 +94,8 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
                 inputs: none,
                 indicators: vec![zero; system.indicators()],
                 ends: vec![zero; system.indicators()],
+                marks: vec![zero; kinks],
+                marked: vec![zero; kinks],
                 waves: vec![zero; system.delays().len()],
             },
         })
@@ -125,6 +135,10 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
                 kept.set_lane(lane, new.lane(lane));
             }
         }
+        if !self.marks.is_empty() {
+            system.mark(&self.state, &self.between.inputs, &mut self.between.marks);
+            self.keep_marks(lane);
+        }
         self.fresh = true;
         self.propagator.forget(lane);
         self.watches[lane].forget();
@@ -158,14 +172,14 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         self.watch();
         let error =
             self.method.attempt(system, &self.state, self.step, &self.inputs, self.settings.tolerance);
-        let error = self.look_between(system, error);
-        self.learn(error);
         self.between.extensions.fill(None);
         self.between.propagated = false;
         for (place, &end) in self.between.end.iter_mut().zip(self.method.end()) {
             *place = end;
         }
         self.indicate_ends(system);
+        let error = self.look_between(system, error);
+        self.learn(error);
         for lane in 0..S::COUNT {
             let Some(slot) = &mut self.slots[lane] else { continue };
             if slot.passage.status.is_some() || slot.propagated {
@@ -199,27 +213,6 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
                 self.begin_step(lane);
             }
         }
-    }
-
-    /// The error of the step with that between its ends, in lanes where the first may not be all.
-    fn look_between(&mut self, system: &dyn Kernel<S>, error: S) -> S {
-        let mut looked = S::from(0.0);
-        for lane in 0..S::COUNT {
-            let Some(Slot { passage, inputs, propagated, .. }) = &mut self.slots[lane] else { continue };
-            if !*propagated && error.lane(lane) <= 1.0 && self.method.doubts(lane, passage) {
-                passage.inputs_within(LOOKED_AT, inputs);
-                passage.work.evaluations += 1;
-                set_lane(&mut self.between.inputs, lane, inputs);
-                looked.set_lane(lane, 1.0);
-            }
-        }
-        let mask = S::from(0.0).less_than(looked);
-        if (0..S::COUNT).all(|lane| looked.lane(lane) == 0.0) {
-            return error;
-        }
-        let (inputs, tolerance) = (&self.between.inputs, self.settings.tolerance);
-        let between = self.method.error_between(system, &self.state, self.step, inputs, tolerance);
-        S::select(mask, (error.squared() + between.squared()).sqrt(), error)
     }
 
     /// Ends machines that took more steps than they are allowed.
@@ -289,6 +282,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         self.send_waves(system, lane);
         self.find_events(system, lane);
         self.observe(lane);
+        self.keep_marks(lane);
         let Some(slot) = &mut self.slots[lane] else { return };
         for (state, end) in self.state.iter_mut().zip(&self.between.end) {
             state.set_lane(lane, end.lane(lane));
@@ -358,11 +352,22 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         }
     }
 
-    /// Indicators at the end of the step, in every lane: where the last stage has its inputs.
+    /// Indicators and marks at the end of the step, in every lane: where the last stage has its
+    /// inputs.
     fn indicate_ends(&mut self, system: &dyn Kernel<S>) {
         let [.., inputs] = &self.inputs.stages;
         if !self.indicators.is_empty() {
             system.indicate(&self.between.end, inputs, &mut self.between.ends);
+        }
+        if !self.marks.is_empty() {
+            system.mark(&self.between.end, inputs, &mut self.between.marks);
+        }
+    }
+
+    /// Makes the marks at the end of the step of a lane those at the start of its next.
+    fn keep_marks(&mut self, lane: usize) {
+        for (before, after) in self.marks.iter_mut().zip(&self.between.marks) {
+            before.set_lane(lane, after.lane(lane));
         }
     }
 

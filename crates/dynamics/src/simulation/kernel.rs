@@ -46,6 +46,10 @@ pub(super) trait Kernel<S: Lane> {
     fn outgoing(&self, state: &[S], inputs: &[S], waves: &mut [S]);
     /// As [`System::indicate`].
     fn indicate(&self, state: &[S], inputs: &[S], indicators: &mut [S]);
+    /// As [`System::kinks`].
+    fn kinks(&self) -> usize;
+    /// As [`System::mark`].
+    fn mark(&self, state: &[S], inputs: &[S], marks: &mut [S]);
     /// As [`JacobianPattern::of`].
     fn pattern(&self) -> Option<JacobianPattern>;
     /// As [`Rosenbrock::linearize`].
@@ -53,7 +57,7 @@ pub(super) trait Kernel<S: Lane> {
     /// As [`Rosenbrock::attempt`].
     fn attempt(&self, method: &mut Rosenbrock<S>, trial: StepTrial<'_, S>, inputs: &StepInputs<S>) -> S;
     /// As [`Rosenbrock::error_between`].
-    fn error_between(&self, method: &mut Rosenbrock<S>, trial: StepTrial<'_, S>, inputs: &[S]) -> S;
+    fn error_between(&self, method: &mut Rosenbrock<S>, trial: StepTrial<'_, S>, at: (S, &[S])) -> S;
     /// As [`Propagator::step`].
     fn propagate(&self, propagator: &mut Propagator<S>, trial: StepTrial<'_, S>, inputs: &[S]) -> S;
 }
@@ -99,6 +103,14 @@ where
         System::indicate(self, state, inputs, indicators);
     }
 
+    fn kinks(&self) -> usize {
+        System::kinks(self)
+    }
+
+    fn mark(&self, state: &[S], inputs: &[S], marks: &mut [S]) {
+        System::mark(self, state, inputs, marks);
+    }
+
     fn pattern(&self) -> Option<JacobianPattern> {
         JacobianPattern::of(self)
     }
@@ -111,9 +123,8 @@ where
         S::vectorized(VectorizedAttempt { method, system: self, trial, inputs }).unwrap_or(S::from(f64::NAN))
     }
 
-    fn error_between(&self, method: &mut Rosenbrock<S>, trial: StepTrial<'_, S>, inputs: &[S]) -> S {
-        S::vectorized(VectorizedErrorBetween { method, system: self, trial, inputs })
-            .unwrap_or(S::from(f64::NAN))
+    fn error_between(&self, method: &mut Rosenbrock<S>, trial: StepTrial<'_, S>, at: (S, &[S])) -> S {
+        S::vectorized(VectorizedErrorBetween { method, system: self, trial, at }).unwrap_or(S::from(f64::NAN))
     }
 
     fn propagate(&self, propagator: &mut Propagator<S>, trial: StepTrial<'_, S>, inputs: &[S]) -> S {
@@ -165,7 +176,7 @@ struct VectorizedErrorBetween<'m, S, E> {
     method: &'m mut Rosenbrock<S>,
     system: &'m E,
     trial: StepTrial<'m, S>,
-    inputs: &'m [S],
+    at: (S, &'m [S]),
 }
 
 impl<S: Lane, E: System<S>> WithSimd for VectorizedErrorBetween<'_, S, E> {
@@ -173,7 +184,7 @@ impl<S: Lane, E: System<S>> WithSimd for VectorizedErrorBetween<'_, S, E> {
 
     #[inline(always)]
     fn with_simd<V: Simd>(self, _: V) -> S {
-        self.method.error_between(self.system, self.trial, self.inputs)
+        self.method.error_between(self.system, self.trial, self.at)
     }
 }
 

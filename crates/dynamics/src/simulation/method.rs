@@ -118,19 +118,19 @@ impl<S: Lane> Stepper<S> {
         passage.rejected || (passage.looked_into() && method.binds_stiffly(lane, passage.step_s))
     }
 
-    /// How far what lies between the ends of the step just attempted is off, for the inputs at
-    /// [`LOOKED_AT`], in units of the tolerance.
+    /// How far what lies between the ends of the step just attempted is off at a part of it, for
+    /// the inputs there, in units of the tolerance.
     pub(super) fn error_between(
         &mut self,
         system: &dyn Kernel<S>,
         state: &[S],
         step: S,
-        inputs: &[S],
+        at: (S, &[S]),
         tolerance: f64,
     ) -> S {
         let trial = StepTrial { state, step, scales: &self.scales, tolerance };
         match &mut self.steps {
-            MethodSteps::Implicit(method) => system.error_between(method, trial, inputs),
+            MethodSteps::Implicit(method) => system.error_between(method, trial, at),
             MethodSteps::Explicit(..) => S::from(0.0),
         }
     }
@@ -222,10 +222,11 @@ impl<S: Lane> Extension<S> {
     }
 
     /// Slope at this part of the step, times the step.
-    pub(super) fn slope(&self, part: f64) -> S {
+    pub(super) fn slope(&self, part: S) -> S {
         let [first, second, third] = self.coefficients;
-        let rise = self.end - self.start + first.times(1.0 - 2.0 * part);
-        rise + (second.times(2.0 - 3.0 * part) + third.times(part * (3.0 - 4.0 * part))).times(part)
+        let left = |of: f64, times: f64| S::from(of) - part.times(times);
+        let rise = self.end - self.start + first * left(1.0, 2.0);
+        rise + (second * left(2.0, 3.0) + third * part * left(3.0, 4.0)) * part
     }
 
     /// The same in one lane.

@@ -11,6 +11,8 @@ use crate::portable;
 
 /// No step grows by more than this, nor shrinks below the other.
 const GROWTH: [f64; 2] = [0.1, 6.0];
+/// A step that fails ends at its kink where that is farther than this part of it from both ends.
+const KINK_WITHIN: f64 = 0.02;
 /// What is kept of the step that the error would allow.
 const SAFETY: f64 = 0.9;
 /// A break's waves are met by restarts this many times; by then they have faded. What jumps still
@@ -42,8 +44,12 @@ pub(super) struct Passage<'a> {
     pub(super) growing: Option<GrowingMode>,
     /// Whether the step being tried is shorter for it.
     held_back: bool,
-    /// Where the step being tried ends, if at a break.
+    /// Where the step being tried ends, if at a break or a kink.
     target_s: Option<f64>,
+    /// The part of the step being tried just after the first kink of the rates in it.
+    pub(super) kink: Option<f64>,
+    /// A kink at which a step is to end.
+    kink_s: Option<f64>,
     /// The next break, sample or arrival.
     goal_s: f64,
     pub(super) step_s: f64,
@@ -89,6 +95,8 @@ impl<'a> Passage<'a> {
             growing: None,
             held_back: false,
             target_s: None,
+            kink: None,
+            kink_s: None,
             goal_s: course.duration_s,
             step_s: 0.0,
             breaks: times.into_iter().map(|time| (time, 0)).collect(),
@@ -135,6 +143,7 @@ impl<'a> Passage<'a> {
             target = target.min(arrival);
         }
         self.goal_s = target;
+        target = self.kink_s.map_or(target, |kink_s| target.min(kink_s));
         let left = target - self.time_s;
         let longest_s = self.growing.map_or(self.longest_s, |growing| growing.step_s.min(self.longest_s));
         let wanted = self.proposed_s.min(longest_s);
@@ -263,6 +272,10 @@ impl<'a> Passage<'a> {
             self.proposed_s = if cut { grown.max(self.proposed_s) } else { grown };
             self.before = error.max(1e-3);
             self.work.steps += 1;
+        } else if let Some(part) = self.kink.filter(|part| self.may_end_at(*part, error)) {
+            // what follows the kink may take the length that was tried
+            self.kink_s = Some(self.time_s + part * self.step_s);
+            self.work.rejected += 1;
         } else {
             self.proposed_s = self.step_s * factor.min(0.9);
             self.work.rejected += 1;
@@ -279,9 +292,17 @@ impl<'a> Passage<'a> {
         taken
     }
 
+    /// Whether a step that failed by this error is to end at a kink at this part of it: once for a
+    /// step that is taken, so that what fails for another reason becomes shorter.
+    fn may_end_at(&self, part: f64, error: f64) -> bool {
+        let within = (KINK_WITHIN..1.0 - KINK_WITHIN).contains(&part);
+        within && error.is_finite() && self.kink_s.is_none()
+    }
+
     /// Stands at the end of the step that was taken; what happens there: breaks, arriving commands.
     pub(super) fn arrive(&mut self) {
         self.time_s = self.end_s();
+        self.kink_s = self.kink_s.filter(|&kink_s| kink_s > later(self.time_s));
         let mut broken = false;
         let (now_s, mut begins_s) = (later(self.time_s), self.time_s);
         while self.breaks.front().is_some_and(|&(time, _)| time <= now_s) {

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use super::derivatives::DIRECTIONS;
 use super::growth::AmplitudeLost;
 use super::kernel::{Kernel, StepTrial};
-use super::method::{Extension, LOOKED_AT, StepInputs, relative_error};
+use super::method::{Extension, StepInputs, relative_error};
 use super::pattern::JacobianPattern;
 use super::step_matrix::{COLUMN, ColumnIndex, StepMatrix};
 use super::{Lane, System};
@@ -285,8 +285,8 @@ impl<S: Lane> Rosenbrock<S> {
         self.fastest.lane(lane) * step_s < -STIFF
     }
 
-    /// How far the continuous extension is off at theta = [`LOOKED_AT`] of the step just attempted,
-    /// in units of the tolerance, for the inputs there: the remainder of the equations, brought to
+    /// How far the continuous extension is off at a part theta of the step just attempted, in units
+    /// of the tolerance, for the inputs there: the remainder of the equations, brought to
     /// the state as a stage's increment is.
     ///
     /// ```text
@@ -300,14 +300,14 @@ impl<S: Lane> Rosenbrock<S> {
         &mut self,
         system: &E,
         trial: StepTrial<'_, S>,
-        inputs: &[S],
+        (part, inputs): (S, &[S]),
     ) -> S {
         let StepTrial { state, step, scales, tolerance } = trial;
         let (states, per_step) = (state.len(), S::from(1.0) / step);
         for (index, &start) in state.iter().enumerate() {
             let extension = self.extension(index, start);
-            self.stage.as_flattened_mut()[index] = extension.at(S::from(LOOKED_AT));
-            self.slopes_between[index] = extension.slope(LOOKED_AT) * per_step;
+            self.stage.as_flattened_mut()[index] = extension.at(part);
+            self.slopes_between[index] = extension.slope(part) * per_step;
         }
         let remainders = &mut *self.column;
         system.rates(&self.stage.as_flattened()[..states], inputs, &mut remainders[..states]);

@@ -353,4 +353,13 @@ impl<S: Scalar, P: Plant<S>> Plant<S> for Sensed<P> {
         let (state, inputs) = self.of_plant::<S, T>(state, inputs);
         self.plant.indicate(state, inputs, indicators);
     }
+
+    fn kinks(&self) -> usize {
+        self.plant.kinks()
+    }
+
+    fn mark<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], marks: &mut [T]) {
+        let (state, inputs) = self.of_plant::<S, T>(state, inputs);
+        self.plant.mark(state, inputs, marks);
+    }
 }

@@ -8,11 +8,11 @@ use phea_dynamics::simulation::{
 
 use super::laws::settings;
 
-/// A stiff pair, a limit, a command and, if there is one, a late wave: states x, v, z; inputs w, u
-/// and the wave of x.
+/// A stiff pair, a stop, a limit, a command and, if there is one, a late wave: states x, v, z;
+/// inputs w, u and the wave of x.
 ///
 /// ```text
-/// x' = v,   v' = -k x + f v/(1 + v^2) - |v| v + w + u,   z' = r (x - z) + sqrt(|w| + 1/10) - x(t - T)/2
+/// x' = v,   v' = -k x - k (x - 1/20)+ + f v/(1 + v^2) - |v| v + w + u,   z' = r (x - z) + sqrt(|w| + 1/10) - x(t - T)/2
 /// ```
 #[derive(Clone)]
 struct Machine<S> {
@@ -37,7 +37,8 @@ impl<S: Lane> System<S> for Machine<S> {
     fn rates<T: Scalar + From<S>>(&self, y: &[T], w: &[T], rates: &mut [T]) {
         rates[0] = y[1];
         let fed = T::from(self.feeding) * y[1] / (T::from(1.0) + y[1].squared());
-        rates[1] = fed - T::from(self.stiffness) * y[0] - y[1].abs() * y[1] + w[0] + w[1];
+        let stopped = y[0] + (y[0] - T::from(0.05)).maximum(T::from(0.0));
+        rates[1] = fed - T::from(self.stiffness) * stopped - y[1].abs() * y[1] + w[0] + w[1];
         rates[2] = T::from(self.rate) * (y[0] - y[2]) + (w[0].abs() + T::from(0.1)).sqrt();
         for wave in &w[2..] {
             rates[2] = rates[2] - wave.times(0.5);
@@ -57,6 +58,12 @@ impl<S: Lane> System<S> for Machine<S> {
     }
     fn indicate<T: Scalar + From<S>>(&self, y: &[T], _: &[T], indicators: &mut [T]) {
         indicators[0] = y[0] - T::from(0.05);
+    }
+    fn kinks(&self) -> usize {
+        2
+    }
+    fn mark<T: Scalar + From<S>>(&self, y: &[T], _: &[T], marks: &mut [T]) {
+        marks.copy_from_slice(&[y[1], y[0] - T::from(0.05)]);
     }
 }
 

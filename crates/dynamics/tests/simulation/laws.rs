@@ -11,8 +11,11 @@ use phea_dynamics::simulation::{
 pub(crate) trait Law: Clone {
     const STATES: usize;
     const INPUTS: usize = 0;
+    const KINKS: usize = 0;
 
     fn rates<T: Scalar>(&self, y: &[T], w: &[T], rates: &mut [T]);
+
+    fn mark<T: Scalar>(&self, _y: &[T], _w: &[T], _marks: &mut [T]) {}
 }
 
 /// A law as a system, with one scale for all its states.
@@ -32,6 +35,12 @@ impl<L: Law> System<f64> for Lawful<L> {
     fn rates<T: Scalar + From<f64>>(&self, y: &[T], w: &[T], rates: &mut [T]) {
         self.0.rates(y, w, rates);
     }
+    fn kinks(&self) -> usize {
+        L::KINKS
+    }
+    fn mark<T: Scalar + From<f64>>(&self, y: &[T], w: &[T], marks: &mut [T]) {
+        self.0.mark(y, w, marks);
+    }
 }
 
 /// A system whose equations were recorded: the methods, which are compiled for each type of a
@@ -46,6 +55,8 @@ struct Recording {
     rates: Expression,
     outgoing: Expression,
     indicate: Expression,
+    kinks: usize,
+    mark: Expression,
 }
 
 impl Recording {
@@ -55,6 +66,8 @@ impl Recording {
         Recording {
             rates: recorded(states, inputs, states, &mut |y, w, rates| system.rates(y, w, rates)),
             outgoing: recorded(states, inputs, delays.len(), &mut |y, w, waves| system.outgoing(y, w, waves)),
+            mark: recorded(states, inputs, system.kinks(), &mut |y, w, marks| system.mark(y, w, marks)),
+            kinks: system.kinks(),
             indicate: recorded(states, inputs, indicators, &mut |y, w, found| system.indicate(y, w, found)),
             scales: system.scales(),
             sliding: system.sliding(),
@@ -110,6 +123,12 @@ impl System<f64> for Recording {
     }
     fn indicate<T: Scalar + From<f64>>(&self, y: &[T], w: &[T], indicators: &mut [T]) {
         evaluate(&self.indicate, y, w, indicators);
+    }
+    fn kinks(&self) -> usize {
+        self.kinks
+    }
+    fn mark<T: Scalar + From<f64>>(&self, y: &[T], w: &[T], marks: &mut [T]) {
+        evaluate(&self.mark, y, w, marks);
     }
 }
 

@@ -1,0 +1,85 @@
+//! The error between the ends of a step: where its ends say nothing of it, and where a rate has a
+//! kink.
+
+use super::{Drive, set_lane};
+use crate::simulation::kernel::Kernel;
+use crate::simulation::method::LOOKED_AT;
+use crate::simulation::slot::Slot;
+use crate::simulation::{Lane, Observer};
+
+/// Halvings in which a kink within a step is found: to the ten-thousandth.
+const HALVINGS: usize = 14;
+
+impl<S: Lane, O: Observer> Drive<'_, S, O> {
+    /// The error of the step with that between its ends, in lanes where the first may not be all: a
+    /// step over a kink is looked at there, where what a polynomial cannot follow is largest, and
+    /// late, where a kink near its begin or its end shows. One of the three sees it: together they
+    /// are at least half of the error that a kink causes anywhere in the step.
+    pub(super) fn look_between(&mut self, system: &dyn Kernel<S>, error: S) -> S {
+        let mut late = [false; MOST_LANES];
+        for (lane, late) in late.iter_mut().enumerate().take(S::COUNT) {
+            let passes = self.passes(lane, error);
+            let kink = if passes { self.kink(system, lane) } else { None };
+            let Some(Slot { passage, .. }) = &mut self.slots[lane] else { continue };
+            passage.kink = kink;
+            *late = passes && (kink.is_some() || self.method.doubts(lane, passage));
+        }
+        let with_late = self.look_at(system, error, |lane, _| late[lane].then_some(LOOKED_AT));
+        self.look_at(system, with_late, |_, kink| kink)
+    }
+
+    /// Whether the error at its end lets the step of a lane pass, made by the method that knows
+    /// more of it.
+    fn passes(&self, lane: usize, error: S) -> bool {
+        let by_method = self.slots[lane].as_ref().is_some_and(|slot| !slot.propagated);
+        by_method && self.method.linearized().is_some() && error.lane(lane) <= 1.0
+    }
+
+    /// The error with that at a part of the step, in lanes that have one; `part` is given the lane
+    /// and its kink.
+    fn look_at(
+        &mut self,
+        system: &dyn Kernel<S>,
+        error: S,
+        part: impl Fn(usize, Option<f64>) -> Option<f64>,
+    ) -> S {
+        let (mut looked, mut parts, mut any) = (S::from(0.0), S::from(LOOKED_AT), false);
+        for lane in 0..S::COUNT {
+            let Some(Slot { passage, inputs, .. }) = &mut self.slots[lane] else { continue };
+            let Some(part) = part(lane, passage.kink) else { continue };
+            passage.inputs_within(part, inputs);
+            passage.work.evaluations += 1;
+            set_lane(&mut self.between.inputs, lane, inputs);
+            parts.set_lane(lane, part);
+            looked.set_lane(lane, 1.0);
+            any = true;
+        }
+        if !any {
+            return error;
+        }
+        let (inputs, tolerance) = (&self.between.inputs, self.settings.tolerance);
+        let between = self.method.error_between(system, &self.state, self.step, (parts, inputs), tolerance);
+        S::select(S::from(0.0).less_than(looked), (error.squared() + between.squared()).sqrt(), error)
+    }
+
+    /// The part of the step of a lane just after its first kink; `None` where the marks have the
+    /// same signs at both ends.
+    fn kink(&mut self, system: &dyn Kernel<S>, lane: usize) -> Option<f64> {
+        let is_other = |(before, after): (&S, &S)| (before.lane(lane) > 0.0) != (after.lane(lane) > 0.0);
+        if !self.marks.iter().zip(&self.between.marks).any(is_other) {
+            return None;
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            self.look(lane, middle);
+            system.mark(&self.between.state, &self.between.inputs, &mut self.between.marked);
+            let passed = self.marks.iter().zip(&self.between.marked).any(is_other);
+            (low, high) = if passed { (low, middle) } else { (middle, high) };
+        }
+        Some(high)
+    }
+}
+
+/// The most lanes that there are.
+const MOST_LANES: usize = crate::scalar::LANES;
