@@ -22,6 +22,9 @@ pub trait Equations {
     fn rates(&self, state: &[f64], inputs: &[f64], rates: &mut [f64]);
     /// As [`System::outgoing`].
     fn outgoing(&self, state: &[f64], inputs: &[f64], waves: &mut [f64]);
+    /// Called with the time before the rates there are asked for. CVODE tries one step for each
+    /// time at which it asks.
+    fn is_asked_at(&self, _time: f64) {}
 }
 
 impl<E: System<f64>> Equations for E {
@@ -191,6 +194,7 @@ fn continued(
     let (none, mut inputs) = (Waves::new(Vec::new(), Vec::new()), vec![0.0; system.inputs()]);
     let mut rates = |time: f64, state: &[f64], rates: &mut [f64]| {
         inputs_at(time, &none, &mut inputs);
+        system.is_asked_at(time);
         system.rates(state, &inputs, rates);
     };
     integrate(&mut rates, state, times, tolerance, &absolute, method, breaks)

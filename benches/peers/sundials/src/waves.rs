@@ -124,6 +124,7 @@ pub(crate) fn integrate_delayed(
     let mut of_rates = inputs.clone();
     let mut rates = |time: f64, state: &[f64], rates: &mut [f64]| {
         inputs_at(time, &waves.borrow(), &mut of_rates);
+        system.is_asked_at(time);
         system.rates(state, &of_rates, rates);
     };
     let shortest = waves.borrow().shortest();

@@ -1,6 +1,5 @@
 //! One rig by phea and by CVODE.
 
-use std::cell::Cell;
 use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
@@ -13,8 +12,9 @@ use phea_dynamics::simulation::{
 };
 use phea_hydraulics::machine::INDICATORS;
 use phea_machine::{Commanded, Control as Loop, Watcher};
-use sundials::{CvodeError, Equations, Following, Kicks, Method, follow};
+use sundials::{CvodeError, Following, Kicks, Method, follow};
 
+use crate::patient::Patient;
 use crate::rig::{Control, OUTPUT_STEP_S, Rig};
 use crate::roughness::{Roughness, is_rough, roughest};
 
@@ -37,6 +37,7 @@ const LOOSER: f64 = 1e-9;
 const WELL_POSED: f64 = 1e-5;
 /// Around the row at which CVODE meets a chamber without fluid, s.
 const NEAR_S: f64 = 1e-3;
+
 /// Evaluations after which CVODE is told that a rate is not a number.
 const PATIENCE: u64 = 20_000_000;
 
@@ -147,47 +148,10 @@ impl Sampler for Digital<'_> {
     }
 }
 
-/// phea's own loop, as compiled for its users, whose rates cease to be numbers after this number of
-/// evaluations: how a run on CVODE is ended.
-struct Patient<'a> {
-    control: &'a Loop,
-    left: Cell<u64>,
-}
-
-impl Equations for Patient<'_> {
-    fn states(&self) -> usize {
-        self.control.size()[0]
-    }
-
-    fn inputs(&self) -> usize {
-        self.control.size()[1]
-    }
-
-    fn scales(&self) -> Vec<f64> {
-        self.control.scales()
-    }
-
-    fn delays(&self) -> Vec<f64> {
-        self.control.delays()
-    }
-
-    fn outgoing(&self, state: &[f64], inputs: &[f64], waves: &mut [f64]) {
-        self.control.outgoing(state, inputs, waves);
-    }
-
-    fn rates(&self, state: &[f64], inputs: &[f64], rates: &mut [f64]) {
-        self.control.rates(state, inputs, rates);
-        self.left.set(self.left.get().saturating_sub(1));
-        if self.left.get() == 0 {
-            rates.fill(f64::NAN);
-        }
-    }
-}
-
 /// All states of every row.
-struct Rows<'a> {
-    wanted: Vec<usize>,
-    states: &'a mut Vec<Vec<f64>>,
+pub(crate) struct Rows<'a> {
+    pub(crate) wanted: Vec<usize>,
+    pub(crate) states: &'a mut Vec<Vec<f64>>,
 }
 
 impl Observer for Rows<'_> {
@@ -340,7 +304,8 @@ pub(crate) fn compare(rig: &Rig, number: u64, program: &Path, manner: Manner) ->
     compared.0
 }
 
-fn controller(control: &Control) -> Controller {
+/// The controller of a rig.
+pub(crate) fn controller(control: &Control) -> Controller {
     let integral = Element::ProportionalIntegral {
         proportional_gain: control.proportional,
         integral_gain: control.integral,
@@ -371,11 +336,11 @@ fn judge<'a>(
     let start = rig.beginning(system.size()[0]);
     let force = |states: &[Vec<f64>]| force_of(rig, states);
     let counted = |following: &Following| {
-        let patient = Patient { control: system, left: Cell::new(PATIENCE) };
+        let patient = Patient::new(system, PATIENCE);
         let mut sampler = sampler();
         let sampler = sampler.as_deref_mut().map(|sampler| -> &mut dyn Sampler { sampler });
         let states = follow(&patient, &start, course, sampler, following)?;
-        Ok::<_, CvodeError>((states, (PATIENCE - patient.left.get()) as f64))
+        Ok::<_, CvodeError>((states, patient.cost()))
     };
     let by_cvode = |following: &Following| counted(following).map(|(states, _)| states);
     let by_phea = |tolerance: f64| {
@@ -422,15 +387,16 @@ fn judge<'a>(
     if manner.timed {
         compared.costs_of_cvode = compared.costs(&reference, &|following| {
             let begun = Instant::now();
-            let (states, evaluations) = counted(following).ok()?;
-            Some((force(&states), Cost { seconds: begun.elapsed().as_secs_f64(), evaluations }))
+            let (states, [evaluations, _]) = counted(following).ok()?;
+            let seconds = begun.elapsed().as_secs_f64();
+            Some((force(&states), Cost { seconds, evaluations: evaluations as f64 }))
         });
     }
     (compared, reference)
 }
 
 /// The force in these states.
-fn force_of(rig: &Rig, states: &[Vec<f64>]) -> Vec<f64> {
+pub(crate) fn force_of(rig: &Rig, states: &[Vec<f64>]) -> Vec<f64> {
     let machine_states = Plant::<f64>::states(&rig.machine);
     states.iter().map(|state| rig.machine.measurement(&state[..machine_states], &[0.0; 2])).collect()
 }

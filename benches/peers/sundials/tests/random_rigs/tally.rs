@@ -13,6 +13,9 @@ const LARGEST_DIFFERENCE: f64 = 1e-4;
 
 #[derive(Default)]
 pub(crate) struct Tally {
+    /// Whether an error above the largest at the default tolerance has to be reported, as one that
+    /// may be visible.
+    reported_errors: bool,
     run: usize,
     refused: BTreeMap<String, usize>,
     without_reference: usize,
@@ -62,6 +65,12 @@ struct Checks {
 }
 
 impl Tally {
+    /// Of a family whose errors at the default tolerance must be reported, or one that is looked at
+    /// alone.
+    pub(crate) fn of(reported_errors: bool) -> Tally {
+        Tally { reported_errors, ..Tally::default() }
+    }
+
     pub(crate) fn take(&mut self, number: u64, outcome: &Outcome, told: bool) {
         self.run += 1;
         match outcome {
@@ -161,8 +170,12 @@ impl Tally {
         self.default_steps += run.work.steps + run.work.rejected;
         if let Some(fault) = run.fault() {
             let told = format!("rig {number}, at {TOLERANCE:e}: {fault}");
-            let list =
-                if run.status == Status::Completed { &mut self.default_faults } else { &mut self.failures };
+            let is_reported = run.may_show_errors || !self.reported_errors;
+            let list = if run.status == Status::Completed && is_reported {
+                &mut self.default_faults
+            } else {
+                &mut self.failures
+            };
             list.push(told);
         }
         if run.status == Status::Completed {
@@ -256,7 +269,7 @@ impl Checks {
     }
 }
 
-fn spread(name: &str, values: &mut [f64]) {
+pub(crate) fn spread(name: &str, values: &mut [f64]) {
     values.sort_by(f64::total_cmp);
     let at = |share: f64| values.get((share * values.len().saturating_sub(1) as f64) as usize);
     let (Some(least), Some(tenth), Some(middle), Some(ninetieth), Some(most)) =
