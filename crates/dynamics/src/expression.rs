@@ -126,6 +126,9 @@ impl Expression {
             let value = match *node {
                 Node::Binary(Binary::Multiply, x, y) if x == y => values[x].square(),
                 Node::Binary(Binary::Subtract, x, y) if x == y => Interval::from(0.0),
+                // a choice between the numbers that are compared
+                Node::Select(x, y, less, other) if (less, other) == (x, y) => values[x].least(values[y]),
+                Node::Select(x, y, less, other) if (less, other) == (y, x) => values[x].greatest(values[y]),
                 _ => node.evaluate(parameters, &values),
             };
             values.push(value);

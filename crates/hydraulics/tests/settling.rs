@@ -4,7 +4,7 @@
 
 use phea_dynamics::expression::Expression;
 use phea_dynamics::random::share;
-use phea_dynamics::scalar::{Dual, Parameters};
+use phea_dynamics::scalar::{Dual, Interval, Parameters};
 use phea_dynamics::simulation::DIRECTIONS;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cross_port::CrossFlow;
@@ -16,6 +16,40 @@ use phea_hydraulics::operating_point::{
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, valve};
 use phea_hydraulics::servovalve::{Edges, LeakageModel, Servovalve, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
+
+/// Over a box of supply pressures, loads and commands the pressures at standstill are enclosed
+/// between tank and supply, however wide the box is.
+#[test]
+fn pressures_at_rest_are_enclosed_between_tank_and_supply() {
+    let mut draw = Draw(11);
+    for round in 0..12 {
+        let rig = draw.rig();
+        let Components { valve, supply, cylinder, .. } = *rig.components();
+        let force = draw.even(-0.3, 0.3) * cylinder.area_a * supply.pressure;
+        let recorded = Expression::record(&["pressure"], |p| {
+            let supply = Supply { pressure: p[0], tank_pressure: supply.tank_pressure.into() };
+            let valve = valve.convert(&mut Into::into);
+            let areas = [cylinder.area_a.into(), cylinder.area_b.into()];
+            let balance = Balance { valve, supply, areas, across: None, outward: None };
+            let steady = match round % 2 {
+                0 => Steady::Command(0.0.into()),
+                _ => Steady::Moving { velocity: 0.0.into(), load: SteadyLoad::Force(force.into()) },
+            };
+            balance.settle(steady).pressures.to_vec()
+        });
+        let [low, high] = [0.8, 1.2].map(|share| share * supply.pressure);
+        let enclosed = recorded.enclosures(&[Interval::new(low, high)]);
+        for step in 0..=20 {
+            let pressures = recorded.evaluate(&[low + (high - low) * f64::from(step) / 20.0]);
+            for (enclosed, pressure) in enclosed.iter().zip(pressures) {
+                assert!(enclosed.low() <= pressure && pressure <= enclosed.high());
+            }
+        }
+        for enclosed in enclosed {
+            assert!(enclosed.low() >= supply.tank_pressure && enclosed.high() <= high, "{enclosed:?}");
+        }
+    }
+}
 
 /// A number between two ends, evenly or by a factor.
 struct Draw(u64);

@@ -61,6 +61,24 @@ impl Interval {
         Interval { low: least, ..square }
     }
 
+    /// The lesser of a number of each; where the choice is not decided, tighter than both sides.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::scalar::Interval;
+    /// let limit = Interval::from(2.0);
+    /// let bounded = Interval::WHOLE.least(limit).greatest(Interval::from(1.0));
+    /// assert_eq!((bounded.low(), bounded.high()), (1.0, 2.0));
+    /// ```
+    pub fn least(self, other: Interval) -> Interval {
+        Interval { low: self.low.min(other.low), high: self.high.min(other.high) }
+    }
+
+    /// The greater of a number of each.
+    pub fn greatest(self, other: Interval) -> Interval {
+        Interval { low: self.low.max(other.low), high: self.high.max(other.high) }
+    }
+
     fn hull(self, other: Interval) -> Interval {
         Interval::new(self.low.min(other.low), self.high.max(other.high))
     }

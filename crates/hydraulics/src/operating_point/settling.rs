@@ -141,7 +141,15 @@ impl<S: Scalar> Balance<S> {
             let [step_a, step_b] = self.step_at(command, velocity, pressures);
             pressures = [pressures[0] + step_a, pressures[1] + step_b];
         }
-        pressures
+        pressures.map(|pressure| self.at_rest(velocity, pressure))
+    }
+
+    /// A pressure, at standstill between those of tank and supply, which every edge and leakage
+    /// draws it to: its enclosure over a box of parameters is no wider.
+    fn at_rest(&self, velocity: S, pressure: S) -> S {
+        let still = velocity.abs().less_than(S::from(f64::MIN_POSITIVE));
+        let bounded = pressure.maximum(self.supply.tank_pressure).minimum(self.supply.pressure);
+        S::select(still, bounded, pressure)
     }
 
     fn settle_moving(&self, velocity: S, load: SteadyLoad<S>) -> Settled<S> {
@@ -173,7 +181,7 @@ impl<S: Scalar> Balance<S> {
         let at_null = command.abs().less_than(full.times(AT_NULL));
         Settled {
             command: S::select(at_null, S::from(0.0), command),
-            pressures: [pressure_a, hold.other(pressure_a)],
+            pressures: [pressure_a, hold.other(pressure_a)].map(|pressure| self.at_rest(velocity, pressure)),
         }
     }
 
