@@ -30,6 +30,7 @@ mod held;
 mod hessenberg;
 mod interconnection;
 pub(crate) mod matrix_exponential;
+mod moved_roots;
 mod polynomial;
 mod realization;
 mod refinement;
@@ -44,6 +45,7 @@ use num_complex::Complex64;
 
 pub use discretization::Discretization;
 pub(crate) use eigenvalues::working_eigenvalues;
+pub use moved_roots::MovedRoot;
 pub use polynomial::Polynomial;
 pub use state_space::StateSpace;
 pub(crate) use structure::irreducible_blocks;

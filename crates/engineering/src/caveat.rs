@@ -3,9 +3,13 @@
 //! A simulation includes the whole machine. What the linear plant cannot represent is stated before
 //! the verdict; where a specification depends on it, the verdict is not proven.
 
+mod moved_roots;
+
 use phea_hydraulics::cross_port::Restrictor;
 use phea_hydraulics::operating_point::OperatingPoint;
 use phea_hydraulics::series::MOST_SEGMENTS;
+
+use moved_roots::moved_roots;
 
 use crate::family::{ShutGas, shut_gas};
 use crate::project::{CrossPortKind, DeclaredSeries, LineMotion, Load, Project, Pump, SupplyModel};
@@ -29,7 +33,8 @@ pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
     let of_rig =
         supply(setup).into_iter().chain(accumulator(setup)).chain(cross_port(setup)).chain(neck(setup));
     let of_rig = of_rig.chain(adjustment(setup)).chain(gas_valve(setup));
-    apart_from_lines(setup).chain(of_rig).chain(progression(setup)).chain(segments(setup)).collect()
+    let of_rig = apart_from_lines(setup).chain(of_rig).chain(progression(setup)).chain(segments(setup));
+    of_rig.chain(moved_roots(setup)).collect()
 }
 
 /// Declared effects that no linear model includes, in sentences.

@@ -16,7 +16,7 @@ use super::visitor::Visitor;
 use crate::catalogue_entry::Catalogue;
 use phea_dynamics::controller::{AntiWindup, CoefficientFormat};
 use phea_dynamics::linear::Discretization;
-use phea_quantity::{FORCE, RATIO, TIME, VOLTAGE, VOLTAGE_PER_VELOCITY};
+use phea_quantity::{ANGULAR_FREQUENCY, FORCE, RATIO, TIME, VOLTAGE, VOLTAGE_PER_VELOCITY};
 
 /// A transfer function: a ratio of polynomials, or elements in series.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -76,6 +76,8 @@ pub struct DeclaredController {
     pub delay: f64,
     /// How a continuous controller becomes a sampled one.
     pub discretization: Discretization,
+    /// rad/s, where Tustin's rule is exact; absent: at zero.
+    pub discretization_frequency: Option<f64>,
     /// The rounding in its computer; absent: none.
     pub quantization: Option<DeclaredQuantization>,
     /// The feed-forward of the load velocity; absent: none.
@@ -147,6 +149,16 @@ impl DeclaredQuantization {
 }
 
 impl DeclaredController {
+    /// The rule by which it is sampled, with the frequency at which that is exact.
+    pub fn sampling_rule(&self) -> Discretization {
+        match (self.discretization, self.discretization_frequency) {
+            (Discretization::Tustin, Some(frequency_rad_per_s)) => {
+                Discretization::PrewarpedTustin { frequency_rad_per_s }
+            }
+            (method, _) => method,
+        }
+    }
+
     /// Whether it states a transfer function, and not only its timing: without one it is to be
     /// designed.
     pub fn has_law(&self) -> bool {
@@ -175,6 +187,9 @@ impl DeclaredController {
         ];
         let k = plain("discretization", "How a continuous controller becomes a sampled one.");
         v.choice(k, words, &mut self.discretization, false);
+        let doc = "Frequency at which `tustin` keeps the controller's response; absent: zero.";
+        let k = key("discretization_frequency", &ANGULAR_FREQUENCY, doc).positive();
+        v.optional(k, &mut self.discretization_frequency);
         let k = plain("quantization", "What the computer of a sampled controller rounds.");
         v.table(k, &mut self.quantization, DeclaredQuantization::visit);
         let k = plain("load_velocity_feed_forward", "What is added to the command for a load that moves.");

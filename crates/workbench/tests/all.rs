@@ -54,6 +54,7 @@ mod report_typeset;
 mod response_identification;
 mod rest;
 mod scenarios;
+mod sampled_notch;
 mod sensor;
 mod series;
 mod shaken_feed_forward;

@@ -267,7 +267,7 @@ fn check_continuous(domain: TimeDomain, sample_time_s: f64) -> Result<(), Linear
 /// ```text
 /// s = kappa (z - 1)/(z + 1),     kappa = w/tan(w T/2)
 /// ```
-fn prewarped(frequency_rad_per_s: f64, sample_time_s: f64) -> Result<f64, LinearError> {
+pub(super) fn prewarped(frequency_rad_per_s: f64, sample_time_s: f64) -> Result<f64, LinearError> {
     let half_angle = frequency_rad_per_s * sample_time_s / 2.0;
     if !(half_angle > 0.0 && half_angle < std::f64::consts::FRAC_PI_2) {
         return Err(LinearError::Frequency { frequency_rad_per_s, operation: "prewarping" });

@@ -84,7 +84,7 @@ pub(super) fn timing(project: &Project) -> Timing {
     Timing {
         sample_time_s: declared.sample_time,
         delay_s: declared.delay,
-        discretization: declared.discretization,
+        discretization: declared.sampling_rule(),
         continuous_prefilter: project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous),
         rate_feed_forward: 0.0,
         rate_sensor: RateSensor::default(),

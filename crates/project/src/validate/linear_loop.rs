@@ -2,18 +2,27 @@
 
 use super::Check;
 use crate::{
-    DeclaredElement, DeclaredQuantization, ElementKind, Formula, Prefilter, Project, RationalFunction,
-    Transfer, Variable,
+    DeclaredController, DeclaredElement, DeclaredQuantization, ElementKind, Formula, Prefilter, Project,
+    RationalFunction, Transfer, Variable,
 };
 use phea_dynamics::controller::AntiWindup;
 use phea_dynamics::linear::Discretization;
+use phea_quantity::{ANGULAR_FREQUENCY, display};
 
 /// Most zeros, poles or elements of a transfer function.
 const MAXIMUM_ORDER: usize = 50;
 
 pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
     if let Some(controller) = &project.controller {
-        let timing = ["sample_time", "delay", "discretization", "saturation", "anti_windup", "impedance"];
+        let timing = [
+            "sample_time",
+            "delay",
+            "discretization",
+            "discretization_frequency",
+            "saturation",
+            "anti_windup",
+            "impedance",
+        ];
         let only_timing = timing.iter().any(|name| check.declared(&format!("controller.{name}")));
         transfer(&controller.transfer, "controller", controller.sample_time, only_timing, check);
         if controller.anti_windup != AntiWindup::None && controller.saturation.is_none() {
@@ -25,6 +34,7 @@ pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
             let why = if discrete { "the controller is in `z` already" } else { "there is no `sample_time`" };
             check.warning("controller.discretization", format!("`discretization` has no effect: {why}"));
         }
+        exact_at(controller, discrete, check);
         if let Some(declared) = &controller.quantization {
             quantization(declared, controller.sample_time, check);
         }
@@ -39,6 +49,27 @@ pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
         check.warning("force_sensor.noise", "`noise` has no effect on a continuous controller");
     }
     velocity_sensor(project, check);
+}
+
+/// The frequency at which Tustin's rule is exact.
+fn exact_at(controller: &DeclaredController, discrete: bool, check: &mut Check<'_, '_>) {
+    let Some(frequency) = controller.discretization_frequency else { return };
+    let place = "controller.discretization_frequency";
+    let Some(sample_time) = controller.sample_time.filter(|_| !discrete) else {
+        let why = if discrete { "the controller is in `z` already" } else { "there is no `sample_time`" };
+        return check.warning(place, format!("`discretization_frequency` has no effect: {why}"));
+    };
+    if controller.discretization != Discretization::Tustin {
+        let message =
+            "`discretization_frequency` is that of `discretization = \"tustin\"`: the other rules have none";
+        return check.error(place, message);
+    }
+    let highest = std::f64::consts::PI / sample_time;
+    if frequency >= highest {
+        let [frequency, highest] = [frequency, highest].map(|value| display(value, &ANGULAR_FREQUENCY, 4));
+        let message = format!("{frequency} is not below {highest}, half the sampling frequency");
+        check.error(place, message);
+    }
 }
 
 fn velocity_sensor(project: &Project, check: &mut Check<'_, '_>) {
@@ -258,7 +289,7 @@ pub(super) fn element_excess(element: &DeclaredElement) -> Option<i64> {
 }
 
 /// Complex numbers must come with their conjugates, since coefficients are real.
-fn conjugates(roots: &[[f64; 2]], path: &str, check: &mut Check<'_, '_>) {
+pub(super) fn conjugates(roots: &[[f64; 2]], path: &str, check: &mut Check<'_, '_>) {
     if roots.len() > MAXIMUM_ORDER {
         return check.error(path, format!("more than {MAXIMUM_ORDER} roots"));
     }

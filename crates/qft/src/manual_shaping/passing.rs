@@ -3,7 +3,6 @@
 use num_complex::Complex64;
 use phea_dynamics::controller::{Element, Timing};
 use phea_dynamics::frequency::decibels;
-use phea_dynamics::linear::Discretization;
 use phea_dynamics::portable;
 
 use super::reach::{ElementPattern, ElementTarget, Reach};
@@ -182,10 +181,11 @@ fn element_frequency(
     if half >= std::f64::consts::FRAC_PI_2 {
         return Err(PassError::Frequency { frequency_rad_per_s });
     }
-    match (pattern, timing.discretization) {
+    let rate = timing.discretization.bilinear_rate(sample_time_s);
+    match (pattern, rate.map_err(|_| PassError::Discretization)?) {
         (ElementPattern::Gain, _) => Ok(frequency_rad_per_s),
-        (_, Discretization::Tustin) => Ok(2.0 / sample_time_s * portable::tan(half)),
-        _ => Err(PassError::Discretization),
+        (_, Some(rate)) => Ok(rate * portable::tan(half)),
+        (_, None) => Err(PassError::Discretization),
     }
 }
 

@@ -86,13 +86,13 @@ impl Structure {
         let warped = |scale: f64, sample_time_s: f64| {
             factors(&move |w: f64| scale * portable::tan(0.5 * w * sample_time_s))
         };
-        let evaluation = match (timing.sample_time_s, timing.discretization) {
-            (None, _) => factors(&|w: f64| w),
-            (Some(period), Discretization::Tustin) => warped(2.0 / period, period),
-            (Some(period), Discretization::PrewarpedTustin { frequency_rad_per_s: w }) => {
-                warped(w / portable::tan(0.5 * w * period), period)
-            }
-            (Some(sample_time_s), discretization) => Evaluation::Sampling { sample_time_s, discretization },
+        let discretization = timing.discretization;
+        let evaluation = match timing.sample_time_s {
+            None => factors(&|w: f64| w),
+            Some(sample_time_s) => match discretization.bilinear_rate(sample_time_s)? {
+                Some(rate) => warped(rate, sample_time_s),
+                None => Evaluation::Sampling { sample_time_s, discretization },
+            },
         };
         Ok(StructureResponse {
             structure: self.clone(),
