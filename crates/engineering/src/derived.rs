@@ -3,6 +3,7 @@
 
 mod accumulator;
 mod cross_port;
+mod dynamics;
 mod impedance;
 mod linkage;
 mod list;

@@ -17,7 +17,8 @@ use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::portable;
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::impedance::{
-    Asymptote, closed_loop_port, final_force_after_load_step, load_motion_of, open_loop_impedance, port,
+    Asymptote, closed_loop_impedance, closed_loop_port, final_force_after_load_step, load_motion_of,
+    open_loop_impedance, port,
 };
 use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::linear::{
@@ -28,10 +29,9 @@ use phea_hydraulics::plant::ChamberDynamics;
 use phea_hydraulics::stiffness::{
     ModelDifference, StiffnessModel, StrokeStiffness, hydraulic_stiffness, model_difference,
 };
-use phea_hydraulics::two_pressure::two_pressure_coefficients;
 
 pub use agreement::AgreementBand;
-pub use agreement::{WITHIN_DB, WITHIN_DEG};
+pub use agreement::{FIRST_ORDER, LUMPED, WITHIN_DB, WITHIN_DEG};
 pub use linkage::{LinkagePlace, LinkagePosition, linkage_places};
 pub use over_force::{StiffnessOverForce, stiffness_over_force};
 pub(crate) use port::hidden_above;
@@ -59,16 +59,26 @@ pub struct Linearization {
     /// Whether 6.7 is the plant: one load pressure, nothing that flows from chamber to chamber, a
     /// load whose motion is prescribed.
     pub plant_is_fifth_order: bool,
-    /// The linearised two-pressure model of the rig as declared, at its operating point.
+    /// Whether the load can move under force: the models of [`Linearization::two_pressure`] to
+    /// [`Linearization::decomposed`] hold it still.
+    pub load_yields: bool,
+    /// Whether the stiffness of the load is part of [`Linearization::first_order`]: not of a load
+    /// that no stiffness holds.
+    pub first_order_has_load: bool,
+    /// The linearised two-pressure model of the actuator as declared, with what leaks from chamber
+    /// to chamber, at its operating point, the load held still.
     pub two_pressure: LinearModel,
     /// The fifth-order model with the parameters in use, equation 6.7; K_c includes what leaks from
     /// chamber to chamber.
     pub full: LinearModel,
     /// The same with the derived parameters: the two-pressure model is compared with this one.
     pub derived_full: LinearModel,
+    /// The same against the load: what the plant is where the project states no parameter, but for
+    /// the second chamber pressure.
+    pub derived_plant: TransferFunction,
     /// Equation 6.12 as printed, and with the damping corrected.
     pub decomposed: [TransferFunction; 2],
-    /// Equation 6.13.
+    /// Equation 6.13, with the stiffness of the load in series.
     pub first_order: TransferFunction,
     /// The bands in which each reduction agrees with the plant.
     pub agreement: Vec<AgreementBand>,
@@ -78,9 +88,9 @@ pub struct Linearization {
     pub printed_decomposition: ReductionDifference,
     /// Equation 6.12 corrected against 6.7.
     pub corrected_decomposition: ReductionDifference,
-    /// Equation 6.13 against 6.7.
+    /// Equation 6.13 against 6.7, both with the load held still.
     pub truncation: ReductionDifference,
-    /// Share of each mode in the step response of 6.7.
+    /// Share of each mode in the step response of the plant.
     pub modes: Vec<ModeShare>,
     /// The impedance at the load with constant command.
     pub open_loop: PortView,
@@ -118,7 +128,13 @@ pub struct PortView {
     pub asymptotes: Vec<Asymptote>,
     /// Whether it is passive, and where not.
     pub passivity: PassivityReport,
-    /// Force that remains after a load step of 1 mm, N (Proposition 6.2: zero); absent if unstable.
+    /// Minus the force per velocity of what a scenario moves, N s/m: Z itself where the motion of
+    /// the load is prescribed; of a load that yields that of its ground.
+    pub by_motion: TransferFunction,
+    /// Whether it is the ground of a load that yields.
+    pub moves_ground: bool,
+    /// Force that remains after a step of that motion by 1 mm, N (Proposition 6.2: zero); absent if
+    /// unstable.
     pub final_force_n: Option<f64>,
 }
 
@@ -142,13 +158,14 @@ pub fn linearize(
     let leaking = rig.leaking();
     let full = linear_model(&leaking)?;
     let port = port(&rig.plant)?;
-    let two_pressure = transfer_functions(&two_pressure_coefficients(&rig.softened_chambers()))?;
+    let two_pressure = transfer_functions(&rig.two_pressure_held().coefficients())?;
     let decomposed = [
         decomposed_model(&leaking, MechanicalDamping::Printed)?,
         decomposed_model(&leaking, MechanicalDamping::Corrected)?,
     ];
-    let first_order = first_order_model(&leaking)?;
-    let derived_full = linear_model(&rig.softened(&rig.derived))?;
+    let first_order = first_order_model(&rig.against_load())?;
+    let derived_full = linear_model(&rig.leaking_derived())?;
+    let derived_plant = transfer_functions(&rig.one_pressure(&rig.derived).coefficients())?.command;
     let grid = frequency_grid(&full.command)?;
     let against_full = |other: &TransferFunction| compare(&grid, &full.command, other);
     let rational = controller.is_some_and(|given| {
@@ -174,9 +191,11 @@ pub fn linearize(
         ),
         printed_decomposition: against_full(&decomposed[0]),
         corrected_decomposition: against_full(&decomposed[1]),
-        truncation: against_full(&first_order),
-        modes: dominance(&full.command),
-        open_loop: open_loop_view(rig, &port)?,
+        truncation: against_full(&first_order_model(&leaking)?),
+        modes: dominance(&plant.command),
+        load_yields: rig.load.is_some(),
+        first_order_has_load: rig.load_stiffness().is_some(),
+        open_loop: open_loop_view(rig, [&port, &plant])?,
         closed_loop_absent: absence(feedback.as_ref(), closed_loop.as_ref()),
         closed_loop,
         asked: controller.map(|given| port::asked(rig, given, sensor)).transpose()?.flatten(),
@@ -187,6 +206,7 @@ pub fn linearize(
         two_pressure,
         full,
         derived_full,
+        derived_plant,
         decomposed,
         first_order,
     })
@@ -207,12 +227,15 @@ fn absence(controller: Option<&TransferFunction>, view: Option<&PortView>) -> Op
     Some(reason.to_string())
 }
 
-fn open_loop_view(rig: &Rig, port: &LinearModel) -> Result<PortView, LinearError> {
+fn open_loop_view(rig: &Rig, [port, plant]: [&LinearModel; 2]) -> Result<PortView, LinearError> {
     let impedance = open_loop_impedance(port)?;
+    let moved = if moves_ground(rig) { plant } else { port };
     Ok(PortView {
         passivity: passivity(&impedance)?,
         asymptotes: port::own_asymptotes(rig, None),
-        final_force_n: final_force_after_load_step(&port.load_position, 1e-3),
+        final_force_n: final_force_after_load_step(&moved.load_position, 1e-3),
+        by_motion: open_loop_impedance(moved)?,
+        moves_ground: moves_ground(rig),
         impedance,
     })
 }
@@ -228,12 +251,25 @@ fn is_fifth_order(rig: &Rig) -> bool {
         && rig.plant.series.is_none_or(|series| series.is_spring_alone())
 }
 
+/// Whether the ground of the load is moved in place of the load: with a virtual impedance the
+/// output of the plant is not the force alone.
+fn moves_ground(rig: &Rig) -> bool {
+    rig.load.is_some() && rig.virtual_impedance.is_none()
+}
+
 fn closed_loop_view(rig: &Rig, controller: &TransferFunction) -> Result<PortView, LinearError> {
-    let impedance = closed_loop_port(&rig.in_loop().plant, controller)?;
+    let plant = rig.in_loop().plant;
+    let impedance = closed_loop_port(&plant, controller)?;
+    let by_motion = match moves_ground(rig) {
+        true => closed_loop_impedance(&transfer_functions(&plant.coefficients())?, controller)?,
+        false => impedance.clone(),
+    };
     Ok(PortView {
         passivity: passivity(&impedance)?,
         asymptotes: port::asymptotes(rig, controller),
-        final_force_n: final_force_after_load_step(&load_motion_of(&impedance)?, 1e-3),
+        final_force_n: final_force_after_load_step(&load_motion_of(&by_motion)?, 1e-3),
+        by_motion,
+        moves_ground: moves_ground(rig),
         impedance,
     })
 }

@@ -137,17 +137,54 @@ impl Rig {
         self.softened(&LinearParameters { flow_pressure_coefficient, ..self.linear })
     }
 
+    /// [`Rig::leaking`] with the stiffness of the load in series with the force sensor as well: the
+    /// first-order model against the load. Of a load that no stiffness holds, those with the load
+    /// held still.
+    pub fn against_load(&self) -> LinearParameters {
+        self.before_load(&self.leaking())
+    }
+
+    /// These parameters with the stiffness of the load in series with that beyond the piston.
+    pub(crate) fn before_load(&self, parameters: &LinearParameters) -> LinearParameters {
+        let sensor_stiffness = match self.load_stiffness() {
+            Some(load) => in_series(parameters.sensor_stiffness, load),
+            None => parameters.sensor_stiffness,
+        };
+        LinearParameters { sensor_stiffness, ..*parameters }
+    }
+
+    /// Stiffness of the load at the operating point in N/m at the rod; `None` where the motion of
+    /// the load is prescribed, or no stiffness holds it.
+    pub fn load_stiffness(&self) -> Option<f64> {
+        self.plant.load.stiffness_at_rest()
+    }
+
     /// These parameters with the stiffness of a series element in series with the force sensor: the
     /// whole of the effect of a spring that has neither damper nor mass.
     pub fn softened(&self, parameters: &LinearParameters) -> LinearParameters {
         LinearParameters { sensor_stiffness: self.beyond_piston(parameters.sensor_stiffness), ..*parameters }
     }
 
-    /// The linearised two-pressure model with the stiffness of a series element in series with the
-    /// force sensor.
-    pub(crate) fn softened_chambers(&self) -> TwoPressureLinearParameters {
+    /// The linearised two-pressure model with what leaks from chamber to chamber, with the stiffness
+    /// of a series element in series with the force sensor, and with the load held still.
+    pub(crate) fn two_pressure_held(&self) -> LinearPlant {
         let sensor_stiffness = self.beyond_piston(self.two_pressure.sensor_stiffness);
-        TwoPressureLinearParameters { sensor_stiffness, ..self.two_pressure }
+        let parameters = TwoPressureLinearParameters { sensor_stiffness, ..self.two_pressure };
+        let held = LinearPlant::of_two_pressures(&parameters, self.internal_leakage, LinearLoad::Prescribed);
+        LinearPlant { area_stiffness: self.plant.area_stiffness, ..held }
+    }
+
+    /// The derived parameters, as [`Rig::leaking`] has those in use.
+    pub(crate) fn leaking_derived(&self) -> LinearParameters {
+        let flow_pressure_coefficient = self.derived.flow_pressure_coefficient + self.internal_leakage;
+        self.softened(&LinearParameters { flow_pressure_coefficient, ..self.derived })
+    }
+
+    /// The model with one load pressure and these parameters against the load, with what is in
+    /// series with the force sensor.
+    pub(crate) fn one_pressure(&self, parameters: &LinearParameters) -> LinearPlant {
+        let plant = LinearPlant::of_load_pressure(parameters, self.internal_leakage, self.plant.load);
+        LinearPlant { series: self.plant.series, ..plant }
     }
 
     /// The stiffness in N/m of a force sensor together with a series element, where there is one.

@@ -21,7 +21,7 @@ pub(crate) use of_project::own_hoses;
 pub use of_project::{SizingError, sizing_problem};
 pub(crate) use other_means::TOO_FEW_COILS;
 pub use other_means::{OtherMeans, OtherMeansProblem, SizedGas, SizedPipe, SizedSpring, SizedValve};
-pub use problem::{HoseOption, SizingProblem};
+pub use problem::{HoseOption, SizedLoad, SizingProblem};
 pub use sensitivity::{Influence, sensitivity};
 
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -55,6 +55,8 @@ pub struct Sizing {
     pub bore_range_m: [f64; 2],
     /// Gain at which equation 6.16 requires an infinitely stiff transmission, V/N.
     pub pole_gain_v_per_n: f64,
+    /// The load that the time constant is of.
+    pub load: SizedLoad,
     /// The stiffness model of the project.
     pub model: StiffnessModel,
     /// Every candidate: accepted ones first, among these the project's model first, then the
@@ -93,6 +95,7 @@ pub fn size(problem: &SizingProblem, question: Question) -> Sizing {
         accepted.then(declared).then(micrometres(one).total_cmp(&micrometres(other)))
     });
     let mut sizing = Sizing {
+        load: problem.load,
         model: problem.model,
         bores,
         bore_range_m: bore::range(problem),

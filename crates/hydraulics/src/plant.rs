@@ -17,7 +17,6 @@ mod load;
 mod series;
 mod supply;
 mod virtual_impedance;
-
 pub use in_motion::{BehindLines, PlantInMotion};
 pub use load::LinearLoad;
 pub use series::{LinearElement, LinearSeries, LinearSpring, SeriesOutput};
@@ -442,6 +441,10 @@ impl<S: Scalar> LinearPlant<S> {
     /// assert!((plant(light) / prescribed - 1.0).norm_sqr() > 1e-3);
     /// ```
     pub fn coefficients(&self) -> PlantCoefficients<S> {
+        self.of_free_load(self.with_position())
+    }
+
+    fn with_position(&self) -> PlantCoefficients<S> {
         let (one, square) = (S::from(1.0), self.valve_natural_frequency.squared());
         let damping = S::from(2.0) * self.valve_damping_ratio * self.valve_natural_frequency;
         let spool = [one, damping, square];

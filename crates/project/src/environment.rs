@@ -125,20 +125,20 @@ impl Variants for Load {
 
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let kilograms = key("mass", &MASS, "Mass of the load.").of_load().positive();
-        let spring =
-            key("stiffness", &STIFFNESS, "Stiffness of the load or of the wall.").of_load().positive();
+        let spring = key("stiffness", &STIFFNESS, "Stiffness of the load or of the wall.").of_load();
         let damper =
             key("damping", &DAMPING, "Damping of the load or of its guide.").of_load().not_negative().or(0.0);
         match self {
             Load::Prescribed => {}
             Load::SpringMassDamper { mass, stiffness, damping } => {
                 v.quantity(kilograms, mass);
-                v.quantity(spring, stiffness);
+                // zero for a free mass
+                v.quantity(spring.not_negative(), stiffness);
                 v.quantity(damper, damping);
             }
             Load::Wall { mass, damping, stiffness, gap, relative_damping } => {
                 v.optional(kilograms, mass);
-                v.quantity(spring, stiffness);
+                v.quantity(spring.positive(), stiffness);
                 v.quantity(damper, damping);
                 let k = key("gap", &LENGTH, "Free play before the wall is touched.").of_load().not_negative();
                 v.quantity(k.or(0.0), gap);

@@ -125,7 +125,8 @@ impl DeclaredLimit {
         margins.visit(v);
         response.visit(v);
         let function = numerator.zip(denominator);
-        let function = function.map(|(numerator, denominator)| Rational { numerator, denominator });
+        let function =
+            function.map(|(numerator, denominator)| Rational { numerator, denominator, factors: None });
         *self = match function {
             _ if !table.frequencies.is_empty() => DeclaredLimit::Table(table),
             _ if margins != MarginWish::default() => DeclaredLimit::Margins(margins),

@@ -265,7 +265,8 @@ impl Component {
 
 impl LineVolume {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = key("volume", &VOLUME, "Volume of the line, instead of a hose or pipe.").positive();
+        let doc = "Volume of the line, instead of a hose or pipe; zero: the valve is on the chamber.";
+        let k = key("volume", &VOLUME, doc).not_negative();
         v.quantity(k, &mut self.volume);
         let k = key("effective_bulk_modulus", &PRESSURE, "Effective bulk modulus that goes with `volume`.");
         v.quantity(k.positive(), &mut self.effective_bulk_modulus);

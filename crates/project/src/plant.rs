@@ -3,7 +3,7 @@
 use super::formula::Formula;
 use super::key::{Key, key, plain};
 use super::visitor::{FormulaShape, ValueForm, Visitor};
-use phea_quantity::TIME;
+use phea_quantity::{RATIO, TIME};
 
 /// A transfer function in `s` and named parameters.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -49,13 +49,58 @@ impl Delay {
     }
 }
 
-/// Numerator and denominator as written.
+/// Numerator and denominator: as written, or those of the written factors.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rational {
     /// A polynomial.
     pub numerator: Formula,
     /// A polynomial.
     pub denominator: Formula,
+    /// The factors that they are the products of, where these are written.
+    pub factors: Option<PlantFactors>,
+}
+
+/// k Π(s - z)/Π(s - p).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PlantFactors {
+    /// k: a number, or a formula of the uncertain parameters.
+    pub gain: Option<Formula>,
+    /// Real and imaginary parts, 1/s.
+    pub zeros: Vec<[f64; 2]>,
+    /// Real and imaginary parts, 1/s.
+    pub poles: Vec<[f64; 2]>,
+}
+
+/// The keys of factors, and of polynomials.
+const FACTORS: [&str; 3] = ["gain", "zeros", "poles"];
+const POLYNOMIALS: [&str; 2] = ["numerator", "denominator"];
+
+impl PlantFactors {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let doc =
+            "Leading coefficient k of k prod(s - z)/prod(s - p), or a formula of the uncertain parameters.";
+        v.formula(plain("gain", doc), FormulaShape::Coefficient, &mut self.gain, true);
+        let k = key("zeros", &RATIO, "Numbers, or [re, im] pairs with their conjugates; absent: none.");
+        v.complexes(k, &mut self.zeros);
+        let k = key("poles", &RATIO, "Numbers, or [re, im] pairs with their conjugates; absent: none.");
+        v.complexes(k, &mut self.poles);
+    }
+
+    /// Numerator and denominator; a pair counts by its root above the real axis.
+    fn polynomials(&self) -> Option<[Formula; 2]> {
+        let factor = |[real, imaginary]: &[f64; 2]| match imaginary {
+            0.0 => format!("(s - ({real:e}))"),
+            _ => format!("(s^2 - ({:e})*s + {:e})", 2.0 * real, real * real + imaginary * imaginary),
+        };
+        let product = |first: String, roots: &[[f64; 2]]| {
+            let factors = roots.iter().filter(|[_, imaginary]| *imaginary >= 0.0).map(factor);
+            Formula::parse_continuous(&std::iter::once(first).chain(factors).collect::<Vec<_>>().join("*"))
+        };
+        let gain = self.gain.as_ref()?.text();
+        let is_sum = gain.parse::<f64>().is_err() && gain.contains(['+', '-', '/']);
+        let gain = if is_sum { format!("({gain})") } else { gain.to_string() };
+        product(gain, &self.zeros).and_then(|over| Ok([over, product("1".to_string(), &self.poles)?])).ok()
+    }
 }
 
 impl Rational {
@@ -63,8 +108,25 @@ impl Rational {
         self.visit_as(FormulaShape::Polynomial, v);
     }
 
+    /// Polynomials with named parameters, or factors.
     fn visit_parametric<V: Visitor>(&mut self, v: &mut V) {
-        self.visit_as(FormulaShape::Parametric, v);
+        let mut polynomials = self.factors.is_none().then(|| std::mem::take(self));
+        v.way(&FACTORS, &mut self.factors, PlantFactors::visit);
+        v.way(&POLYNOMIALS, &mut polynomials, |rational, v| rational.visit_as(FormulaShape::Parametric, v));
+        v.one_of(&["numerator", "gain"], false);
+        if polynomials.is_none() && self.factors.is_none() {
+            let what = "`numerator` and `denominator`, or `gain` with `zeros` and `poles`,";
+            v.lacks(&[&POLYNOMIALS, &["gain"]], what);
+        }
+        match (&self.factors, polynomials) {
+            (Some(factors), _) => {
+                if let Some([numerator, denominator]) = factors.polynomials() {
+                    (self.numerator, self.denominator) = (numerator, denominator);
+                }
+            }
+            (None, Some(polynomials)) => *self = polynomials,
+            (None, None) => {}
+        }
     }
 
     fn visit_as<V: Visitor>(&mut self, shape: FormulaShape, v: &mut V) {
@@ -85,13 +147,18 @@ fn required<V: Visitor>(key: Key, shape: FormulaShape, field: &mut Formula, v: &
 pub(crate) const DELAY_PATH: &str = "plant.delay";
 
 impl DeclaredPlant {
-    /// Every formula with its path.
+    /// Every formula with its path; a gain stands for the numerator of its factors.
     pub(crate) fn formulas(&self) -> Vec<(&'static str, &Formula)> {
-        let mut formulas = vec![("plant.numerator", &self.transfer.numerator)];
-        formulas.push(("plant.denominator", &self.transfer.denominator));
-        if let Some(second) = &self.disturbance {
-            formulas.push(("plant.disturbance.numerator", &second.numerator));
-            formulas.push(("plant.disturbance.denominator", &second.denominator));
+        let mut formulas = Vec::new();
+        let plant = ["plant.gain", "plant.numerator", "plant.denominator"];
+        let second =
+            ["plant.disturbance.gain", "plant.disturbance.numerator", "plant.disturbance.denominator"];
+        let both = [(Some(&self.transfer), plant), (self.disturbance.as_ref(), second)];
+        for (rational, [gain, numerator, denominator]) in both {
+            let Some(rational) = rational else { continue };
+            let numerator = if rational.factors.is_some() { gain } else { numerator };
+            formulas.push((numerator, &rational.numerator));
+            formulas.push((denominator, &rational.denominator));
         }
         if let Delay::Formula(formula) = &self.delay {
             formulas.push((DELAY_PATH, formula));

@@ -7,6 +7,7 @@ mod cross_port;
 mod design;
 mod direction;
 mod family;
+mod ideal;
 mod identify;
 mod impedance;
 mod line_motion;
@@ -40,6 +41,7 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
             None => series::series(project, actuator, &mut check),
         }
         linkage::linkage(project, actuator, &mut check);
+        ideal::limits(project, actuator, &mut check);
         cost::prices(actuator, &mut check);
         wishes::with_actuator(project, actuator, &mut check);
     }

@@ -263,7 +263,7 @@ fn rig_part(
     let appendix = vec![
         stiffness::chapter(rig, &linearization),
         Chapter::of("derived", "Derived quantities", derived::document(&derived)),
-        models::chapter(&linearization)?,
+        models::chapter(setup, &linearization)?,
         impedance::chapter(setup, &linearization)?,
         response::chapter(setup, given.as_ref(), reference(project)),
     ];

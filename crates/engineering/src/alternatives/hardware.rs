@@ -19,7 +19,7 @@ impl JudgedAlternative {
             Ok([found.stiffness[0].minimum, found.stiffness[0].maximum][end])
         };
         let rig = self.rig.as_ref().map_err(Clone::clone);
-        let equivalent = rig.map(|rig| rig.leaking().equivalent_stiffness());
+        let equivalent = rig.map(|rig| rig.against_load().equivalent_stiffness());
         let motion = self.loaded.project.motion();
         let stiff = motion.unit(DisplayUnit::MEGANEWTON_PER_METRE);
         let mut columns = vec![

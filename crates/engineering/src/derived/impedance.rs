@@ -20,13 +20,13 @@ pub(super) fn impedance(rig: &Rig, list: &mut List) {
         list.add("impedance.filter_frequency", "1/τ", corner, "rad/s", "ω = 1/τ");
     }
     if stiffness > 0.0 {
-        let ratio = stiffness / rig.linear.equivalent_stiffness();
+        let ratio = stiffness / rig.leaking().equivalent_stiffness();
         list.add(
             "impedance.over_passive",
             "K_v/K_{eq}",
             ratio,
             "1",
-            "K_v over K_{eq} of oil and sensor in series",
+            "K_v over K_{eq} of oil, sensor and series element, the load held still",
         );
     }
 }

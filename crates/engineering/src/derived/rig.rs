@@ -1,19 +1,18 @@
 use phea_hydraulics::cylinder::{Cylinder, chamber_volumes};
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::{Hose, Line, StiffeningMember};
-use phea_hydraulics::linear::{MechanicalDamping, decompose, transfer_functions};
 use phea_hydraulics::operating_point::Condition;
 
 use super::Derived;
 use super::accumulator::accumulators;
 use super::cross_port::cross_port;
+use super::dynamics::dynamics;
 use super::impedance::impedance;
 use super::linkage::linkage;
 use super::list::List;
 use super::parts::costs;
 use super::series::series;
 use super::valve::valve;
-use crate::linearize::{HidingMass, hidden_above};
 use crate::linearize::{stiffness_models, stroke_stiffness};
 use crate::project::Project;
 use crate::quantity::MotionKind;
@@ -268,80 +267,6 @@ fn linear_parameters(rig: &Rig, list: &mut List) {
             ParameterOrigin::Derived => {}
         }
     }
-}
-
-fn dynamics(rig: &Rig, list: &mut List) {
-    let linear = &rig.leaking();
-    let factors = decompose(linear, MechanicalDamping::Corrected);
-    list.group("Dynamics, with the values in use");
-    list.add(
-        "dynamics.equivalent_stiffness",
-        "K_eq",
-        linear.equivalent_stiffness(),
-        "N/m",
-        match rig.plant.series {
-            None => "K_{eq} = K_H K_S/(K_H + K_S)",
-            Some(_) => "1/K_{eq} = 1/K_H + 1/K_S + 1/k_t",
-        },
-    );
-    list.add(
-        "dynamics.hydraulic_pole",
-        "s_1",
-        -factors.hydraulic_rate,
-        "rad/s",
-        "s_1 = -(K_c + G) K_{eq}/A_u^2",
-    );
-    list.add(
-        "dynamics.mechanical_frequency",
-        "ω_m",
-        factors.mechanical_square.sqrt(),
-        "rad/s",
-        match rig.plant.series {
-            None => "ω_m = sqrt((K_H + K_S)/M)",
-            Some(_) => "ω_m = sqrt((K_H + K_S k_t/(K_S + k_t))/M)",
-        },
-    );
-    let damping_ratio = factors.mechanical_damping / (2.0 * factors.mechanical_square.sqrt());
-    list.add(
-        "dynamics.mechanical_damping_ratio",
-        "ξ_m",
-        damping_ratio,
-        "1",
-        match rig.plant.series {
-            None => "2 ξ_m ω_m = f_v/M + (K_c + G) K_H^2/(A_u^2 (K_H + K_S))",
-            Some(_) => "2 ξ_m ω_m = f_v/M + (K_c + G) K_H^2/(A_u^2 (K_H + K_S k_t/(K_S + k_t)))",
-        },
-    );
-    list.add(
-        "dynamics.force_rate_gain",
-        "K_qU K_eq/A_u",
-        factors.hydraulic_gain,
-        "N/(s.V)",
-        "dF_e/dt per volt = K_{qU} K_{eq}/A_u",
-    );
-    let (mass, hidden) = hidden_above(rig);
-    let equation = match mass {
-        HidingMass::Piston => "ω = sqrt(K_H/M)",
-        HidingMass::Oil => "ω = sqrt(K_{eq}/m)",
-    };
-    list.add("dynamics.compliance_hidden_above", "ω", hidden, "rad/s", equation);
-    least_damped(rig, list);
-}
-
-/// The mode of the plant that oscillates longest, with all of its parts but waves in the lines;
-/// none where it does not oscillate.
-fn least_damped(rig: &Rig, list: &mut List) {
-    let Ok(plant) = transfer_functions(&rig.plant.coefficients()) else { return };
-    let oscillating = plant.command.poles().iter().filter(|pole| pole.im > 0.0);
-    let modes = oscillating.map(|pole| [pole.norm_sqr().sqrt(), -pole.re / pole.norm_sqr().sqrt()]);
-    let Some([frequency, ratio]) = modes.reduce(|least, one| if one[1] < least[1] { one } else { least })
-    else {
-        return;
-    };
-    let equation =
-        "s = -ξ_d ω_d ± j ω_d sqrt(1 - ξ_d^2), least damped poles of the plant, all lumped parts in it";
-    list.add("dynamics.least_damped_frequency", "ω_d", frequency, "rad/s", equation);
-    list.add("dynamics.least_damped_ratio", "ξ_d", ratio, "1", equation);
 }
 
 fn friction(rig: &Rig, list: &mut List) {

@@ -27,8 +27,12 @@ const REDUCTIONS: [[&str; 2]; 4] = [
     ["two-pressure, derived parameters", "4.25 to 4.29"],
     ["fifth order", "6.7"],
     ["decomposed, corrected", "6.12"],
-    ["first order", "6.13"],
+    [FIRST_ORDER, "6.13"],
 ];
+/// Name of the first-order model, which alone of the reductions has the stiffness of the load.
+pub const FIRST_ORDER: &str = "first order";
+/// Name of the plant with its lines at rest.
+pub const LUMPED: &str = "lumped lines";
 
 /// Where the reductions, in this order, agree with the plant on a grid of frequencies in rad/s;
 /// where lines move, the plant with lumped lines comes first.
@@ -43,7 +47,7 @@ pub(super) fn agreement(
         equation,
         bands_rad_per_s: bands(grid, |frequency| rig.response(frequency), function),
     };
-    let lines = rig.in_motion.map(|_| one(["lumped lines", "plant"], lumped));
+    let lines = rig.in_motion.map(|_| one([LUMPED, "plant"], lumped));
     let of_reductions = REDUCTIONS.into_iter().zip(reductions).map(|(name, function)| one(name, function));
     lines.into_iter().chain(of_reductions).collect()
 }

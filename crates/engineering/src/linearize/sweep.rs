@@ -277,7 +277,7 @@ fn moves(found: &[(f64, Result<Models, String>)]) -> bool {
 
 fn swept(models: Models, plant_follows: bool) -> Swept {
     let Models { linearization, seen, given, sensor } = models;
-    let derived = &linearization.derived_full.command;
+    let derived = &linearization.derived_plant;
     let function = if plant_follows { &linearization.plant.command } else { derived };
     let closed = given.map(|given| match plant_follows {
         true => linear_loop_of(&seen, &given, &sensor, BAND_PERCENT),

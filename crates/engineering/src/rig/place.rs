@@ -11,7 +11,7 @@ use crate::project::{self, Project};
 /// The position in m (in rad, of a motor) and the condition for the pressures. At null the piston
 /// is blocked; with a command it moves, without load pressure unless one is declared,
 /// thesis (4.18); with a velocity there is no load unless one is declared. A load that yields and
-/// has a weight is held, unless a load or a command is declared.
+/// has a weight is held, unless a load or a command is declared; a free mass takes no force.
 pub fn place<S: Scalar>(
     project: &Project,
     components: &Components<S>,
@@ -25,7 +25,8 @@ pub fn place<S: Scalar>(
     let pressure = at("load_pressure", load_pressure);
     let force = at("load_force", load_force);
     let none = S::from(0.0);
-    let force = force.or_else(|| weight_held(project, components, position).filter(|_| command.is_none()));
+    let at_rest = || weight_held(project, components, position).or_else(|| is_free(project).then_some(none));
+    let force = force.or_else(|| at_rest().filter(|_| command.is_none()));
     let load = pressure.map(SteadyLoad::Pressure).or(force.map(SteadyLoad::Force));
     let steady = match (command, pressure) {
         (Some(command), Some(pressure)) => Steady::Matched(S::from(command), pressure),
@@ -37,6 +38,14 @@ pub fn place<S: Scalar>(
         },
     };
     (position, steady)
+}
+
+/// Whether the load is a mass that no stiffness holds.
+fn is_free(project: &Project) -> bool {
+    let declared = project.actuator.as_ref().filter(|declared| declared.linkage.is_none());
+    declared.is_some_and(|declared| {
+        matches!(declared.load, project::Load::SpringMassDamper { stiffness: 0.0, .. })
+    })
 }
 
 /// The force that holds the weight of a load that yields; `None` where there is none.

@@ -32,6 +32,8 @@ pub struct YieldingLoad<S = f64> {
     pub stiffness: S,
     /// Damping of the contact with a wall.
     pub contact_damping: S,
+    /// Whether no stiffness is declared and none is uncertain: a free mass.
+    pub is_free: bool,
     /// `None` without a linkage.
     pub lever: Option<LoadLever<S>>,
 }
@@ -53,6 +55,7 @@ impl<S: Scalar> YieldingLoad<S> {
         let (mass, stiffness) = (self.mass, self.stiffness);
         let damping = self.damping + self.contact_damping;
         match self.lever {
+            None if self.is_free => LinearLoad::Free { mass, damping },
             None => LinearLoad::Yielding { mass, damping, stiffness },
             Some(LoadLever { arm, geometric_stiffness, weight_stiffness }) => {
                 let geometric_stiffness =
@@ -119,6 +122,7 @@ fn yielding_load<S: Scalar>(
             damping: at("damping", damping),
             stiffness: at("stiffness", stiffness),
             contact_damping: none,
+            is_free: stiffness == 0.0 && of_load.get("stiffness").is_none(),
             lever: None,
         }),
         project::Load::Wall { mass, damping, stiffness, gap, relative_damping } => {
@@ -129,6 +133,7 @@ fn yielding_load<S: Scalar>(
                 damping: at("damping", damping),
                 stiffness: if gap == 0.0 { wall } else { touched },
                 contact_damping: at("relative_damping", relative_damping) * force.maximum(none),
+                is_free: false,
                 lever: None,
             })
         }

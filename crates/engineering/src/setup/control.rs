@@ -162,7 +162,7 @@ pub(super) fn quantization(project: &Project) -> Result<Quantization, ControlErr
 pub(super) fn sensor(project: &Project) -> Result<TransferFunction, ControlError> {
     let Some(declared) = &project.sensor else { return Ok(TransferFunction::gain_only(1.0)) };
     let place = "[sensor]";
-    let Rational { numerator, denominator } = &declared.transfer;
+    let Rational { numerator, denominator, .. } = &declared.transfer;
     let function =
         from_formulas(numerator, denominator).map_err(|error| ControlError::Formula { place, error })?;
     let delayed = function.and_then(|function| function.with_dead_time(declared.delay));

@@ -1,9 +1,10 @@
 use phea_dynamics::portable::ln;
+use phea_hydraulics::force_sensor::in_series;
 use phea_hydraulics::linear::LinearParameters;
 
-use super::{HoseOption, OtherMeansProblem, SizingProblem};
+use super::{HoseOption, OtherMeansProblem, SizedLoad, SizingProblem};
 use crate::catalogue::{Catalogue, CatalogueKind, DASH_SIZES};
-use crate::project::{self, HoseProperties, SettlingTime, Speed};
+use crate::project::{self, HoseProperties, Load, SettlingTime, Speed};
 use crate::quantity::significant;
 use crate::rig::{ExpansionPressures, Numbers, Rig, RigError, VolumetricExpansion, hose, stiffening};
 use crate::setup::Setup;
@@ -88,8 +89,10 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
                 + wish
                     .flow_pressure_coefficient
                     .unwrap_or(outright("flow_pressure_coefficient", rig.derived.flow_pressure_coefficient)),
-            ..rig.softened(&rig.linear)
+            ..against_load(actuator, rig)
         },
+        sensor_alone: rig.softened(&rig.linear).sensor_stiffness,
+        load: sized_load(actuator, rig),
         fluid_modulus: components.fluid.modulus_at(rig.actuator.mean_pressure()),
         density: components.fluid.density,
         flow_pressure_coefficient_maximum: leakage
@@ -113,6 +116,29 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
         other_means: other_means(wish, actuator, rig),
         market_bores: DASH_SIZES.iter().map(|(name, bore)| (name.to_string(), *bore)).collect(),
     })
+}
+
+/// What the specimen is to a hose that is sized: the wall that is sized for is touched.
+fn sized_load(declared: &project::DeclaredActuator, rig: &Rig) -> SizedLoad {
+    match (&declared.load, rig.load_stiffness()) {
+        (Load::Prescribed, _) => SizedLoad::Prescribed,
+        (_, Some(stiffness)) => SizedLoad::Yielding { stiffness },
+        (Load::Wall { stiffness, .. }, None) if declared.linkage.is_none() => {
+            SizedLoad::Yielding { stiffness: *stiffness }
+        }
+        (_, None) => SizedLoad::HeldStill,
+    }
+}
+
+/// The linear parameters in use, with series element and load in series with the force sensor.
+fn against_load(declared: &project::DeclaredActuator, rig: &Rig) -> LinearParameters {
+    let softened = rig.softened(&rig.linear);
+    match sized_load(declared, rig) {
+        SizedLoad::Yielding { stiffness } => {
+            LinearParameters { sensor_stiffness: in_series(softened.sensor_stiffness, stiffness), ..softened }
+        }
+        SizedLoad::Prescribed | SizedLoad::HeldStill => softened,
+    }
 }
 
 /// What the other means are sized from, where somebody asks.

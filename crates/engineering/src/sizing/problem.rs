@@ -18,9 +18,13 @@ pub struct SizingProblem {
     pub cylinder: Cylinder,
     /// What leaks from chamber to chamber, which K_c of the linear model includes, m3/(s Pa).
     pub internal_leakage: f64,
-    /// Parameters of the linear model, K_c with what leaks from chamber to chamber; the hydraulic
-    /// stiffness is to be found; its value is not used.
+    /// Parameters of the linear model, K_c with what leaks from chamber to chamber, K_S with the
+    /// load in series; the hydraulic stiffness is to be found; its value is not used.
     pub linear: LinearParameters,
+    /// K_S without the load, N/m.
+    pub sensor_alone: f64,
+    /// The load in series with it.
+    pub load: SizedLoad,
     /// Bulk modulus of the fluid beta_0, Pa.
     pub fluid_modulus: f64,
     /// Density of the fluid, kg/m3.
@@ -58,6 +62,30 @@ pub struct SizingProblem {
     pub hoses: Vec<HoseOption>,
     /// Bores on the market other than those of the hoses, with their names, m.
     pub market_bores: Vec<(String, f64)>,
+}
+
+/// The load in the first-order model that a hose is sized with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SizedLoad {
+    /// Its motion is prescribed, whatever the force: the thesis.
+    Prescribed,
+    /// It yields under the force with this stiffness at the rod, N/m.
+    Yielding {
+        /// N/m
+        stiffness: f64,
+    },
+    /// It can move, but no stiffness holds it: the model holds it still.
+    HeldStill,
+}
+
+impl SizedLoad {
+    /// N/m, where it yields with one.
+    pub fn stiffness(self) -> Option<f64> {
+        match self {
+            SizedLoad::Yielding { stiffness } => Some(stiffness),
+            SizedLoad::Prescribed | SizedLoad::HeldStill => None,
+        }
+    }
 }
 
 /// A hose of the catalogue.
@@ -157,6 +185,21 @@ impl SizingProblem {
         self.stock_length.map_or(longest, |stock| longest.min(stock / (own + other)))
     }
 
+    /// K_S, and what the load in series with it makes of it.
+    fn sensor_words(&self) -> String {
+        let unit = DisplayUnit::MEGANEWTON_PER_METRE;
+        let sensor = format!("K_S = {}", unit.text(self.sensor_alone, 4));
+        match self.load {
+            SizedLoad::Prescribed => sensor,
+            SizedLoad::Yielding { stiffness } => format!(
+                "{sensor} in series with the load's {}: {}",
+                unit.text(stiffness, 4),
+                unit.text(self.linear.sensor_stiffness, 4)
+            ),
+            SizedLoad::HeldStill => format!("{sensor}, the load held still, as no stiffness holds it"),
+        }
+    }
+
     /// What the words of the procedure say about the lines.
     fn lines_words(&self) -> String {
         match &self.unlike {
@@ -171,11 +214,11 @@ impl SizingProblem {
             SizingStep {
                 step: "a",
                 text: format!(
-                    "System data: A_u = {} cm2, stroke {} mm, β_0 = {} GPa, K_S = {} MN/m, K_qU = {} m3/(s.V), K_c0 = {} m3/(s.Pa){}; {}.",
+                    "System data: A_u = {} cm2, stroke {} mm, β_0 = {} GPa, {}, K_qU = {} m3/(s.V), K_c0 = {} m3/(s.Pa){}; {}.",
                     DisplayUnit::SQUARE_CENTIMETRE.number(self.linear.useful_area, 4),
                     DisplayUnit::MILLIMETRE.number(2.0 * self.cylinder.stroke.middle(), 4),
                     DisplayUnit::GIGAPASCAL.number(self.fluid_modulus, 4),
-                    DisplayUnit::MEGANEWTON_PER_METRE.number(self.linear.sensor_stiffness, 4),
+                    self.sensor_words(),
                     number(self.linear.flow_gain),
                     number(self.linear.flow_pressure_coefficient),
                     match self.internal_leakage {

@@ -1,6 +1,8 @@
 use phea_dynamics::analytic::Analytic;
 use phea_dynamics::scalar::Scalar;
+use phea_dynamics::uncertain_plant::PlantCoefficients;
 
+use super::LinearPlant;
 use crate::linear::polynomial::scaled;
 
 /// The load on the force sensor, linearised at the operating point.
@@ -15,8 +17,16 @@ pub enum LinearLoad<S = f64> {
         mass: S,
         /// Damping c in N s/m.
         damping: S,
-        /// Stiffness k in N/m; zero for a free mass.
+        /// Stiffness k in N/m; zero where no wall is touched.
         stiffness: S,
+    },
+    /// A mass that nothing holds to its ground but a damper. Its position is open and no force
+    /// depends on it: the factor s that all polynomials have in common is left out.
+    Free {
+        /// Mass m in kg.
+        mass: S,
+        /// Damping c in N s/m.
+        damping: S,
     },
     /// A load that turns behind a linkage, with X_0 = r Theta_0 the way of the rod that follows
     /// from the angle of its ground.
@@ -66,6 +76,9 @@ impl<S: Scalar> LinearLoad<S> {
             LinearLoad::Yielding { mass, damping, stiffness } => {
                 Some(LoadTerms { mass, ground: [damping, stiffness], geometric: None, share: None })
             }
+            LinearLoad::Free { mass, damping } => {
+                Some(LoadTerms { mass, ground: [damping, S::from(0.0)], geometric: None, share: None })
+            }
             LinearLoad::Linked { inertia, damping, stiffness, geometric_stiffness, lever_arm } => {
                 Some(LoadTerms {
                     mass: inertia,
@@ -75,6 +88,48 @@ impl<S: Scalar> LinearLoad<S> {
                 })
             }
         }
+    }
+}
+
+impl LinearLoad {
+    /// Stiffness in N/m that holds it against a force of the rod at rest, behind a linkage
+    /// (k + k_g)/r^2; `None` where nothing does: a prescribed motion, a free mass, a linkage that
+    /// gives way.
+    ///
+    /// # Example
+    /// Behind a lever arm of half a metre a torsion spring is four times as stiff.
+    /// ```
+    /// use phea_hydraulics::plant::LinearLoad;
+    /// let turned = LinearLoad::Linked {
+    ///     inertia: 1.0, damping: 0.0, stiffness: 250.0, geometric_stiffness: 50.0, lever_arm: 0.5,
+    /// };
+    /// assert_eq!(turned.stiffness_at_rest(), Some(4.0 * 300.0));
+    /// let free = LinearLoad::Yielding { mass: 1.0, damping: 2.0, stiffness: 0.0 };
+    /// assert_eq!(free.stiffness_at_rest(), None);
+    /// ```
+    pub fn stiffness_at_rest(&self) -> Option<f64> {
+        let [_, _, stiffness] = self.terms()?.reflected();
+        (stiffness > 0.0).then_some(stiffness)
+    }
+}
+
+impl<S: Scalar> LinearPlant<S> {
+    /// Of a free mass the coefficients without the factor s in common; it is not in common where
+    /// the output or the piston depends on the position.
+    pub(super) fn of_free_load(&self, mut plant: PlantCoefficients<S>) -> PlantCoefficients<S> {
+        let LinearLoad::Free { .. } = self.load else { return plant };
+        if self.virtual_impedance.is_some() || self.area_stiffness.is_some() {
+            return plant;
+        }
+        let second = plant.disturbance.as_mut();
+        let rate = plant.rate.as_mut();
+        let paths = [Some(&mut plant.command), second].into_iter().flatten();
+        let of_paths = paths.flat_map(|path| [&mut path.numerator, &mut path.denominator]);
+        let of_rate = rate.into_iter().flat_map(|rate| [&mut rate.command, &mut rate.disturbance]);
+        for polynomial in of_paths.chain(of_rate) {
+            polynomial.pop();
+        }
+        plant
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::linear_loop::conjugates;
 use super::measured::measured;
 use super::signal::signals;
 use super::{Check, adjustment, linear_parameter};
@@ -221,8 +222,17 @@ pub(super) fn with_plant(project: &Project, plant: &DeclaredPlant, check: &mut C
             check.warning(&format!("uncertainty.{}", uncertain.name), message);
         }
     }
+    // one that is missing is reported as such
     for (path, formula) in formulas {
-        nominal_formula(project, formula, path, check);
+        if check.declared(path) {
+            nominal_formula(project, formula, path, check);
+        }
+    }
+    let second = plant.disturbance.as_ref();
+    for (table, rational) in [("plant", Some(&plant.transfer)), ("plant.disturbance", second)] {
+        let Some(factors) = rational.and_then(|rational| rational.factors.as_ref()) else { continue };
+        conjugates(&factors.zeros, &format!("{table}.zeros"), check);
+        conjugates(&factors.poles, &format!("{table}.poles"), check);
     }
 }
 

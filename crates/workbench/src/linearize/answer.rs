@@ -25,11 +25,16 @@ pub(crate) fn body(setup: &Setup<'_>, linearization: &Linearization) -> Object {
         .with("decomposed", linearization.decomposed[1].poles())
         .with("first_order", linearization.first_order.poles())
         .with("two_pressure", linearization.two_pressure.command.poles());
+    let held_still = linearization.load_yields.then(|| {
+        let first_order = (!linearization.first_order_has_load).then_some("first_order");
+        ["two_pressure", "full", "decomposed"].into_iter().chain(first_order).collect::<Vec<_>>()
+    });
     let decomposition = difference(&linearization.corrected_decomposition)
         .with("as_printed", difference(&linearization.printed_decomposition));
     Object::new()
         .with("stiffness", stiffness(linearization))
         .with("poles", poles)
+        .maybe("load_held_still_in", held_still)
         .with(
             "plant",
             Object::new()
@@ -53,6 +58,7 @@ pub(crate) fn body(setup: &Setup<'_>, linearization: &Linearization) -> Object {
         .maybe("virtual_impedance", linearization.asked.as_ref().map(asked))
         .with("compliance_hidden_above_rad_per_s", linearization.compliance_hidden_above_rad_per_s)
         .with("load_step_final_force_n", final_force(linearization))
+        .with("load_step_moves", if linearization.open_loop.moves_ground { "ground" } else { "load" })
         .with("warnings", of_models(setup))
 }
 
@@ -185,7 +191,7 @@ pub fn files(linearization: &Linearization) -> Vec<OutputFile> {
     let mut csv = Csv::new("model,equation,real_rad_per_s,imaginary_rad_per_s");
     for (model, equation, function) in models(linearization) {
         for pole in function.poles() {
-            csv.row(&[&quoted(model), &equation, &pole.re, &pole.im]);
+            csv.row(&[&quoted(&model), &equation, &pole.re, &pole.im]);
         }
     }
     vec![OutputFile::new("poles.csv", csv.text())]

@@ -7,8 +7,8 @@ use phea_dynamics::portable;
 use phea_hydraulics::linear::{ModeShare, ResponseDifference};
 
 use super::{
-    AgreementBand, AskedAt, AskedImpedance, Linearization, LinkagePlace, LinkagePosition,
-    ReductionDifference, WITHIN_DB, WITHIN_DEG, WITHIN_PERCENT, stiffness_sentence,
+    AgreementBand, AskedAt, AskedImpedance, FIRST_ORDER, LUMPED, Linearization, LinkagePlace,
+    LinkagePosition, ReductionDifference, WITHIN_DB, WITHIN_DEG, WITHIN_PERCENT, stiffness_sentence,
 };
 use crate::answer::significant;
 use crate::caveat::of_models;
@@ -26,7 +26,8 @@ pub(crate) fn output(setup: &Setup<'_>, linearization: &Linearization) -> Docume
         out.section("Linkage", linkage_table(&linearization.linkage));
     }
     out.append(document(linearization, vec![]));
-    out.heading("Driving-point impedance Z = -F_e/(s X_L)");
+    let without = if linearization.load_yields { " of the actuator, whatever its load," } else { "" };
+    out.heading(format!("Driving-point impedance{without} Z = -F_e/(s X_L)"));
     let closed = match (&linearization.closed_loop, &linearization.closed_loop_absent) {
         (Some(view), _) => passivity_sentence(&view.passivity),
         (None, Some(reason)) => format!("not computed, because {reason}"),
@@ -49,7 +50,7 @@ pub(crate) fn output(setup: &Setup<'_>, linearization: &Linearization) -> Docume
 /// Poles of the models, their differences, and the dominant modes; the figures follow the poles.
 pub(crate) fn document(linearization: &Linearization, figures: Vec<Figure>) -> Document {
     let mut out = Document::default();
-    let pole = |(model, equation, function): (&'static str, &'static str, &TransferFunction)| {
+    let pole = |(model, equation, function): (String, &'static str, &TransferFunction)| {
         [model.into(), equation.into(), Cell::Text(root_list(function.poles()))]
     };
     out.section(
@@ -57,7 +58,9 @@ pub(crate) fn document(linearization: &Linearization, figures: Vec<Figure>) -> D
         Table::new(["model", "equation", "poles, rad/s"]).with(models(linearization).map(pole)),
     );
     out.figures(figures);
-    let band = |one: &AgreementBand| [one.model.into(), one.equation.into(), Cell::Text(band_words(one))];
+    let band = |one: &AgreementBand| {
+        [model_words(linearization, one.model).into(), one.equation.into(), Cell::Text(band_words(one))]
+    };
     out.section(
         format!("Where a reduction is within {WITHIN_DB} dB and {WITHIN_DEG}° of the plant"),
         Table::new(["model", "equation", "frequencies"]).with(linearization.agreement.iter().map(band)),
@@ -65,13 +68,14 @@ pub(crate) fn document(linearization: &Linearization, figures: Vec<Figure>) -> D
     let error = |(name, one): (&str, &ReductionDifference)| {
         [name.to_string(), difference_text(&one.low), located(&one.all)]
     };
+    let held = if linearization.load_yields { ", the load held still" } else { "" };
     out.section(
-        "Largest differences",
+        format!("Largest differences{held}"),
         Table::new(["comparison", "below 1000 rad/s", "everywhere"])
             .with(comparisons(linearization).map(error)),
     );
     out.heading("Dominance");
-    out.explanation("Share: greatest amplitude of the mode in the step response over its final value. The slowest mode dominates when every other share is small.");
+    out.explanation("Share: greatest amplitude of the mode in the step response of the plant over its final value. The slowest mode dominates when every other share is small.");
     out.table(
         Table::new(["mode, rad/s", "share of the step response", "decay rate over the slowest"])
             .with(linearization.modes.iter().map(mode_cells)),
@@ -150,16 +154,30 @@ fn band_words(agreement: &AgreementBand) -> String {
 
 /// Every model with its equation, the fullest first; with the values in use unless stated
 /// otherwise.
-pub(crate) fn models(linearization: &Linearization) -> [(&'static str, &'static str, &TransferFunction); 7] {
-    [
+pub(crate) fn models(linearization: &Linearization) -> [(String, &'static str, &TransferFunction); 7] {
+    let all = [
         ("plant", "4.1 to 4.45", &linearization.plant.command),
         ("two-pressure, derived parameters", "4.25 to 4.29", &linearization.two_pressure.command),
         ("fifth order, derived parameters", "6.7", &linearization.derived_full.command),
         ("fifth order", "6.7", &linearization.full.command),
         ("decomposed, as printed", "6.12", &linearization.decomposed[0]),
         ("decomposed, corrected", "6.12", &linearization.decomposed[1]),
-        ("first order", "6.13", &linearization.first_order),
-    ]
+        (FIRST_ORDER, "6.13", &linearization.first_order),
+    ];
+    all.map(|(model, equation, function)| (model_words(linearization, model), equation, function))
+}
+
+/// The name of a model, and what is made of a load that can move under force.
+pub(crate) fn model_words(linearization: &Linearization, model: &str) -> String {
+    let load = match model {
+        _ if !linearization.load_yields => "",
+        "plant" | LUMPED => "",
+        first if linearization.first_order_has_load && first.starts_with(FIRST_ORDER) => {
+            ", the load's stiffness in series"
+        }
+        _ => ", load held still",
+    };
+    format!("{model}{load}")
 }
 
 /// Every comparison with its name.

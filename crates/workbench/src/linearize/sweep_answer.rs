@@ -33,7 +33,7 @@ fn row(point: &SweepPoint) -> Object {
     let poles = models.map(|models| {
         Object::new()
             .with("plant", models.plant.command.poles())
-            .with("derived", models.derived_full.command.poles())
+            .with("derived", models.derived_plant.poles())
     });
     let resonance = found.and_then(resonance).map(|[frequency, damping_ratio]| {
         Object::new().with("frequency_rad_per_s", frequency).with("damping_ratio", damping_ratio)

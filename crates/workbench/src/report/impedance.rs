@@ -6,7 +6,7 @@ use phea_dynamics::time_response::TimeResponseError;
 use phea_hydraulics::impedance::AsymptoteKind;
 
 use super::chapter::Chapter;
-use super::load_motion::{self, Moved};
+use super::load_motion::{self, Moved, what_moves};
 use crate::answer::significant;
 use crate::document::{Document, Table};
 use crate::figure::{AsymptoteLine, Figure, FrequencyMark, FrequencySeries, ImpedanceDiagram, Words};
@@ -65,7 +65,7 @@ pub(super) fn chapter(
         "Largest change of the force: {}.",
         peaks(&forces, motion.unit(DisplayUnit::KILONEWTON))
     ));
-    let of = if linearization.linkage.is_empty() { "the load" } else { "the rod's end" };
+    let of = what_moves(project, forces.iter().any(|moved| moved.moves_ground));
     let step = motion.unit(DisplayUnit::MILLIMETRE).text(1e-3, 3);
     let remaining: Vec<String> =
         views(linearization).iter().map(|(name, view)| format!("{name} {}", remains(view))).collect();

@@ -55,6 +55,8 @@ fn velocity(distance: f64, duration: f64) -> Result<SampledSignal, TimeResponseE
 pub(super) struct Moved {
     /// Which loop.
     pub(super) name: &'static str,
+    /// Whether the ground of the load moves and not the load itself.
+    pub(super) moves_ground: bool,
     /// Absent where the port is unstable.
     pub(super) force: Option<MovedForce>,
 }
@@ -86,16 +88,17 @@ pub(super) fn forces(
     let mut forces = Vec::new();
     for (name, view) in ports {
         let Some(final_force_n) = view.final_force_n else {
-            forces.push(Moved { name, force: None });
+            forces.push(Moved { name, moves_ground: view.moves_ground, force: None });
             continue;
         };
-        // F_e = -Z (s X_L)
-        let force = view.impedance.series(&TransferFunction::gain_only(-1.0))?;
+        // F_e = -Z (s X_L), of a load that yields with its ground in place of X_L
+        let force = view.by_motion.series(&TransferFunction::gain_only(-1.0))?;
         let values = forced_response(&force, &input, &times_s)?;
         let peak_n = values.iter().copied().fold(0.0, larger);
         let series = trace(&times_s, &values);
         let remains_n = final_force_n * distance / STATED_STEP;
-        forces.push(Moved { name, force: Some(MovedForce { peak_n, remains_n, series }) });
+        let force = Some(MovedForce { peak_n, remains_n, series });
+        forces.push(Moved { name, moves_ground: view.moves_ground, force });
     }
     Ok(forces)
 }
@@ -123,12 +126,22 @@ fn end(forces: &[Moved], unit: DisplayUnit) -> String {
     sentences.join(" ")
 }
 
+/// What moves, in words: the ground of a load that yields.
+pub(super) fn what_moves(project: &Project, is_ground: bool) -> &'static str {
+    let linked = project.actuator.as_ref().is_some_and(|actuator| actuator.linkage.is_some());
+    match (is_ground, linked) {
+        (true, true) => "the ground of the load, as seen at the rod's end,",
+        (true, false) => "the ground of the load",
+        (false, true) => "the rod's end",
+        (false, false) => "the load",
+    }
+}
+
 /// The figure of these forces.
 pub(super) fn figure(project: &Project, forces: &[Moved]) -> Figure {
     let (distance, duration) = motion(project);
     let unit = project.motion().unit(DisplayUnit::KILONEWTON);
-    let linked = project.actuator.as_ref().is_some_and(|actuator| actuator.linkage.is_some());
-    let moved = if linked { "the rod's end" } else { "the load" };
+    let moved = what_moves(project, forces.iter().any(|moved| moved.moves_ground));
     let caption = format!(
         "Change of the force while {moved} moves {} in {} s (a smooth step of fifth order), linear and with no limit on the command. {}",
         project.motion().unit(DisplayUnit::MILLIMETRE).text(distance, 3),

@@ -6,25 +6,34 @@ use crate::document::Document;
 use crate::figure::{
     BodeDiagram, Figure, FrequencyMark, FrequencySeries, PoleMap, PoleMapScale, PoleSeries, Words,
 };
-use crate::linearize::{Linearization, document, frequency_grid, resonance};
+use crate::linearize::{Linearization, document, frequency_grid, model_words, resonance};
+use crate::setup::Setup;
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
 
-pub(super) fn chapter(linearization: &Linearization) -> Result<Chapter, LinearError> {
+pub(super) fn chapter(setup: &Setup<'_>, linearization: &Linearization) -> Result<Chapter, LinearError> {
     let figures = vec![poles(linearization), responses(linearization)?, reduction(linearization)?];
     let mut out = Document::default();
-    out.explanation(
-        "The two-pressure model is the exact linearisation of the rig as declared; the fifth-order model (6.7) takes one stiffness and one load pressure. \
+    let held = match (linearization.load_yields, linearization.first_order_has_load) {
+        (false, _) => "",
+        (true, true) => {
+            " These models hold the load still; (6.13) has its stiffness in series, and the plant its motion."
+        }
+        (true, false) => " These models hold the load still; the plant alone has its motion.",
+    };
+    out.explanation(format!(
+        "The plant is the one of every verdict. The two-pressure model is the linearisation of the actuator as declared, its leakage included; the fifth-order model (6.7) takes one stiffness and one load pressure. \
          The resulting error is judged with derived parameters in both; everything else here uses the values in use. \
-         (6.12) splits it into hydraulic, mechanical and valve part; (6.13) keeps the hydraulic part alone.",
-    );
+         (6.12) splits it into hydraulic, mechanical and valve part; (6.13) keeps the hydraulic part alone.{held}",
+    ));
+    out.left_out(setup);
     out.append(document(linearization, figures));
     Ok(Chapter::of("models", "Linear models", out))
 }
 
 fn poles(linearization: &Linearization) -> Figure {
     let series = |name: &str, function: &TransferFunction| PoleSeries {
-        name: name.to_string(),
+        name: model_words(linearization, name),
         poles: function.poles().to_vec(),
         zeros: function.zeros().to_vec(),
     };
@@ -43,8 +52,11 @@ fn poles(linearization: &Linearization) -> Figure {
         damping_ratios: vec![0.01, 0.1, 0.5, 0.9],
         natural_frequencies_rad_per_s: vec![1.0, 10.0, 100.0, 1000.0],
     };
-    let caption = "Poles from command to force: the slow hydraulic pole, the piston on the load cell, the valve's spool.";
-    chart.draw(&Words::new("poles", "Pole map", caption))
+    let load = if linearization.load_yields { ", and the load on its own spring" } else { "" };
+    let caption = format!(
+        "Poles from command to force: the slow hydraulic pole, the piston on the load cell, the valve's spool{load}."
+    );
+    chart.draw(&Words::new("poles", "Pole map", &caption))
 }
 
 /// The models with the values in use, the plant first, which may be the fifth-order model.
@@ -63,7 +75,7 @@ fn responses(linearization: &Linearization) -> Result<Figure, LinearError> {
         "Force over command of the models with the values in use, and the difference of each from {first}."
     );
     let words = Words::new("bode", "Frequency response of the models", &caption);
-    diagram(words, &models, &linearization.plant.command)
+    diagram(linearization, words, &models, &linearization.plant.command)
 }
 
 /// Relative difference of responses up to which they agree to within rounding.
@@ -71,8 +83,10 @@ const AGREE: f64 = 1e-10;
 
 /// The error of the model with one load pressure: both models with derived parameters.
 fn reduction(linearization: &Linearization) -> Result<Figure, LinearError> {
-    let mut caption =
-        "The fifth-order model instead of the two-pressure model, both with derived parameters.".to_string();
+    let held = if linearization.load_yields { " and the load held still" } else { "" };
+    let mut caption = format!(
+        "The fifth-order model instead of the two-pressure model, both with derived parameters{held}."
+    );
     let [both, one] = [&linearization.two_pressure.command, &linearization.derived_full.command];
     let differs =
         |at: &f64| portable::magnitude(one.at_frequency(*at) / both.at_frequency(*at) - 1.0) > AGREE;
@@ -84,19 +98,20 @@ fn reduction(linearization: &Linearization) -> Result<Figure, LinearError> {
         ("two-pressure, derived parameters", &linearization.two_pressure.command),
         ("fifth order (6.7), derived parameters", &linearization.derived_full.command),
     ];
-    diagram(words, &models, &linearization.two_pressure.command)
+    diagram(linearization, words, &models, &linearization.two_pressure.command)
 }
 
 /// A Bode diagram with the differences from the first model.
 fn diagram(
+    linearization: &Linearization,
     words: Words,
     models: &[(&str, &TransferFunction)],
     reference: &TransferFunction,
 ) -> Result<Figure, LinearError> {
     let grid = frequency_grid(reference)?;
-    let series = models
-        .iter()
-        .map(|(name, function)| FrequencySeries::new(*name, &grid, |at| function.at_frequency(at)));
+    let series = models.iter().map(|(name, function)| {
+        FrequencySeries::new(model_words(linearization, name), &grid, |at| function.at_frequency(at))
+    });
     let resonance = resonance(reference)
         .map(|pole| FrequencyMark { label: "resonance".to_string(), frequency_rad_per_s: pole.im });
     let chart = BodeDiagram {

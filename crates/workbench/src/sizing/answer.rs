@@ -1,5 +1,5 @@
 use super::model_name;
-use super::{BoreVerdict, Candidate, Consequence, OtherMeans, Sizing};
+use super::{BoreVerdict, Candidate, Consequence, OtherMeans, SizedLoad, Sizing};
 use crate::answer::{Csv, Object, OutputFile, quoted};
 
 /// What `size` says to programs.
@@ -7,6 +7,8 @@ pub(crate) fn body(sizing: &Sizing) -> Object {
     let body = Object::new()
         .with("bore_range_m", sizing.bore_range_m)
         .with("pole_gain_v_per_n", sizing.pole_gain_v_per_n)
+        .with("load", load_name(sizing.load))
+        .maybe("load_stiffness_n_per_m", sizing.load.stiffness())
         .each("bores", &sizing.bores, |bore| {
             Object::new()
                 .with("name", bore.name.as_str())
@@ -26,6 +28,15 @@ pub(crate) fn body(sizing: &Sizing) -> Object {
                 .with("length_m", influence.length_m)
         });
     body.maybe("other_means", sizing.other_means.as_ref().map(other_means))
+}
+
+/// The load that time constant and gain are of.
+fn load_name(load: SizedLoad) -> &'static str {
+    match load {
+        SizedLoad::Prescribed => "prescribed",
+        SizedLoad::Yielding { .. } => "in_series",
+        SizedLoad::HeldStill => "held_still",
+    }
 }
 
 /// What cannot be has its reason in place of its numbers.

@@ -1,7 +1,7 @@
 //! A sizing for people.
 
 use super::answer::branch_name;
-use super::{Candidate, Consequence, Influence, OtherMeans, SizedValve, Sizing, model_name};
+use super::{Candidate, Consequence, Influence, OtherMeans, SizedLoad, SizedValve, Sizing, model_name};
 use crate::answer::significant;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::figure::Figure;
@@ -29,6 +29,9 @@ pub(crate) fn document(sizing: &Sizing, figures: Vec<Figure>) -> Document {
     out.figures(figures);
     if let Some(found) = &sizing.other_means {
         other_means(&mut out, found);
+        if sizing.load != SizedLoad::Prescribed {
+            out.explanation("The damping ratios are those with the load held still: `check` lists the modes with the load.");
+        }
     }
     let headings = ["quantity", "low · nominal · high", "K_H at this length, MN/m", "length for this K_H, m"];
     out.section(

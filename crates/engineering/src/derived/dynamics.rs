@@ -1,0 +1,84 @@
+use num_complex::Complex64;
+use phea_hydraulics::linear::{MechanicalDamping, decompose, transfer_functions};
+
+use super::list::List;
+use crate::linearize::{HidingMass, hidden_above};
+use crate::rig::Rig;
+
+/// Of the rig against its load; what is inherently that of the actuator is named so where the load
+/// can move.
+pub(super) fn dynamics(rig: &Rig, list: &mut List) {
+    let linear = &rig.against_load();
+    let factors = decompose(linear, MechanicalDamping::Corrected);
+    let springs = match (rig.load_stiffness().is_some(), rig.plant.series.is_some()) {
+        (true, true) => "1/K_{eq} = 1/K_H + 1/K_S + 1/k_t + 1/k_L",
+        (true, false) => "1/K_{eq} = 1/K_H + 1/K_S + 1/k_L",
+        (false, true) => "1/K_{eq} = 1/K_H + 1/K_S + 1/k_t",
+        (false, false) => "K_{eq} = K_H K_S/(K_H + K_S)",
+    };
+    list.group(match (rig.load.is_some(), rig.load_stiffness().is_some()) {
+        (true, true) => "Dynamics against the load, with the values in use",
+        (true, false) => {
+            "Dynamics with the load held still, as no stiffness holds it, with the values in use"
+        }
+        (false, _) => "Dynamics, with the values in use",
+    });
+    list.add("dynamics.equivalent_stiffness", "K_eq", linear.equivalent_stiffness(), "N/m", springs);
+    let equation = "s_1 = -(K_c + G) K_{eq}/A_u^2";
+    list.add("dynamics.hydraulic_pole", "s_1", -factors.hydraulic_rate, "rad/s", equation);
+    let equation = "dF_e/dt per volt = K_{qU} K_{eq}/A_u";
+    list.add("dynamics.force_rate_gain", "K_qU K_eq/A_u", factors.hydraulic_gain, "N/(s.V)", equation);
+    if rig.load.is_some() {
+        list.group("Dynamics with the load held still, with the values in use");
+    }
+    held_still(rig, list);
+    if rig.load.is_some() {
+        list.group("Modes of the plant, with its load and the values in use");
+    }
+    modes(rig, list);
+}
+
+/// The piston on its force sensor, and what its mass hides.
+fn held_still(rig: &Rig, list: &mut List) {
+    let factors = decompose(&rig.leaking(), MechanicalDamping::Corrected);
+    let frequency = factors.mechanical_square.sqrt();
+    let equation = match rig.plant.series {
+        None => "ω_m = sqrt((K_H + K_S)/M)",
+        Some(_) => "ω_m = sqrt((K_H + K_S k_t/(K_S + k_t))/M)",
+    };
+    list.add("dynamics.mechanical_frequency", "ω_m", frequency, "rad/s", equation);
+    let damping_ratio = factors.mechanical_damping / (2.0 * frequency);
+    let equation = match rig.plant.series {
+        None => "2 ξ_m ω_m = f_v/M + (K_c + G) K_H^2/(A_u^2 (K_H + K_S))",
+        Some(_) => "2 ξ_m ω_m = f_v/M + (K_c + G) K_H^2/(A_u^2 (K_H + K_S k_t/(K_S + k_t)))",
+    };
+    list.add("dynamics.mechanical_damping_ratio", "ξ_m", damping_ratio, "1", equation);
+    let (mass, hidden) = hidden_above(rig);
+    let equation = match mass {
+        HidingMass::Piston => "ω = sqrt(K_H/M)",
+        HidingMass::Oil => "ω = sqrt(K_{eq}/m)",
+    };
+    list.add("dynamics.compliance_hidden_above", "ω", hidden, "rad/s", equation);
+}
+
+/// The modes of the plant that oscillate, the slowest first, and the one that does so longest: with
+/// all of its parts but waves in the lines.
+fn modes(rig: &Rig, list: &mut List) {
+    let Ok(plant) = transfer_functions(&rig.plant.coefficients()) else { return };
+    let oscillating = plant.command.poles().iter().filter(|pole| pole.im > 0.0);
+    let of = |pole: &Complex64| [pole.norm_sqr().sqrt(), -pole.re / pole.norm_sqr().sqrt()];
+    let mut modes: Vec<[f64; 2]> = oscillating.map(of).collect();
+    modes.sort_by(|[one, _], [other, _]| one.total_cmp(other));
+    let equation = "s = -ξ ω ± j ω sqrt(1 - ξ^2), poles of the plant, all lumped parts in it";
+    for (index, [frequency, ratio]) in modes.iter().enumerate() {
+        let name = format!("dynamics.mode_{}", index + 1);
+        list.add(format!("{name}.frequency"), "ω", *frequency, "rad/s", equation);
+        list.add(format!("{name}.damping_ratio"), "ξ", *ratio, "1", equation);
+    }
+    let least = modes.into_iter().reduce(|least, one| if one[1] < least[1] { one } else { least });
+    let Some([frequency, ratio]) = least else { return };
+    let equation =
+        "s = -ξ_d ω_d ± j ω_d sqrt(1 - ξ_d^2), least damped poles of the plant, all lumped parts in it";
+    list.add("dynamics.least_damped_frequency", "ω_d", frequency, "rad/s", equation);
+    list.add("dynamics.least_damped_ratio", "ξ_d", ratio, "1", equation);
+}

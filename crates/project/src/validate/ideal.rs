@@ -1,0 +1,71 @@
+//! Limits of a part that textbooks take: what is left out must leave a rig.
+
+use super::Check;
+use crate::{Component, DeclaredActuator, Load, Project, ValveCoefficients};
+
+/// A line, a leakage or a stiffness of zero.
+pub(super) fn limits(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
+    valve_on_chamber(actuator, check);
+    shut_valve(actuator, check);
+    free_mass(project, actuator, check);
+}
+
+/// A chamber that is empty where the piston is at its end has no pressure.
+fn valve_on_chamber(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
+    let (one, both, part) = match &actuator.motor {
+        Some(motor) => (motor.dead_volume, motor.dead_volumes, "motor"),
+        None => (actuator.cylinder.dead_volume, actuator.cylinder.dead_volumes, "cylinder"),
+    };
+    let dead = both.unwrap_or([one.unwrap_or(0.0); 2]);
+    for (side, (line, dead)) in
+        ["a", "b"].into_iter().zip([&actuator.line.a, &actuator.line.b].into_iter().zip(dead))
+    {
+        let Component::Volume(volume) = &line.component else { continue };
+        if volume.volume > 0.0 || dead > 0.0 {
+            continue;
+        }
+        let own = format!("line.{side}.volume");
+        let path = if check.declared(&own) { own } else { "line.volume".to_string() };
+        if check.declared(&path) {
+            let message = "without the volume of a line a chamber is empty where the piston is at its end, and has no pressure there";
+            let help = format!("state the oil that is left there, such as {part}.dead_volume = \"10 mL\"");
+            check.error_with_help(&path, message, help);
+        }
+        return;
+    }
+}
+
+/// Edges that are shut at null leave the pressures of the chambers open.
+fn shut_valve(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
+    let ValveCoefficients::Edges { edges, .. } = &actuator.valve.leakage else { return };
+    if edges.in_order().iter().all(|edge| *edge > 0.0) {
+        return;
+    }
+    let message =
+        "an edge without leakage is shut at null, where any pressure of the chamber is an equilibrium";
+    let help = "state small coefficients, equal ones for a symmetric valve: 1e-12 m3/(s.Pa^0.5) is a millionth of an ordinary edge, and the pressures are those of the limit";
+    check.error_with_help("valve.leakage_coefficients", message, help);
+}
+
+/// A mass that no stiffness holds takes no force at rest.
+fn free_mass(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
+    let Load::SpringMassDamper { stiffness: 0.0, .. } = actuator.load else { return };
+    if project.uncertainty.iter().any(|one| one.name == "load.stiffness") || actuator.linkage.is_some() {
+        return;
+    }
+    let point = project.resolved_operating_point();
+    let moves = point.velocity.is_some_and(|velocity| velocity != 0.0) || point.command.is_some();
+    let holds = point.load_force.is_some_and(|force| force != 0.0);
+    if holds && !moves {
+        let message = "a load without stiffness holds no force at rest: it would be accelerated";
+        let help = "state `load_force = 0`, or a `load.stiffness`";
+        check.error_with_help("operating_point.load_force", message, help);
+    }
+    let moving_line =
+        [&actuator.line.a, &actuator.line.b].into_iter().any(|line| line.motion != crate::LineMotion::Lumped);
+    if moving_line {
+        let message = "a load without stiffness is not computed behind lines in motion: the plant has no polynomials whose common factor could be left out";
+        let help = "state `line.model = \"lumped\"`, or a small `load.stiffness`";
+        check.error_with_help("load.stiffness", message, help);
+    }
+}

@@ -1,0 +1,43 @@
+//! Fluid with entrained air, or gas, makes the plant depend on the pressures of its chambers: over a
+//! range of supply pressures its stability is decided all the same.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+
+use crate::against_the_load::RIG;
+use crate::ask::{json, number};
+use phea_workbench::command::Request;
+
+const LOOP: &str = r#"
+[load]
+model = "spring_mass_damper"
+mass = "250 kg"
+stiffness = "15 kN/mm"
+damping = "3 kN.s/m"
+[uncertainty]
+"supply.pressure" = { nominal = "200 bar", minimum = "180 bar", maximum = "220 bar", points = 3 }
+[[specification]]
+kind = "robust_stability"
+limit = 1.3
+frequencies = [0.1, 1, 5, 10, 20, 50, 100, 200, 400]
+[controller]
+sample_time = "1 ms"
+delay = "1 ms"
+elements = [{ kind = "pi", proportional_gain = 3e-5, integral_gain = 4.5e-5 }]
+"#;
+
+/// With air under a load and at null, and with gas at the chambers; as without any of them.
+#[test]
+fn stability_is_decided_over_a_range_of_supply_pressures() {
+    let verify = Request::Verify { proof: false, on_machine: false };
+    let air = "fluid.entrained_air=0.005";
+    let gas = "line.accumulator={ gas_volume = \"20 mL\", precharge_pressure = \"30 bar\" }";
+    let null = "operating_point={ position = \"150 mm\" }";
+    let settings: [&[&str]; 4] = [&[], &[air], &[air, null], &[gas]];
+    let margins = settings.map(|settings| {
+        let found = json(&format!("{RIG}{LOOP}"), settings, &[], &verify);
+        assert_eq!(found["stable"], true, "{settings:?}: {found}");
+        number(&found, "delay_margin_s")
+    });
+    // a half percent of air is three percent of the stiffness: the margin is nearly that without
+    assert!((margins[1] / margins[0] - 1.0).abs() < 0.05, "{margins:?}");
+}
