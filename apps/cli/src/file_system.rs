@@ -65,6 +65,8 @@ pub(crate) fn reason(error: &std::io::Error) -> String {
             "a file of that name is in the way".to_string()
         }
         ErrorKind::StorageFull => "the disk is full".to_string(),
+        ErrorKind::FileTooLarge => "the file would be larger than is permitted (ulimit -f)".to_string(),
+        ErrorKind::QuotaExceeded => "the quota of the disk is used up".to_string(),
         ErrorKind::ReadOnlyFilesystem => "the file system is read-only".to_string(),
         _ => error.to_string(),
     }

@@ -1,4 +1,5 @@
-//! Ctrl-C during a command that can stop with what it has.
+//! Signals: Ctrl-C during a command that can stop with what it has, and a file that grows beyond the
+//! largest size that is permitted.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -29,3 +30,15 @@ impl Interruption {
         self.0.load(Ordering::Relaxed)
     }
 }
+
+/// Makes a write beyond the largest permitted size of a file (`ulimit -f`) an error of that write,
+/// where it would end the process.
+#[cfg(unix)]
+pub(crate) fn survive_large_files() {
+    let unread = Arc::new(AtomicBool::new(false));
+    // if no handler can be installed, such a write ends the command as usual
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, unread);
+}
+
+#[cfg(not(unix))]
+pub(crate) fn survive_large_files() {}

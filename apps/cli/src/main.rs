@@ -5,6 +5,7 @@ mod arguments;
 mod changes;
 mod failure;
 mod file_system;
+mod inputs;
 mod interruption;
 mod output;
 mod run;
@@ -15,6 +16,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 fn main() -> ExitCode {
+    interruption::survive_large_files();
     match arguments::Arguments::try_parse() {
         Ok(arguments) => run::run(arguments),
         Err(error) => run::misused(&error),

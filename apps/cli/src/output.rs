@@ -12,6 +12,7 @@ use phea_workbench::answer::{OutputFile, picture_of};
 use phea_workbench::source::{Destination, Unfinished, WriteError};
 
 use crate::file_system::reason;
+use crate::inputs::Inputs;
 
 /// Bytes that are collected before they are written.
 const COLLECTED: usize = 1 << 18;
@@ -19,12 +20,14 @@ const COLLECTED: usize = 1 << 18;
 /// A folder for long files, which are written as they are produced.
 pub(crate) struct Folder<'f> {
     path: &'f Path,
+    inputs: &'f Inputs,
     begun: RefCell<Vec<PathBuf>>,
 }
 
 impl<'f> Folder<'f> {
-    pub(crate) fn new(path: &'f Path) -> Folder<'f> {
-        Folder { path, begun: RefCell::default() }
+    /// A folder in which no file replaces one of the inputs.
+    pub(crate) fn new(path: &'f Path, inputs: &'f Inputs) -> Folder<'f> {
+        Folder { path, inputs, begun: RefCell::default() }
     }
 
     /// Every file that was begun, in order; all are complete if nothing failed.
@@ -36,19 +39,47 @@ impl<'f> Folder<'f> {
 impl Destination for Folder<'_> {
     fn begin<'a>(&'a self, name: &str) -> Result<Box<dyn Unfinished + 'a>, WriteError> {
         let path = self.path.join(name);
-        let refuse = |error| WriteError { path: path.display().to_string(), reason: reason(&error) };
-        let file = Pending::begin(&path).map_err(refuse)?;
+        let refuse = |reason| WriteError { path: path.display().to_string(), reason };
+        let file = Pending::begin(&path).map_err(|error| refuse(reason(&error)))?;
+        self.inputs.expect_kept(&path).map_err(refuse)?;
         self.begun.borrow_mut().push(path);
         Ok(Box::new(file))
+    }
+
+    fn path_of(&self, name: &str) -> String {
+        self.path.join(name).display().to_string()
     }
 }
 
 /// A file that is not complete yet.
 struct Pending {
     path: PathBuf,
-    /// Its temporary path; `None` if it has none, and when it is complete.
-    temporary: Option<PathBuf>,
+    /// Its temporary path; `None` if it has none.
+    temporary: Option<Temporary>,
     file: BufWriter<File>,
+}
+
+/// A temporary file, which is removed unless it receives its name.
+struct Temporary(PathBuf);
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        // nothing is there once it has its name
+        let _ = fs::remove_file(&self.0);
+    }
+}
+
+/// A file that is complete on the disk, and has its name where it has no temporary one.
+struct Complete {
+    path: PathBuf,
+    temporary: Option<Temporary>,
+}
+
+impl Complete {
+    /// Gives it its name.
+    fn name(self) -> io::Result<()> {
+        self.temporary.map_or(Ok(()), |temporary| fs::rename(&temporary.0, &self.path))
+    }
 }
 
 impl Pending {
@@ -69,28 +100,28 @@ impl Pending {
         }
         let temporary = path.with_file_name(temporary_name());
         let file = File::create(&temporary)?;
-        let pending =
-            Pending { path, temporary: Some(temporary), file: BufWriter::with_capacity(COLLECTED, file) };
+        let temporary = Some(Temporary(temporary));
+        let pending = Pending { path, temporary, file: BufWriter::with_capacity(COLLECTED, file) };
         if let Some(known) = known {
             pending.file.get_ref().set_permissions(known.permissions())?;
         }
         Ok(pending)
     }
 
-    fn whole(mut self) -> io::Result<()> {
+    /// The file with its content on the disk: a name must not reach the disk before the content.
+    fn complete(mut self) -> io::Result<Complete> {
         self.file.flush()?;
-        let Some(temporary) = &self.temporary else { return Ok(()) };
-        // a name must not reach the disk before the content; on a file system without such an order
-        // nothing is lost
-        match self.file.get_ref().sync_all() {
-            Err(error) if !matches!(error.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => {
-                return Err(error);
+        let Pending { path, temporary, file } = self;
+        if temporary.is_some() {
+            // on a file system without such an order nothing is lost
+            match file.get_ref().sync_all() {
+                Err(error) if !matches!(error.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => {
+                    return Err(error);
+                }
+                _ => {}
             }
-            _ => {}
         }
-        fs::rename(temporary, &self.path)?;
-        self.temporary = None;
-        Ok(())
+        Ok(Complete { path, temporary })
     }
 }
 
@@ -98,14 +129,6 @@ impl Pending {
 fn temporary_name() -> String {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     format!(".phea-{}-{}.part", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed))
-}
-
-impl Drop for Pending {
-    fn drop(&mut self) {
-        if let Some(temporary) = &self.temporary {
-            let _ = fs::remove_file(temporary);
-        }
-    }
 }
 
 /// The same error in plain words.
@@ -125,7 +148,7 @@ impl Write for Pending {
 
 impl Unfinished for Pending {
     fn finish(self: Box<Self>) -> io::Result<()> {
-        self.whole().map_err(|error| plainly(&error))
+        self.complete().and_then(Complete::name).map_err(|error| plainly(&error))
     }
 }
 
@@ -139,26 +162,38 @@ pub(crate) fn expect_folder(folder: &Path) -> Result<(), String> {
     }
 }
 
-/// Writes files into a folder, drawings as SVG and as PNG; returns their paths.
-pub(crate) fn write(folder: &Path, files: &[OutputFile]) -> Result<Vec<PathBuf>, String> {
-    let mut written = Vec::new();
+/// Writes files into a folder, drawings as SVG and as PNG, none in place of an input; returns their
+/// paths. All of them receive their names once all are complete: after an error none is there that
+/// was not there before.
+pub(crate) fn write(folder: &Path, files: &[OutputFile], inputs: &Inputs) -> Result<Vec<PathBuf>, String> {
+    let mut complete = Vec::new();
     for file in files {
-        written.push(write_as(&folder.join(&file.name), file)?);
+        complete.push(completed(&folder.join(&file.name), &file.bytes, inputs)?);
         let picture = picture_of(file).map_err(|error| format!("cannot draw {}: {error}", file.name))?;
         if let Some(picture) = picture {
-            written.push(write_as(&folder.join(&picture.name), &picture)?);
+            complete.push(completed(&folder.join(&picture.name), &picture.bytes, inputs)?);
         }
     }
-    Ok(written)
+    let name = |(path, complete): (PathBuf, Complete)| {
+        complete.name().map_err(|error| unwritten(&path, &error)).map(|()| path)
+    };
+    complete.into_iter().map(name).collect()
 }
 
-/// Writes a file to the given path, creating its folder if needed, and returns the path.
-pub(crate) fn write_as(path: &Path, file: &OutputFile) -> Result<PathBuf, String> {
-    let written = Pending::begin(path).and_then(|mut pending| {
-        pending.file.write_all(&file.bytes)?;
-        pending.whole()
-    });
-    written.map_err(|error| unwritten(path, &error)).map(|()| path.to_path_buf())
+/// A complete file that has no name yet.
+fn completed(path: &Path, bytes: &[u8], inputs: &Inputs) -> Result<(PathBuf, Complete), String> {
+    let mut pending = Pending::begin(path).map_err(|error| unwritten(path, &error))?;
+    // once its folder exists, the path is final
+    inputs.expect_kept(path)?;
+    let complete = pending.file.write_all(bytes).and_then(|()| pending.complete());
+    complete.map_err(|error| unwritten(path, &error)).map(|complete| (path.to_path_buf(), complete))
+}
+
+/// Writes a file to the given path, creating its folder if needed, and returns the path. The path
+/// of an input is refused.
+pub(crate) fn write_as(path: &Path, file: &OutputFile, inputs: &Inputs) -> Result<PathBuf, String> {
+    let (path, complete) = completed(path, &file.bytes, inputs)?;
+    complete.name().map_err(|error| unwritten(&path, &error)).map(|()| path)
 }
 
 /// Why a file or folder cannot be written.

@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use phea_workbench::answer::{Answer, OutputFile};
 use phea_workbench::audit::{CERTIFICATE_FILE, check_certificate};
 use phea_workbench::command::{
-    self, AlternativesRequest, CommandError, FrequencyOptions, Request, SimulateRequest,
+    self, AlternativesRequest, CommandError, FrequencyOptions, OutputNames, Request, SimulateRequest,
 };
 use phea_workbench::design::DESIGNED_PROJECT;
 use phea_workbench::linearize::SweepRequest;
@@ -19,6 +19,7 @@ use phea_workbench::source::Destination;
 use crate::arguments::{Arguments, Command, Common, Several};
 use crate::failure::{DONE, Failure, NO, WRONG_INPUT};
 use crate::file_system::{FileSystem, reason};
+use crate::inputs::Inputs;
 use crate::interruption::Interruption;
 use crate::output::{Folder, expect_folder, write, write_as};
 use crate::voice::{ProgressLine, complain, say};
@@ -110,23 +111,39 @@ fn ended(outcome: Result<u8, Failure>) -> ExitCode {
 
 /// Writes the starter project into a folder that must be empty or absent.
 fn new(folder: &Path) -> Result<u8, Failure> {
-    let occupied = folder.read_dir().is_ok_and(|mut entries| entries.next().is_some());
-    if occupied || folder.is_file() {
+    let occupied = match folder.read_dir() {
+        Ok(mut entries) => entries.next().is_some(),
+        // a folder that cannot be listed may hold a project
+        Err(_) => folder.symlink_metadata().is_ok(),
+    };
+    if occupied {
         let text = format!("{} exists and is not an empty folder; nothing was written", folder.display());
         return Err(Failure::wrong_input(format!("error: {text}")));
     }
     let file = OutputFile::new("project.toml", STARTER);
-    let path = write_as(&folder.join(&file.name), &file).map_err(|message| Failure::not_written(&message))?;
+    let path = write_as(&folder.join(&file.name), &file, &Inputs::default())
+        .map_err(|message| Failure::not_written(&message))?;
     say(&format!("Wrote {}. Next: phea check {0}\n", path.display()))?;
     Ok(DONE)
 }
 
-/// The schema of the project file, printed or written into a folder.
+/// The key by which a JSON Schema is known.
+const SCHEMA_KEY: &str = "\"$schema\"";
+
+/// The schema of the project file, printed or written into a folder, where it replaces nothing but
+/// a schema.
 fn schema(out: Option<&Path>) -> Result<u8, Failure> {
     let file = command::schema();
     match out {
         Some(folder) => {
-            let written = write(folder, &[file]).map_err(|message| Failure::not_written(&message))?;
+            let path = folder.join(&file.name);
+            let known = std::fs::read_to_string(&path).unwrap_or_default();
+            if path.exists() && !known.contains(SCHEMA_KEY) {
+                let text = format!("{} exists and is not a schema; nothing was written", path.display());
+                return Err(Failure::wrong_input(format!("error: {text}")));
+            }
+            let written = write(folder, &[file], &Inputs::default());
+            let written = written.map_err(|message| Failure::not_written(&message))?;
             say(&written_sentence(&written))?;
         }
         None => say(&String::from_utf8_lossy(&file.bytes))?,
@@ -178,6 +195,8 @@ fn compared(several: &Several) -> Result<(Answer, Vec<PathBuf>), Failure> {
     let Some(first) = loaded.first() else {
         return Err(Failure::wrong_input("error: no project"));
     };
+    let inputs = Inputs::of_projects(&loaded);
+    expect_kept(&inputs, (&request, first), [several.out.as_deref(), None])?;
     expect_folders([several.out.as_deref(), None]).map_err(|message| failed(&request, first, &message))?;
     let mut line = ProgressLine::default();
     let interruption = Interruption::listen();
@@ -189,7 +208,9 @@ fn compared(several: &Several) -> Result<(Answer, Vec<PathBuf>), Failure> {
     line.clear();
     let answer = answer.map_err(|error| refused(first, &request, &error))?;
     let written = match &several.out {
-        Some(folder) => write(folder, &answer.files).map_err(|message| failed(&request, first, &message))?,
+        Some(folder) => {
+            write(folder, &answer.files, &inputs).map_err(|message| failed(&request, first, &message))?
+        }
         None => vec![],
     };
     Ok((answer, written))
@@ -208,13 +229,16 @@ fn answered(
     let path = common.project.to_string_lossy();
     let loaded = load(&path, &common.settings, &common.catalogues, request.name())?;
     let explain = |message: String| failed(request, &loaded, &message);
+    let inputs = Inputs::of_projects([&loaded]);
+    let page = page_alone(common, request);
+    expect_kept(&inputs, (request, &loaded), [common.out.as_deref(), save.or(page.as_deref())])?;
     expect_folders([common.out.as_deref(), save.and_then(Path::parent)]).map_err(explain)?;
     let mut line = ProgressLine::default();
     // commands that can return their best result so far are asked to stop; all others have nothing
     // to save
     let keeps = matches!(request, Request::Design { .. } | Request::Simulate(_) | Request::Alternatives(_));
     let interruption = keeps.then(Interruption::listen);
-    let tables = common.out.as_deref().map(Folder::new);
+    let tables = common.out.as_deref().map(|folder| Folder::new(folder, &inputs));
     let destination = tables.as_ref().map(|tables| tables as &dyn Destination);
     let mut watch = |progress| {
         line.show(progress);
@@ -225,11 +249,18 @@ fn answered(
     line.clear();
     let answer = answer.map_err(|error| refused(&loaded, request, &error))?;
     let mut written = tables.map(Folder::into_begun).unwrap_or_default();
-    written.extend(write_files(common, request, &answer).map_err(explain)?);
+    written.extend(match (&common.out, &page) {
+        (Some(folder), _) => write(folder, &answer.files, &inputs).map_err(explain)?,
+        (None, Some(page)) => {
+            let file = answer.files.iter().map(|file| write_as(page, file, &inputs));
+            file.collect::<Result<Vec<_>, _>>().map_err(explain)?
+        }
+        (None, None) => vec![],
+    });
     let saved = [DESIGNED_PROJECT, SHAPED_PROJECT, CERTIFICATE_FILE];
     let saved = answer.files.iter().find(|file| saved.contains(&file.name.as_str()));
     if let (Some(path), Some(saved)) = (save, saved) {
-        written.insert(0, write_as(path, saved).map_err(explain)?);
+        written.insert(0, write_as(path, saved, &inputs).map_err(explain)?);
     }
     Ok((answer, written))
 }
@@ -277,21 +308,27 @@ fn written_sentence(written: &[PathBuf]) -> String {
     }
 }
 
-/// The report is written even without `--out`, as one page named after the project; other files
-/// only on request.
-fn write_files(common: &Common, request: &Request, answer: &Answer) -> Result<Vec<PathBuf>, String> {
-    if let Some(folder) = &common.out {
-        return write(folder, &answer.files);
-    }
-    if !matches!(request, Request::Report { .. }) {
-        return Ok(vec![]);
-    }
+/// The report is written even without `--out`, as one page named after the project.
+fn page_alone(common: &Common, request: &Request) -> Option<PathBuf> {
+    let alone = common.out.is_none() && matches!(request, Request::Report { .. });
     let stem = common.project.file_stem().unwrap_or_default().to_string_lossy();
-    let mut page = answer.files.clone();
-    for file in &mut page {
-        file.name = format!("{stem}-report.html");
-    }
-    write(Path::new("."), &page)
+    alone.then(|| Path::new(".").join(format!("{stem}-report.html")))
+}
+
+/// Refuses, before any work, a folder or a file in which the answer would replace an input.
+fn expect_kept(
+    inputs: &Inputs,
+    (request, loaded): (&Request, &Loaded),
+    [folder, file]: [Option<&Path>; 2],
+) -> Result<(), Failure> {
+    let names = OutputNames::of(loaded, request);
+    let in_folder =
+        folder.map_or(Ok(()), |folder| inputs.expect_kept_in(folder, |name| names.contains(name)));
+    let kept = in_folder.and_then(|()| file.map_or(Ok(()), |file| inputs.expect_kept(file)));
+    kept.map_err(|message| {
+        let json = command::failure_json(Some(request.name()), Some(&loaded.sha256), &message);
+        Failure::wrong_input(format!("error: {message}")).with_json(json)
+    })
 }
 
 /// Colours for a person at a terminal who has not disabled them.

@@ -42,7 +42,8 @@ const LONGEST_S: f64 = 1e9;
 pub(crate) struct ProgressLine {
     next: Option<Instant>,
     terminal: bool,
-    shown: bool,
+    /// The line that was shown last; empty before the first.
+    shown: String,
     /// Time and share of the first report, for work that proceeds evenly.
     even: Option<(Instant, f64)>,
 }
@@ -52,7 +53,7 @@ impl Default for ProgressLine {
         let (variable, never) = KEEP_OUT;
         let wanted = std::env::var_os(variable).is_none_or(|value| value != never);
         let terminal = io::stderr().is_terminal();
-        let mut line = ProgressLine { next: None, terminal, shown: false, even: None };
+        let mut line = ProgressLine { next: None, terminal, shown: String::new(), even: None };
         line.next = wanted.then(|| Instant::now() + line.patience());
         line
     }
@@ -89,17 +90,22 @@ impl ProgressLine {
             self.next = Some(now + self.patience());
             let percent = (100.0 * progress.share).clamp(0.0, 100.0);
             let line = format!("{}: {percent:.0} %{more}", progress.stage);
-            if !self.terminal {
-                return complain(&line);
+            if line == self.shown {
+                return;
             }
-            self.shown = true;
-            let _ = write!(io::stderr().lock(), "\r{line}\x1b[K");
+            match self.terminal {
+                true => {
+                    let _ = write!(io::stderr().lock(), "\r{line}\x1b[K");
+                }
+                false => complain(&line),
+            }
+            self.shown = line;
         }
     }
 
     /// Takes the line away.
     pub(crate) fn clear(&mut self) {
-        if self.shown {
+        if self.terminal && !self.shown.is_empty() {
             let _ = write!(io::stderr().lock(), "\r\x1b[K");
         }
     }

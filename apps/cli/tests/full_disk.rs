@@ -19,7 +19,12 @@ fn folder(name: &str) -> PathBuf {
 /// The command where no file may be longer than this number of blocks of a shell, 512 or 1024
 /// bytes: writing beyond fails.
 fn limited(folder: &Path, blocks: u32, arguments: &[&str]) -> Output {
-    let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
+    under("trap '' XFSZ; ", folder, blocks, arguments)
+}
+
+/// The same after the command of a shell.
+fn under(before: &str, folder: &Path, blocks: u32, arguments: &[&str]) -> Output {
+    let script = format!("{before}ulimit -f {blocks}; exec \"$0\" \"$@\"");
     let mut command = Command::new("sh");
     command.current_dir(folder).args(["-c", &script, env!("CARGO_BIN_EXE_phea")]).args(arguments);
     command.output().expect("sh starts")
@@ -57,6 +62,50 @@ fn a_file_that_does_not_fit_is_not_there() {
     assert_eq!((names.len(), kept.as_deref()), (1, Some("before")));
     not_written(&limited(&folder, 1, &["new", "rig"]));
     assert_eq!(self::names(&folder.join("rig")), [] as [String; 0]);
+}
+
+/// Where nobody ignores the signal of a file that grows too large, it is an error of the write, and
+/// not the end of the process; the message has the folder of a table that is written row by row.
+#[test]
+fn a_signal_about_a_large_file_is_an_error() {
+    let folder = folder("full_disk_signal");
+    let closed = format!("{EXAMPLES}/benchmark/closed_loop.toml");
+    let simulate = ["simulate", &closed, "--out", "out", "--set", "scenario.0.duration=2 s"];
+    let output = under("", &folder, 64, &simulate);
+    not_written(&output);
+    let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(complaint.contains("cannot write out/step and load motion.csv"), "{complaint}");
+    assert_eq!(names(&folder.join("out")), [] as [String; 0]);
+    not_written(&under("", &folder, 1, &["new", "rig"]));
+    not_written(&under("", &folder, 1, &["schema", "--out", "editor"]));
+    for empty in ["rig", "editor"] {
+        assert_eq!(names(&folder.join(empty)), [] as [String; 0]);
+    }
+}
+
+/// The files of a command receive their names together: none is there where one does not fit, and
+/// those of an earlier run stay.
+#[test]
+fn files_of_which_one_does_not_fit_are_not_there() {
+    let folder = folder("full_disk_together");
+    let project = "schema = 1\n[plant]\nnumerator = \"1\"\ndenominator = \"s + 1\"\n[[specification]]\n\
+                   kind = \"robust_stability\"\nlimit = 1.2\nfrequencies = [1]\nband = [0, inf]\n";
+    fs::write(folder.join("loop.toml"), project).unwrap();
+    let design = ["design", "loop.toml", "--out", "out"];
+    let whole = Command::new(env!("CARGO_BIN_EXE_phea")).current_dir(&folder).args(design).output().unwrap();
+    assert_eq!(whole.status.code(), Some(0), "{}", String::from_utf8_lossy(&whole.stderr));
+    let written = names(&folder.join("out"));
+    let sizes = written.iter().map(|file| fs::metadata(folder.join("out").join(file)).unwrap().len());
+    let (fit, too_long): (Vec<u64>, Vec<u64>) = sizes.partition(|size| *size < 4096);
+    assert!(!fit.is_empty() && too_long.iter().any(|size| *size > 8192), "{fit:?} {too_long:?}");
+    not_written(&limited(&folder, 8, &["design", "loop.toml", "--out", "none"]));
+    assert_eq!(names(&folder.join("none")), [] as [String; 0]);
+    for file in &written {
+        fs::write(folder.join("out").join(file), "before").unwrap();
+    }
+    not_written(&limited(&folder, 8, &design));
+    let is_kept = |file: &String| fs::read_to_string(folder.join("out").join(file)).unwrap() == "before";
+    assert!(written.iter().all(is_kept) && names(&folder.join("out")).len() == written.len());
 }
 
 /// A campaign has whole rows alone, and goes on where there is room again.

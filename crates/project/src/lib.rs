@@ -46,6 +46,7 @@ mod load_case;
 mod loaded;
 mod measured;
 mod motor;
+mod named_files;
 mod operating_point;
 mod plant;
 mod printer;

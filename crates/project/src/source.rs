@@ -100,6 +100,11 @@ pub trait Destination {
     /// # Errors
     /// [`WriteError`] if it cannot be begun.
     fn begin<'a>(&'a self, name: &str) -> Result<Box<dyn Unfinished + 'a>, WriteError>;
+
+    /// Where a file of this name goes, for messages: the name with its folder.
+    fn path_of(&self, name: &str) -> String {
+        name.to_string()
+    }
 }
 
 /// A file that is being written. Data may wait in a buffer until it is finished.

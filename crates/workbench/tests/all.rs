@@ -41,6 +41,7 @@ mod noise;
 mod number_table;
 mod operating_region;
 mod other_means;
+mod output_names;
 mod parts;
 mod plant_of_verdicts;
 mod predicted_step;

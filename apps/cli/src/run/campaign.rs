@@ -11,10 +11,11 @@ use phea_workbench::campaign::{Effort, RequestedRuns, RowStore, Shard};
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, Request};
 use phea_workbench::source::Destination;
 
-use super::{FileSystem, failed, load, refused};
+use super::{FileSystem, expect_kept, failed, load, refused};
 use crate::arguments::Common;
 use crate::failure::Failure;
 use crate::file_system::reason;
+use crate::inputs::Inputs;
 use crate::interruption::Interruption;
 use crate::output::{Folder, unwritten, write};
 use crate::voice::ProgressLine;
@@ -49,6 +50,8 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
     let request = Request::Campaign(*asked);
     let path = common.project.to_string_lossy();
     let loaded = load(&path, &common.settings, &common.catalogues, request.name())?;
+    let inputs = Inputs::of_projects([&loaded]);
+    expect_kept(&inputs, (&request, &loaded), [common.out.as_deref(), None])?;
     let mut line = ProgressLine::default();
     let interruption = Interruption::listen();
     let mut table = match (&common.out, asked.asked) {
@@ -58,7 +61,7 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
         }
         _ => None,
     };
-    let tables = common.out.as_deref().map(Folder::new);
+    let tables = common.out.as_deref().map(|folder| Folder::new(folder, &inputs));
     let destination = tables.as_ref().map(|tables| tables as &dyn Destination);
     let ledger = table.as_mut().map(|table| table as &mut dyn RowStore);
     let mut watch = |progress| {
@@ -74,8 +77,8 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
     let mut written: Vec<PathBuf> = table.iter().map(|table| table.path.clone()).collect();
     written.extend(tables.map(Folder::into_begun).unwrap_or_default());
     if let Some(folder) = &common.out {
-        let more = write(folder, &answer.files).map_err(|message| failed(&request, &loaded, &message))?;
-        written.extend(more);
+        let more = write(folder, &answer.files, &inputs);
+        written.extend(more.map_err(|message| failed(&request, &loaded, &message))?);
     }
     Ok((answer, written))
 }

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{
-    self, FrictionRequest, IdentifyError, IdentifyRequest, LeakageModel, LineRequest, ResponseRequest,
-    ResponseSettings,
+    self, FrictionRequest, IdentifyError, IdentifyRequest, LeakageModel, LineRequest, OutputNames,
+    ResponseRequest, ResponseSettings,
 };
 use phea_workbench::project::LineSide;
 use phea_workbench::quantity::{self, TIME};
@@ -14,6 +14,7 @@ use super::{load, styled};
 use crate::arguments::{ChamberWord, IdentifyArguments, LeakageWord, SubjectWord};
 use crate::failure::Failure;
 use crate::file_system::FileSystem;
+use crate::inputs::Inputs;
 use crate::interruption::Interruption;
 use crate::output::write;
 use crate::voice::ProgressLine;
@@ -26,6 +27,11 @@ pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<Path
     check_subject(recorded)?;
     let (project, files) = named(recorded)?;
     let loaded = project.map(|path| load(&path, &recorded.settings, &[], NAME)).transpose()?;
+    let inputs = Inputs::of_projects(&loaded).and(files.iter().cloned());
+    if let Some(folder) = &recorded.out {
+        let names = OutputNames::of_identification(&files);
+        inputs.expect_kept_in(folder, |name| names.contains(name)).map_err(|message| refused(&message))?;
+    }
     let asked = IdentifyRequest {
         files,
         starts: recorded.starts.map(usize::from),
@@ -77,7 +83,7 @@ pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<Path
         Failure::wrong_input(text).with_json(json)
     })?;
     let written = match &recorded.out {
-        Some(folder) => write(folder, &answer.files)
+        Some(folder) => write(folder, &answer.files, &inputs)
             .map_err(|message| Failure::not_written(&message).with_json(explain(&message)))?,
         None => vec![],
     };

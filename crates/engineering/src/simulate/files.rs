@@ -23,7 +23,8 @@ pub fn files(loaded: &Loaded, runs: &[ScenarioRun]) -> Vec<OutputFile> {
 
 /// A table that is written row by row, columns named with their units.
 pub struct RunTable<'a> {
-    name: String,
+    /// Where it goes, for messages.
+    path: String,
     columns: Columns,
     table: NumberTable<Box<dyn Unfinished + 'a>>,
     /// The row that is being written.
@@ -40,23 +41,24 @@ impl<'a> RunTable<'a> {
         let columns = Columns::new(&SignalParts::of(bench));
         let names: Vec<_> = columns.names().into_iter().map(|name| bench.motion.name(name)).collect();
         let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
+        let path = destination.path_of(name);
         let table = NumberTable::new(destination.begin(name)?, format, &names);
-        let table = table.map_err(|error| unwritten(name, &error))?;
-        Ok(RunTable { name: name.to_string(), columns, table, values: Vec::new() })
+        let table = table.map_err(|error| unwritten(&path, &error))?;
+        Ok(RunTable { path, columns, table, values: Vec::new() })
     }
 
     pub(super) fn row(&mut self, look: &Look) -> Result<(), WriteError> {
         self.columns.read(look, &mut self.values);
-        self.table.row(&self.values).map_err(|error| unwritten(&self.name, &error))
+        self.table.row(&self.values).map_err(|error| unwritten(&self.path, &error))
     }
 
     /// Puts it under its name.
     pub(super) fn finish(self) -> Result<(), WriteError> {
-        let RunTable { name, table, .. } = self;
-        table.finish().and_then(Unfinished::finish).map_err(|error| unwritten(&name, &error))
+        let RunTable { path, table, .. } = self;
+        table.finish().and_then(Unfinished::finish).map_err(|error| unwritten(&path, &error))
     }
 }
 
-fn unwritten(name: &str, error: &std::io::Error) -> WriteError {
-    WriteError { path: name.to_string(), reason: error.to_string() }
+fn unwritten(path: &str, error: &std::io::Error) -> WriteError {
+    WriteError { path: path.to_string(), reason: error.to_string() }
 }
