@@ -32,6 +32,7 @@ mod impedance;
 mod json_contract;
 mod line_coverage;
 mod line_identification;
+mod line_limits;
 mod linearize_and_derived;
 mod lines_in_motion;
 mod linkage;

@@ -15,7 +15,7 @@ use super::varied::ranges;
 use crate::project::{Loaded, MotionShape, Project, Scenario, Signal, print};
 use crate::quantity::MotionKind;
 use crate::setup::Setup;
-use crate::simulate::{ControlledMachine, ScenarioDrive, SimulateError, Window, driven};
+use crate::simulate::{ControlledMachine, LineWatch, ScenarioDrive, SimulateError, Window, driven};
 use crate::source::Source;
 
 /// Largest number of times at which the bands of the force are given over the whole scenario, and
@@ -140,7 +140,7 @@ impl Plan {
             open_loop: scenario.is_open_loop(),
             motion: project.motion(),
         };
-        let look = look(&bench.control);
+        let look = look(&bench);
         Ok(Plan {
             project,
             scenario,
@@ -335,8 +335,10 @@ fn mark(source: &dyn Source, project: &Project, scenario: &Scenario, seed: u32) 
     text.chars().take(MARK_LENGTH).collect()
 }
 
-/// Indices of the states that force and command depend on: only these need to be observed.
-fn look(control: &Control) -> Vec<usize> {
+/// Indices of the states that force, command and limits of lines depend on: only these need to be
+/// observed.
+fn look(bench: &ControlledMachine) -> Vec<usize> {
+    let control = &bench.control;
     let variables =
         |count: usize, from: usize| -> Vec<Dependence> { (from..from + count).map(Dependence::on).collect() };
     let [states, inputs] = control.size();
@@ -355,7 +357,8 @@ fn look(control: &Control) -> Vec<usize> {
             [force, Dependence::from(0.0)]
         }
     };
-    (0..states).filter(|index| includes(&needed, *index)).collect()
+    let of_lines = LineWatch::states(bench);
+    (0..states).filter(|index| includes(&needed, *index) || of_lines.contains(index)).collect()
 }
 
 fn includes(needed: &[Dependence], index: usize) -> bool {

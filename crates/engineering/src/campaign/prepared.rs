@@ -12,8 +12,8 @@ use super::row::{Ran, Row, RowOutcome, numbers};
 use crate::rig::{RigError, actuator};
 use crate::setup::Setup;
 use crate::simulate::{
-    COMMAND_LIMIT, ControlledMachine, ERRORS_AMPLIFIED, Follower, Occurrence, SimulateError, StoppedRun,
-    course_of, errors_amplified, occurrences, options,
+    COMMAND_LIMIT, ControlledMachine, ERRORS_AMPLIFIED, Follower, LineLimits, LineWatch, Occurrence,
+    SimulateError, StoppedRun, course_of, errors_amplified, occurrences, options,
 };
 
 /// A run ready to be driven.
@@ -59,6 +59,7 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
         let options = MachineOptions { external_force, moving_setting, ..options(&project, &actuator)? };
         let machine = Machine::new(&actuator, &options).map_err(SimulateError::Machine)?;
         let mut bench = plan.bench.around(machine, actuator);
+        bench.line_limits = LineLimits::of(&project);
         if let (Control::Sampled(sampled), Some(seed)) = (&mut bench.control, draw.noise_seed) {
             sampled.seed = u64::from(seed);
         }
@@ -102,7 +103,9 @@ impl Prepared {
         let metrics = seen.follower.metrics();
         let stopped = StoppedRun::of(outcome.status);
         let mut kinds: Vec<&'static str> = Vec::new();
-        for occurrence in self.occurrences(outcome).iter().filter(|occurrence| occurrence.begins) {
+        let of_lines = seen.lines.found().filter_map(|exceeded| Occurrence::of(&exceeded));
+        let all = self.occurrences(outcome).into_iter().chain(of_lines);
+        for occurrence in all.filter(|occurrence| occurrence.begins) {
             if !kinds.contains(&occurrence.kind) {
                 kinds.push(occurrence.kind);
             }
@@ -154,6 +157,7 @@ pub(super) struct Watched<'a> {
 struct Seen<'a> {
     plan: &'a Plan,
     follower: Follower<'a>,
+    lines: LineWatch,
     /// Whether the force at all recorded times is kept, or only at those of the bands.
     every_look: bool,
     /// N.
@@ -166,7 +170,8 @@ impl<'a> Watched<'a> {
         let reference = &plan.driven.reference;
         let follower = Follower::of(&prepared.bench, &plan.look, &prepared.log, reference, windows);
         let kept = if every_look { plan.times_s.len() } else { plan.band_looks.len() };
-        let seen = Seen { plan, follower, every_look, force_n: Vec::with_capacity(kept) };
+        let lines = LineWatch::of(&prepared.bench, &plan.look);
+        let seen = Seen { plan, follower, lines, every_look, force_n: Vec::with_capacity(kept) };
         Watched { plan, seen: Rc::new(RefCell::new(seen)) }
     }
 
@@ -215,7 +220,9 @@ impl Observer for Watched<'_> {
     }
 
     fn follow(&mut self, stretch: &Stretch<'_>) {
-        self.seen.borrow_mut().follower.follow(stretch);
+        let seen = &mut *self.seen.borrow_mut();
+        seen.follower.follow(stretch);
+        seen.lines.follow(stretch);
     }
 
     fn looks_closer(&self, stretch: &Stretch<'_>) -> bool {

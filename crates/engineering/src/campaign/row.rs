@@ -7,7 +7,7 @@ use phea_quantity::MotionKind;
 
 use super::csv::{Csv, quoted};
 use super::shortest_number;
-use super::simulate::{COMMAND_LIMIT, Cause, ERRORS_AMPLIFIED, Metrics, Window};
+use super::simulate::{COMMAND_LIMIT, Cause, ERRORS_AMPLIFIED, LINE_OCCURRENCES, Metrics, Window};
 
 /// Names of the metrics, in the order of a row.
 pub const METRIC_NAMES: [&str; 9] = [
@@ -267,7 +267,7 @@ impl CampaignColumns {
         if status == REFUSED {
             return Some(Row { run, values, lumps, outcome: RowOutcome::Refused(reason) });
         }
-        let known = || INDICATORS.iter().chain([&COMMAND_LIMIT, &ERRORS_AMPLIFIED]);
+        let known = || INDICATORS.iter().chain(&LINE_OCCURRENCES).chain([&COMMAND_LIMIT, &ERRORS_AMPLIFIED]);
         let kinds = happened.split(';').filter(|kind| !kind.is_empty());
         let occurrences = kinds.map(|kind| known().find(|known| **known == kind).copied());
         let went = forces.iter().take_while(|force| !force.is_empty());

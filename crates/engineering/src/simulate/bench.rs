@@ -13,6 +13,7 @@ use phea_hydraulics::servovalve::SpoolImperfection;
 use phea_machine::{Control, Sampled};
 
 use super::SimulateError;
+use super::line_limits::LineLimits;
 use crate::project::{self, FrictionLaw, Project, Scenario};
 use crate::quantity::MotionKind;
 use crate::rig::{Numbers, Rig, lines, power_unit, velocity_gain};
@@ -37,6 +38,10 @@ pub struct ControlledMachine {
     pub force_capacity_n: Option<f64>,
     /// Working temperatures of the gas at chambers A and B in degC, if stated.
     pub gas_wall_celsius: [Option<f64>; 2],
+    /// What lines A and B bear.
+    pub line_limits: [LineLimits; 2],
+    /// Pa absolute, below which the oil cavitates.
+    pub vapour_pressure_pa: f64,
     /// How the rig moves.
     pub motion: MotionKind,
 }
@@ -115,6 +120,11 @@ impl ControlledMachine {
             expansion_stated_at: expansion_stated_at(project),
             force_capacity_n: capacity(project),
             gas_wall_celsius: gas_wall_celsius(project),
+            line_limits: LineLimits::of(project),
+            vapour_pressure_pa: project
+                .actuator
+                .as_ref()
+                .map_or(0.0, |actuator| actuator.fluid.vapour_pressure),
             motion: project.motion(),
         }
     }

@@ -1,25 +1,62 @@
 //! Limits of the rig that a run exceeds. Nothing is clamped by them: the real rig has these limits,
 //! the simulated machine does not.
 
+use phea_dynamics::simulation::Quartic;
 use phea_hydraulics::machine::SIGNALS;
 use phea_hydraulics::series::ForceFrom;
 
 use super::ControlledMachine;
-use crate::quantity::{DisplayUnit, FORCE, VOLTAGE, display};
+use crate::quantity::{DisplayUnit, FORCE, LENGTH, PRESSURE, VOLTAGE, display, significant};
 
 /// A limit of the rig, and how far a run exceeds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exceeded {
     /// Which.
     pub limit: RigLimit,
-    /// N or V; the one that was exceeded first if there are two.
+    /// N, V, Pa gauge or a Reynolds number; the one that was exceeded first if there are two.
     pub limit_value: f64,
-    /// The value farthest beyond it, N or V, and its time, s.
+    /// The value farthest beyond it, in the same unit, and its time, s.
     pub peak: f64,
     /// s.
     pub peak_time_s: f64,
     /// When it was first exceeded, s.
     pub first_time_s: f64,
+    /// The place of the peak.
+    pub place: LimitPlace,
+}
+
+/// Where a limit holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LimitPlace {
+    /// At the rig as a whole.
+    Rig,
+    /// In chamber `a` or `b`, at the end of its line.
+    Chamber(char),
+    /// In a line.
+    Line {
+        /// `a` or `b`.
+        side: char,
+        /// m from the valve.
+        distance_m: f64,
+    },
+}
+
+impl LimitPlace {
+    /// As an answer names it; `None` for the rig as a whole.
+    pub fn word(self) -> Option<&'static str> {
+        match self {
+            LimitPlace::Rig => None,
+            LimitPlace::Chamber('a') => Some("chamber_a"),
+            LimitPlace::Chamber(_) => Some("chamber_b"),
+            LimitPlace::Line { side: 'a', .. } => Some("line_a"),
+            LimitPlace::Line { .. } => Some("line_b"),
+        }
+    }
+
+    /// m from the valve, in a line.
+    pub fn distance_m(self) -> Option<f64> {
+        if let LimitPlace::Line { distance_m, .. } = self { Some(distance_m) } else { None }
+    }
 }
 
 /// Limits of a rig: values that it cannot reach, or that damage it.
@@ -32,6 +69,14 @@ pub enum RigLimit {
     StallForce,
     /// The voltage of full opening, unless `saturation` keeps the command within it.
     NominalVoltage,
+    /// `fluid.vapour_pressure`: below it the oil cavitates.
+    VapourPressure,
+    /// `working_pressure` of a hose or pipe.
+    WorkingPressure,
+    /// `burst_pressure` of a hose or pipe.
+    BurstPressure,
+    /// The Reynolds number of a line whose friction is that of laminar flow.
+    LaminarFlow,
 }
 
 impl RigLimit {
@@ -41,7 +86,39 @@ impl RigLimit {
             RigLimit::SensorCapacity => "force_sensor_capacity",
             RigLimit::StallForce => "stall_force",
             RigLimit::NominalVoltage => "nominal_voltage",
+            RigLimit::VapourPressure => "vapour_pressure",
+            RigLimit::WorkingPressure => "working_pressure",
+            RigLimit::BurstPressure => "burst_pressure",
+            RigLimit::LaminarFlow => "laminar_flow",
         }
+    }
+}
+
+/// Names of the occurrences of lines: for each limit that of line A, then that of line B.
+pub const LINE_OCCURRENCES: [&str; 8] = [
+    "cavitation_line_a",
+    "cavitation_line_b",
+    "working_pressure_a",
+    "working_pressure_b",
+    "burst_pressure_a",
+    "burst_pressure_b",
+    "turbulent_line_a",
+    "turbulent_line_b",
+];
+
+impl Exceeded {
+    /// The name of its occurrence; `None` for limits that have none, and in a chamber for vapour
+    /// pressure, of which the machine has an indicator.
+    pub fn occurrence(&self) -> Option<&'static str> {
+        let first = match (self.limit, self.place) {
+            (RigLimit::VapourPressure, LimitPlace::Line { .. }) => 0,
+            (RigLimit::WorkingPressure, _) => 2,
+            (RigLimit::BurstPressure, _) => 4,
+            (RigLimit::LaminarFlow, _) => 6,
+            _ => return None,
+        };
+        let is_b = self.place.word().is_some_and(|word| word.ends_with('b'));
+        LINE_OCCURRENCES.get(first + usize::from(is_b)).copied()
     }
 }
 
@@ -65,8 +142,8 @@ enum SensedForce {
     Deflection(f64),
 }
 
-/// A limit in both directions.
-struct WatchedLimit {
+/// A limit in both directions, of which either may be infinite.
+pub(super) struct WatchedLimit {
     limit: RigLimit,
     low: f64,
     high: f64,
@@ -129,31 +206,87 @@ const _: () = assert!(matches!(SIGNALS[FORCE_PLACE].as_bytes(), b"force_n"));
 const _: () = assert!(matches!(SIGNALS[DEFLECTION_PLACE].as_bytes(), b"deflection_m"));
 
 impl WatchedLimit {
-    fn new(limit: RigLimit, [low, high]: [f64; 2]) -> WatchedLimit {
+    pub(super) fn new(limit: RigLimit, [low, high]: [f64; 2]) -> WatchedLimit {
         WatchedLimit { limit, low, high, found: None }
     }
 
+    /// How far it was exceeded.
+    pub(super) fn found(&self) -> Option<Exceeded> {
+        self.found
+    }
+
+    /// The margin within which a value beyond a limit counts as rounding.
+    fn rounding(&self) -> f64 {
+        let largest = [self.low, self.high].into_iter().filter(|limit| limit.is_finite());
+        ROUNDING * largest.fold(0.0, |largest, limit| limit.abs().max(largest))
+    }
+
+    fn excess(&self, value: f64) -> f64 {
+        (value - self.high).max(self.low - value)
+    }
+
     fn take(&mut self, time_s: f64, value: f64) {
-        let WatchedLimit { limit, low, high, ref mut found } = *self;
-        let excess = |value: f64| (value - high).max(low - value);
-        if excess(value) <= ROUNDING * (high - low) {
-            return;
+        if self.excess(value) > self.rounding() {
+            self.note([time_s; 2], value, LimitPlace::Rig);
         }
-        let limit_value = if value > high { high } else { low };
-        let first = Exceeded { limit, limit_value, peak: value, peak_time_s: time_s, first_time_s: time_s };
-        let found = found.get_or_insert(first);
-        if excess(value) > excess(found.peak) {
-            (found.peak, found.peak_time_s) = (value, time_s);
+    }
+
+    /// Takes a value over a step, at a place.
+    pub(super) fn follow(&mut self, [start_s, end_s]: [f64; 2], value: &Quartic, place: LimitPlace) {
+        let time_s = |part: f64| start_s + part * (end_s - start_s);
+        for (sign, limit) in [(1.0, self.high), (-1.0, self.low)] {
+            let edge = sign * limit + self.rounding();
+            let beyond = Quartic::constant(0.0).plus(sign, value);
+            let worst = self.found.map_or(edge, |found| edge.max(sign * limit + self.excess(found.peak)));
+            if !limit.is_finite() || beyond.bounds()[1] <= worst {
+                continue;
+            }
+            let [_, peak] = beyond.extremes([0.0, 1.0]);
+            let first = beyond.first_above(edge, [0.0, 1.0]);
+            let at = beyond.first_above(peak - ROUNDING * ROUNDING * peak.abs(), [0.0, 1.0]);
+            if let (true, Some(first), Some(at)) = (peak > worst, first, at) {
+                self.note([time_s(first), time_s(at)], sign * peak, place);
+            }
+        }
+    }
+
+    /// Notes a value beyond the limit, with the times of crossing it and of the value.
+    fn note(&mut self, [first_time_s, peak_time_s]: [f64; 2], peak: f64, place: LimitPlace) {
+        let limit_value = if peak > self.high { self.high } else { self.low };
+        let new = Exceeded { limit: self.limit, limit_value, peak, peak_time_s, first_time_s, place };
+        let beyond = self.found.is_none_or(|found| self.excess(peak) > self.excess(found.peak));
+        let found = self.found.get_or_insert(new);
+        found.first_time_s = found.first_time_s.min(first_time_s);
+        if beyond {
+            (found.peak, found.peak_time_s, found.place) = (peak, peak_time_s, place);
         }
     }
 }
 
 /// In a sentence.
 pub fn words(exceeded: &Exceeded) -> String {
-    let unit = if exceeded.limit == RigLimit::NominalVoltage { &VOLTAGE } else { &FORCE };
-    let [peak, limit] = [exceeded.peak, exceeded.limit_value].map(|value| display(value, unit, 4));
+    let in_unit = |value: f64| match exceeded.limit {
+        RigLimit::SensorCapacity | RigLimit::StallForce => display(value, &FORCE, 4),
+        RigLimit::NominalVoltage => display(value, &VOLTAGE, 4),
+        RigLimit::VapourPressure | RigLimit::WorkingPressure | RigLimit::BurstPressure => {
+            display(value, &PRESSURE, 4)
+        }
+        RigLimit::LaminarFlow => significant(value.abs(), 4),
+    };
+    let [peak, limit] = [exceeded.peak, exceeded.limit_value].map(in_unit);
     let [at, first] =
         [exceeded.peak_time_s, exceeded.first_time_s].map(|time| DisplayUnit::SECOND.number(time, 4));
+    let place = match exceeded.place {
+        LimitPlace::Rig => String::new(),
+        LimitPlace::Chamber(side) => format!("in chamber {}", side.to_ascii_uppercase()),
+        LimitPlace::Line { side, distance_m } => {
+            format!(
+                "in line {}, {} from the valve,",
+                side.to_ascii_uppercase(),
+                display(distance_m, &LENGTH, 3)
+            )
+        }
+    };
     match exceeded.limit {
         RigLimit::SensorCapacity => format!(
             "from {first} s on the force sensor is overloaded: its capacity is {limit}, the force comes to {peak} at {at} s"
@@ -164,6 +297,17 @@ pub fn words(exceeded: &Exceeded) -> String {
         RigLimit::NominalVoltage => format!(
             "from {first} s on the command is beyond the valve's {limit}, and comes to {peak} at {at} s: the rig clips it, so state \
              controller.saturation"
+        ),
+        RigLimit::VapourPressure => format!(
+            "from {first} s on the pressure is below the vapour pressure of {limit}: {place} it falls to {peak} at {at} s, where real oil cavitates"
+        ),
+        RigLimit::WorkingPressure | RigLimit::BurstPressure => format!(
+            "from {first} s on the pressure is above the {} of {limit}: {place} it comes to {peak} at {at} s",
+            exceeded.limit.word().replace('_', " ")
+        ),
+        RigLimit::LaminarFlow => format!(
+            "from {first} s on the flow is turbulent where the line has laminar friction: {place} the Reynolds number comes to {peak} at \
+             {at} s, and above {limit} the line loses more pressure than is computed"
         ),
     }
 }

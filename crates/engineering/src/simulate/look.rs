@@ -14,6 +14,8 @@ use super::exceeded::{Exceeded, LimitWatch};
 use super::files::RunTable;
 use super::follower::Follower;
 use super::gas::{GasRange, GasWatch};
+use super::ledgers::{LedgerWatch, RunLedger};
+use super::line_limits::LineWatch;
 use super::measured::{Measurement, Overlay, Overlaying};
 use super::parts::SignalParts;
 use super::record::{Look, Record};
@@ -35,6 +37,8 @@ pub(super) struct Sighted {
     pub(super) adjustment: Option<AdjustmentWork>,
     /// Ranges of the chambers with gas.
     pub(super) gas: Vec<GasRange>,
+    /// The accounts of oil and energy.
+    pub(super) ledger: Option<RunLedger>,
 }
 
 /// The controller at one time.
@@ -61,8 +65,10 @@ pub(super) struct Looking<'a> {
     /// `None` where no samples are kept.
     record: Option<Record>,
     limits: LimitWatch,
+    lines: LineWatch,
     adjustment: Option<AdjustmentWatch>,
     gas: Vec<GasWatch>,
+    ledger: LedgerWatch,
     follower: Follower<'a>,
     /// Pressures of chambers A and B; below, the highest so far, Pa.
     pressures: [SignalSum<'a>; 2],
@@ -89,6 +95,7 @@ impl<'a> Looking<'a> {
         let pressures = sums::pressures(bench, &wanted);
         let gas = GasWatch::of(bench, &wanted);
         let limits = LimitWatch::of(bench);
+        let lines = LineWatch::of(bench, &wanted);
         let parts = SignalParts::of(bench);
         Looking {
             bench,
@@ -99,8 +106,10 @@ impl<'a> Looking<'a> {
             table,
             record: None,
             limits,
+            lines,
             adjustment: AdjustmentWatch::of(bench),
             gas,
+            ledger: LedgerWatch::of(bench),
             follower,
             pressures,
             peak_pressures_pa: [f64::NEG_INFINITY; 2],
@@ -134,9 +143,10 @@ impl<'a> Looking<'a> {
             metrics,
             peak_pressures_pa: self.peak_pressures_pa,
             measured,
-            exceeded: self.limits.finish(),
+            exceeded: self.limits.finish().into_iter().chain(self.lines.found()).collect(),
             adjustment: self.adjustment.map(AdjustmentWatch::finish),
             gas: self.gas.into_iter().filter_map(GasWatch::finish).collect(),
+            ledger: self.ledger.finish(),
         })
     }
 
@@ -234,7 +244,9 @@ impl Observer for Looking<'_> {
 
     fn follow(&mut self, stretch: &Stretch<'_>) {
         self.follower.follow(stretch);
+        self.lines.follow(stretch);
         self.gas.iter_mut().for_each(|gas| gas.follow(stretch));
+        self.ledger.follow(self.bench, stretch);
         if let Some(adjustment) = &mut self.adjustment {
             adjustment.follow(self.bench, stretch);
         }

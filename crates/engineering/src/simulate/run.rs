@@ -20,7 +20,7 @@ use super::metrics::Metrics;
 use super::parts::SignalParts;
 use super::record::Record;
 use super::saved::{self, SavedState};
-use super::{RunTable, SimulateError, ToleranceCheck, Window};
+use super::{RunLedger, RunTable, SimulateError, ToleranceCheck, Window};
 use crate::project::Scenario;
 
 /// Longest time between two samples, from which figures are drawn: 1 ms would cut off the peaks of
@@ -72,6 +72,8 @@ pub struct ScenarioRun {
     pub adjustment: Option<AdjustmentWork>,
     /// The gas at each chamber that has some.
     pub gas: Vec<GasRange>,
+    /// The accounts of oil and energy; `None` where waves travel along a line.
+    pub ledger: Option<RunLedger>,
     /// Its final state, from which another run can continue, or why it is not saved.
     pub end: Result<SavedState, &'static str>,
 }
@@ -92,10 +94,18 @@ pub struct BeyondExpansion {
 pub struct Occurrence {
     /// s.
     pub time_s: f64,
-    /// One of [`INDICATORS`], or `command_limit`.
+    /// One of [`INDICATORS`], `command_limit`, or one of [`LINE_OCCURRENCES`](super::LINE_OCCURRENCES),
+    /// which only begin.
     pub kind: &'static str,
     /// Whether it began.
     pub begins: bool,
+}
+
+impl Occurrence {
+    /// The beginning of the time in which a limit of a line is exceeded.
+    pub fn of(exceeded: &Exceeded) -> Option<Occurrence> {
+        Some(Occurrence { time_s: exceeded.first_time_s, kind: exceeded.occurrence()?, begins: true })
+    }
 }
 
 /// How a run ended early.
@@ -195,7 +205,9 @@ pub(super) fn run(
     let named = |error| SimulateError::Simulation { name: scenario.name.clone(), error };
     let outcome = bench.control.drive(task, &bench.settings, &mut watch).map_err(named)?;
     let seen = looking.finish()?;
-    let occurrences = found(bench, course, &outcome, &samples.borrow());
+    let mut occurrences = found(bench, course, &outcome, &samples.borrow());
+    occurrences.extend(seen.exceeded.iter().filter_map(Occurrence::of));
+    sort_by_number(&mut occurrences, |one| one.time_s);
     let windows = course.windows.iter().copied().zip(seen.metrics).collect();
     let outside_model_s = outside_model_s(&occurrences, bench.machine.has_end_stops());
     let memory = memory.into_inner();
@@ -220,6 +232,7 @@ pub(super) fn run(
         exceeded: seen.exceeded,
         adjustment: seen.adjustment,
         gas: seen.gas,
+        ledger: seen.ledger,
         end,
         check: None,
     })
@@ -248,11 +261,12 @@ fn found(
     found
 }
 
-/// When a chamber or a transmission first cavitates, a chamber has no volume, or the piston leaves
+/// When a chamber, a line or a transmission first cavitates, a chamber has no volume, or the piston leaves
 /// a stroke without end stops.
 fn outside_model_s(occurrences: &[Occurrence], has_end_stops: bool) -> Option<f64> {
     let outside = |kind: &str| match kind {
-        "cavitation_a" | "cavitation_b" | "cavitation_transmission" | "empty_a" | "empty_b" => true,
+        "cavitation_a" | "cavitation_b" | "cavitation_line_a" | "cavitation_line_b" => true,
+        "cavitation_transmission" | "empty_a" | "empty_b" => true,
         "end_stop_a" | "end_stop_b" => !has_end_stops,
         _ => false,
     };

@@ -5,7 +5,7 @@ use super::check;
 use super::frequency;
 use super::metrics::metrics_row;
 use super::state_names;
-use super::{Cause, Metrics, ScenarioComparison, ScenarioRun, Window};
+use super::{AccountSum, Cause, Metrics, RunLedger, ScenarioComparison, ScenarioRun, Window};
 use crate::answer::{Object, body_in_use};
 use crate::project::Loaded;
 
@@ -58,6 +58,7 @@ const NOT_AMPLIFIED: &str = "no oscillation grew so much that errors within the 
 /// Why there is no work of an adjustment, or no temperature.
 const NOT_ADJUSTED: &str = "no setting of an accumulator moves, and no valve leads to its gas";
 const NO_GAS_VALVE: &str = "no valve lies between a chamber and its gas";
+const NO_LEDGER: &str = "waves in transit along a line are in no account";
 const NO_HEAT: &str = "a polytropic exponent gives no temperature: state `thermal_time_constant`";
 
 fn scenario(run: &ScenarioRun, state_file: String) -> Object {
@@ -113,6 +114,7 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
                 .with("stated_pressure_pa", beyond.stated_pa)
         })
         .and(adjustment(run))
+        .told("ledgers", run.ledger.as_ref().map(ledger).ok_or(NO_LEDGER))
         .each("exceeded", &run.exceeded, |exceeded| {
             Object::new()
                 .with("what", exceeded.limit.word())
@@ -120,7 +122,23 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
                 .with("peak", exceeded.peak)
                 .with("peak_time_s", exceeded.peak_time_s)
                 .with("first_time_s", exceeded.first_time_s)
+                .told("place", exceeded.place.word().ok_or("it is a limit of the rig as a whole"))
+                .told("distance_m", exceeded.place.distance_m().ok_or("it is not within a line"))
         })
+}
+
+/// The accounts of oil and energy, each with how far it is from closing.
+fn ledger(ledger: &RunLedger) -> Object {
+    let account = |sum: &AccountSum| {
+        Object::new()
+            .with("part", sum.part)
+            .with("stored", sum.stored)
+            .with("inflow", sum.inflow)
+            .with("lost", sum.lost)
+            .with("closing_error", sum.closing_error())
+            .with("relative_error", sum.relative_error())
+    };
+    Object::new().each("oil_m3", &ledger.oil, account).each("energy_j", &ledger.energy, account)
 }
 
 fn event((window, metrics): &(Window, Metrics)) -> Object {

@@ -284,6 +284,19 @@ fn occurrence_words(occurrence: &Occurrence) -> String {
     let (kind, chamber) = of_chamber.unwrap_or((kind, ""));
     let [first, then] = match kind {
         "cavitation" => ["chamber # cavitates", "chamber # is above vapour pressure again"],
+        "cavitation_line" => ["the line to chamber # cavitates", "the line to chamber # is filled again"],
+        "working_pressure" => [
+            "the line to chamber # is above its working pressure",
+            "the line to chamber # is within its working pressure again",
+        ],
+        "burst_pressure" => [
+            "the line to chamber # is above its burst pressure",
+            "the line to chamber # is below its burst pressure again",
+        ],
+        "turbulent_line" => [
+            "the flow in the line to chamber # is turbulent",
+            "the flow in the line to chamber # is laminar again",
+        ],
         "end_stop" => ["the piston reaches the end of chamber #", "the piston leaves the end of chamber #"],
         "empty" => ["chamber # has no volume left", "chamber # has volume again"],
         "load_contact" => ["the load touches the wall", "the load leaves the wall"],
@@ -304,6 +317,12 @@ fn occurrence_words(occurrence: &Occurrence) -> String {
         ],
         "supply_lost" => ["the supply falls below the tank", "the supply is above the tank again"],
         _ => ["the command reaches its limit", "the command leaves its limit"],
+    };
+    let first = match (kind, time_s) {
+        ("load_contact", 0.0) => {
+            "the load touches the wall from the start: the force or weight that it carries there closes its gap"
+        }
+        _ => first,
     };
     let what = if begins { first } else { then }.replace('#', chamber);
     format!("{} s: {what}", DisplayUnit::SECOND.number(time_s, 5))

@@ -1,0 +1,122 @@
+//! The accounts of oil and energy of a run: what each part held at its start and end, what went into
+//! it and what it lost, and how far that is from closing.
+
+use phea_dynamics::simulation::{Stretch, gauss_points};
+use phea_hydraulics::machine::{Account, ENERGY_ACCOUNTS, Ledger, OIL_ACCOUNTS};
+
+use super::bench::ControlledMachine;
+
+/// An account over a run.
+///
+/// ```text
+/// error = held at the end - held at the start - inflow + lost
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AccountSum {
+    /// The part: one of [`OIL_ACCOUNTS`] or [`ENERGY_ACCOUNTS`].
+    pub part: &'static str,
+    /// What it held at the start and at the end, m3 or J.
+    pub stored: [f64; 2],
+    /// What went in, m3 or J.
+    pub inflow: f64,
+    /// What it lost, m3 or J.
+    pub lost: f64,
+    /// Integral of the magnitudes of both, m3 or J.
+    pub throughput: f64,
+}
+
+impl AccountSum {
+    /// How far it is from closing, m3 or J.
+    pub fn closing_error(&self) -> f64 {
+        self.stored[1] - self.stored[0] - self.inflow + self.lost
+    }
+
+    /// The same over the throughput; zero where nothing went through.
+    pub fn relative_error(&self) -> f64 {
+        if self.throughput > 0.0 { self.closing_error().abs() / self.throughput } else { 0.0 }
+    }
+}
+
+/// The accounts of a run; the last of each is that of the whole rig.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunLedger {
+    /// m3 at zero gauge pressure.
+    pub oil: Vec<AccountSum>,
+    /// J.
+    pub energy: Vec<AccountSum>,
+}
+
+/// Sums the accounts over each step of the integration.
+pub(super) struct LedgerWatch {
+    sums: Vec<AccountSum>,
+    begun: bool,
+    /// Room for states and inputs.
+    states: Vec<f64>,
+    inputs: Vec<f64>,
+}
+
+impl LedgerWatch {
+    pub(super) fn of(bench: &ControlledMachine) -> LedgerWatch {
+        let [states, inputs] = bench.control.size();
+        let empty = |&part: &&'static str| AccountSum {
+            part,
+            stored: [0.0; 2],
+            inflow: 0.0,
+            lost: 0.0,
+            throughput: 0.0,
+        };
+        LedgerWatch {
+            sums: OIL_ACCOUNTS.iter().chain(&ENERGY_ACCOUNTS).map(empty).collect(),
+            begun: false,
+            states: vec![0.0; states],
+            inputs: vec![0.0; inputs],
+        }
+    }
+
+    /// The accounts at a part of a step, all of whose states are wanted; `None` with waves.
+    fn at(
+        &mut self,
+        bench: &ControlledMachine,
+        stretch: &Stretch<'_>,
+        part: f64,
+    ) -> Option<impl Iterator<Item = Account<f64>> + use<>> {
+        let LedgerWatch { states, inputs, .. } = self;
+        states.iter_mut().zip(stretch.states).for_each(|(state, over)| *state = over.at(part));
+        stretch.inputs_at(part, inputs);
+        let own = inputs.get(bench.control.leading_inputs()..).unwrap_or_default();
+        let Ledger { oil, energy } = bench.machine.ledger(states, own)?;
+        Some(oil.into_iter().chain(energy))
+    }
+
+    /// Takes a step.
+    pub(super) fn follow(&mut self, bench: &ControlledMachine, stretch: &Stretch<'_>) {
+        if !self.begun {
+            let Some(accounts) = self.at(bench, stretch, 0.0) else { return };
+            self.sums.iter_mut().zip(accounts).for_each(|(sum, account)| sum.stored = [account.stored; 2]);
+            self.begun = true;
+        }
+        let length_s = stretch.end_s() - stretch.start_s();
+        for (part, weight) in gauss_points() {
+            let Some(accounts) = self.at(bench, stretch, part) else { return };
+            let width_s = weight * length_s;
+            for (sum, Account { inflow, lost, .. }) in self.sums.iter_mut().zip(accounts) {
+                sum.inflow += width_s * inflow;
+                sum.lost += width_s * lost;
+                sum.throughput += width_s * (inflow.abs() + lost.abs());
+            }
+        }
+        let Some(accounts) = self.at(bench, stretch, 1.0) else { return };
+        self.sums.iter_mut().zip(accounts).for_each(|(sum, account)| sum.stored[1] = account.stored);
+    }
+
+    /// The accounts of the parts that held or passed on anything, and of the rig; `None` where waves
+    /// travel along a line, and without a step.
+    pub(super) fn finish(self) -> Option<RunLedger> {
+        let is_used = |sum: &AccountSum| {
+            sum.part == "rig" || sum.throughput != 0.0 || sum.stored.iter().any(|stored| *stored != 0.0)
+        };
+        let of = |sums: &[AccountSum]| sums.iter().filter(|sum| is_used(sum)).copied().collect();
+        let (oil, energy) = self.sums.split_at_checked(OIL_ACCOUNTS.len())?;
+        self.begun.then(|| RunLedger { oil: of(oil), energy: of(energy) })
+    }
+}

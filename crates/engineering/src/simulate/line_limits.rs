@@ -1,0 +1,212 @@
+//! Limits of lines and chambers: vapour pressure, the pressures that hoses and pipes bear, and the
+//! Reynolds number up to which their friction is that of the equations. They are watched at every
+//! node of a line, over the solution itself, between its rows too.
+//!
+//! ```text
+//! Re = 4 |q|/(pi d nu)          laminar up to 2300
+//! ```
+
+use phea_dynamics::simulation::{Quartic, Stretch};
+use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
+use phea_hydraulics::line::Line;
+
+use super::bench::ControlledMachine;
+use super::exceeded::{Exceeded, LimitPlace, RigLimit, WatchedLimit};
+use super::sum::SignalSum;
+use crate::project::{DeclaredLine, LineMotion, Project};
+
+/// The Reynolds number above which flow in a round pipe is no longer laminar.
+pub const LAMINAR_UP_TO: f64 = 2300.0;
+
+/// What a line bears, and where its model has nodes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LineLimits {
+    nodes: LineNodes,
+    /// Pa, of its hose or pipe, where stated.
+    working_pa: Option<f64>,
+    burst_pa: Option<f64>,
+}
+
+/// Nodes of a line in addition to its chamber.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum LineNodes {
+    /// None: one pressure.
+    #[default]
+    Lumped,
+    /// The beginning of each of this many segments.
+    Segments(usize),
+    /// Its end at the valve.
+    Waves,
+}
+
+impl LineLimits {
+    /// Those of both lines of a project.
+    pub fn of(project: &Project) -> [LineLimits; 2] {
+        let lines = project.actuator.as_ref().map(|actuator| &actuator.line);
+        lines.map_or([LineLimits::default(); 2], |lines| [&lines.a, &lines.b].map(LineLimits::of_line))
+    }
+
+    fn of_line(line: &DeclaredLine) -> LineLimits {
+        let nodes = match &line.motion {
+            LineMotion::Lumped | LineMotion::Creeping { .. } => LineNodes::Lumped,
+            LineMotion::Segments(segments) => LineNodes::Segments(segments.count() as usize),
+            LineMotion::TransmissionLine { .. } | LineMotion::TwoWave { .. } => LineNodes::Waves,
+        };
+        let of_hose = line.hose().map(|hose| [hose.working_pressure, hose.burst_pressure]);
+        let of_pipe = line.pipe().map(|pipe| [pipe.working_pressure, pipe.burst_pressure]);
+        let [working_pa, burst_pa] = of_hose.or(of_pipe).unwrap_or_default();
+        LineLimits { nodes, working_pa, burst_pa }
+    }
+
+    /// Whether the chamber's own pressure is not all there is to watch.
+    fn is_watched(&self) -> bool {
+        self.nodes != LineNodes::Lumped || self.working_pa.is_some() || self.burst_pa.is_some()
+    }
+
+    /// Numbers, from zero, of the line's states that are pressures and flows; the pressures with
+    /// the part of the length from the valve on.
+    fn states(&self, count: usize) -> (Vec<(usize, f64)>, Vec<usize>) {
+        match self.nodes {
+            LineNodes::Lumped => (vec![], vec![]),
+            LineNodes::Segments(segments) => {
+                let pressures = (0..segments).map(|node| (node, node as f64 / segments as f64));
+                (pressures.collect(), (segments..2 * segments).collect())
+            }
+            // the flow into either end that friction resists
+            LineNodes::Waves => (vec![(0, 0.0)], vec![1, 1 + (count - 1) / 2]),
+        }
+    }
+}
+
+/// A signal of the machine with the limits that hold for it.
+struct WatchedPoint {
+    signal: SignalSum<'static>,
+    /// By which the signal is multiplied.
+    scale: f64,
+    place: LimitPlace,
+    /// Indices of its limits.
+    limits: Vec<usize>,
+}
+
+/// Watches chambers and lines.
+pub(crate) struct LineWatch {
+    limits: Vec<WatchedLimit>,
+    points: Vec<WatchedPoint>,
+}
+
+impl LineWatch {
+    /// Of both sides of a machine, from these observed states.
+    pub(crate) fn of(bench: &ControlledMachine, wanted: &[usize]) -> LineWatch {
+        let mut watch = LineWatch { limits: vec![], points: vec![] };
+        for side in [0, 1] {
+            watch.side(bench, wanted, side);
+        }
+        watch
+    }
+
+    /// The states that it needs where anything but the chambers' vapour pressure is watched.
+    pub(crate) fn states(bench: &ControlledMachine) -> Vec<usize> {
+        let of_side = |side: usize| {
+            let (chamber, line) = places(bench, side);
+            let (pressures, flows) = bench.line_limits[side].states(line.len());
+            let own = pressures.into_iter().map(|(number, _)| number).chain(flows);
+            let own = own.filter_map(|number| line.get(number).copied());
+            let watched = bench.line_limits[side].is_watched();
+            chamber.into_iter().chain(own).filter(|_| watched).collect::<Vec<usize>>()
+        };
+        [0, 1].into_iter().flat_map(of_side).collect()
+    }
+
+    fn side(&mut self, bench: &ControlledMachine, wanted: &[usize], side: usize) {
+        let name = ['a', 'b'][side];
+        let own = &bench.line_limits[side];
+        let components = bench.rig.actuator.components();
+        let [length_m, bore_m] = size(&[components.line_a, components.line_b][side]);
+        let vapour_pa = bench.vapour_pressure_pa - ATMOSPHERIC_PRESSURE_ABSOLUTE;
+        let above = |limit, value: f64| WatchedLimit::new(limit, [f64::NEG_INFINITY, value]);
+        let below = |value: f64| WatchedLimit::new(RigLimit::VapourPressure, [value, f64::INFINITY]);
+        let [in_chamber, in_line] = [self.add(below(vapour_pa)), self.add(below(vapour_pa))];
+        let borne = [(RigLimit::WorkingPressure, own.working_pa), (RigLimit::BurstPressure, own.burst_pa)];
+        let borne: Vec<usize> =
+            borne.into_iter().filter_map(|(limit, value)| Some(self.add(above(limit, value?)))).collect();
+        let (chamber, line) = places(bench, side);
+        let (pressures, flows) = own.states(line.len());
+        let at = |place: usize| SignalSum::of(wanted, bench.control.size(), move |state, _| state[place]);
+        self.points.extend(chamber.map(|place| WatchedPoint {
+            signal: at(place),
+            scale: 1.0,
+            place: LimitPlace::Chamber(name),
+            limits: [&[in_chamber], &borne[..]].concat(),
+        }));
+        for (number, part) in pressures {
+            let Some(place) = line.get(number).copied() else { continue };
+            let distance_m = part * length_m;
+            let limits = [&[in_line], &borne[..]].concat();
+            let place_m = LimitPlace::Line { side: name, distance_m };
+            self.points.push(WatchedPoint { signal: at(place), scale: 1.0, place: place_m, limits });
+        }
+        if flows.is_empty() {
+            return;
+        }
+        let laminar = WatchedLimit::new(RigLimit::LaminarFlow, [-LAMINAR_UP_TO, LAMINAR_UP_TO]);
+        let limits = vec![self.add(laminar)];
+        let scale = 4.0 / (std::f64::consts::PI * bore_m * components.fluid.kinematic_viscosity);
+        let count = flows.len();
+        for (index, number) in flows.into_iter().enumerate() {
+            let Some(place) = line.get(number).copied() else { continue };
+            let distance_m = match own.nodes {
+                LineNodes::Waves => length_m * index as f64,
+                LineNodes::Lumped | LineNodes::Segments(_) => length_m * (index as f64 + 0.5) / count as f64,
+            };
+            let place_m = LimitPlace::Line { side: name, distance_m };
+            self.points.push(WatchedPoint {
+                signal: at(place),
+                scale,
+                place: place_m,
+                limits: limits.clone(),
+            });
+        }
+    }
+
+    fn add(&mut self, limit: WatchedLimit) -> usize {
+        self.limits.push(limit);
+        self.limits.len() - 1
+    }
+
+    /// Takes a step.
+    pub(crate) fn follow(&mut self, stretch: &Stretch<'_>) {
+        let times_s = [stretch.start_s(), stretch.end_s()];
+        for WatchedPoint { signal, scale, place, limits } in &self.points {
+            let value = Quartic::constant(0.0).plus(*scale, &signal.over(stretch.states));
+            for limit in limits {
+                if let Some(limit) = self.limits.get_mut(*limit) {
+                    limit.follow(times_s, &value, *place);
+                }
+            }
+        }
+    }
+
+    /// The limits that were exceeded.
+    pub(crate) fn found(&self) -> impl Iterator<Item = Exceeded> + '_ {
+        self.limits.iter().filter_map(WatchedLimit::found)
+    }
+}
+
+/// Length and bore of a line as it is filled, m; of a volume they are not a number.
+fn size(line: &Line) -> [f64; 2] {
+    match line.filled() {
+        Line::Hose { hose, length } => [length, hose.bore],
+        Line::Pipe { pipe, length } => [length, pipe.bore],
+        Line::Volume { .. } => [f64::NAN; 2],
+    }
+}
+
+/// The place of the pressure of a chamber in the state, and those of its line.
+fn places(bench: &ControlledMachine, side: usize) -> (Option<usize>, Vec<usize>) {
+    let [chamber, line] = [["pressure_a_pa", "line_a_"], ["pressure_b_pa", "line_b_"]][side];
+    let names = bench.machine.state_names();
+    let named = |known: &dyn Fn(&str) -> bool| {
+        names.iter().enumerate().filter(|(_, name)| known(name)).map(|(place, _)| place).collect::<Vec<_>>()
+    };
+    (named(&|name| name == chamber).first().copied(), named(&|name| name.starts_with(line)))
+}
