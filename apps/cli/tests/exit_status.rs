@@ -53,9 +53,10 @@ fn phea(folder: &Path, arguments: &[&str]) -> Output {
 const OUTCOMES: &[(&[&str], i32)] = &[
     (&["check", "hose.toml"], 0),
     (&["check", "plant.toml"], 0),
-    (&["size", "hose.toml"], 0),
-    (&["size", "hose.toml", "--gain", "0.00025"], 0),
-    (&["size", "hose.toml", "--length", "1.5 m"], 0),
+    (&["size", "hose.toml"], 1),
+    (&["size", "hose.toml", "--set", "line.working_pressure=140 bar"], 0),
+    (&["size", "hose.toml", "--gain", "0.00025", "--set", "line.working_pressure=140 bar"], 0),
+    (&["size", "hose.toml", "--length", "1.5 m", "--set", "line.working_pressure=140 bar"], 0),
     (&["linearize", "hose.toml"], 0),
     (&["report", "driven.toml", "--out", "out"], 0),
     (&["verify", "hose.toml"], 1),
@@ -300,8 +301,11 @@ fn a_campaign_goes_on_after_ctrl_c() {
 fn new_writes_a_project_that_passes_and_never_over_another() {
     let folder = folder("new");
     assert_eq!(phea(&folder, &["new", "rig"]).status.code(), Some(0));
+    // the working pressure of its hose is for the user to state
+    let stated = ["--set", "line.working_pressure=140 bar"];
     for command in ["check", "size", "linearize"] {
-        assert_eq!(phea(&folder, &[command, "rig/project.toml"]).status.code(), Some(0), "{command}");
+        let arguments = [&[command, "rig/project.toml"], &stated[..]].concat();
+        assert_eq!(phea(&folder, &arguments).status.code(), Some(0), "{command}");
     }
     assert_eq!(phea(&folder, &["new", "rig"]).status.code(), Some(2));
     assert_eq!(phea(&folder, &["new", "empty.toml"]).status.code(), Some(2));

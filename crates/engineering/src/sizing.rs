@@ -59,8 +59,8 @@ pub struct Sizing {
     pub load: SizedLoad,
     /// The stiffness model of the project.
     pub model: StiffnessModel,
-    /// Every candidate: accepted ones first, among these the project's model first, then the
-    /// shorter ones.
+    /// Every candidate: accepted ones first, then those that nothing rejects, among these the
+    /// project's model first, then the shorter ones.
     pub candidates: Vec<Candidate>,
     /// The decisions in order.
     pub decisions: Vec<SizingStep>,
@@ -92,7 +92,8 @@ pub fn size(problem: &SizingProblem, question: Question) -> Sizing {
     candidates.sort_by(|one, other| {
         let accepted = other.accepted().cmp(&one.accepted());
         let declared = other_model(one).cmp(&other_model(other));
-        accepted.then(declared).then(micrometres(one).total_cmp(&micrometres(other)))
+        let fits = other.fits().cmp(&one.fits());
+        accepted.then(fits).then(declared).then(micrometres(one).total_cmp(&micrometres(other)))
     });
     let mut sizing = Sizing {
         load: problem.load,
@@ -113,7 +114,8 @@ pub fn size(problem: &SizingProblem, question: Question) -> Sizing {
 }
 
 impl Sizing {
-    /// The answer: the first accepted candidate of the project's own stiffness model.
+    /// The answer: the first candidate of the project's own stiffness model that nothing rejects;
+    /// it is accepted where all that must be known of a hose is known of any that fits.
     pub fn best(&self) -> Option<&Candidate> {
         self.best_of(self.model)
     }
@@ -126,8 +128,8 @@ impl Sizing {
         }
     }
 
-    /// The first accepted candidate of a stiffness model.
+    /// The first candidate of a stiffness model that nothing rejects.
     pub fn best_of(&self, model: StiffnessModel) -> Option<&Candidate> {
-        self.candidates.iter().find(|candidate| candidate.accepted() && candidate.branch.model == model)
+        self.candidates.iter().find(|candidate| candidate.fits() && candidate.branch.model == model)
     }
 }

@@ -54,7 +54,7 @@ use crate::robust::robust_problem;
 use crate::setup::Setup;
 use crate::shaping::{self, RequestedChange, Shaped, shape};
 use crate::simulate::compare_projects;
-use crate::sizing::{self, Question, SizingError, size, sizing_problem};
+use crate::sizing::{self, Candidate, Question, SizingError, size, sizing_problem};
 use crate::source::{Destination, HeldFiles, Source};
 use crate::specification::{self, specifications, wishes};
 use crate::trial::{Agreement, tried};
@@ -331,7 +331,7 @@ fn size_answer(
         document: sizing::document(&sizing, vec![]),
         body: sizing::body(&sizing),
         files: sizing::files(&sizing),
-        affirmative: sizing.best().is_some(),
+        affirmative: sizing.best().is_some_and(Candidate::accepted),
     })
 }
 

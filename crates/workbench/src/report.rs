@@ -326,12 +326,13 @@ fn summary(
     });
     let mut facts = vec![("Hydraulic stiffness", words + &elsewhere.collect::<String>())];
     let best = sizing.zip(problem).and_then(|(sizing, problem)| {
-        sizing.candidates.iter().find(|c| c.accepted() && c.branch.model == problem.model)
+        sizing.candidates.iter().find(|c| c.fits() && c.branch.model == problem.model)
     });
     if let Some(best) = best {
         let gain = significant(best.branch.gain_v_per_n, 3);
         let length = best.branch.length_words(3);
-        facts.push(("Hose", format!("{}, {length} at K_p = {gain} V/N", best.option.name)));
+        let open = if best.accepted() { "" } else { "; not accepted before its working pressure is stated" };
+        facts.push(("Hose", format!("{}, {length} at K_p = {gain} V/N{open}", best.option.name)));
     } else if sizing.is_some() {
         facts.push(("Hose", "none of the catalogue fits".to_string()));
     }

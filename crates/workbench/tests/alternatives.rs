@@ -291,7 +291,7 @@ fn a_sized_alternative_has_the_hose_of_size() {
     let size = Request::Size { gain: None, length: None };
     let sized = parsed(&answer(&text, &["line.length=1 m"], &[], &size));
     let best = &sized["candidates"][0];
-    assert_eq!(best["accepted"], true);
+    assert_eq!(best["rejections"], Value::Array(vec![]));
     let line = &all[1].loaded.project.actuator.as_ref().unwrap().line;
     assert_eq!(line.a.hose_name(), best["hose"].as_str());
     assert!((line.a.length().unwrap() - best["length_m"].as_f64().unwrap()).abs() < 1e-12);

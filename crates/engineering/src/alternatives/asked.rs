@@ -162,7 +162,7 @@ fn sized(
     // of unequal lines the lengths of their own hoses
     let own = other.project.actuator.as_ref().filter(|_| !alike).and_then(own_hoses);
     let of_own = |candidate: &&Candidate| {
-        let accepted = candidate.accepted() && candidate.branch.model == sizing.model;
+        let accepted = candidate.fits() && candidate.branch.model == sizing.model;
         accepted && own.as_ref().is_none_or(|own| candidate.option.name == *own)
     };
     let Some(best) = sizing.candidates.iter().find(of_own) else {

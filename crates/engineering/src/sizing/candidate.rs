@@ -12,6 +12,8 @@ use crate::quantity::{DisplayUnit, significant};
 pub enum Consequence {
     /// The candidate is not accepted.
     Rejects,
+    /// The candidate is not accepted until what it states is known.
+    LeavesOpen,
     /// The candidate is accepted with a warning.
     Warns,
 }
@@ -46,9 +48,18 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// Whether nothing rejects it.
+    /// Whether nothing rejects it, and all that must be known of it is known.
     pub fn accepted(&self) -> bool {
-        self.findings.iter().all(|finding| finding.severity != Consequence::Rejects)
+        self.fits() && !self.has(Consequence::LeavesOpen)
+    }
+
+    /// Whether nothing rejects it, as far as it is known.
+    pub fn fits(&self) -> bool {
+        !self.has(Consequence::Rejects)
+    }
+
+    fn has(&self, severity: Consequence) -> bool {
+        self.findings.iter().any(|finding| finding.severity == severity)
     }
 
     /// Length of line A, and of each line where they are alike, m.
@@ -85,11 +96,16 @@ pub(super) fn assess(problem: &SizingProblem, option: &HoseOption, branch: Branc
     if candidate.length_m() > 0.0 {
         velocity(problem, &candidate, &mut findings);
         pressure(problem, &candidate, &mut findings);
+        expansion(problem, option, &mut findings);
         bending(&candidate, &mut findings);
         stiffening(option, &mut findings);
         settling(problem, &candidate, &mut findings);
     }
-    findings.sort_by_key(|finding| finding.severity != Consequence::Rejects);
+    findings.sort_by_key(|finding| match finding.severity {
+        Consequence::Rejects => 0,
+        Consequence::LeavesOpen => 1,
+        Consequence::Warns => 2,
+    });
     candidate.findings = findings;
     candidate
 }
@@ -188,14 +204,14 @@ fn pressure(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<S
     let bar = |pressure: f64| DisplayUnit::BAR.number(pressure, 3);
     let peak = problem.supply_pressure + candidate.surge_pressure_pa;
     match candidate.option.working_pressure {
-        None => warns(
-            findings,
-            format!(
-                "the catalogue gives no working pressure: the hose must withstand {} bar with surge ({} bar supply)",
+        None => {
+            let text = format!(
+                "no working pressure is stated: the hose must withstand {} bar with surge ({} bar supply); state `working_pressure`",
                 bar(peak),
                 bar(problem.supply_pressure)
-            ),
-        ),
+            );
+            findings.push(SizingReason { severity: Consequence::LeavesOpen, text });
+        }
         Some(working) if working < problem.supply_pressure => {
             rejects(
                 findings,
@@ -214,6 +230,23 @@ fn pressure(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<S
         }
         Some(_) => {}
     }
+}
+
+/// The expansion is known up to the pressure it is stated at.
+fn expansion(problem: &SizingProblem, option: &HoseOption, findings: &mut Vec<SizingReason>) {
+    let Some(stated) =
+        option.expansion_stated_at.filter(|stated| problem.supply_pressure > stated * (1.0 + 1e-9))
+    else {
+        return;
+    };
+    let [stated, supply] =
+        [stated, problem.supply_pressure].map(|pressure| DisplayUnit::BAR.number(pressure, 3));
+    warns(
+        findings,
+        format!(
+            "its expansion is stated at {stated} bar, and the supply has {supply} bar: in between it is carried on along its slope"
+        ),
+    );
 }
 
 fn bending(candidate: &Candidate, findings: &mut Vec<SizingReason>) {

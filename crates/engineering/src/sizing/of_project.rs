@@ -204,11 +204,13 @@ fn hoses(actuator: &project::DeclaredActuator, catalogue: &Catalogue) -> Vec<Hos
             hose(properties[side].bore, expansion, pressures, stiffening)
         });
         let [working_a, working_b] = properties.map(|hose| hose.working_pressure);
+        let stated = properties.map(|hose| hose.expansion.pressure());
         let [radius_a, radius_b] = properties.map(|hose| hose.minimum_bend_radius);
         HoseOption {
             name: name.to_string(),
             hoses,
             working_pressure: working_a.zip(working_b).map(|(one, other)| one.min(other)),
+            expansion_stated_at: stated.into_iter().flatten().reduce(f64::min),
             minimum_bend_radius: [radius_a, radius_b].into_iter().flatten().reduce(f64::max),
         }
     };

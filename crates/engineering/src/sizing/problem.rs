@@ -97,6 +97,8 @@ pub struct HoseOption {
     pub hoses: [Hose; 2],
     /// Working pressure, Pa, where known: of two the lower.
     pub working_pressure: Option<f64>,
+    /// Pressure at which the expansion is stated, Pa, where it is: of two the lower.
+    pub expansion_stated_at: Option<f64>,
     /// Minimum bend radius, m, where known: of two the greater.
     pub minimum_bend_radius: Option<f64>,
 }

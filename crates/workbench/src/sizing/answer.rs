@@ -107,6 +107,7 @@ fn candidate(candidate: &Candidate) -> Object {
         .with("accepted", candidate.accepted())
         .each("reasons", &candidate.findings, |finding| finding.text.as_str())
         .with("rejections", of(Consequence::Rejects))
+        .with("not_known", of(Consequence::LeavesOpen))
         .with("warnings", of(Consequence::Warns))
         .each("iterations", &branch.steps, |step| {
             Object::new()

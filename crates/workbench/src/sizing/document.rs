@@ -23,8 +23,8 @@ pub(crate) fn document(sizing: &Sizing, figures: Vec<Figure>) -> Document {
     let [own, other] =
         [sizing.model, sizing.other_model()].map(|model| (model_name(model), sizing.best_of(model)));
     out.marked([
-        (Some(own.1.is_some().into()), format!("{} (the project's): {}", own.0, answer_sentence(own.1))),
-        (Some(other.1.is_some().into()), format!("{}: {}", other.0, answer_sentence(other.1))),
+        (Some(is_accepted(own.1).into()), format!("{} (the project's): {}", own.0, answer_sentence(own.1))),
+        (Some(is_accepted(other.1).into()), format!("{}: {}", other.0, answer_sentence(other.1))),
     ]);
     out.figures(figures);
     if let Some(found) = &sizing.other_means {
@@ -120,6 +120,10 @@ fn valve_words(valve: &SizedValve) -> String {
     )
 }
 
+fn is_accepted(best: Option<&Candidate>) -> bool {
+    best.is_some_and(Candidate::accepted)
+}
+
 /// What to buy and which gain to set, in a sentence.
 fn answer_sentence(best: Option<&Candidate>) -> String {
     match best {
@@ -127,7 +131,8 @@ fn answer_sentence(best: Option<&Candidate>) -> String {
             "no hose of the catalogue satisfies every requirement; the reasons are listed with the candidates.".to_string()
         }
         Some(candidate) => format!(
-            "{} with {}: K_H from {} to {} MN/m over the stroke, K_p = {} V/N.",
+            "{}{} with {}: K_H from {} to {} MN/m over the stroke, K_p = {} V/N.",
+            if candidate.accepted() { "" } else { "not accepted before its working pressure is known: " },
             candidate.option.name,
             candidate.branch.length_words(3),
             DisplayUnit::MEGANEWTON_PER_METRE.number(candidate.branch.stiffness.minimum, 3),
@@ -147,14 +152,19 @@ fn alike(candidates: &[Candidate]) -> Vec<Vec<&Candidate>> {
 /// The common objections to these candidates.
 fn findings(out: &mut Document, group: &[&Candidate]) {
     let Some(first) = group.first().filter(|first| !first.findings.is_empty()) else { return };
-    let verdict = if first.accepted() { "accepted" } else { "rejected" };
+    let verdict = match (first.accepted(), first.fits()) {
+        (true, _) => "accepted",
+        (false, true) => "not accepted, since a number is missing",
+        (false, false) => "rejected",
+    };
     let name =
         |one: &&Candidate| format!("{} {}", model_name(one.branch.model), branch_name(one.branch.by_gain));
     let names: Vec<String> = group.iter().map(name).collect();
     out.heading(format!("{} ({}): {verdict}", first.option.name, names.join(", ")));
     out.marked(first.findings.iter().map(|finding| match finding.severity {
         Consequence::Rejects => (Some(StatusMark::Bad), format!("rejects: {}", finding.text)),
-        _ => (Some(StatusMark::Note), format!("warns: {}", finding.text)),
+        Consequence::LeavesOpen => (Some(StatusMark::Bad), format!("not known: {}", finding.text)),
+        Consequence::Warns => (Some(StatusMark::Note), format!("warns: {}", finding.text)),
     }));
 }
 
@@ -165,7 +175,12 @@ fn candidate_cells(candidate: &Candidate) -> [Cell; 8] {
     let [fastest, slowest] =
         candidate.time_constant_s.map(|time_s| DisplayUnit::MILLISECOND.number(time_s, 3));
     [
-        Cell::from(if accepted { "yes" } else { "no" }).marked(accepted),
+        Cell::from(match (accepted, candidate.fits()) {
+            (true, _) => "yes",
+            (false, true) => "not known",
+            (false, false) => "no",
+        })
+        .marked(accepted),
         Cell::Code(candidate.option.name.clone()),
         Cell::Code(model_name(branch.model).to_string()),
         Cell::Code(branch_name(branch.by_gain).to_string()),
