@@ -29,7 +29,7 @@ UNSEEN = {
         uncertainty_log_zero uncertainty_order uncertainty_points uncertainty_reversed uncertainty_twice_counted valve_closed
         valve_hysteresis valve_leakage_below_tare plant_correlation family_opposed specification_load_motion plant_with_sizing
         line_model_pipe line_model_volume plant_case_incomplete family_measured_empty family_measured_and_grid
-        line_accumulator_pressures line_accumulator_temperature uncertainty_direction_ends velocity_sensor_alone cross_port_orifice_wide cross_port_flow_wide series_travel_short series_without_travel series_stop_damping series_stop_missing series_coil_progressive series_vanishing
+        line_accumulator_pressures line_accumulator_temperature supply_accumulator_precharge supply_accumulator_warm uncertainty_direction_ends velocity_sensor_alone cross_port_orifice_wide cross_port_flow_wide series_travel_short series_without_travel series_stop_damping series_stop_missing series_coil_progressive series_vanishing
         impedance_of_nothing impedance_of_position impedance_too_fast impedance_without_load
         motor_stops_without_stroke motor_unserved motor_file
         linkage_open linkage_four_bar_open linkage_dead_point linkage_table_rough linkage_table_short linkage_table_falling

@@ -245,17 +245,19 @@ pub fn simulate_project(
     setup: &Setup<'_>,
     watch: Watch<'_>,
 ) -> Result<Vec<ScenarioRun>, SimulateError> {
-    simulate_into(source, setup, RunOutput { samples: true, table: None }, watch)
+    simulate_into(source, setup, RunOutput { samples: true, ..RunOutput::default() }, watch)
 }
 
 /// What runs leave in addition to their metrics and events.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub struct RunOutput<'a> {
     /// Whether each keeps its samples in memory, for figures; without them its record is empty.
     pub samples: bool,
     /// A table of each scenario, `SCENARIO.csv` or `SCENARIO.parquet`, its rows written as they are
     /// computed: none is kept in memory, however many there are.
     pub table: Option<(&'a dyn Destination, TableFormat)>,
+    /// Whether each has its accounts of oil and energy, which cost about as much as its solution.
+    pub ledger: bool,
 }
 
 /// The same, with the output that is asked for: samples cost more than the solution of the
@@ -289,7 +291,8 @@ pub fn simulate_into(
         let table = output.table.map(begin).transpose()?;
         let mut told =
             |time_s: f64| watch(Progress { stage: "simulating", share: (before + time_s) / whole });
-        let run = run::run(bench, scenario, (course, measured), (table, output.samples), &mut told)?;
+        let run =
+            run::run(bench, scenario, (course, measured), (table, output.samples, output.ledger), &mut told)?;
         let stopped = run.was_cancelled();
         runs.push(run);
         before += scenario.duration;

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use phea_workbench::campaign::{Effort, RequestedRuns, Shard};
 use phea_workbench::command::{CampaignRequest, CampaignRuns, Request};
 use serde_json::Value;
 
@@ -58,7 +59,7 @@ fn flow_beyond_laminar_is_reported_where_laminar_friction_is_computed() {
         assert!(!flow.is_empty() && found["limit"].as_f64().unwrap().abs() == 2300.0, "{found}");
         assert!(found["peak"].as_f64().unwrap().abs() > 5e3, "{found}");
         assert!(begins(&thin, "turbulent_line_a").is_some());
-        let thick = run(&[model, "fluid.kinematic_viscosity=400 cSt"]);
+        let thick = run(&[model, "fluid.kinematic_viscosity=200 cSt"]);
         assert!(exceeded(&thick, "laminar_flow", "line_a").is_none());
     }
     // one pressure has no friction
@@ -106,7 +107,7 @@ fn a_campaign_lists_limits_of_lines() {
         "{HAMMER}[campaign]\nparameters = {{ \"supply.pressure\" = {{ minimum = \"99 bar\", maximum = \"101 bar\" }} }}\n"
     );
     let request = |asked| Request::Campaign(CampaignRequest { seed: 1, asked, files: false });
-    let runs = phea_workbench::campaign::RequestedRuns { runs: 2, ..Default::default() };
+    let runs = RequestedRuns { runs: 2, shard: Shard::default(), effort: Effort::default() };
     let all = json(&text, &[SEGMENTS], &[], &request(CampaignRuns::All(runs)));
     let kinds: Vec<&str> =
         all["occurrences"].as_array().unwrap().iter().map(|one| one["kind"].as_str().unwrap()).collect();
@@ -126,7 +127,7 @@ fn accounts_of_oil_and_energy_close() {
     for run in runs {
         for account in ["oil_m3", "energy_j"] {
             let rows = run["ledgers"][account].as_array().unwrap();
-            assert!(rows.len() > 3 && rows.last().unwrap()["part"] == "rig");
+            assert!(rows.len() >= 3 && rows.last().unwrap()["part"] == "rig");
             for row in rows {
                 let number = |key: &str| row[key].as_f64().unwrap();
                 let held = [0, 1].map(|end: usize| row["stored"][end].as_f64().unwrap());

@@ -248,6 +248,28 @@ fn texts_of_the_user_stay() {
     assert!(page.contains("force of the piston"), "{page}");
 }
 
+/// What leaks through the case is the rig's and not the servovalve's: the slopes of the valve are
+/// listed without it, and the K_c of the rig has it in both chambers.
+#[test]
+fn leakage_through_the_case_is_not_the_valves() {
+    for case in [1e-13, 1e-12, 1e-11] {
+        let text = VANE.replace("case_leakage = \"1e-13 m3/(s.Pa)\"", &format!("case_leakage = {case:e}"));
+        let json: Value = serde_json::from_str(&answered(&text, &Request::Check).json).unwrap();
+        let rows = json["derived"].as_array().unwrap();
+        let value = |name: &str| {
+            let row = rows.iter().find(|row| row["name"] == name).unwrap_or_else(|| panic!("{name}"));
+            row["value"].as_f64().unwrap()
+        };
+        let [own_a, own_b] = ["valve.flow_pressure_a", "valve.flow_pressure_b"].map(value);
+        let together = 1.0 / (1.0 / (own_a + case) + 1.0 / (own_b + case));
+        let whole = value("linear.flow_pressure_coefficient");
+        assert!((whole / together - 1.0).abs() < 1e-12, "{case}: {whole} {together}");
+        let alone = 1.0 / (1.0 / own_a + 1.0 / own_b);
+        let gain = value("linear.flow_gain") / alone;
+        assert!((value("valve.pressure_gain") / gain - 1.0).abs() < 1e-12, "{case}");
+    }
+}
+
 /// The equations of `check` are those of a motor, and so are the symbols everywhere; of a cylinder
 /// they are found, so that the test would see them.
 #[test]
@@ -262,7 +284,8 @@ fn equations_and_symbols_are_those_of_a_motor() {
     is("stiffness.minimum", "K_θ", "K_θ = min over θ of D^2 (1/C_A + 1/C_B)");
     is("operating_point.hydraulic_torque", "T_H", "T_H = D (p_A - p_B)");
     is("linear.flow_gain", "K_qU", "K_{qU} = D^2 (K_{qA}/C_A + K_{qB}/C_B)/K_θ");
-    is("linear.flow_pressure_coefficient", "K_c", "1/K_c = 1/K_{cA} + 1/K_{cB}");
+    let leaking = "1/K_c = 1/(K_{cA} + G_e) + 1/(K_{cB} + G_e), with the leakage G_e through the case";
+    is("linear.flow_pressure_coefficient", "K_c", leaking);
     is("dynamics.mechanical_frequency", "ω_m", "ω_m = sqrt((K_θ + K_S)/J)");
     for request in [
         Request::Check,

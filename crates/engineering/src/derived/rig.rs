@@ -247,11 +247,15 @@ fn equilibrium(rig: &Rig, list: &mut List) {
 
 fn linear_parameters(rig: &Rig, list: &mut List) {
     list.group("Linear model");
+    let slopes = match rig.model.external_leakage {
+        None => "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}",
+        Some(_) => "1/K_c = 1/(K_{cA} + G_e) + 1/(K_{cB} + G_e), with the leakage G_e through the case",
+    };
     for parameter in &rig.parameters {
         let (symbol, unit, equation) = match parameter.name {
             "viscous_friction" => ("f_v", "N.s/m", "f_v = slope of the viscous part"),
             "flow_gain" => ("K_qU", "m3/(s.V)", "K_{qU} = A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)/K_H"),
-            "flow_pressure_coefficient" => ("K_c", "m3/(s.Pa)", "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}"),
+            "flow_pressure_coefficient" => ("K_c", "m3/(s.Pa)", slopes),
             "hydraulic_stiffness" => ("K_H", "N/m", "K_H = A_A^2/C_A + A_B^2/C_B at the operating point"),
             "valve_natural_frequency" => ("ω_nv", "rad/s", "declared for the valve"),
             "valve_damping_ratio" => ("ξ_v", "1", "declared for the valve"),

@@ -2,9 +2,12 @@
 //! slopes.
 
 use phea_hydraulics::servovalve::{
-    SpoolDirection, flow_coefficient_from_rating, leakage_coefficient_from_rating, velocity_gain,
+    ChamberCoefficients, SpoolDirection, flow_coefficient_from_rating, leakage_coefficient_from_rating,
+    velocity_gain,
 };
-use phea_hydraulics::two_pressure::{reduce, two_pressure_linear_parameters};
+use phea_hydraulics::two_pressure::{
+    TwoPressureLinearParameters, TwoPressureModel, reduce, two_pressure_linear_parameters,
+};
 
 use super::list::List;
 use crate::project::{self, NullLeakage, Project, RatedFlow, ValveCoefficients};
@@ -61,6 +64,7 @@ pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
             ),
         }
     }
+    let own = TwoPressureModel { external_leakage: None, ..rig.model };
     for (name, direction, equation) in [
         (
             "extending",
@@ -73,17 +77,30 @@ pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
             "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U to 0 from below",
         ),
     ] {
-        let parameters = reduce(&two_pressure_linear_parameters(&rig.model, &rig.point, direction));
+        let parameters = reduce(&two_pressure_linear_parameters(&own, &rig.point, direction));
         let name = format!("valve.flow_pressure_coefficient_{name}");
         list.add(name, "K_c", parameters.flow_pressure_coefficient, "m3/(s.Pa)", equation);
     }
-    chamber_slopes(rig, list);
-    let pressure_gain = rig.derived.flow_gain / rig.derived.flow_pressure_coefficient;
+    let chambers = without_case(rig);
+    chamber_slopes(&chambers, list);
+    let alone = reduce(&TwoPressureLinearParameters { chambers, ..rig.two_pressure });
+    let pressure_gain = alone.flow_gain / alone.flow_pressure_coefficient;
     list.add("valve.pressure_gain", "K_pU", pressure_gain, "Pa/V", "K_{pU} = K_{qU}/K_c");
 }
 
-fn chamber_slopes(rig: &Rig, list: &mut List) {
-    let chambers = &rig.two_pressure.chambers;
+/// The coefficients of the valve by itself: those of the rig have the leakage through a motor's
+/// case too.
+fn without_case(rig: &Rig) -> ChamberCoefficients {
+    let chambers = rig.two_pressure.chambers;
+    let case = rig.model.external_leakage.unwrap_or(0.0);
+    ChamberCoefficients {
+        flow_pressure_a: chambers.flow_pressure_a - case,
+        flow_pressure_b: chambers.flow_pressure_b - case,
+        ..chambers
+    }
+}
+
+fn chamber_slopes(chambers: &ChamberCoefficients, list: &mut List) {
     list.add(
         "valve.flow_gain_a",
         "K_qA",

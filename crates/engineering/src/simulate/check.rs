@@ -97,7 +97,7 @@ pub fn simulate_checked(
     watch: Watch<'_>,
 ) -> Result<Vec<ScenarioRun>, SimulateError> {
     let half = |progress: Progress| Progress { share: 0.5 * progress.share, ..progress };
-    let output = RunOutput { samples: true, table };
+    let output = RunOutput { samples: true, table, ledger: true };
     let mut runs = simulate_into(source, setup, output, &mut |progress| watch(half(progress)))?;
     if runs.iter().any(ScenarioRun::was_cancelled) {
         return Ok(runs);

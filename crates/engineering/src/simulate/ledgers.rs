@@ -46,6 +46,10 @@ pub struct RunLedger {
     pub energy: Vec<AccountSum>,
 }
 
+/// Why a run has no accounts.
+pub(super) const NOT_REQUESTED: &str = "the accounts of this run were not requested";
+const IN_TRANSIT: &str = "waves in transit along a line are in no account";
+
 /// Sums the accounts over each step of the integration.
 pub(super) struct LedgerWatch {
     sums: Vec<AccountSum>,
@@ -109,14 +113,14 @@ impl LedgerWatch {
         self.sums.iter_mut().zip(accounts).for_each(|(sum, account)| sum.stored[1] = account.stored);
     }
 
-    /// The accounts of the parts that held or passed on anything, and of the rig; `None` where waves
+    /// The accounts of the parts that held or passed on anything, and of the rig; none where waves
     /// travel along a line, and without a step.
-    pub(super) fn finish(self) -> Option<RunLedger> {
+    pub(super) fn finish(self) -> Result<RunLedger, &'static str> {
         let is_used = |sum: &AccountSum| {
             sum.part == "rig" || sum.throughput != 0.0 || sum.stored.iter().any(|stored| *stored != 0.0)
         };
         let of = |sums: &[AccountSum]| sums.iter().filter(|sum| is_used(sum)).copied().collect();
-        let (oil, energy) = self.sums.split_at_checked(OIL_ACCOUNTS.len())?;
-        self.begun.then(|| RunLedger { oil: of(oil), energy: of(energy) })
+        let (oil, energy) = self.sums.split_at_checked(OIL_ACCOUNTS.len()).ok_or(IN_TRANSIT)?;
+        if self.begun { Ok(RunLedger { oil: of(oil), energy: of(energy) }) } else { Err(IN_TRANSIT) }
     }
 }

@@ -14,7 +14,7 @@ use super::exceeded::{Exceeded, LimitWatch};
 use super::files::RunTable;
 use super::follower::Follower;
 use super::gas::{GasRange, GasWatch};
-use super::ledgers::{LedgerWatch, RunLedger};
+use super::ledgers::{LedgerWatch, NOT_REQUESTED, RunLedger};
 use super::line_limits::LineWatch;
 use super::measured::{Measurement, Overlay, Overlaying};
 use super::parts::SignalParts;
@@ -37,8 +37,8 @@ pub(super) struct Sighted {
     pub(super) adjustment: Option<AdjustmentWork>,
     /// Ranges of the chambers with gas.
     pub(super) gas: Vec<GasRange>,
-    /// The accounts of oil and energy.
-    pub(super) ledger: Option<RunLedger>,
+    /// The accounts of oil and energy, or why there are none.
+    pub(super) ledger: Result<RunLedger, &'static str>,
 }
 
 /// The controller at one time.
@@ -68,7 +68,8 @@ pub(super) struct Looking<'a> {
     lines: LineWatch,
     adjustment: Option<AdjustmentWatch>,
     gas: Vec<GasWatch>,
-    ledger: LedgerWatch,
+    /// `None` where it is not asked for.
+    ledger: Option<LedgerWatch>,
     follower: Follower<'a>,
     /// Pressures of chambers A and B; below, the highest so far, Pa.
     pressures: [SignalSum<'a>; 2],
@@ -109,7 +110,7 @@ impl<'a> Looking<'a> {
             lines,
             adjustment: AdjustmentWatch::of(bench),
             gas,
-            ledger: LedgerWatch::of(bench),
+            ledger: None,
             follower,
             pressures,
             peak_pressures_pa: [f64::NEG_INFINITY; 2],
@@ -122,6 +123,12 @@ impl<'a> Looking<'a> {
     /// The same, with a record of its samples, about as many as this.
     pub(super) fn keeping(mut self, looks: f64) -> Looking<'a> {
         self.record.get_or_insert_default().reserve(looks as usize);
+        self
+    }
+
+    /// The same, with the accounts of oil and energy.
+    pub(super) fn accounting(mut self) -> Looking<'a> {
+        self.ledger = Some(LedgerWatch::of(self.bench));
         self
     }
 
@@ -146,7 +153,7 @@ impl<'a> Looking<'a> {
             exceeded: self.limits.finish().into_iter().chain(self.lines.found()).collect(),
             adjustment: self.adjustment.map(AdjustmentWatch::finish),
             gas: self.gas.into_iter().filter_map(GasWatch::finish).collect(),
-            ledger: self.ledger.finish(),
+            ledger: self.ledger.map_or(Err(NOT_REQUESTED), LedgerWatch::finish),
         })
     }
 
@@ -246,7 +253,9 @@ impl Observer for Looking<'_> {
         self.follower.follow(stretch);
         self.lines.follow(stretch);
         self.gas.iter_mut().for_each(|gas| gas.follow(stretch));
-        self.ledger.follow(self.bench, stretch);
+        if let Some(ledger) = &mut self.ledger {
+            ledger.follow(self.bench, stretch);
+        }
         if let Some(adjustment) = &mut self.adjustment {
             adjustment.follow(self.bench, stretch);
         }

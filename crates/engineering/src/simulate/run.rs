@@ -72,8 +72,8 @@ pub struct ScenarioRun {
     pub adjustment: Option<AdjustmentWork>,
     /// The gas at each chamber that has some.
     pub gas: Vec<GasRange>,
-    /// The accounts of oil and energy; `None` where waves travel along a line.
-    pub ledger: Option<RunLedger>,
+    /// The accounts of oil and energy, or why there are none.
+    pub ledger: Result<RunLedger, &'static str>,
     /// Its final state, from which another run can continue, or why it is not saved.
     pub end: Result<SavedState, &'static str>,
 }
@@ -170,7 +170,7 @@ pub(super) fn run(
     bench: &ControlledMachine,
     scenario: &Scenario,
     (course, measurements): (&PreparedScenario, &[Measurement]),
-    (table, samples_kept): (Option<RunTable<'_>>, bool),
+    (table, samples_kept, ledger_kept): (Option<RunTable<'_>>, bool, bool),
     watch: &mut dyn FnMut(f64) -> bool,
 ) -> Result<ScenarioRun, SimulateError> {
     let looks_per_row = looks_per_row(scenario);
@@ -192,7 +192,8 @@ pub(super) fn run(
     let drive = InputSchedule { duration_s: scenario.duration, output_step_s: look_s, inputs };
     let band = scenario.settling_band_percent;
     let looking = Looking::new(bench, &samples, (table, looks_per_row), measurements, &full, (course, band));
-    let mut looking = if samples_kept { looking.keeping(scenario.duration / look_s + 2.0) } else { looking };
+    let looking = if samples_kept { looking.keeping(scenario.duration / look_s + 2.0) } else { looking };
+    let mut looking = if ledger_kept { looking.accounting() } else { looking };
     let sampler = match &bench.control {
         Control::Continuous(_) | Control::Open(_) => None,
         Control::Sampled(sampled) => {

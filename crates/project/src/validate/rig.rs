@@ -31,9 +31,33 @@ fn supply(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
             if check.declared("supply.tank_pressure") { "supply.tank_pressure" } else { "supply.pressure" };
         check.error(at, "`tank_pressure` must be below `pressure`");
     }
-    if let SupplyModel::PumpLimited(Pump { accumulator: Some(gas), .. }) = &supply.model {
+    if let SupplyModel::PumpLimited(Pump { accumulator: Some(gas), .. }) = &supply.model
+        && is_reached(gas, supply, ("supply.accumulator", "the pump never lets oil into it"), check)
+    {
         pressure_ratio(gas, supply, "supply.accumulator.maximum_pressure_ratio", check);
     }
+}
+
+/// Whether the supply's pressure is above the precharge of this gas; otherwise an error with what
+/// follows from it.
+fn is_reached(
+    gas: &DeclaredAccumulator,
+    supply: &DeclaredSupply,
+    (path, consequence): (&str, &str),
+    check: &mut Check<'_, '_>,
+) -> bool {
+    let working = gas.working_precharge(ATMOSPHERE);
+    if supply.pressure <= 0.0 || working < supply.pressure {
+        return true;
+    }
+    let [precharge, pressure] =
+        [working, supply.pressure].map(|pressure| quantity::display(pressure, &PRESSURE, 4));
+    let at = if gas.temperatures.is_some() { " at `working_temperature`" } else { "" };
+    let message =
+        format!("`precharge_pressure` is {precharge}{at} and the supply has {pressure}: {consequence}");
+    let help = "the gas is in use only above its precharge: state one below the lowest pressure at which it is to work";
+    check.error_with_help(&format!("{path}.precharge_pressure"), message, help);
+    false
 }
 
 /// The gas at a chamber: its precharge lies below what the supply can give.
@@ -42,16 +66,8 @@ fn accumulator(gas: &DeclaredAccumulator, supply: &DeclaredSupply, path: &str, c
         let message = "`polytropic_exponent` and `thermal_time_constant` both describe the heat between gas and wall: state one of them";
         check.error(&format!("{path}.polytropic_exponent"), message);
     }
-    let working = gas.working_precharge(ATMOSPHERE);
-    if supply.pressure > 0.0 && working >= supply.pressure {
-        let [precharge, pressure] =
-            [working, supply.pressure].map(|pressure| quantity::display(pressure, &PRESSURE, 4));
-        let at = if gas.temperatures.is_some() { " at `working_temperature`" } else { "" };
-        let message = format!(
-            "`precharge_pressure` is {precharge}{at} and the supply has {pressure}: no chamber ever lets oil into this accumulator"
-        );
-        let help = "the gas is in use only above its precharge: state one below the lowest pressure at which it is to work";
-        return check.error_with_help(&format!("{path}.precharge_pressure"), message, help);
+    if !is_reached(gas, supply, (path, "no chamber ever lets oil into this accumulator"), check) {
+        return;
     }
     adjustment::adjustment(gas, supply, path, check);
     if check.refused(&format!("{path}.precharge_pressure")) {

@@ -87,7 +87,7 @@ fn one(
         .map_err(|report| CampaignError::Settings(Box::new(report)))?;
     drawn.project.scenarios.retain(|scenario| scenario.name == plan.scenario());
     let table = destination.map(|destination| (destination, TableFormat::Csv));
-    let output = RunOutput { samples: false, table };
+    let output = RunOutput { samples: false, table, ledger: true };
     let runs = simulate_into(source, &Setup::new(&drawn.project)?, output, watch)?;
     Ok(Unprinted {
         document: campaign::run_document(&draw, &settings, &drawn, &runs),

@@ -58,7 +58,6 @@ const NOT_AMPLIFIED: &str = "no oscillation grew so much that errors within the 
 /// Why there is no work of an adjustment, or no temperature.
 const NOT_ADJUSTED: &str = "no setting of an accumulator moves, and no valve leads to its gas";
 const NO_GAS_VALVE: &str = "no valve lies between a chamber and its gas";
-const NO_LEDGER: &str = "waves in transit along a line are in no account";
 const NO_HEAT: &str = "a polytropic exponent gives no temperature: state `thermal_time_constant`";
 
 fn scenario(run: &ScenarioRun, state_file: String) -> Object {
@@ -114,7 +113,7 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
                 .with("stated_pressure_pa", beyond.stated_pa)
         })
         .and(adjustment(run))
-        .told("ledgers", run.ledger.as_ref().map(ledger).ok_or(NO_LEDGER))
+        .told("ledgers", run.ledger.as_ref().map(ledger).map_err(|reason| *reason))
         .each("exceeded", &run.exceeded, |exceeded| {
             Object::new()
                 .with("what", exceeded.limit.word())
