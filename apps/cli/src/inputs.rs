@@ -9,10 +9,10 @@ use crate::file_system::FileSystem;
 
 /// Files that must stay as they are.
 #[derive(Debug, Default)]
-pub(crate) struct Inputs(Vec<Input>);
+pub(crate) struct Inputs(Vec<KeptFile>);
 
 #[derive(Debug)]
-struct Input {
+struct KeptFile {
     /// As the user or the project writes it.
     named: String,
     /// Its path without links, and its name in its own folder, which a link may have.
@@ -23,7 +23,7 @@ struct Input {
 impl Inputs {
     /// Those of these paths that are regular files.
     pub(crate) fn of(paths: impl IntoIterator<Item = String>) -> Inputs {
-        Inputs(paths.into_iter().filter_map(Input::of).collect())
+        Inputs(paths.into_iter().filter_map(KeptFile::of).collect())
     }
 
     /// The files of projects, and those that they name.
@@ -43,7 +43,7 @@ impl Inputs {
         let place = resolved(output);
         let metadata = fs::metadata(&place).ok().filter(Metadata::is_file);
         let place = fs::canonicalize(&place).unwrap_or(place);
-        let is_same = |input: &&Input| {
+        let is_same = |input: &&KeptFile| {
             input.places.iter().any(|own| is_one_place(own, &place))
                 || metadata.as_ref().is_some_and(|other| is_one_file(&input.metadata, other))
         };
@@ -73,14 +73,14 @@ impl Inputs {
     }
 }
 
-impl Input {
-    fn of(named: String) -> Option<Input> {
+impl KeptFile {
+    fn of(named: String) -> Option<KeptFile> {
         let metadata = fs::metadata(&named).ok().filter(Metadata::is_file)?;
         let path = Path::new(&named);
         let target = fs::canonicalize(path).ok()?;
         let own = path.file_name().map(|name| resolved(parent(path)).join(name));
         let places = [own.unwrap_or_else(|| target.clone()), target];
-        Some(Input { named, places, metadata })
+        Some(KeptFile { named, places, metadata })
     }
 }
 

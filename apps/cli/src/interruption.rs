@@ -1,5 +1,5 @@
-//! Signals: Ctrl-C during a command that can stop with what it has, and a file that grows beyond the
-//! largest size that is permitted.
+//! Signals: Ctrl-C during a command that can stop with what it has, and a file that grows beyond
+//! the largest size that is permitted.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -8,8 +8,8 @@ use serde_json::Value;
 
 use super::ask::{HOSE, json};
 
-/// A valve that shuts within a millisecond at the end of a pipe of 10 m: the column of oil behind it
-/// is torn off.
+/// A valve that shuts within a millisecond at the end of a pipe of 10 m: the column of oil behind
+/// it is torn off.
 const HAMMER: &str = include_str!("projects/hammer.toml");
 
 fn run(settings: &[&str]) -> Value {
@@ -28,8 +28,8 @@ fn begins(run: &Value, kind: &str) -> Option<f64> {
 const SEGMENTS: &str = "line.model=segments";
 const WAVES: &str = "line.model=transmission_line";
 
-/// Shut at once, the oil behind the valve falls by rho c v (Joukowsky 1898): with 100 L/min in a bore
-/// of 10 mm by far more than the pressure that there is, in segments and in waves.
+/// Shut at once, the oil behind the valve falls by rho c v (Joukowsky 1898): with 100 L/min in a
+/// bore of 10 mm by far more than the pressure that there is, in segments and in waves.
 #[test]
 fn a_line_that_is_shut_cavitates_at_its_valve() {
     for model in [SEGMENTS, WAVES] {
@@ -135,7 +135,8 @@ fn accounts_of_oil_and_energy_close() {
                 assert!(
                     (error - number("closing_error")).abs() <= 1e-12 * (held[1].abs() + number("lost").abs())
                 );
-                // of parts through which hardly anything goes the tolerance of the run is more of it
+                // of parts through which hardly anything goes the tolerance of the run is more of
+                // it
                 let most = if row["part"] == "rig" { 1e-6 } else { 1e-5 };
                 assert!(number("relative_error") < most, "{row}");
             }

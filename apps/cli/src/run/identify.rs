@@ -7,7 +7,7 @@ use phea_workbench::command::{
     self, FrictionRequest, IdentifyError, IdentifyRequest, LeakageModel, LineRequest, OutputNames,
     ResponseRequest, ResponseSettings,
 };
-use phea_workbench::project::LineSide;
+use phea_workbench::project::{LineSide, Loaded};
 use phea_workbench::quantity::{self, TIME};
 
 use super::{load, styled};
@@ -27,11 +27,7 @@ pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<Path
     check_subject(recorded)?;
     let (project, files) = named(recorded)?;
     let loaded = project.map(|path| load(&path, &recorded.settings, &[], NAME)).transpose()?;
-    let inputs = Inputs::of_projects(&loaded).and(files.iter().cloned());
-    if let Some(folder) = &recorded.out {
-        let names = OutputNames::of_identification(&files);
-        inputs.expect_kept_in(folder, |name| names.contains(name)).map_err(|message| refused(&message))?;
-    }
+    let inputs = kept_inputs(recorded, loaded.as_ref(), &files)?;
     let asked = IdentifyRequest {
         files,
         starts: recorded.starts.map(usize::from),
@@ -88,6 +84,20 @@ pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<Path
         None => vec![],
     };
     Ok((answer, written))
+}
+
+/// The files that must stay; refused where one of those that are written would replace one.
+fn kept_inputs(
+    recorded: &IdentifyArguments,
+    loaded: Option<&Loaded>,
+    files: &[String],
+) -> Result<Inputs, Failure> {
+    let inputs = Inputs::of_projects(loaded).and(files.iter().cloned());
+    if let Some(folder) = &recorded.out {
+        let names = OutputNames::of_identification(files);
+        inputs.expect_kept_in(folder, |name| names.contains(name)).map_err(|message| refused(&message))?;
+    }
+    Ok(inputs)
 }
 
 /// The project, which may be among the files, known by its ending, and the tables.

@@ -1,5 +1,5 @@
-//! The accounts of oil and energy of a run: what each part held at its start and end, what went into
-//! it and what it lost, and how far that is from closing.
+//! The accounts of oil and energy of a run: what each part held at its start and end, what went
+//! into it and what it lost, and how far that is from closing.
 
 use phea_dynamics::simulation::{Stretch, gauss_points};
 use phea_hydraulics::machine::{Account, ENERGY_ACCOUNTS, Ledger, OIL_ACCOUNTS};

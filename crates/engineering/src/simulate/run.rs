@@ -94,8 +94,8 @@ pub struct BeyondExpansion {
 pub struct Occurrence {
     /// s.
     pub time_s: f64,
-    /// One of [`INDICATORS`], `command_limit`, or one of [`LINE_OCCURRENCES`](super::LINE_OCCURRENCES),
-    /// which only begin.
+    /// One of [`INDICATORS`], `command_limit`, or one of
+    /// [`LINE_OCCURRENCES`](super::LINE_OCCURRENCES), which only begin.
     pub kind: &'static str,
     /// Whether it began.
     pub begins: bool,
@@ -182,13 +182,7 @@ pub(super) fn run(
         steps += 1;
         steps % STEPS_UNWATCHED != 0 || (!full.get() && watch(time_s))
     };
-    let reference = Input::Value(course.reference.clone());
-    let mut inputs = match &bench.control {
-        Control::Continuous(_) => vec![reference],
-        Control::Sampled(_) => vec![Input::Command, reference],
-        Control::Open(_) => vec![Input::Value(course.command.clone()), reference],
-    };
-    inputs.extend(course.machine_inputs());
+    let inputs = inputs(&bench.control, course);
     let drive = InputSchedule { duration_s: scenario.duration, output_step_s: look_s, inputs };
     let band = scenario.settling_band_percent;
     let looking = Looking::new(bench, &samples, (table, looks_per_row), measurements, &full, (course, band));
@@ -206,9 +200,7 @@ pub(super) fn run(
     let named = |error| SimulateError::Simulation { name: scenario.name.clone(), error };
     let outcome = bench.control.drive(task, &bench.settings, &mut watch).map_err(named)?;
     let seen = looking.finish()?;
-    let mut occurrences = found(bench, course, &outcome, &samples.borrow());
-    occurrences.extend(seen.exceeded.iter().filter_map(Occurrence::of));
-    sort_by_number(&mut occurrences, |one| one.time_s);
+    let occurrences = found((bench, course), &outcome, &samples.borrow(), &seen.exceeded);
     let windows = course.windows.iter().copied().zip(seen.metrics).collect();
     let outside_model_s = outside_model_s(&occurrences, bench.machine.has_end_stops());
     let memory = memory.into_inner();
@@ -239,12 +231,23 @@ pub(super) fn run(
     })
 }
 
-/// All that happened on the way.
+/// Inputs of the loop, then those of its machine.
+fn inputs(control: &Control, course: &PreparedScenario) -> Vec<Input> {
+    let reference = Input::Value(course.reference.clone());
+    let leading = match control {
+        Control::Continuous(_) => vec![reference],
+        Control::Sampled(_) => vec![Input::Command, reference],
+        Control::Open(_) => vec![Input::Value(course.command.clone()), reference],
+    };
+    leading.into_iter().chain(course.machine_inputs()).collect()
+}
+
+/// All that happened on the way, limits of lines that were exceeded among it.
 fn found(
-    bench: &ControlledMachine,
-    course: &PreparedScenario,
+    (bench, course): (&ControlledMachine, &PreparedScenario),
     outcome: &Outcome,
     samples: &ControllerSamples,
+    exceeded: &[Exceeded],
 ) -> Vec<Occurrence> {
     let reference = course.reference.value(0.0);
     let leading = match &bench.control {
@@ -257,13 +260,17 @@ fn found(
     if matches!(bench.control, Control::Sampled(_)) {
         let limits = samples.limits.iter();
         found.extend(limits.map(|&(time_s, begins)| Occurrence { time_s, kind: COMMAND_LIMIT, begins }));
+    }
+    let of_lines: Vec<Occurrence> = exceeded.iter().filter_map(Occurrence::of).collect();
+    if matches!(bench.control, Control::Sampled(_)) || !of_lines.is_empty() {
+        found.extend(of_lines);
         sort_by_number(&mut found, |one| one.time_s);
     }
     found
 }
 
-/// When a chamber, a line or a transmission first cavitates, a chamber has no volume, or the piston leaves
-/// a stroke without end stops.
+/// When a chamber, a line or a transmission first cavitates, a chamber has no volume, or the piston
+/// leaves a stroke without end stops.
 fn outside_model_s(occurrences: &[Occurrence], has_end_stops: bool) -> Option<f64> {
     let outside = |kind: &str| match kind {
         "cavitation_a" | "cavitation_b" | "cavitation_line_a" | "cavitation_line_b" => true,

@@ -5,7 +5,7 @@ use super::check;
 use super::frequency;
 use super::metrics::metrics_row;
 use super::state_names;
-use super::{AccountSum, Cause, Metrics, RunLedger, ScenarioComparison, ScenarioRun, Window};
+use super::{AccountSum, Cause, Exceeded, Metrics, RunLedger, ScenarioComparison, ScenarioRun, Window};
 use crate::answer::{Object, body_in_use};
 use crate::project::Loaded;
 
@@ -114,16 +114,19 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
         })
         .and(adjustment(run))
         .told("ledgers", run.ledger.as_ref().map(ledger).map_err(|reason| *reason))
-        .each("exceeded", &run.exceeded, |exceeded| {
-            Object::new()
-                .with("what", exceeded.limit.word())
-                .with("limit", exceeded.limit_value)
-                .with("peak", exceeded.peak)
-                .with("peak_time_s", exceeded.peak_time_s)
-                .with("first_time_s", exceeded.first_time_s)
-                .told("place", exceeded.place.word().ok_or("it is a limit of the rig as a whole"))
-                .told("distance_m", exceeded.place.distance_m().ok_or("it is not within a line"))
-        })
+        .each("exceeded", &run.exceeded, exceeded)
+}
+
+/// A limit of the rig that a run exceeds.
+fn exceeded(exceeded: &Exceeded) -> Object {
+    Object::new()
+        .with("what", exceeded.limit.word())
+        .with("limit", exceeded.limit_value)
+        .with("peak", exceeded.peak)
+        .with("peak_time_s", exceeded.peak_time_s)
+        .with("first_time_s", exceeded.first_time_s)
+        .told("place", exceeded.place.word().ok_or("it is a limit of the rig as a whole"))
+        .told("distance_m", exceeded.place.distance_m().ok_or("it is not within a line"))
 }
 
 /// The accounts of oil and energy, each with how far it is from closing.
