@@ -59,7 +59,7 @@ fn a_frozen_setting_is_the_declared_accumulator() {
             let declared = machine_of(declared, &MachineOptions::default());
             for _ in 0..50 {
                 let mut of = |middle: f64, scale: f64| middle + scale * random(&mut seed);
-                let state = vec![
+                let state = [
                     of(0.0, 5.0),
                     of(0.0, 10.0),
                     of(20e5, 15e5),

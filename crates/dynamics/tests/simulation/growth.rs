@@ -205,9 +205,7 @@ impl Turned {
         let mut matrix = [[0.0; 4]; 4];
         (matrix[0][1], matrix[1][0], matrix[1][1]) = (turning, -turning, -decay);
         matrix[2][2] = -1e5 + draw(5e4);
-        for column in 0..3 {
-            matrix[3][column] = draw(1e3);
-        }
+        matrix[3][..3].fill_with(|| draw(1e3));
         for (one, other) in [(0, 3), (1, 3), (2, 3), (0, 2), (1, 2), (0, 1)] {
             let angle = draw(3.0);
             let [cosine, sine] = [portable::cos(angle), portable::sin(angle)];
@@ -215,11 +213,10 @@ impl Turned {
                 (row[one], row[other]) =
                     (cosine * row[one] - sine * row[other], sine * row[one] + cosine * row[other]);
             }
-            for column in 0..4 {
-                let [first, second] = [matrix[one][column], matrix[other][column]];
-                matrix[one][column] = cosine * first - sine * second;
-                matrix[other][column] = sine * first + cosine * second;
-            }
+            let [first, second] = [matrix[one], matrix[other]];
+            let turned =
+                |by: [f64; 2]| [0, 1, 2, 3].map(|column| by[0] * first[column] + by[1] * second[column]);
+            (matrix[one], matrix[other]) = (turned([cosine, -sine]), turned([sine, cosine]));
         }
         Turned(matrix)
     }
