@@ -2,6 +2,7 @@
 //! included, or names what it leaves out.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
 use crate::ask::{
     HOSE, answer, check, derived, linearize, load, near, number, size_for_gain, size_for_length,

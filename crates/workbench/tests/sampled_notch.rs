@@ -3,7 +3,6 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
 use crate::ask::{answer, json, load, near};
-use num_complex::Complex64;
 use phea_dynamics::linear::Discretization;
 use phea_workbench::command::Request;
 use phea_workbench::setup::Setup;
@@ -67,8 +66,7 @@ fn the_response_is_kept_at_the_stated_frequency() {
         assert_eq!([given.timing.discretization, setup.timing.discretization], [rule; 2]);
         let continuous = given.feedback.transfer_function().unwrap();
         let sampled = continuous.discretized(2e-3, rule).unwrap();
-        let of = |at: Complex64| at;
-        let (one, other) = (of(continuous.at_frequency(frequency)), of(sampled.at_frequency(frequency)));
+        let (one, other) = (continuous.at_frequency(frequency), sampled.at_frequency(frequency));
         near(other.re, one.re, 1e-9);
         near(other.im, one.im, 1e-9);
     }

@@ -2,6 +2,7 @@
 //! poles and gain.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
 use crate::ask::{check, derived, json, linearize, near, number, source};
 use phea_workbench::command::Request;
