@@ -5,7 +5,7 @@ use super::key::{Key, key, plain};
 use super::plant::Rational;
 use super::visitor::{FormulaShape, ValueForm, Visitor};
 use phea_dynamics::time_response::SettlingRule;
-use phea_quantity::{ANGLE, ANGULAR_FREQUENCY, GAIN, RATIO, TIME};
+use phea_quantity::{ANGLE, ANGULAR_FREQUENCY, GAIN, PERCENT, RATIO, TIME};
 
 /// A limit over frequency.
 #[derive(Clone, Debug, PartialEq)]
@@ -157,7 +157,7 @@ impl MarginWish {
 
 impl ResponseWish {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let percent = |name, doc| -> Key { key(name, &RATIO, doc).below(100.0) };
+        let percent = |name, doc| -> Key { key(name, &PERCENT, doc).below(100.0) };
         let k = percent("overshoot_percent", "Largest overshoot, in percent of the step; of `upper`.");
         v.optional(k.not_negative(), &mut self.overshoot_percent);
         let k = key("settling_time", &TIME, "Settling time, with `settling_band_percent`.").positive();

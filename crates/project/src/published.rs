@@ -2,7 +2,7 @@
 
 use super::key::{key, plain};
 use super::visitor::Visitor;
-use phea_quantity::{RATIO, TIME};
+use phea_quantity::{PERCENT, TIME};
 
 /// Published metrics of a step.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,7 +19,7 @@ pub struct Published {
 
 impl Published {
     pub(super) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = key("overshoot_percent", &RATIO, "Overshoot, in percent of the step.").not_negative();
+        let k = key("overshoot_percent", &PERCENT, "Overshoot, in percent of the step.").not_negative();
         v.optional(k, &mut self.overshoot_percent);
         let k = key("settling_time", &TIME, "Settling time.").positive();
         v.optional(k, &mut self.settling_time);

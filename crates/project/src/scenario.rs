@@ -4,7 +4,7 @@ use super::key::{Key, key, plain};
 use super::measured::MeasuredFile;
 use super::signal::{Signal, SignalUnit};
 use super::visitor::{Variants, Visitor};
-use phea_quantity::{ANGULAR_FREQUENCY, FORCE, LENGTH, PRESSURE, RATIO, TIME, VELOCITY, VOLTAGE};
+use phea_quantity::{ANGULAR_FREQUENCY, FORCE, LENGTH, PERCENT, PRESSURE, TIME, VELOCITY, VOLTAGE};
 
 /// One simulation.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -197,7 +197,7 @@ impl Scenario {
         v.one_or_more(k, &mut self.external_force, Signal::visitor(SignalUnit::EXTERNAL_FORCE));
         let k = plain("setting_change", "By how much the setting of accumulators moves from rest.");
         v.one_or_more(k, &mut self.setting_change, Signal::visitor(SignalUnit::SETTING_CHANGE));
-        let k = key("settling_band_percent", &RATIO, "Band of every settling time, in percent.");
+        let k = key("settling_band_percent", &PERCENT, "Band of every settling time, in percent.");
         v.quantity(k.positive().below(100.0).or(1.0), &mut self.settling_band_percent);
         let k = plain("measured", "What was measured on the rig, laid over the simulation.");
         v.tables(k, &mut self.measured, MeasuredFile::visit);

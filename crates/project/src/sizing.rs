@@ -4,7 +4,8 @@ use super::key::{key, plain};
 use super::series::SpringCoil;
 use super::visitor::Visitor;
 use phea_quantity::{
-    FLOW_GAIN, FLOW_PRESSURE_COEFFICIENT, FORCE, LENGTH, RATIO, STIFFNESS, TIME, VELOCITY, VOLTAGE_PER_FORCE,
+    FLOW_GAIN, FLOW_PRESSURE_COEFFICIENT, FORCE, LENGTH, PERCENT, RATIO, STIFFNESS, TIME, VELOCITY,
+    VOLTAGE_PER_FORCE,
 };
 
 /// The requirements for the compliant component.
@@ -127,7 +128,7 @@ impl SettlingTime {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("settling_time", &TIME, "Settling time, with `settling_band_percent`.").positive();
         v.quantity(k, &mut self.time);
-        let k = key("settling_band_percent", &RATIO, "Band of the settling time, in percent of the step.");
+        let k = key("settling_band_percent", &PERCENT, "Band of the settling time, in percent of the step.");
         v.quantity(k.positive().below(100.0), &mut self.band_percent);
     }
 }

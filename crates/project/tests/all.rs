@@ -3,10 +3,12 @@
 
 mod alternative;
 mod catalogue_parts;
+mod consequences;
 mod formula;
 mod kernels;
 mod malformed;
 mod mutation;
+mod percentages;
 mod plausible;
 mod reading;
 mod schema;

@@ -98,6 +98,8 @@ dimensions! {
     FLOW = "a volume flow", whole(0, 3, -1, 0, 0), ["L/min"], "m3/s", r#""9.8 L/min", "10 gpm", "1.6e-4 m3/s""#;
     /// V.
     VOLTAGE = "a voltage", whole(0, 0, 0, 1, 0), ["mV", "V"], "V", r#""10 V", "50 mV""#;
+    /// A, of a command to a valve.
+    CURRENT = "a current", whole(1, 2, -3, -1, 0), ["mA", "A"], "A", r#""40 mA", "0.3 A""#;
     /// rad/s; a text in Hz is a number of cycles and is multiplied by 2π.
     ANGULAR_FREQUENCY = "an angular frequency", whole(0, 0, -1, 0, 1), ["rad/s"], "rad/s",
         r#""1099 rad/s", "175 Hz""#;
@@ -105,6 +107,8 @@ dimensions! {
     POWER = "a power", whole(1, 2, -3, 0, 0), ["W"], "W", r#""50 W", "1.2 kW""#;
     /// A pure number.
     RATIO = "a pure number", Exponents::NONE, [], "1", r#"0.9, "20 %""#;
+    /// Percent: the value is the number of percent, with the sign or without it.
+    PERCENT = "a percentage", Exponents::NONE, [], "%", r#"2, "2 %""#;
     /// A gain as a ratio; its text may be in dB.
     GAIN = "a gain", Exponents::NONE, [], "1", r#"1.3, "6 dB""#;
     /// m³/(s·√Pa).

@@ -13,6 +13,7 @@ mod pattern;
 mod price;
 mod print;
 mod scale;
+mod separators;
 mod significant;
 pub mod spelling;
 mod unit;

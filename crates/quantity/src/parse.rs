@@ -10,8 +10,9 @@
 use std::f64::consts::{LN_10, TAU};
 use std::ops::Range;
 
-use super::dimension::{DIMENSIONS, Dimension, Exponents, GAIN};
+use super::dimension::{CURRENT, DIMENSIONS, Dimension, Exponents, GAIN, PERCENT, VOLTAGE};
 use super::exact::Whole;
+use super::separators::refuse_thousands;
 use super::unit::{self, Unit};
 use crate::spelling::nearest;
 
@@ -51,8 +52,8 @@ const MAXIMUM_EXPONENT: i32 = 16;
 ///
 /// The decimal number and the factors of its units are multiplied exactly and rounded once (π and
 /// square roots are rounded on their own). `Hz` counts cycles: where an angular frequency is
-/// expected, `"175 Hz"` is 2π·175 rad/s. `inf` is read as infinity; whether a key accepts it is the
-/// key's business.
+/// expected, `"175 Hz"` is 2π·175 rad/s. Of a percentage the value is the number of percent: `"2 %"`
+/// and `"2"` are 2. `inf` is read as infinity; whether a key accepts it is the key's business.
 ///
 /// # Errors
 /// [`QuantityError`] for text that is not a quantity, an unknown unit, another dimension, a missing
@@ -60,9 +61,10 @@ const MAXIMUM_EXPONENT: i32 = 16;
 ///
 /// # Example
 /// ```
-/// use phea_quantity::{FLOW, PRESSURE, parse};
+/// use phea_quantity::{FLOW, PERCENT, PRESSURE, parse};
 /// assert_eq!(parse("70 bar", &PRESSURE), Ok(70e5));
 /// assert_eq!(parse("10 gpm", &FLOW), Ok(6.30901964e-4));
+/// assert_eq!(parse("2.5 %", &PERCENT), Ok(2.5));
 /// assert_eq!(parse("70 mm", &PRESSURE).unwrap_err().message, "expected a pressure, found a length");
 /// ```
 pub fn parse(text: &str, dimension: &Dimension) -> Result<f64, QuantityError> {
@@ -74,6 +76,7 @@ pub fn parse(text: &str, dimension: &Dimension) -> Result<f64, QuantityError> {
         error.expected = error.expected.or_else(expected);
         error
     };
+    refuse_thousands(text).map_err(with_expected)?;
     let number = DecimalNumber::read(text).map_err(with_expected)?;
     let unit_start = number.end + text[number.end..].len() - text[number.end..].trim_start().len();
     let unit_text = text[unit_start..].trim_end();
@@ -89,14 +92,25 @@ pub fn parse(text: &str, dimension: &Dimension) -> Result<f64, QuantityError> {
     number.times(&product, text).map_err(with_expected)
 }
 
+/// How the command of a valve that is driven by current is stated.
+const OF_CURRENT: &str = "commands are voltages: write the voltage at which the amplifier gives this current";
+
 /// The unit in a part of a text.
 fn product_of(text: &str, range: Range<usize>, dimension: &Dimension) -> Result<UnitProduct, QuantityError> {
     let product = UnitReader { text, at: range.start, end: range.end, factors: 0 }.unit()?;
+    let is_angular = dimension.exponents == Exponents::whole(0, 0, -1, 0, 1);
+    if is_angular && product.exponents == PER_SECOND && product.over != product.under {
+        let error = QuantityError::new("revolutions or radians in this time", range);
+        return Err(error.help("write rpm, Hz, rad/s or rad/min"));
+    }
     if accepts(dimension, product.exponents) {
-        return Ok(product);
+        let ten = if std::ptr::eq(dimension, &PERCENT) { product.ten + 2 } else { product.ten };
+        return Ok(UnitProduct { ten, ..product });
     }
     let message = format!("expected {}, found {}", dimension.name, name_of(product.exponents));
-    Err(QuantityError::new(message, range))
+    let error = QuantityError::new(message, range);
+    let is_current = product.exponents == CURRENT.exponents && dimension.exponents == VOLTAGE.exponents;
+    Err(if is_current { error.help(OF_CURRENT) } else { error })
 }
 
 /// A unit, and whether its numbers are decibels; an empty text is the unit of a pure number.
@@ -128,11 +142,12 @@ fn unitless(text: &str, number: &DecimalNumber, dimension: &Dimension) -> Result
     Err(QuantityError::new(message, 0..text.len()).help(help))
 }
 
+const PER_SECOND: Exponents = Exponents::whole(0, 0, -1, 0, 0);
+
 /// An angular frequency may also be written 1/s.
 pub(crate) fn accepts(dimension: &Dimension, found: Exponents) -> bool {
     let rotation = Exponents::whole(0, 0, -1, 0, 1);
-    let per_second = Exponents::whole(0, 0, -1, 0, 0);
-    found == dimension.exponents || (dimension.exponents == rotation && found == per_second)
+    found == dimension.exponents || (dimension.exponents == rotation && found == PER_SECOND)
 }
 
 fn name_of(exponents: Exponents) -> String {
@@ -205,10 +220,6 @@ impl DecimalNumber {
                 ten = ten.saturating_add(exponent.clamp(-100_000, 100_000));
                 end = exponent_end;
             }
-        }
-        if text[end..].starts_with(',') {
-            let error = QuantityError::new("a comma inside a number", end..end + 1);
-            return Err(error.help("write the decimal sign as a point and no separators"));
         }
         Ok(DecimalNumber { negative, infinite: false, digits, ten, end })
     }
@@ -407,7 +418,7 @@ impl UnitReader<'_> {
         }
         self.at += length;
         let name = &self.text[start..self.at];
-        unit::find(name).map(|unit| UnitProduct::of(&unit)).ok_or_else(|| unknown(name, start..self.at))
+        named(name).ok_or_else(|| unknown(name, start..self.at))
     }
 
     /// The exponent in halves; `None` if it is absent.
@@ -438,6 +449,16 @@ impl UnitReader<'_> {
             )),
         }
     }
+}
+
+/// A unit by its name, or several written as one word (`kNm`, `Ns`).
+fn named(name: &str) -> Option<UnitProduct> {
+    if let Some(unit) = unit::find(name) {
+        return Some(UnitProduct::of(&unit));
+    }
+    let mut units = unit::written_together(name)?.into_iter();
+    let first = UnitProduct::of(&units.next()?);
+    units.try_fold(first, |product, unit| product.times(&UnitProduct::of(&unit)))
 }
 
 fn unknown(name: &str, range: Range<usize>) -> QuantityError {

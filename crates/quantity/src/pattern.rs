@@ -32,10 +32,13 @@ pub fn single_unit_pattern(dimension: &Dimension) -> String {
     format!(r"^\s*{NUMBER}\s*(?:{}){needed}\s*$", units.join("|"))
 }
 
-/// Matches every number with a product of units, or with a unit in parentheses, whatever its
-/// dimension.
+/// Matches every number with a product of units, written together or not, or with a unit in
+/// parentheses, whatever its dimension.
 pub fn compound_unit_pattern() -> String {
-    let names: Vec<String> = unit::all().map(names).collect();
+    let prefixes: String = unit::prefixes().collect();
+    let [beginnings, others] = [unit::BEGINNINGS.join("|"), unit::CONTINUATIONS.join("|")];
+    let together = format!("[{prefixes}]?(?:{beginnings})(?:{others})+");
+    let names: Vec<String> = unit::all().map(names).chain([together.clone()]).collect();
     let named = format!("(?:(?:{}){EXPONENT}|1)", names.join("|"));
     let (times, over) = (r"(?:\s*[.*·]\s*|\s+)", r"\s*/\s*");
     let group = format!(r"\(\s*{named}(?:{times}{named})*(?:{over}{named})*\s*\){EXPONENT}");
@@ -43,6 +46,7 @@ pub fn compound_unit_pattern() -> String {
     let products = [
         format!("{factor}(?:{times}{factor})+(?:{over}{factor})*"),
         format!("{factor}(?:{over}{factor})+"),
+        format!("{together}{EXPONENT}"),
         group,
     ];
     format!(r"^\s*{NUMBER}\s*(?:{})\s*$", products.join("|"))

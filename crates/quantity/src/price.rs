@@ -4,6 +4,7 @@ use super::dimension::LENGTH;
 use super::parse::{DecimalNumber, QuantityError, parse};
 use super::pattern::{UNSIGNED, length_units};
 use super::print::print_bare;
+use super::separators::refuse_thousands;
 use crate::spelling::nearest;
 
 /// A currency, by its code of ISO 4217.
@@ -60,7 +61,8 @@ pub fn parse_price(text: &str, by: PricedBy) -> Result<Price, QuantityError> {
         expected: Some(examples.to_string()),
         help,
     };
-    let number = DecimalNumber::read(text).map_err(|mut found| {
+    let read = refuse_thousands(text).and_then(|()| DecimalNumber::read(text));
+    let number = read.map_err(|mut found| {
         found.expected = Some(examples.to_string());
         found
     })?;

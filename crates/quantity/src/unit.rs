@@ -50,7 +50,7 @@ const ROTATION: Exponents = Exponents::whole(0, 0, -1, 0, 1);
 /// exact.
 static UNITS: &[Unit] = &[
     unit(&["m"], LENGTH, 1, 0).prefixed(),
-    unit(&["in", "inch"], LENGTH, 254, -4),
+    unit(&["in", "inch", "inches"], LENGTH, 254, -4),
     unit(&["ft"], LENGTH, 3048, -4),
     unit(&["L", "l"], VOLUME, 1, -3).prefixed(),
     unit(&["cc", "ccm"], VOLUME, 1, -6),
@@ -61,11 +61,14 @@ static UNITS: &[Unit] = &[
     unit(&["t"], MASS, 1, 3),
     unit(&["lb", "lbm"], MASS, 45_359_237, -8),
     unit(&["s"], TIME, 1, 0).prefixed(),
+    unit(&["sec"], TIME, 1, 0),
     unit(&["min"], TIME, 60, 0),
     unit(&["h"], TIME, 3600, 0),
     unit(&["N"], FORCE, 1, 0).prefixed(),
-    unit(&["kgf"], FORCE, 980_665, -5),
+    unit(&["daN"], FORCE, 1, 1),
+    unit(&["kgf", "kp"], FORCE, 980_665, -5),
     unit(&["lbf"], FORCE, 44_482_216_152_605, -13),
+    unit(&["kip"], FORCE, 44_482_216_152_605, -10),
     unit(&["Pa"], PRESSURE, 1, 0).prefixed(),
     unit(&["bar"], PRESSURE, 1, 5).prefixed(),
     unit(&["barg"], PRESSURE, 1, 5),
@@ -74,15 +77,16 @@ static UNITS: &[Unit] = &[
     unit(&["atm"], PRESSURE, 101_325, 0),
     unit(&["St"], Exponents::whole(0, 2, -1, 0, 0), 1, -4).prefixed(),
     unit(&["V"], Exponents::whole(0, 0, 0, 1, 0), 1, 0).prefixed(),
+    unit(&["A"], Exponents::whole(1, 2, -3, -1, 0), 1, 0).prefixed(),
     unit(&["J"], Exponents::whole(1, 2, -2, 0, 0), 1, 0).prefixed(),
     unit(&["W"], Exponents::whole(1, 2, -3, 0, 0), 1, 0).prefixed(),
     unit(&["rad"], ANGLE, 1, 0).prefixed(),
-    unit(&["deg", "°"], ANGLE, 1, 0).over(360).turns(),
-    unit(&["rev"], ANGLE, 1, 0).turns(),
+    unit(&["deg", "°", "degree", "degrees"], ANGLE, 1, 0).over(360).turns(),
+    unit(&["rev", "U"], ANGLE, 1, 0).turns(),
     unit(&["Hz"], ROTATION, 1, 0).turns().prefixed(),
     unit(&["rpm"], ROTATION, 1, 0).over(60).turns(),
-    unit(&["degC"], Exponents::celsius(1), 1, 0),
-    unit(&["%"], Exponents::NONE, 1, -2),
+    unit(&["degC", "°C"], Exponents::celsius(1), 1, 0),
+    unit(&["%", "percent"], Exponents::NONE, 1, -2),
     unit(&["1"], Exponents::NONE, 1, 0),
 ];
 
@@ -120,6 +124,25 @@ pub(crate) fn find(name: &str) -> Option<Unit> {
     PREFIXES.iter().find_map(|(prefix, ten)| {
         let unit = named(name.strip_prefix(prefix)?).filter(|unit| unit.prefixes)?;
         Some(Unit { ten: unit.ten + ten, ..*unit })
+    })
+}
+
+/// Units that a word begins with which several make together, and those that go on with it.
+pub(crate) const BEGINNINGS: [&str; 6] = ["N", "daN", "Pa", "V", "A", "W"];
+pub(crate) const CONTINUATIONS: [&str; 6] = ["mm", "cm", "min", "m", "s", "h"];
+
+/// The units of a word that several make together, as data sheets write `kNm`, `Ns`, `Nms`. A
+/// thousandth of a second is none of them: `Nms` is N.m.s.
+pub(crate) fn written_together(name: &str) -> Option<Vec<Unit>> {
+    let is_beginning = |unit: &Unit| unit.names.iter().any(|name| BEGINNINGS.contains(name));
+    (1..name.len()).filter(|at| name.is_char_boundary(*at)).find_map(|at| {
+        let mut units = vec![find(&name[..at]).filter(is_beginning)?];
+        let mut rest = &name[at..];
+        while let Some(next) = CONTINUATIONS.iter().find(|next| rest.starts_with(**next)) {
+            units.push(find(next)?);
+            rest = &rest[next.len()..];
+        }
+        rest.is_empty().then_some(units)
     })
 }
 
