@@ -114,6 +114,6 @@ pub struct LateError {
     pub path: String,
     /// What is wrong with it.
     pub message: String,
-    /// What to do.
+    /// What to do; empty where there is nothing to say.
     pub help: String,
 }

@@ -7,6 +7,8 @@ mod values;
 use std::collections::BTreeMap;
 
 use super::key::{Key, Motions};
+use super::listing::KeyEntry;
+use super::read::keys;
 use super::text::{Findings, Place, RawFinding};
 use super::tree::{Entry, TreeNode, Value};
 use super::{Origin, Provenance};
@@ -38,6 +40,8 @@ pub(crate) struct Reader<'a> {
     pub(crate) parameters: Vec<String>,
     /// Where each value is written, by its path.
     pub(crate) places: BTreeMap<String, Place>,
+    /// Paths of values that were refused.
+    pub(crate) refused: Vec<String>,
     /// Where each table of a list is written, by its path.
     pub(crate) item_places: BTreeMap<String, Place>,
     pub(crate) provenance: Vec<Provenance>,
@@ -106,6 +110,7 @@ impl<'a> Reader<'a> {
             parameters: Vec::new(),
             places: BTreeMap::new(),
             item_places: BTreeMap::new(),
+            refused: Vec::new(),
             provenance: Vec::new(),
             catalogue_files: Vec::new(),
         };
@@ -142,9 +147,12 @@ impl<'a> Reader<'a> {
     pub(crate) fn close(&mut self) -> Vec<&'static str> {
         let Some(mut frame) = self.frames.pop() else { return Vec::new() };
         let Some(own) = frame.layers.first() else { return frame.asked };
-        for entry in own.node.entries() {
-            if !frame.asked.contains(&entry.key.as_str()) {
-                self.findings.push(unknown(entry, &mut frame));
+        let asked = frame.asked.clone();
+        let mut unknown = own.node.entries().iter().filter(|entry| !asked.contains(&entry.key.as_str()));
+        if let Some(first) = unknown.next() {
+            let known = keys();
+            for entry in std::iter::once(first).chain(unknown) {
+                self.findings.push(unknown_key(entry, &known, &mut frame));
             }
         }
         frame.lacking.drain(..).for_each(|(_, found)| self.findings.push(found));
@@ -304,7 +312,7 @@ impl<'a> Reader<'a> {
 
 /// A key nobody asked for. Where it resembles one that is missing, this says both, and nothing else
 /// says that it is missing.
-fn unknown(entry: &Entry, frame: &mut Frame<'_>) -> RawFinding {
+fn unknown_key(entry: &Entry, known: &[KeyEntry], frame: &mut Frame<'_>) -> RawFinding {
     let place = if frame.path.is_empty() { String::new() } else { format!(" in [{}]", frame.path) };
     let near = nearest(&entry.key, frame.asked.iter().copied());
     let missing = near.and_then(|name| {
@@ -312,12 +320,46 @@ fn unknown(entry: &Entry, frame: &mut Frame<'_>) -> RawFinding {
         frame.lacking.retain(|(lacking, _)| *lacking != name);
         (frame.lacking.len() < before).then_some(name)
     });
+    let homes = if missing.is_some() { Vec::new() } else { tables_with(&entry.key, &frame.path, known) };
     let missing = missing.map_or(String::new(), |name| format!(", and `{name}` is missing"));
     let message = format!("unknown key `{}`{place}{missing}", entry.key);
     let found = RawFinding::error(entry.key_place, message);
-    match near {
-        Some(name) => found.help(format!("did you mean `{name}`?")),
-        None if frame.asked.len() <= 16 => found.help(format!("known here: {}", frame.asked.join(", "))),
-        None => found,
+    match (near, homes.as_slice()) {
+        (_, [first, ..]) if homes.len() > MOST_TABLES => {
+            found.help(format!("it belongs to {} tables, such as {first}", homes.len()))
+        }
+        (_, [others @ .., last]) if !others.is_empty() => {
+            found.help(format!("it belongs to {} or {last}", others.join(", ")))
+        }
+        (_, [only]) => found.help(format!("it belongs to {only}")),
+        (Some(name), _) => found.help(format!("did you mean `{name}`?")),
+        (None, _) if frame.asked.len() <= 16 => found.help(format!("known here: {}", frame.asked.join(", "))),
+        (None, _) => found,
     }
+}
+
+/// Most tables that a sentence names.
+const MOST_TABLES: usize = 4;
+
+/// The other tables that have a key or a table of this name.
+fn tables_with(name: &str, own: &str, known: &[KeyEntry]) -> Vec<String> {
+    let own: Vec<&str> = own.split('.').map(|part| part.split('[').next().unwrap_or(part)).collect();
+    let own = own.join(".");
+    let mut tables: Vec<String> = Vec::new();
+    for entry in known {
+        let parts: Vec<&str> = entry.path.split('.').collect();
+        let Some(at) = parts.iter().position(|part| part.trim_end_matches("[]") == name) else { continue };
+        let (table, is_list) =
+            (parts[..at].join("."), parts[..at].last().is_some_and(|last| last.ends_with("[]")));
+        let path = table.replace("[]", "");
+        let written = match (path.as_str(), is_list) {
+            ("", _) => "the top of the file".to_string(),
+            (path, true) => format!("[[{path}]]"),
+            (path, false) => format!("[{path}]"),
+        };
+        if path != own && !path.contains("NAME") && !tables.contains(&written) {
+            tables.push(written);
+        }
+    }
+    tables
 }

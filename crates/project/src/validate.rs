@@ -74,7 +74,11 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
 
 /// An error that was found later.
 pub(super) fn late(late: &LateError, reader: &mut Reader<'_>) {
-    Check { reader }.error_with_help(&late.path, &late.message, &late.help);
+    let mut check = Check { reader };
+    match late.help.as_str() {
+        "" => check.error(&late.path, &late.message),
+        help => check.error_with_help(&late.path, &late.message, help),
+    }
 }
 
 impl DeclaredElement {

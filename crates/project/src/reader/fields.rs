@@ -37,7 +37,7 @@ impl Visitor for Reader<'_> {
         if let Some(hit) = self.find(key) {
             let origin = self.origin(key, hit);
             self.record_origin(key, origin);
-            *field = self.number(key, hit.node).unwrap_or(*field);
+            *field = self.number_or_none(key, hit.node);
         } else if let Some(default) = key.default {
             if !self.looks_elsewhere() {
                 self.record_origin(key, Origin::Default);
@@ -52,7 +52,7 @@ impl Visitor for Reader<'_> {
         let Some(hit) = self.find(key) else { return };
         let origin = self.origin(key, hit);
         self.record_origin(key, origin);
-        *field = self.number(key, hit.node);
+        *field = Some(self.number_or_none(key, hit.node));
     }
 
     fn pair(&mut self, key: Key, field: &mut Option<[f64; 2]>) {
@@ -66,9 +66,7 @@ impl Visitor for Reader<'_> {
             let message = format!("`{}` must have two values, not {}", key.name, items.len());
             return self.findings.push(RawFinding::error(hit.node.place, message));
         };
-        if let (Some(first), Some(second)) = (self.number(key, first), self.number(key, second)) {
-            *field = Some([first, second]);
-        }
+        *field = Some([first, second].map(|item| self.number_or_none(key, item)));
     }
 
     fn quantities(&mut self, key: Key, field: &mut Vec<f64>, required: bool) {
@@ -79,7 +77,7 @@ impl Visitor for Reader<'_> {
             return;
         };
         let Value::List(items) = &hit.node.value else { return self.wrong_kind(key, "a list", hit.node) };
-        *field = items.iter().filter_map(|item| self.number(key, item)).collect();
+        *field = items.iter().map(|item| self.number_or_none(key, item)).collect();
     }
 
     fn complexes(&mut self, key: Key, field: &mut Vec<[f64; 2]>) {
@@ -356,6 +354,11 @@ impl Visitor for Reader<'_> {
         }
         for entry in hit.node.entries() {
             let Some(number) = self.named.get(&entry.key).copied() else {
+                // a number of a table with a refused one may only seem to be absent
+                let root = |path: &str| path.split(['.', '[']).next().unwrap_or("").to_string();
+                if self.refused.iter().any(|refused| root(refused) == root(&entry.key)) {
+                    continue;
+                }
                 let near = nearest(&entry.key, self.named.keys().map(String::as_str));
                 let is_count = self.counts.contains(&entry.key);
                 let quoted = self.quoted(key, entry);

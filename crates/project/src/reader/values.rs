@@ -41,6 +41,15 @@ impl Reader<'_> {
         None
     }
 
+    /// The same, or NaN where it was refused: nothing that is compared with it contradicts it.
+    pub(super) fn number_or_none(&mut self, key: Key, node: &TreeNode) -> f64 {
+        self.number(key, node).unwrap_or_else(|| {
+            let path = self.path(key.name);
+            self.refused.push(path);
+            f64::NAN
+        })
+    }
+
     /// A price, with its currency in text.
     pub(super) fn read_price(&mut self, key: Key, by: PricedBy, node: &TreeNode) -> Option<Price> {
         let Value::Text(text) = &node.value else {

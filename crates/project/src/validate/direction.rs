@@ -93,7 +93,8 @@ fn ends(project: &Project, stated: &BTreeMap<String, f64>, check: &mut Check<'_,
         let (Some(value), Some(key)) = (stated.get(number), check.reader.named.get(number).copied()) else {
             continue;
         };
-        let beyond = [value - reach, value + reach].into_iter().find(|end| !key.range.contains(*end));
+        let beyond =
+            [value - reach, value + reach].into_iter().find(|end| !end.is_nan() && !key.range.contains(*end));
         if let Some(end) = beyond {
             let message =
                 format!("at the ends of its directions `{number}` is {}", display(end, key.dimension, 4));

@@ -55,7 +55,9 @@ pub(super) fn numbers(project: &Project, check: &mut Check<'_, '_>) {
             continue;
         }
         let usual = USUAL.iter().find(|(name, ..)| *name == plain);
-        let Some((_, least, most, of)) = usual.filter(|_| *value != 0.0 && check.declared(path)) else {
+        let Some((_, least, most, of)) =
+            usual.filter(|_| *value != 0.0 && !value.is_nan() && check.declared(path))
+        else {
             continue;
         };
         if *value >= least / BEYOND && *value <= most * BEYOND {
