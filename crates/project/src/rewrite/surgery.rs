@@ -1,4 +1,5 @@
-//! Removes keys of one table of a text and puts lines in their place.
+//! Removes keys of one table of a text and puts lines in their place. Comments on what is removed go
+//! with it: they would describe what takes its place.
 
 use super::statement::{Statement, StatementContent, entries, statements};
 
@@ -8,9 +9,20 @@ pub(super) type KeyValues = Vec<(String, String)>;
 /// The text with these keys of a top-level table removed and these lines in their place.
 pub(super) fn replaced(text: &str, table: &str, keys: &[&str], lines: &[(String, String)]) -> String {
     let end = if text.contains("\r\n") { "\r\n" } else { "\n" };
-    let mut surgery =
-        Surgery { table, keys, lines, end, out: String::new(), inserted: false, section: vec![] };
-    for statement in statements(text) {
+    let mut surgery = Surgery {
+        table,
+        keys,
+        lines,
+        end,
+        out: String::new(),
+        inserted: false,
+        section: vec![],
+        removes: false,
+        comments: None,
+    };
+    let all = statements(text);
+    surgery.removes = surgery.removes_any(&all);
+    for statement in all {
         surgery.take(text.get(statement.range.clone()).unwrap_or_default(), &statement);
     }
     if !surgery.inserted {
@@ -33,18 +45,47 @@ struct Surgery<'a> {
     inserted: bool,
     /// Path of the present table.
     section: Vec<String>,
+    /// Whether the text states any key that is removed.
+    removes: bool,
+    /// Where the comment lines begin that the present statement follows.
+    comments: Option<usize>,
 }
 
 impl Surgery<'_> {
+    fn removes_any(&self, all: &[Statement]) -> bool {
+        let mut section: &[String] = &[];
+        all.iter().any(|statement| match &statement.content {
+            StatementContent::Nothing => false,
+            StatementContent::Header(path) => {
+                section = path;
+                self.is_replaced(path)
+            }
+            StatementContent::Value { path, .. } => self.is_replaced(&[section, path].concat()),
+        })
+    }
+
     fn take(&mut self, written: &str, statement: &Statement) {
+        let before = self.comments.take();
         match &statement.content {
-            StatementContent::Nothing => self.out.push_str(written),
+            StatementContent::Nothing => {
+                if written.trim_start().starts_with('#') {
+                    self.comments = before.or(Some(self.out.len()));
+                }
+                self.out.push_str(written);
+            }
             StatementContent::Header(path) => {
                 self.section = path.clone();
+                let is_own = path.len() == 1 && path.first().is_some_and(|first| first == self.table);
                 if !self.is_replaced(path) {
-                    self.out.push_str(written);
+                    self.out.push_str(if is_own && self.removes {
+                        without_comment(written)
+                    } else {
+                        written
+                    });
+                } else if let Some(start) = before {
+                    self.out.truncate(start);
                 }
-                if path.len() == 1 && path.first().is_some_and(|first| first == self.table) {
+                if is_own {
                     self.end_line();
                     self.insert("");
                 }
@@ -63,6 +104,8 @@ impl Surgery<'_> {
                 }
                 if !self.is_replaced(&whole) {
                     self.out.push_str(written);
+                } else if let Some(start) = before {
+                    self.out.truncate(start);
                 }
             }
         }
@@ -89,9 +132,10 @@ impl Surgery<'_> {
         let new = self.lines.iter().map(|(key, value)| format!("{key} = {value}"));
         let all: Vec<String> = new.chain(kept).collect();
         let (before, after) = (written.get(..value.start), written.get(value.end..));
-        let text =
-            format!("{}{{ {} }}{}", before.unwrap_or_default(), all.join(", "), after.unwrap_or_default());
+        let text = format!("{}{{ {} }}", before.unwrap_or_default(), all.join(", "));
         self.out.push_str(&text);
+        self.out.push_str(without_comment(after.unwrap_or_default()));
+        self.end_line();
     }
 
     fn end_line(&mut self) {
@@ -99,6 +143,11 @@ impl Surgery<'_> {
             self.out.push_str(self.end);
         }
     }
+}
+
+/// A line up to its comment.
+fn without_comment(line: &str) -> &str {
+    line.split_once('#').map_or(line, |(before, _)| before.trim_end())
 }
 
 #[cfg(test)]
@@ -116,8 +165,8 @@ mod tests {
 
     #[test]
     fn a_table_keeps_its_other_keys_and_comments() {
-        let text = "a = \"[controller]\"\n[controller]  # G\nnumerator = \"s\"  # old\n# why\ndelay = \"1 ms\"\ndenominator = '''\ns'''\n\n[x]\ngain = 1\n";
-        let expected = "a = \"[controller]\"\n[controller]  # G\ngain = 2\npoles = [0]\n# why\ndelay = \"1 ms\"\n\n[x]\ngain = 1\n";
+        let text = "a = \"[controller]\"\n[controller]  # G\n# the old law\nnumerator = \"s\"  # old\n# why\ndelay = \"1 ms\"\ndenominator = '''\ns'''\n\n[x]\ngain = 1\n";
+        let expected = "a = \"[controller]\"\n[controller]\ngain = 2\npoles = [0]\n# why\ndelay = \"1 ms\"\n\n[x]\ngain = 1\n";
         assert_eq!(rewritten(text), expected);
     }
 
@@ -142,12 +191,17 @@ mod tests {
         );
         assert_eq!(
             rewritten("controller = { numerator = \"1, 2\", delay = 1, zeros = [1, [2, 3]] } # c\n[x]\n"),
-            "controller = { gain = 2, poles = [0], delay = 1 } # c\n[x]\n"
+            "controller = { gain = 2, poles = [0], delay = 1 }\n[x]\n"
         );
         assert_eq!(rewritten("[x]\ny = 1"), "[x]\ny = 1\n\n[controller]\ngain = 2\npoles = [0]\n");
         assert_eq!(
             rewritten("[x]\r\ny = 1\r\n"),
             "[x]\r\ny = 1\r\n\r\n[controller]\r\ngain = 2\r\npoles = [0]\r\n"
+        );
+        // a comment on the table of a controller without a law is one on the table
+        assert_eq!(
+            rewritten("[controller] # sampled\ndelay = 1\n"),
+            "[controller] # sampled\ngain = 2\npoles = [0]\ndelay = 1\n"
         );
         // a table within it stays
         assert_eq!(
