@@ -11,7 +11,7 @@ mod member;
 mod reading;
 
 pub use member::{Averaging, LeftOut, ResponseMember, Unusable};
-pub use reading::{SampledPair, UNEVEN, sampled_pairs, time_step};
+pub use reading::{RowSpacing, SampledPair, UNEVEN, sampled_pairs, time_step};
 
 use phea_dynamics::watch::{Watch, tell};
 

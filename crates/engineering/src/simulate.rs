@@ -21,6 +21,7 @@ mod measured;
 mod metrics;
 mod motion_file;
 mod parts;
+mod plausible;
 mod record;
 mod run;
 mod saved;

@@ -14,11 +14,12 @@ mod column;
 mod decode;
 mod faults;
 mod heading;
+mod labview;
 mod layout;
 mod parquet;
 mod text;
 
-pub use column::{Column, Measurand, Sought};
+pub use column::{Column, Measurand, Sought, TIME_NAMES, TIMES};
 
 use self::parquet::ParquetRows;
 use self::text::TextRows;

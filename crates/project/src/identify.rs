@@ -4,7 +4,7 @@
 use super::key::plain;
 use super::visitor::Visitor;
 use phea_hydraulics::servovalve::PortCircuit;
-use phea_quantity::{Dimension, FLOW, PRESSURE, TEMPERATURE, TIME, VOLTAGE};
+use phea_quantity::{Dimension, FLOW, FORCE, PRESSURE, TEMPERATURE, TIME, VOLTAGE};
 
 /// One of the static tests of ISO 10770-1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,6 +124,49 @@ impl TestSignal {
     }
 }
 
+/// What a column of a record for a frequency response holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ResponseSignal {
+    /// s.
+    Time,
+    /// V, what excites.
+    Command,
+    /// N, what follows.
+    Force,
+}
+
+impl ResponseSignal {
+    /// All, in the order of columns.
+    pub const ALL: [ResponseSignal; 3] =
+        [ResponseSignal::Time, ResponseSignal::Command, ResponseSignal::Force];
+
+    /// As columns and keys call it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            ResponseSignal::Time => "time",
+            ResponseSignal::Command => "command",
+            ResponseSignal::Force => "force",
+        }
+    }
+
+    /// What it measures.
+    pub const fn dimension(self) -> &'static Dimension {
+        match self {
+            ResponseSignal::Time => &TIME,
+            ResponseSignal::Command => &VOLTAGE,
+            ResponseSignal::Force => &FORCE,
+        }
+    }
+
+    const fn doc(self) -> &'static str {
+        match self {
+            ResponseSignal::Time => "Column of the time.",
+            ResponseSignal::Command => "Column of the command that excites.",
+            ResponseSignal::Force => "Column of the force that follows.",
+        }
+    }
+}
+
 /// What of an identified valve every command takes in place of what the project declares.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum IdentifiedUse {
@@ -143,6 +186,8 @@ pub struct Identify {
     pub takes: IdentifiedUse,
     /// Recorded tests, one in a file.
     pub recordings: Vec<RecordedTest>,
+    /// Records for frequency responses, one in a file.
+    pub responses: Vec<RecordedResponse>,
     /// Recordings of a blocked line, as paths relative to the project file.
     pub line: Vec<String>,
     /// Recorded runs of the cylinder, as paths relative to the project file.
@@ -160,6 +205,17 @@ pub struct RecordedTest {
     pub separator: Option<String>,
     /// What the headings do not say, in the order of [`TestSignal::ALL`].
     pub columns: [Option<RecordedColumn>; 9],
+}
+
+/// A file with a record for a frequency response.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RecordedResponse {
+    /// A table as text or Parquet, relative to the project.
+    pub file: String,
+    /// What separates the values of a text; absent: it is found.
+    pub separator: Option<String>,
+    /// What the headings do not say, in the order of [`ResponseSignal::ALL`].
+    pub columns: [Option<RecordedColumn>; 3],
 }
 
 /// A column of a file.
@@ -183,6 +239,8 @@ impl Identify {
         v.choice(plain("use", doc), words, &mut self.takes, false);
         let k = plain("recording", "Recorded static tests of the servovalve, one in a file.");
         v.tables(k, &mut self.recordings, RecordedTest::visit);
+        let k = plain("response", "Records for frequency responses, one in a file, for `--of response`.");
+        v.tables(k, &mut self.responses, RecordedResponse::visit);
         let k = plain("line", "Recordings of a line whose far end is blocked, for `--of line`.");
         v.texts(k, &mut self.line);
         let k = plain("friction", "Recorded runs of the cylinder, for `--of friction`.");
@@ -215,6 +273,24 @@ impl RecordedTest {
         let k = plain("separator", "What separates the values of a text; absent: it is found.");
         v.text(k, &mut self.separator, false);
         for (signal, column) in TestSignal::ALL.into_iter().zip(&mut self.columns) {
+            v.table(plain(signal.name(), signal.doc()), column, RecordedColumn::visit);
+        }
+    }
+}
+
+impl RecordedResponse {
+    /// A file whose headings say everything.
+    pub fn of(file: &str) -> RecordedResponse {
+        RecordedResponse { file: file.to_string(), ..RecordedResponse::default() }
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let mut file = Some(std::mem::take(&mut self.file));
+        v.text(plain("file", "A table as text or Parquet, relative to this file."), &mut file, true);
+        self.file = file.unwrap_or_default();
+        let k = plain("separator", "What separates the values of a text; absent: it is found.");
+        v.text(k, &mut self.separator, false);
+        for (signal, column) in ResponseSignal::ALL.into_iter().zip(&mut self.columns) {
             v.table(plain(signal.name(), signal.doc()), column, RecordedColumn::visit);
         }
     }

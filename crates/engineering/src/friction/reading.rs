@@ -1,10 +1,10 @@
 use crate::identify::IdentifyError;
 use crate::project::{Findings, Project};
 use crate::quantity::{FORCE, LENGTH, PRESSURE, TIME, VELOCITY};
-use crate::response::time_step;
+use crate::response::{RowSpacing, time_step};
 use crate::setup::Setup;
 use crate::source::Source;
-use crate::table::{Column, Measurand, MeasuredTable, Sought};
+use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES};
 
 /// What is known of the cylinder in addition to the files.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,11 +58,11 @@ pub struct FrictionRecording {
 }
 
 const MEASURANDS: [Measurand; 6] = [
-    Measurand::of("time", &TIME),
+    Measurand::of("time", &TIME).called(TIME_NAMES),
     Measurand::of("position", &LENGTH),
     Measurand::of("velocity", &VELOCITY),
-    Measurand::of("pressure_a", &PRESSURE).with_symbol("p_A"),
-    Measurand::of("pressure_b", &PRESSURE).with_symbol("p_B"),
+    Measurand::of("pressure_a", &PRESSURE).called(&["p_A"]),
+    Measurand::of("pressure_b", &PRESSURE).called(&["p_B"]),
     Measurand::of("force", &FORCE),
 ];
 
@@ -123,7 +123,14 @@ fn recording(
     let (times, motion) = (numbers.next()?, numbers.next()?);
     let mut next = |column: Option<&Column>| column.and_then(|_| numbers.next()).unwrap_or_default();
     let [pressures_a, pressures_b, loads] = [pressure_a, pressure_b, force].map(&mut next);
-    let time_step = time_step(&table, time?, &times, "a run of the cylinder", findings)?;
+    let spacing = RowSpacing::of(&times);
+    let (time_step, motion, [pressures_a, pressures_b, loads]) = if is_software_timed(&spacing, &times) {
+        let even = |values: &[f64]| interpolated(&times, values, spacing.usual);
+        (spacing.usual, even(&motion), [&pressures_a, &pressures_b, &loads].map(|values| even(values)))
+    } else {
+        let step = time_step(&table, time?, &times, "a run of the cylinder", findings)?;
+        (step, motion, [pressures_a, pressures_b, loads])
+    };
     table.close(findings);
     let at = |values: &[f64], row: usize| values.get(row).copied().unwrap_or(0.0);
     let [a, b] = known.areas;
@@ -131,10 +138,42 @@ fn recording(
     Some(FrictionRecording {
         file: file.to_string(),
         time_step,
-        forces: (0..times.len()).map(drive).collect(),
+        forces: (0..motion.len()).map(drive).collect(),
         has_position: position.is_some(),
         positions: if position.is_some() { motion } else { integrated(&motion, time_step) },
     })
+}
+
+/// The longest time between two rows that a line bridges, in usual ones.
+const LONGEST_BRIDGED: f64 = 5.0;
+
+/// Whether rows come late now and then, and none is missing: a run of the cylinder is slow against
+/// its rows, and a line between two of them changes nothing.
+fn is_software_timed(spacing: &RowSpacing, times: &[f64]) -> bool {
+    let is_bridged = |pair: &[f64]| matches!(pair, [one, next] if next > one && next - one <= LONGEST_BRIDGED * spacing.usual);
+    !spacing.is_even() && times.len() > 1 && times.windows(2).all(is_bridged)
+}
+
+/// Values at equal intervals, on lines between the rows.
+fn interpolated(times: &[f64], values: &[f64], step: f64) -> Vec<f64> {
+    let (Some(first), Some(last)) = (times.first(), times.last()) else { return Vec::new() };
+    if values.is_empty() {
+        return Vec::new();
+    }
+    let mut row = 0;
+    let count = ((last - first) / step + 1e-9).floor() as usize + 1;
+    let at = |index: usize| {
+        let time = first + index as f64 * step;
+        while times.get(row + 1).is_some_and(|next| *next < time) {
+            row += 1;
+        }
+        let of = |numbers: &[f64], row: usize| numbers.get(row).copied().unwrap_or(f64::NAN);
+        let (from, to) = (of(times, row), of(times, row + 1));
+        let share = if to > from { (time - from) / (to - from) } else { 0.0 };
+        let value = of(values, row);
+        if share == 0.0 { value } else { value + share * (of(values, row + 1) - value) }
+    };
+    (0..count).map(at).collect()
 }
 
 /// By the trapezoidal rule, from zero.

@@ -20,28 +20,28 @@ use super::contents::{ColumnContents, FileContents, RecordedFiles};
 use super::recording::Recording;
 use crate::project::{Findings, RawFinding, RecordedTest, Refusal, StaticTest, TestSignal};
 use crate::source::Source;
-use crate::table::{Column, Measurand, MeasuredTable, Sought};
+use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES};
 
 /// Fewest rows of a test.
 const FEWEST_ROWS: usize = 20;
 
 /// What the columns of a test may hold, in the order of [`TestSignal::ALL`].
 static MEASURANDS: [Measurand; 9] = [
-    measurand(TestSignal::Time, None),
-    measurand(TestSignal::Command, None),
-    measurand(TestSignal::SupplyPressure, Some("p_S")),
-    measurand(TestSignal::TankPressure, Some("p_T")),
-    measurand(TestSignal::PressureA, Some("p_A")),
-    measurand(TestSignal::PressureB, Some("p_B")),
-    measurand(TestSignal::LeakFlow, None),
-    measurand(TestSignal::Flow, None),
-    measurand(TestSignal::OilTemperature, None),
+    measurand(TestSignal::Time, TIME_NAMES),
+    measurand(TestSignal::Command, &[]),
+    measurand(TestSignal::SupplyPressure, &["p_S"]),
+    measurand(TestSignal::TankPressure, &["p_T"]),
+    measurand(TestSignal::PressureA, &["p_A"]),
+    measurand(TestSignal::PressureB, &["p_B"]),
+    measurand(TestSignal::LeakFlow, &[]),
+    measurand(TestSignal::Flow, &[]),
+    measurand(TestSignal::OilTemperature, &[]),
 ];
 
-const fn measurand(signal: TestSignal, symbol: Option<&'static str>) -> Measurand {
+const fn measurand(signal: TestSignal, symbols: &'static [&'static str]) -> Measurand {
     Measurand {
         name: signal.name(),
-        symbol,
+        symbols,
         dimension: signal.dimension(),
         may_be_share: matches!(signal, TestSignal::Command),
     }

@@ -8,7 +8,7 @@ use crate::project::{Findings, RawFinding};
 use crate::quantity::{FLOW, LENGTH, PRESSURE, TIME, VOLUME};
 use crate::response::{SampledPair, time_step};
 use crate::source::Source;
-use crate::table::{Column, Measurand, MeasuredTable, Sought};
+use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES};
 
 /// A recording of a blocked line.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,11 +27,11 @@ const SLOW: f64 = 6.0;
 const BLOCKS: usize = 200;
 
 const SIGNALS: [Measurand; 5] = [
-    Measurand::of("time", &TIME),
-    Measurand::of("pressure", &PRESSURE).with_symbol("p"),
-    Measurand::of("flow", &FLOW).with_symbol("q"),
-    Measurand::of("volume", &VOLUME).with_symbol("V"),
-    Measurand::of("position", &LENGTH).with_symbol("x"),
+    Measurand::of("time", &TIME).called(TIME_NAMES),
+    Measurand::of("pressure", &PRESSURE).called(&["p"]),
+    Measurand::of("flow", &FLOW).called(&["q"]),
+    Measurand::of("volume", &VOLUME).called(&["V"]),
+    Measurand::of("position", &LENGTH).called(&["x"]),
 ];
 
 /// The recordings of these files, one each. A position becomes a volume by the piston's area in m2.

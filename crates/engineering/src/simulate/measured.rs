@@ -12,12 +12,13 @@ use phea_dynamics::order::ends;
 use super::Look;
 use super::columns::ColumnSource;
 use super::metrics::Measured;
-use super::motion_file::{TIMES, rising};
+use super::motion_file::rising;
 use super::parts::SignalParts;
+use super::plausible;
 use crate::project::{Findings, MeasuredFile, MeasuredSignal, Project, Refusal, Scenario};
 use crate::quantity::{DisplayUnit, TIME};
 use crate::source;
-use crate::table::{Column, Measurand, MeasuredTable, Sought};
+use crate::table::{Column, Measurand, MeasuredTable, Sought, TIMES};
 
 /// A signal as it was measured.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,7 +104,7 @@ pub(super) fn measurements(
     for declared in &scenario.measured {
         let path = project.path_of(&declared.file);
         if let Some(bytes) = findings.bytes_of(source, &path) {
-            let taken = of_file(declared, scenario.duration, (&path, bytes), &mut findings);
+            let taken = of_file(project, (declared, scenario.duration), (&path, bytes), &mut findings);
             found.extend(taken.unwrap_or_default());
         }
     }
@@ -111,8 +112,8 @@ pub(super) fn measurements(
 }
 
 fn of_file(
-    declared: &MeasuredFile,
-    duration_s: f64,
+    project: &Project,
+    (declared, duration_s): (&MeasuredFile, f64),
     (path, bytes): (&str, Vec<u8>),
     findings: &mut Findings,
 ) -> Option<Vec<Measurement>> {
@@ -134,6 +135,11 @@ fn of_file(
     let columns: Vec<&Column> = columns.iter().map(Option::as_ref).collect::<Option<_>>()?;
     let mut numbers = table.all_numbers(&columns, findings).into_iter();
     let (mut times_s, time) = (numbers.next()?, columns.first()?);
+    for ((signal, column), values) in
+        declared.signals.iter().zip(columns.iter().skip(1)).zip(numbers.as_slice())
+    {
+        plausible::check(project, &table, (column, signal.dimension()), values, findings);
+    }
     times_s.iter_mut().for_each(|time_s| *time_s += declared.offset);
     rising(&table, time, &times_s, findings);
     if !times_s.iter().any(|time_s| (0.0..=duration_s).contains(time_s)) && findings.error_count() == 0 {

@@ -10,13 +10,12 @@
 
 use phea_dynamics::simulation::{Profile, ProfileError};
 
+use super::plausible;
 use crate::project::{Findings, Project, RawFinding, Refusal};
-use crate::quantity::{FORCE, LENGTH, RATIO, TIME, VOLTAGE};
+use crate::quantity::{FORCE, LENGTH, RATIO, VOLTAGE};
 use crate::source::Source;
-use crate::table::{Column, Measurand, MeasuredTable, Sought};
+use crate::table::{Column, Measurand, MeasuredTable, Sought, TIMES};
 
-/// Times of the rows.
-pub(super) static TIMES: Measurand = Measurand::of("time", &TIME);
 static POSITION: Measurand = Measurand::of("position", &LENGTH);
 /// A force over time.
 pub(super) static FORCES: Measurand = Measurand::of("force", &FORCE);
@@ -63,13 +62,13 @@ fn read(
     let mut findings = Findings::default();
     let path = project.path_of(file);
     let bytes = findings.bytes_of(source, &path);
-    let rows = bytes.and_then(|bytes| rows(&path, bytes, values, &mut findings));
+    let rows = bytes.and_then(|bytes| rows(project, (&path, bytes), values, &mut findings));
     findings.or_refused(rows.unwrap_or_default())
 }
 
 fn rows(
-    path: &str,
-    bytes: Vec<u8>,
+    project: &Project,
+    (path, bytes): (&str, Vec<u8>),
     values: &'static Measurand,
     findings: &mut Findings,
 ) -> Option<Vec<(f64, f64)>> {
@@ -83,10 +82,11 @@ fn rows(
     }
     unused.iter().for_each(|index| findings.push(table.unknown(*index, &sought)));
     let wanted: Vec<&Column> = columns.iter().flatten().collect();
-    let [time, _] = wanted.as_slice() else { return None };
+    let [time, value] = wanted.as_slice() else { return None };
     let numbers = table.all_numbers(&wanted, findings);
     let [times, values_at] = numbers.as_slice() else { return None };
     rising(&table, time, times, findings);
+    plausible::check(project, &table, (value, values.dimension), values_at, findings);
     if times.len() < 2 && findings.error_count() == 0 {
         let what = if std::ptr::eq(values, &POSITION) { "motion" } else { "signal" };
         findings.push(RawFinding::error(table.header_place(), format!("a {what} needs two rows at least")));

@@ -3,7 +3,7 @@
 use super::heading::{bare, endings, unit_beside, unit_meant};
 use super::{Heading, MeasuredTable};
 use crate::project::{Findings, RawFinding};
-use crate::quantity::{Dimension, RATIO, UnitScale};
+use crate::quantity::{CURRENT, Dimension, RATIO, TIME, UnitScale};
 use crate::spelling::nearest;
 
 /// What a column may hold, as its heading calls it.
@@ -11,8 +11,9 @@ use crate::spelling::nearest;
 pub struct Measurand {
     /// In words with underscores; a heading may have spaces, hyphens and capitals.
     pub name: &'static str,
-    /// As formulae call it; known where a unit that fits stands next to it.
-    pub symbol: Option<&'static str>,
+    /// What else it is called, as in formulae: known where a unit that fits stands next to it, and
+    /// a word of several letters without a unit too.
+    pub symbols: &'static [&'static str],
     /// What its unit is of.
     pub dimension: &'static Dimension,
     /// Whether it may be a share, in percent, of something that the table does not say.
@@ -22,14 +23,21 @@ pub struct Measurand {
 impl Measurand {
     /// Known by its name.
     pub const fn of(name: &'static str, dimension: &'static Dimension) -> Measurand {
-        Measurand { name, symbol: None, dimension, may_be_share: false }
+        Measurand { name, symbols: &[], dimension, may_be_share: false }
     }
 
-    /// Known by a symbol too.
-    pub const fn with_symbol(self, symbol: &'static str) -> Measurand {
-        Measurand { symbol: Some(symbol), ..self }
+    /// Known by other names too.
+    pub const fn called(self, symbols: &'static [&'static str]) -> Measurand {
+        Measurand { symbols, ..self }
     }
 }
+
+/// Times of the rows, as loggers call them.
+pub static TIMES: Measurand = Measurand::of("time", &TIME).called(TIME_NAMES);
+/// What loggers call the time.
+pub const TIME_NAMES: &[&str] = &["t", "X_Value"];
+/// The shortest word that names a signal without its unit.
+const WORD: usize = 3;
 
 /// A signal that is looked for, by its own name or by the heading and unit that a project states.
 #[derive(Clone, Copy, Debug)]
@@ -80,11 +88,17 @@ impl<'a> Sought<'a> {
             Some(stated) => {
                 heading.strip_prefix(stated).filter(|rest| rest.trim_start().starts_with(BRACKETS))
             }
-            None => unit_beside(heading, self.measurand.name).or_else(|| {
-                let unit = unit_beside(heading, self.measurand.symbol?)?;
-                self.unit_of(unit).is_some().then_some(unit)
-            }),
+            None => unit_beside(heading, self.measurand.name).or_else(|| self.unit_by_symbol(heading)),
         }
+    }
+
+    fn unit_by_symbol<'h>(&self, heading: &'h str) -> Option<&'h str> {
+        let known = |symbol: &&'static str| {
+            let unit = unit_beside(heading, symbol)?;
+            let is_word = symbol.len() >= WORD && unit.is_empty();
+            (is_word || self.unit_of(unit).is_some()).then_some(unit)
+        };
+        self.measurand.symbols.iter().find_map(known)
     }
 
     /// Whether a heading names the signal, and whether it says nothing else but a unit of it.
@@ -191,7 +205,12 @@ impl MeasuredTable {
             RawFinding::error(heading.place, message).expected(format!("one of {}", quoted.join(", ")));
         let is_absolute = ["bara", "psia"].contains(&written.to_lowercase().as_str());
         let near = nearest(written, endings(sought.measurand.dimension));
+        let is_current = sought.measurand.may_be_share && unit_meant(written, &CURRENT).is_some();
         found.maybe_help(match near {
+            _ if is_current => {
+                let name = sought.measurand.name;
+                Some(format!("divide the current by the nominal one and head the column `{name}_percent`"))
+            }
             _ if is_absolute => {
                 Some("pressures are gauge here: subtract the atmospheric pressure".to_string())
             }
@@ -221,6 +240,15 @@ impl MeasuredTable {
             Some(near) => found.help(format!("did you mean `{near}`?")),
             None => found.help(format!("there are: {}", headings().collect::<Vec<_>>().join(", "))),
         }
+    }
+
+    /// The columns that none of these signals is named in.
+    pub fn unnamed<'a>(&'a self, sought: &'a [Sought<'a>]) -> impl Iterator<Item = usize> + 'a {
+        let is_unnamed = |heading: &Heading| {
+            !heading.text.is_empty() && sought.iter().all(|one| one.is_named_in(&heading.text).is_none())
+        };
+        let all = self.headings.iter().enumerate();
+        all.filter(move |(_, heading)| is_unnamed(heading)).map(|(index, _)| index)
     }
 
     /// That a column is none of those that are looked for, with the name that may have been meant.

@@ -3,7 +3,7 @@
 use crate::quantity::{Dimension, UnitScale};
 
 /// Units as names of columns have them, and as quantities do.
-const UNITS: [(&str, &str); 31] = [
+const UNITS: [(&str, &str); 42] = [
     ("s", "s"),
     ("ms", "ms"),
     ("min", "min"),
@@ -35,9 +35,20 @@ const UNITS: [(&str, &str); 31] = [
     ("percent", "%"),
     ("sec", "s"),
     ("volt", "V"),
+    ("volts", "V"),
+    ("second", "s"),
+    ("seconds", "s"),
+    ("newton", "N"),
+    ("newtons", "N"),
+    ("degree", "deg"),
+    ("degrees", "deg"),
+    ("radians", "rad"),
+    ("hertz", "Hz"),
+    ("ma", "mA"),
+    ("a", "A"),
 ];
 /// Those of them that are not offered.
-const UNUSUAL: usize = 3;
+const UNUSUAL: usize = 14;
 
 /// What of a heading is left next to a name: its unit, or nothing. `None` where it has another
 /// name.

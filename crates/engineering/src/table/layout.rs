@@ -39,11 +39,20 @@ pub(super) fn find(content: &str, sought: &[Sought<'_>], separator: Option<Separ
         let trimmed = line.trim_start();
         let open = trimmed.trim_start_matches(['#', '%']);
         let header = start + line.len() - open.len();
-        for separator in &separators {
-            // whether a value is a name, and a name with a unit of it
-            let is_name = |text: &str| sought.iter().filter_map(|one| one.is_named_in(text)).max();
-            let cells = Cells::new(content, header, *separator);
-            let names: Vec<bool> = cells.filter_map(|cell| is_name(cell.text)).collect();
+        // whether a value is a name, and a name with a unit of it
+        let is_name = |text: &str| sought.iter().filter_map(|one| one.is_named_in(text)).max();
+        let names_of = |separator: Separator| {
+            let cells: Vec<_> =
+                Cells::new(content, header, separator).map(|cell| is_name(cell.text)).collect();
+            (cells.len(), cells.into_iter().flatten().collect::<Vec<bool>>())
+        };
+        // a name and its unit may have a space between them where a sign separates the columns
+        let is_signed = separators.iter().any(|separator| {
+            let (cells, names) = names_of(*separator);
+            *separator != Separator::Spaces && cells > 1 && !names.is_empty()
+        });
+        for separator in separators.iter().filter(|one| !is_signed || **one != Separator::Spaces) {
+            let (_, names) = names_of(*separator);
             let whole = names.iter().filter(|is_whole| **is_whole).count();
             let rank = [whole, names.len(), usize::from(open.len() == trimmed.len())];
             if !names.is_empty() && best.is_none_or(|(least, _)| rank > least) {

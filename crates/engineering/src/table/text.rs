@@ -4,6 +4,7 @@ use super::cell::{Cells, Separator};
 use super::column::{Column, Sought};
 use super::faults::Faults;
 use super::heading::{bare, unit_meant};
+use super::labview;
 use super::layout::{self, is_row, lines};
 use super::{ColumnNumbers, Heading};
 use crate::project::{Place, RawFinding};
@@ -34,15 +35,19 @@ pub(super) fn open(
         ' ' => Separator::Spaces,
         sign => Separator::Sign(u8::try_from(sign).unwrap_or(b',')),
     });
-    let Some(layout) = layout::find(content, sought, separator) else {
-        return Err(unnamed(text, content, sought));
+    labview::refuse_chart(text, content)?;
+    let (layout, units) = match labview::header(text, content).transpose()? {
+        Some(header) => (Some(header.layout), header.units),
+        None => (layout::find(content, sought, separator), Vec::new()),
     };
+    let Some(layout) = layout else { return Err(unnamed(text, content, sought)) };
     let separator = layout.separator;
     let mut cells = Cells::new(content, layout.header, separator);
     let mut headings: Vec<Heading> = cells
         .by_ref()
         .map(|cell| Heading { text: cell.text.to_string(), place: cell.place(text), unit: None })
         .collect();
+    headings.iter_mut().zip(units).for_each(|(heading, unit)| heading.unit = Some(unit));
     let below = cells.at;
     let mut starts = starts(content, below, separator);
     let mut left_out = Vec::new();
@@ -71,6 +76,9 @@ pub(super) fn open(
     Ok((headings, TextRows { text, separator, starts }, left_out))
 }
 
+/// Where other headings are named.
+const OTHER_HEADINGS: &str = "a project names other headings: [[identify.recording]] for tests of a valve, [[identify.response]] for frequency responses";
+
 /// That no row names columns, with the spelling that may have been meant.
 fn unnamed(text: usize, content: &str, sought: &[Sought<'_>]) -> RawFinding {
     let names: Vec<String> = sought.iter().flat_map(Sought::usual_names).collect();
@@ -87,7 +95,9 @@ fn unnamed(text: usize, content: &str, sought: &[Sought<'_>]) -> RawFinding {
     let example: Vec<&str> = sought.iter().filter_map(|one| names_first(one, &names)).take(3).collect();
     let found = RawFinding::error(place, "no row has the names of columns")
         .expected(format!("a row with names such as {}", example.join(", ")));
-    found.maybe_help(near.map(|(word, name)| format!("`{word}`: did you mean `{name}`?")))
+    found.help(
+        near.map_or(OTHER_HEADINGS.to_string(), |(word, name)| format!("`{word}`: did you mean `{name}`?")),
+    )
 }
 
 /// One of the names of what is looked for.

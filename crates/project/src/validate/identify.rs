@@ -1,8 +1,8 @@
 //! `[[identify.recording]]`.
 
 use super::Check;
-use crate::{IdentifiedUse, Identify, Project, RecordedTest, StaticTest, TestSignal};
-use phea_quantity::{self as quantity, RATIO};
+use crate::{IdentifiedUse, Identify, Project, RecordedTest, ResponseSignal, StaticTest, TestSignal};
+use phea_quantity::{self as quantity, Dimension, RATIO};
 
 /// Files that are there twice, units that do not fit, and signals that a test does not have.
 pub(super) fn identify(identify: &Identify, check: &mut Check<'_, '_>) {
@@ -12,13 +12,25 @@ pub(super) fn identify(identify: &Identify, check: &mut Check<'_, '_>) {
         if !recorded.file.is_empty() && earlier.into_iter().any(|earlier| earlier.file == recorded.file) {
             check.error(&format!("{path}.file"), format!("`{}` is there twice", recorded.file));
         }
-        let is_sign =
-            |text: &str| text.len() == 1 && text.is_ascii() && !text.contains(['"', '\n', '\r', '.']);
-        if let Some(sign) = recorded.separator.as_deref().filter(|sign| !is_sign(sign)) {
-            let message = format!("`{sign}` cannot separate values: a separator is one sign of ASCII");
-            check.error(&format!("{path}.separator"), message);
-        }
+        separator(recorded.separator.as_deref(), &path, check);
         columns(recorded, &path, check);
+    }
+    for (index, recorded) in identify.responses.iter().enumerate() {
+        let path = format!("identify.response[{index}]");
+        separator(recorded.separator.as_deref(), &path, check);
+        for (signal, column) in ResponseSignal::ALL.into_iter().zip(&recorded.columns) {
+            if let Some(unit) = column.as_ref().and_then(|column| column.unit.as_deref()) {
+                unit_of(unit, signal.dimension(), &format!("{path}.{}", signal.name()), check);
+            }
+        }
+    }
+}
+
+fn separator(stated: Option<&str>, path: &str, check: &mut Check<'_, '_>) {
+    let is_sign = |text: &str| text.len() == 1 && text.is_ascii() && !text.contains(['"', '\n', '\r', '.']);
+    if let Some(sign) = stated.filter(|sign| !is_sign(sign)) {
+        let message = format!("`{sign}` cannot separate values: a separator is one sign of ASCII");
+        check.error(&format!("{path}.separator"), message);
     }
 }
 
@@ -55,10 +67,14 @@ fn columns(recorded: &RecordedTest, path: &str, check: &mut Check<'_, '_>) {
         let Some(unit) = &column.unit else { continue };
         let is_share = signal == TestSignal::Command && unit == "%";
         let dimension = if is_share { &RATIO } else { signal.dimension() };
-        if let Err(error) = quantity::parse(&format!("1 {unit}"), dimension) {
-            let message = format!("`{unit}` is not a unit of {}: {error}", dimension.name);
-            let units: &[&str] = if dimension.units.is_empty() { &["%"] } else { dimension.units };
-            check.error_with_help(&format!("{path}.unit"), message, format!("such as {}", units.join(", ")));
-        }
+        unit_of(unit, dimension, &path, check);
+    }
+}
+
+fn unit_of(unit: &str, dimension: &'static Dimension, path: &str, check: &mut Check<'_, '_>) {
+    if let Err(error) = quantity::parse(&format!("1 {unit}"), dimension) {
+        let message = format!("`{unit}` is not a unit of {}: {error}", dimension.name);
+        let units: &[&str] = if dimension.units.is_empty() { &["%"] } else { dimension.units };
+        check.error_with_help(&format!("{path}.unit"), message, format!("such as {}", units.join(", ")));
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::answer::{Answer, picture_files};
 use crate::identify::IdentifyError;
-use crate::project::Loaded;
+use crate::project::{Loaded, RecordedResponse};
 use crate::response::{self, Compared, ResponseSettings, members, sampled_pairs};
 use crate::setup::Setup;
 use crate::source::Source;
@@ -20,6 +20,18 @@ pub struct ResponseRequest {
     pub figures: bool,
 }
 
+/// The records that a project declares, as their paths are.
+fn declared(loaded: Option<&Loaded>) -> Vec<RecordedResponse> {
+    let Some((project, identify)) =
+        loaded.and_then(|loaded| Some((&loaded.project, loaded.project.identify.as_ref()?)))
+    else {
+        return Vec::new();
+    };
+    let with_path =
+        |one: &RecordedResponse| RecordedResponse { file: project.path_of(&one.file), ..one.clone() };
+    identify.responses.iter().map(with_path).collect()
+}
+
 /// Estimates the response of each file, compared with the linear plant of a project where there is
 /// one.
 ///
@@ -31,10 +43,19 @@ pub fn response_watched(
     asked: &ResponseRequest,
     watch: Watch<'_>,
 ) -> Result<Answer, IdentifyError> {
-    if asked.files.is_empty() {
-        return Err(IdentifyError::Data("there is no record: name a file for each member".to_string()));
+    let declared = declared(loaded);
+    let of_file = |file: &String| {
+        let known = declared.iter().find(|one| one.file == *file).cloned();
+        known.unwrap_or_else(|| RecordedResponse::of(file))
+    };
+    let files =
+        if asked.files.is_empty() { declared.clone() } else { asked.files.iter().map(of_file).collect() };
+    if files.is_empty() {
+        let message =
+            "there is no record: name a file for each member, or declare it in [[identify.response]]";
+        return Err(IdentifyError::Data(message.to_string()));
     }
-    let records = sampled_pairs(source, &asked.files)?;
+    let records = sampled_pairs(source, &files)?;
     let found = members(&records, &asked.settings, watch)?;
     let rig = loaded
         .filter(|loaded| loaded.project.actuator.is_some())

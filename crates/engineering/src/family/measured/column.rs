@@ -7,9 +7,9 @@ use crate::table::{Column, Measurand, MeasuredTable, Sought};
 /// What a column may hold. A pair of magnitude and phase, or of real and imaginary part, is a
 /// response.
 static MEASURANDS: [Measurand; 12] = [
-    Measurand::of("frequency", &ANGULAR_FREQUENCY),
-    Measurand::of("magnitude", &GAIN),
-    Measurand::of("phase", &ANGLE),
+    Measurand::of("frequency", &ANGULAR_FREQUENCY).called(&["freq", "f", "omega", "w"]),
+    Measurand::of("magnitude", &GAIN).called(&["mag", "gain", "amplitude"]),
+    Measurand::of("phase", &ANGLE).called(&["phi", "angle"]),
     Measurand::of("real", &RATIO),
     Measurand::of("imaginary", &RATIO),
     Measurand::of("load_motion_magnitude", &GAIN),
@@ -70,8 +70,8 @@ impl MeasurementColumns {
         let sought = MeasurementColumns::sought();
         let before = findings.error_count();
         let found = table.columns(&sought, findings);
-        for index in found.iter().flat_map(|(_, unused)| unused) {
-            findings.push(table.unknown(*index, &sought));
+        for index in table.unnamed(&sought) {
+            findings.push(table.unknown(index, &sought));
         }
         let (columns, _) = found.filter(|_| findings.error_count() == before)?;
         let columns: [Option<Column>; 12] = columns.try_into().ok()?;

@@ -1,0 +1,66 @@
+//! Numbers of a file that no rig of this size has: nearly always another unit than the heading says.
+
+use crate::project::{DeclaredActuator, Findings, Project, RawFinding};
+use crate::quantity::{Dimension, FORCE, LENGTH, PRESSURE, TORQUE, UnitScale, VOLTAGE, display};
+use crate::table::{Column, MeasuredTable};
+
+/// How far beyond what the rig holds a file may go before its unit is doubted.
+const BEYOND: f64 = 10.0;
+/// The range of what would be plausible, over what the rig holds.
+const USUAL: [f64; 2] = [1e-3, 1.5];
+
+/// What the rig holds of a quantity, in SI, and in words.
+fn held(actuator: &DeclaredActuator, dimension: &Dimension) -> Option<(f64, &'static str)> {
+    let is = |one: &Dimension| std::ptr::eq(dimension, one);
+    let pressure = actuator.supply.pressure;
+    match &actuator.motor {
+        Some(motor) if is(&TORQUE) => Some((motor.displacement * pressure, "the motor holds")),
+        None if is(&FORCE) => {
+            let [a, b] = actuator.cylinder.effective_areas_m2();
+            Some((a.max(b) * pressure, "the cylinder holds"))
+        }
+        None if is(&LENGTH) => Some((actuator.stroke()?, "the stroke is")),
+        _ if is(&VOLTAGE) => Some((actuator.valve.nominal_voltage, "the nominal command is")),
+        _ if is(&PRESSURE) => Some((pressure, "the supply has")),
+        _ => None,
+    }
+}
+
+/// Refuses a column that goes beyond ten times what the rig holds.
+pub(super) fn check(
+    project: &Project,
+    table: &MeasuredTable,
+    (column, dimension): (&Column, &'static Dimension),
+    values: &[f64],
+    findings: &mut Findings,
+) {
+    let held = project.actuator.as_ref().and_then(|actuator| held(actuator, dimension));
+    let Some((held, words)) = held.filter(|(held, _)| *held > 0.0) else { return };
+    let most =
+        values.iter().filter(|value| !value.is_nan()).fold(0.0, |most: f64, value| most.max(value.abs()));
+    if most <= BEYOND * held {
+        return;
+    }
+    let in_si = |unit: &str| UnitScale::new(unit, dimension).ok()?.read("1");
+    let stated = in_si(&column.unit).unwrap_or(1.0);
+    let would_do = |unit: &&&str| {
+        let other = in_si(unit).map_or(f64::NAN, |other| most / stated * other / held);
+        (USUAL[0]..=USUAL[1]).contains(&other)
+    };
+    let units: Vec<&str> = ["N", "kN", "N.m", "m", "mm", "V", "mV", "Pa", "kPa", "bar", "MPa", "psi"]
+        .iter()
+        .filter(would_do)
+        .copied()
+        .collect();
+    let heading = table.heading(column);
+    let reached = display(most / stated, &crate::quantity::RATIO, 4);
+    let message =
+        format!("`{heading}` reaches {reached} {}, and {words} {}", column.unit, display(held, dimension, 4));
+    let place = table.headings.get(column.index).map(|heading| heading.place).unwrap_or_default();
+    let found = RawFinding::error(place, message);
+    findings.push(match units.is_empty() {
+        true => found.help("is it the right column, in the unit that its heading says?"),
+        false => found
+            .help(format!("these numbers would be plausible in {}: correct the heading", units.join(" or "))),
+    });
+}

@@ -1,0 +1,67 @@
+//! Texts of LabVIEW: measurement files (`.lvm`) say separator and units in lines above the names;
+//! charts export plots, not records.
+
+use super::cell::{Cells, Separator};
+use super::layout::{TextLayout, lines};
+use crate::project::{Place, RawFinding};
+
+/// How a measurement file begins.
+const MEASUREMENT: &str = "LabVIEW Measurement";
+/// Lines above the names.
+const MOST_ABOVE: usize = 200;
+
+/// What a measurement file says of its columns.
+pub(super) struct LabviewHeader {
+    pub(super) layout: TextLayout,
+    /// The unit of each column, as written; the first one is the time.
+    pub(super) units: Vec<String>,
+}
+
+/// The header of a measurement file; `None` for any other text.
+///
+/// # Errors
+/// A file without one column of times, and one whose names are not where they should be.
+pub(super) fn header(text: usize, content: &str) -> Option<Result<LabviewHeader, RawFinding>> {
+    content.starts_with(MEASUREMENT).then(|| read(text, content))
+}
+
+fn read(text: usize, content: &str) -> Result<LabviewHeader, RawFinding> {
+    let mut separator = Separator::Sign(b'\t');
+    let mut units = vec!["s".to_string()];
+    for (line, start) in lines(content, 0).take(MOST_ABOVE) {
+        let place = Place { text, start, end: start + line.trim_end().len() };
+        let mut cells = Cells::new(content, start, separator).map(|cell| cell.text);
+        match (cells.next(), cells.next()) {
+            (Some("X_Value"), _) => {
+                return Ok(LabviewHeader { layout: TextLayout { separator, header: start }, units });
+            }
+            (Some("X_Columns"), Some(kind)) if kind != "One" => {
+                let message = format!("a LabVIEW file with X_Columns {kind} has no time, or several");
+                return Err(RawFinding::error(place, message).help("save it with one time column"));
+            }
+            (Some("Y_Unit_Label"), first) => {
+                units.extend(first.into_iter().chain(cells).map(str::to_string));
+            }
+            _ if line.starts_with("Separator,") => separator = Separator::Sign(b','),
+            _ => {}
+        }
+    }
+    let place = Place { text, start: 0, end: MEASUREMENT.len() };
+    Err(RawFinding::error(place, "this LabVIEW file has no row of names that begins with X_Value"))
+}
+
+/// What LabVIEW writes behind the name of a plot.
+const PLOT: &str = " - Plot ";
+
+/// Refuses what a chart exports: several plots next to each other, and no time.
+///
+/// # Errors
+/// The row of names.
+pub(super) fn refuse_chart(text: usize, content: &str) -> Result<(), RawFinding> {
+    let is_chart = |(line, _): &(&str, usize)| line.matches(PLOT).count() > 1;
+    let Some((line, start)) = lines(content, 0).take(MOST_ABOVE).find(is_chart) else { return Ok(()) };
+    let place = Place { text, start, end: start + line.trim_end().len() };
+    let message = "this is the export of a LabVIEW chart: plots next to each other, without time, in numbers such as 25.1m";
+    let found = RawFinding::error(place, message).expected("a record: a row for each sample, with its time");
+    Err(found.help("write the recorded signals to a measurement file (`.lvm`) or CSV instead of the chart"))
+}
