@@ -5,6 +5,7 @@ mod limit;
 mod rounding;
 mod wish;
 
+use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::LinearError;
 use phea_qft::specification::{
     ClosedLoop, LimitError, MarginError, Requirement, Specification, TimeDomainError, WishCheck, WishOutcome,
@@ -13,7 +14,8 @@ use phea_qft::specification::{
 pub use self::kind::{closed_loop_key, kind_key, kind_words};
 use self::limit::TrackingSide;
 pub(crate) use self::rounding::of_rounding;
-use crate::project::{self, FormulaError, Project};
+use crate::project::{self, FormulaError, LateError, Project};
+use crate::quantity::significant;
 
 /// Why a declared specification cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -25,6 +27,20 @@ pub struct SpecificationError {
     pub key: &'static str,
     /// What is wrong with it.
     pub reason: SpecificationProblem,
+}
+
+impl SpecificationError {
+    /// The error at the place of its limit.
+    pub fn at(&self) -> LateError {
+        let help = match self.reason {
+            SpecificationProblem::Crossed { .. } => {
+                "no loop is between them: raise `upper`, lower `lower`, or end `frequencies` and `band` below"
+            }
+            _ => "",
+        };
+        let path = format!("specification[{}].{}", self.number - 1, self.key);
+        LateError { path, message: self.to_string(), help: help.to_string() }
+    }
 }
 
 /// What is wrong with a limit.
@@ -48,6 +64,19 @@ pub enum SpecificationProblem {
     /// The wish in time has no limit, or the limit no response to check.
     #[error(transparent)]
     TimeDomain(#[from] TimeDomainError),
+    /// The lower limit is above the upper one, so that no loop meets both.
+    #[error(
+        "the limits cross: at {} rad/s the lower one is {}, above the upper one, {}",
+        significant(*frequency_rad_per_s, 4), significant(*lower, 3), significant(*upper, 3)
+    )]
+    Crossed {
+        /// rad/s, where the lower one is the most above the other.
+        frequency_rad_per_s: f64,
+        /// There.
+        lower: f64,
+        /// There.
+        upper: f64,
+    },
     /// A form of limit that belongs to another kind of specification.
     #[error("this kind of specification does not take {0}")]
     Form(&'static str),
@@ -166,3 +195,44 @@ fn specification(
         band_rad_per_s: declared.band_rad_per_s(),
     })
 }
+
+/// The first specification whose lower limit is above its upper one: no loop meets it.
+///
+/// # Errors
+/// [`SpecificationError`] for a limit that is absent or not a function of frequency.
+pub fn crossed_limits(project: &Project) -> Result<Option<SpecificationError>, SpecificationError> {
+    let crossed = |(index, one): (usize, &Specification)| {
+        let reason = crossed(&one.requirement, &one.frequencies_rad_per_s, one.band_rad_per_s)?;
+        Some(SpecificationError { number: index + 1, key: "lower", reason })
+    };
+    Ok(specifications(project)?.iter().enumerate().find_map(crossed))
+}
+
+/// How far the limits may cross, as a share: rounding.
+const ROUNDING: f64 = 1e-6;
+/// Frequencies of the band at which the limits are compared, in addition to those of the design.
+const COMPARED: usize = 200;
+
+/// The frequency at which the lower limit is the most above the upper one, if any.
+fn crossed(
+    requirement: &Requirement,
+    frequencies: &[f64],
+    [low, high]: [f64; 2],
+) -> Option<SpecificationProblem> {
+    let (Some(lower), upper) = requirement.limits() else { return None };
+    let span = [low, high].map(|end| end.clamp(LEAST_FREQUENCY, MOST_FREQUENCY));
+    let grid = logarithmic_grid(span[0], span[1], COMPARED).unwrap_or_default();
+    let both = |frequency: f64| Some((frequency, lower.magnitude(frequency)?, upper.magnitude(frequency)?));
+    let all = frequencies.iter().copied().chain(grid).filter_map(both);
+    let above = all.filter(|(_, lower, upper)| *lower > *upper * (1.0 + ROUNDING));
+    let worst = above.max_by(|one, other| (one.1 / one.2).total_cmp(&(other.1 / other.2)));
+    worst.map(|(frequency_rad_per_s, lower, upper)| SpecificationProblem::Crossed {
+        frequency_rad_per_s,
+        lower,
+        upper,
+    })
+}
+
+/// Ends of the band over which limits are compared, rad/s.
+const LEAST_FREQUENCY: f64 = 1e-4;
+const MOST_FREQUENCY: f64 = 1e5;

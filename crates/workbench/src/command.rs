@@ -46,7 +46,7 @@ use crate::identify::in_use;
 use crate::line_test::line_runs;
 use crate::linearize::SweepRequest;
 use crate::option::OptionError;
-use crate::project::Loaded;
+use crate::project::{Loaded, refused};
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::report_beside;
 use crate::rig::RigError;
@@ -56,7 +56,7 @@ use crate::shaping::{self, RequestedChange, Shaped, shape};
 use crate::simulate::compare_projects;
 use crate::sizing::{self, Candidate, Question, SizingError, size, sizing_problem};
 use crate::source::{Destination, HeldFiles, Source};
-use crate::specification::{self, specifications, wishes};
+use crate::specification::{self, crossed_limits, wishes};
 use crate::trial::{Agreement, tried};
 use alternatives::{alternatives_answer, read_alternatives};
 use linearize::{linearize_answer, swept_answer};
@@ -246,10 +246,13 @@ fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<
         Err(error) => return Err(error.into()),
     };
     let of_alternatives = read_alternatives(source, loaded, catalogues)?;
-    specifications(&loaded.project)?;
+    let crossed = crossed_limits(&loaded.project)?.map(|crossed| {
+        let line = refused(source, loaded, &crossed.at()).diagnostics.first().map_or(0, |found| found.line);
+        format!("{crossed} (line {line}): no loop is between them")
+    });
     let wishes = wishes(&loaded.project)?;
     let visited = visited_box(&setup)?;
-    let told: Vec<String> = told_first(&setup).into_iter().chain(of_alternatives).collect();
+    let told: Vec<String> = told_first(&setup).into_iter().chain(crossed).chain(of_alternatives).collect();
     let mut document = Document::default();
     document.warnings(told.clone());
     if !derived.is_empty() {
@@ -387,6 +390,9 @@ fn design_answer(
     watch: Watch<'_>,
 ) -> Result<Unprinted, CommandError> {
     let setup = Setup::new(&loaded.project)?;
+    if let Some(crossed) = crossed_limits(&loaded.project)? {
+        return Err(crossed.into());
+    }
     let view = match repair {
         true => design_and_repair(source, &setup, seed, watch)?,
         false => design_project(source, &setup, seed, watch)?,

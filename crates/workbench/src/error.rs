@@ -1,5 +1,7 @@
 //! Why a command has no answer: the one error of everything that the workbench computes.
 
+mod place;
+
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::time_response::TimeResponseError;
 use phea_dynamics::watch::Stopped;
@@ -23,7 +25,7 @@ use phea_engineering::sizing::SizingError;
 use phea_engineering::specification::SpecificationError;
 use phea_engineering::trial::TrialError;
 
-use crate::project::{LateError, Loaded, Refusal, refused};
+use crate::project::{Diagnostic, Loaded, Refusal, refused};
 use crate::source::Source;
 
 /// Why a valid project has no answer.
@@ -126,30 +128,13 @@ pub enum CommandError {
 }
 
 impl CommandError {
-    /// The same error; where a name of the catalogue was looked for late, as the refusal of the
-    /// project.
+    /// The same error at the place of the key that it names, as the refusal of the project.
     pub(crate) fn into_refusal(self, source: &dyn Source, loaded: &Loaded) -> CommandError {
-        match self.late() {
-            Some(late) => CommandError::Refused(refused(source, loaded, &late)),
-            None => self,
-        }
-    }
-
-    /// The error at the place of a key, where the project has one: known only where its rig is
-    /// computed.
-    fn late(&self) -> Option<LateError> {
-        let rig = match self {
-            CommandError::Rig(error)
-            | CommandError::Family(ProjectFamilyError::Rig(error))
-            | CommandError::Sizing(SizingError::Rig(error))
-            | CommandError::Simulate(SimulateError::Rig(error))
-            | CommandError::Bench(BenchError::Rig(error)) => error,
-            _ => return None,
-        };
-        match rig {
-            RigError::Accumulator(empty) => Some(empty.at()),
-            _ => None,
-        }
+        let Some(late) = place::late(&self, &loaded.project) else { return self };
+        let refusal = refused(source, loaded, &late);
+        // what is absent has no place
+        let has_place = |found: &Diagnostic| found.message == late.message && found.span.end > 0;
+        if refusal.diagnostics.iter().any(has_place) { CommandError::Refused(refusal) } else { self }
     }
 
     /// The findings, if files that the project names were rejected, with a place for each.

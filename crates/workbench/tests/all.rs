@@ -22,6 +22,7 @@ mod family;
 mod family_hydraulic;
 mod family_measured;
 mod feed_forward;
+mod field_records;
 mod frequency_response;
 mod friction_coverage;
 mod friction_identification;

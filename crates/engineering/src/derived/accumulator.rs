@@ -31,9 +31,15 @@ fn of_branch(branch: &GasBranch, name: &impl Fn(&str) -> String, list: &mut List
         list.add(name("valve_corner"), "ω_v", conductance / branch.compliance, "rad/s", equation);
     }
     if let Some((resonance, damping_ratio)) = branch.resonance().zip(branch.damping_ratio()) {
-        let equation = "ω_n = 1/sqrt(I (C_{acc} + C_n)), Helmholtz";
-        list.add(name("neck_resonance"), "ω_n", resonance, "rad/s", equation);
-        let equation = "ξ_n = R/2 sqrt((C_{acc} + C_n)/I), laminar";
+        // the resonance is far too fast for heat
+        let [resonates, damps] = match branch.relaxation {
+            Some(_) => ["ω_n = 1/sqrt(I C_{fast}), Helmholtz", "ξ_n = R/2 sqrt(C_{fast}/I), laminar"],
+            None => {
+                ["ω_n = 1/sqrt(I (C_{acc} + C_n)), Helmholtz", "ξ_n = R/2 sqrt((C_{acc} + C_n)/I), laminar"]
+            }
+        };
+        list.add(name("neck_resonance"), "ω_n", resonance, "rad/s", resonates);
+        let equation = damps;
         list.add(name("neck_damping_ratio"), "ξ_n", damping_ratio, "1", equation);
     }
 }

@@ -12,6 +12,7 @@ use phea_hydraulics::two_pressure::{
 use super::list::List;
 use crate::project::{self, NullLeakage, Project, RatedFlow, ValveCoefficients};
 use crate::rig::Rig;
+use crate::setup::Setup;
 
 /// Unit of the coefficients of the edges.
 const COEFFICIENT: &str = "m3/(s.Pa^0.5)";
@@ -81,6 +82,7 @@ pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
         let name = format!("valve.flow_pressure_coefficient_{name}");
         list.add(name, "K_c", parameters.flow_pressure_coefficient, "m3/(s.Pa)", equation);
     }
+    greatest_leakage(project, list);
     let chambers = without_case(rig);
     chamber_slopes(&chambers, list);
     let alone = reduce(&TwoPressureLinearParameters { chambers, ..rig.two_pressure });
@@ -97,6 +99,27 @@ fn without_case(rig: &Rig) -> ChamberCoefficients {
         flow_pressure_a: chambers.flow_pressure_a - case,
         flow_pressure_b: chambers.flow_pressure_b - case,
         ..chambers
+    }
+}
+
+/// K_c with the highest null leakage of the data sheet, where it has a range.
+fn greatest_leakage(project: &Project, list: &mut List) {
+    let declared = project.actuator.as_ref().map(|actuator| actuator.valve.leakage);
+    let Some(ValveCoefficients::Rated(NullLeakage { maximum: Some(most), .. })) = declared else { return };
+    let leakiest = project.with_number("valve.null_leakage", most);
+    let Some(rig) = leakiest.and_then(|leakiest| Setup::rig_of(&leakiest).ok()) else { return };
+    let own = TwoPressureModel { external_leakage: None, ..rig.model };
+    for (name, direction) in
+        [("extending", SpoolDirection::Extending), ("retracting", SpoolDirection::Retracting)]
+    {
+        let parameters = reduce(&two_pressure_linear_parameters(&own, &rig.point, direction));
+        list.add(
+            format!("valve.flow_pressure_coefficient_{name}_maximum"),
+            "K_c",
+            parameters.flow_pressure_coefficient,
+            "m3/(s.Pa)",
+            "the same with `null_leakage_maximum`",
+        );
     }
 }
 

@@ -130,6 +130,7 @@ fn with_accumulators() -> Vec<(String, Vec<&'static str>)> {
             ],
         ),
         (SIMULATION.to_string(), vec!["operating_point.load_force=2 kN"]),
+        (SIMULATION.to_string(), vec!["cylinder.dead_volume=30 mL"]),
         (HEAT.to_string(), vec![]),
         (
             HEAT.to_string(),
