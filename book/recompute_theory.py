@@ -307,6 +307,14 @@ def linear_models():
                 )
             ).max()
             expect(f"6.12 {label} against 6.7 in dB, {name}", error, quoted, 0.06 * quoted + 5e-5)
+        if name == "Table 6.1":
+            printed_phase = decomposed(omegas, stiffness, sensor, friction / MASS, leak, gain) / full
+            degrees = np.abs(np.degrees(np.angle(printed_phase)))
+            expect("6.12 printed against 6.7 in degrees", degrees.max(), 0.57, 5e-3)
+            expect("and where, rad/s", omegas[degrees.argmax()], 2950, 5)
+            expect("and below 1000 rad/s", degrees[omegas < 1000].max(), 0.0034, 5e-5)
+            expect("piston on the cell, with the pipe", math.sqrt((stiffness + sensor) / MASS), 2938, 0.5)
+    expect("piston on K_S, with the hose", math.sqrt((2.24e6 + 2e7) / MASS), 1303, 0.5)
 
 
 def two_pressures(effective, bore_area):
