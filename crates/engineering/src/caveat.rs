@@ -4,6 +4,7 @@
 //! the verdict; where a specification depends on it, the verdict is not proven.
 
 mod moved_roots;
+mod null_sides;
 
 use phea_hydraulics::cross_port::Restrictor;
 use phea_hydraulics::operating_point::OperatingPoint;
@@ -50,6 +51,7 @@ pub fn of_models(setup: &Setup<'_>) -> Vec<String> {
         .chain(fed_in_loop(setup))
         .chain(beside_spring(project))
         .chain(standing(project))
+        .chain(null_sides::null_sides(setup))
         .collect()
 }
 

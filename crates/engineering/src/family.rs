@@ -7,6 +7,8 @@ mod hydraulic;
 mod in_motion;
 pub mod measured;
 mod moved;
+mod null_crossing;
+mod null_sides;
 mod region;
 mod shut_gas;
 mod uncertain;
@@ -147,6 +149,7 @@ pub fn family(setup: &Setup<'_>, source: &dyn Source) -> Result<Family, ProjectF
         _ => {
             let lumped = uncertain::family(project, uncertain_plant(setup)?)?;
             visited::check(setup, &lumped)?;
+            let lumped = null_crossing::with_crossings(setup, lumped)?;
             Family::Uncertain(in_motion::family(setup, &lumped)?.unwrap_or(lumped))
         }
     };
@@ -169,7 +172,7 @@ fn check_second_path(project: &Project, family: &Family) -> Result<(), ProjectFa
 /// The plant over the box of its uncertain parameters.
 fn uncertain_plant(setup: &Setup<'_>) -> Result<UncertainPlant, ProjectFamilyError> {
     let project = setup.project;
-    let parameters = uncertain::parameters(project)?;
+    let parameters = null_sides::parameters(setup)?;
     let is_outside = |one: &&UncertainParameter| {
         let set = project.linear.get(&one.name);
         set.is_some_and(|value| value < one.minimum || value > one.maximum)

@@ -47,6 +47,7 @@ pub use numbers::Numbers;
 pub(crate) use outside::outside;
 pub use parameters::{ParameterOrigin, ResolvedParameter};
 pub use place::place;
+pub(crate) use place::spool_side;
 pub(crate) use plant::are_equal;
 pub(crate) use plant::has_gas_states;
 pub(crate) use plant::states_one_pressure;
@@ -187,6 +188,18 @@ impl Rig {
         LinearPlant { series: self.plant.series, ..plant }
     }
 
+    /// K_qU in m3/(s V) of a spool at null that retracts the piston and of one that extends it;
+    /// `None` where they are equal, or the spool is not at null.
+    pub fn null_flow_gains(&self) -> Option<[f64; 2]> {
+        let gains = [SpoolDirection::Retracting, SpoolDirection::Extending].map(|side| self.flow_gain(side));
+        (!are_equal([gains])).then_some(gains)
+    }
+
+    /// K_qU that follows from the rig, with the slopes of one side of a spool at null.
+    pub(crate) fn flow_gain(&self, side: SpoolDirection) -> f64 {
+        reduce(&two_pressure_linear_parameters(&self.model, &self.point, side)).flow_gain
+    }
+
     /// The stiffness in N/m of a force sensor together with a series element, where there is one.
     fn beyond_piston(&self, sensor_stiffness: f64) -> f64 {
         self.plant.series.map_or(sensor_stiffness, |series| in_series(sensor_stiffness, series.stiffness()))
@@ -220,13 +233,14 @@ impl Rig {
             .map(|found| SettledSupply { settled: Settled { command: point.command, pressures }, ..found });
         let friction = components.friction.viscous();
         let model = TwoPressureModel::new(&at_valve, pressures, StiffeningMember::Nominal, friction);
-        let two_pressure = two_pressure_linear_parameters(&model, &point, SpoolDirection::Mean);
+        let side = place::spool_side(project, &numbers);
+        let two_pressure = two_pressure_linear_parameters(&model, &point, side);
         let derived = reduce(&two_pressure);
         let parameters = parameters::resolve(project, &derived);
         let linear = linear(&two_pressure, stated(&parameters));
         let (internal_leakage, dynamic_feedback) = components.cross_admittance(pressures);
         let load = load_at(&declared.load, &numbers, components, &point);
-        let yielding = supply.and_then(|found| yielding_supply(declared, &numbers, &balance, &found));
+        let yielding = supply.and_then(|found| yielding_supply(declared, &numbers, &balance, &found, side));
         let unseen = yielding.is_none_or(|supply| are_equal([supply.edges]));
         let equal = are_equal(sides(&two_pressure)) && unseen && !has_gas_states(declared);
         let one_pressure = states_one_pressure(&parameters, &[]) || equal;

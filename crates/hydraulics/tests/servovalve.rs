@@ -245,6 +245,24 @@ fn direction_decides(valve: &Servovalve) {
     assert!((dual.into_a.gradient()[0] / mean.flow_gain_a - 1.0).abs() < 1e-15);
 }
 
+/// Slopes between both sides are those of chords across null.
+#[test]
+fn chords_across_null_have_the_slopes_between() {
+    let width = 1e-7;
+    for leakage_model in [LeakageModel::EachEdge, LeakageModel::OneCurve] {
+        let valve = Servovalve { leakage_model, ..valve() };
+        for side in [-1.0, -0.4, 0.0, 0.7, 1.0] {
+            let flows = |spool| chamber_flows(&valve, &SUPPLY, spool, 37e5, 24e5);
+            let (above, below) = (flows(0.5 * width * (1.0 + side)), flows(-0.5 * width * (1.0 - side)));
+            let found = chamber_coefficients(&valve, &SUPPLY, 0.0, 37e5, 24e5, SpoolDirection::Between(side));
+            let chords = [(above.into_a - below.into_a) / width, -(above.into_b - below.into_b) / width];
+            for (chord, slope) in chords.into_iter().zip([found.flow_gain_a, found.flow_gain_b]) {
+                assert!((chord / slope - 1.0).abs() < 1e-5, "{side}: {chord} {slope}");
+            }
+        }
+    }
+}
+
 /// Exchanging A and B and reversing the command is the same valve seen from the other side.
 #[test]
 fn mirrored_valve() {

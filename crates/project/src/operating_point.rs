@@ -7,7 +7,7 @@ use super::listing::Listing;
 use super::visitor::Visitor;
 use super::{DeclaredActuator, OperatingRegion, Project, Uncertain, UncertaintyDirection};
 use phea_dynamics::uncertain_plant::Spacing;
-use phea_quantity::{FORCE, LENGTH, PRESSURE, VELOCITY, VOLTAGE};
+use phea_quantity::{FORCE, LENGTH, PRESSURE, RATIO, VELOCITY, VOLTAGE};
 
 /// Where the linear model is taken; absent parts are mid stroke and null.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,6 +22,8 @@ pub struct DeclaredOperatingPoint {
     pub velocity: Option<f64>,
     /// V.
     pub command: Option<f64>,
+    /// From -1, the slopes of a spool that retracts the piston, to 1, of one that extends it.
+    pub spool_side: Option<f64>,
 }
 
 /// Beginning of the paths of its numbers.
@@ -57,6 +59,17 @@ impl DeclaredOperatingPoint {
             ),
             &mut self.command,
         );
+        v.optional(
+            key(
+                "spool_side",
+                &RATIO,
+                "Side of null from which the slopes of a spool at null are taken: 1 above, -1 below, 0 their mean; absent: the family has \
+                 all from -1 to 1.",
+            )
+            .at_least(-1.0)
+            .at_most(1.0),
+            &mut self.spool_side,
+        );
     }
 
     /// The numbers that may be uncertain, by their names.
@@ -66,6 +79,7 @@ impl DeclaredOperatingPoint {
             "load_pressure" => Some(&mut self.load_pressure),
             "load_force" => Some(&mut self.load_force),
             "velocity" => Some(&mut self.velocity),
+            "spool_side" => Some(&mut self.spool_side),
             _ => None,
         }
     }
@@ -86,6 +100,7 @@ pub(super) fn operating_numbers() -> BTreeMap<String, Key> {
         load_force: number,
         velocity: number,
         command: None,
+        spool_side: number,
     });
     listing.table(plain(TABLE, ""), &mut all, DeclaredOperatingPoint::visit);
     listing.numbers.into_iter().map(|(path, (key, _))| (path, key)).collect()

@@ -277,7 +277,21 @@ fn a_region_is_the_points_that_the_rig_visits() {
     let family = members(&project);
     assert_eq!(family.extent(), Extent::Box);
     // two frictions, three of everything else, and the nominal plant, whose force is none of these
-    assert_eq!(family.members().len(), 55);
+    let (grid, crossings) = family.members().split_at(55);
+    let command = |values: &Vec<f64>| {
+        let names = family.plant().parameters().iter().map(|one| one.name.as_str());
+        // all but the friction, a parameter of the linear model
+        let numbers: Vec<(&str, f64)> = names.zip(values.iter().copied()).skip(1).collect();
+        let stated = Project { family: None, uncertainty: vec![], ..project.clone() };
+        Setup::rig_of(&stated.with_numbers(&numbers).unwrap()).unwrap().point.command
+    };
+    assert!(grid.iter().all(|values| command(values).abs() > 1e-6));
+    // then the plants on both sides of null
+    for pair in crossings.chunks(2) {
+        let [low, high] = [command(&pair[0]), command(&pair[1])];
+        assert!(low * high < 0.0 && low.abs().max(high.abs()) < 1e-6, "{low} {high}");
+    }
+    assert!(crossings.len() >= 8, "{}", crossings.len());
     let velocity = &family.plant().parameters()[3];
     // ORIGIN: analytic, (9.8 L/min less 7.55e-6 m3/s)/A_u
     let reach = (9.8e-3 / 60.0 - 7.55e-6) / 1.583_362_697_4e-3;

@@ -127,8 +127,10 @@ pub fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -
         }
         NotProven::Waves => "waves travel in the lines, so that the plant has no polynomials".into(),
         NotProven::NotPolynomial => {
-            "the coefficients of the plant could not be enclosed by polynomials of the uncertain numbers"
-                .into()
+            format!(
+                "the coefficients of the plant could not be enclosed by polynomials of the uncertain numbers{}",
+                sought_point(view)
+            )
         }
         NotProven::TooManyVariables => "the box has too many uncertain numbers".into(),
         NotProven::TableLimit => "its limit is a table without two points within its band".into(),
@@ -162,4 +164,17 @@ fn part_of(view: &ProjectAudit, proof: &Proof, region: &phea_qft::proof::ProofRe
     });
     let sides: Vec<String> = sides.collect();
     if sides.is_empty() { String::new() } else { format!(", for {}", sides.join(", ")) }
+}
+
+/// Where the operating point of each plant is sought: a remark on why it is not enclosed.
+fn sought_point(view: &ProjectAudit) -> &'static str {
+    let headings = view.names.headings();
+    let sought = ["operating_point.load_force", "operating_point.load_pressure", "operating_point.velocity"];
+    match headings.iter().any(|name| sought.contains(name)) {
+        true => {
+            ": the command that holds a load or a velocity is found by halving, which they do not follow; ranges of `flow_gain`, \
+             `flow_pressure_coefficient` and `hydraulic_stiffness` can be proven, and `check` prints those of this family"
+        }
+        false => "",
+    }
 }

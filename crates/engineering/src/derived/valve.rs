@@ -82,12 +82,32 @@ pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
         let name = format!("valve.flow_pressure_coefficient_{name}");
         list.add(name, "K_c", parameters.flow_pressure_coefficient, "m3/(s.Pa)", equation);
     }
+    null_flow_gains(rig, list);
     greatest_leakage(project, list);
     let chambers = without_case(rig);
     chamber_slopes(&chambers, list);
     let alone = reduce(&TwoPressureLinearParameters { chambers, ..rig.two_pressure });
     let pressure_gain = alone.flow_gain / alone.flow_pressure_coefficient;
     list.add("valve.pressure_gain", "K_pU", pressure_gain, "Pa/V", "K_{pU} = K_{qU}/K_c");
+}
+
+/// K_qU of the operating point on either side of a spool at null.
+fn null_flow_gains(rig: &Rig, list: &mut List) {
+    let sides = [
+        (
+            "valve.flow_gain_above_null",
+            SpoolDirection::Extending,
+            "K_{qU} = A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)/K_H, U to 0 from above",
+        ),
+        (
+            "valve.flow_gain_below_null",
+            SpoolDirection::Retracting,
+            "K_{qU} = A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)/K_H, U to 0 from below",
+        ),
+    ];
+    for (name, direction, equation) in sides {
+        list.add(name.to_string(), "K_qU", rig.flow_gain(direction), "m3/(s.V)", equation);
+    }
 }
 
 /// The coefficients of the valve by itself: those of the rig have the leakage through a motor's

@@ -17,7 +17,7 @@ use phea_hydraulics::operating_point::{
 use phea_hydraulics::plant::{
     LinearLoad, LinearPlant, LinearSeries, PlantInMotion, VelocitySensor, YieldingSupply,
 };
-use phea_hydraulics::servovalve::{SpoolDirection, Supply};
+use phea_hydraulics::servovalve::Supply;
 use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
 };
@@ -27,8 +27,8 @@ use super::moved::{self, MovedNumber};
 use super::visited::Visited;
 use crate::project::{DeclaredActuator, LINEAR_PARAMETERS, Project};
 use crate::rig::{
-    self, Numbers, Rig, components, has_gas_states, linear, load_at, place, plant, settled_supply, stated,
-    velocity_gain, with_gas, with_supply, yielding_supply,
+    self, Numbers, Rig, components, has_gas_states, linear, load_at, place, plant, settled_supply,
+    spool_side, stated, velocity_gain, with_gas, with_supply, yielding_supply,
 };
 use crate::setup::Setup;
 
@@ -141,7 +141,12 @@ impl Open<'_> {
 
     /// The rig with these values, and its plant with lumped lines as the loop sees it. Feed-forward
     /// and virtual impedance are those of the declared rig.
-    fn plant<S: Scalar>(&self, values: &[S], moved: bool, equal: Equal) -> (RigAtPoint<S>, LinearPlant<S>) {
+    pub(super) fn plant<S: Scalar>(
+        &self,
+        values: &[S],
+        moved: bool,
+        equal: Equal,
+    ) -> (RigAtPoint<S>, LinearPlant<S>) {
         let place = self.place(values, moved);
         let all = self.all(values);
         let numbers = Numbers::open(self.names, &all);
@@ -211,12 +216,13 @@ impl Open<'_> {
         let friction = components.friction.viscous();
         let settled_components = Components { supply, ..components };
         let model = TwoPressureModel::of(&settled_components, pressures, StiffeningMember::Nominal, friction);
-        let chambers = two_pressure_linear_parameters(&model, &point, SpoolDirection::Mean);
+        let side = spool_side(self.project, &numbers);
+        let chambers = two_pressure_linear_parameters(&model, &point, side);
         let known = stated(&self.rig.parameters).map(|(name, value)| (name, S::from(value)));
         let open = self.names.iter().map(String::as_str).zip(all.iter().copied());
         let linear = linear(&chambers, known.chain(open.filter(|(name, _)| is_linear(name))));
         let settled = SettledSupply { supply, settled: at, taken: none };
-        let supply = yielding_supply(self.declared, &numbers, &idle, &settled);
+        let supply = yielding_supply(self.declared, &numbers, &idle, &settled, side);
         let (leakage, dynamic_feedback) = components.cross_admittance(pressures);
         RigAtPoint { components, point, chambers, linear, leakage, dynamic_feedback, supply }
     }

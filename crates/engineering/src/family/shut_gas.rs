@@ -2,6 +2,7 @@
 
 use phea_qft::family::{Extent, UncertainFamily};
 
+use super::null_sides::SIDE;
 use super::visited::Visited;
 use super::{ProjectFamilyError, uncertain, uncertain_plant};
 use crate::setup::Setup;
@@ -46,7 +47,8 @@ pub fn shut_gas(setup: &Setup<'_>) -> Result<Option<ShutGas>, ProjectFamilyError
     let mut shut = plants.iter().filter_map(|values| Some((values, visited.shut_gas(&open, values)?)));
     let Some((first, side)) = shut.next() else { return Ok(None) };
     let count = 1 + shut.count();
-    let moved = parameters.iter().zip(first).filter(|(parameter, value)| parameter.nominal != **value);
+    let moved =
+        parameters.iter().zip(first).filter(|(one, value)| one.name != SIDE && one.nominal != **value);
     let words: Vec<String> = moved
         .map(|(parameter, value)| {
             format!("{} = {}", parameter.name, project.in_words(&parameter.name, *value))

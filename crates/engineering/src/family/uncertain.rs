@@ -7,6 +7,7 @@ use phea_dynamics::uncertain_plant::{PlantCoefficients, Spacing, UncertainParame
 use phea_qft::family::{self, Coordinate, Extent, UncertainFamily};
 
 use super::ProjectFamilyError;
+use super::null_sides::on_both_sides;
 use super::region::within_reach;
 use crate::project::{Case, Project};
 
@@ -53,7 +54,8 @@ pub(super) fn family(
 ) -> Result<UncertainFamily, ProjectFamilyError> {
     let coordinates = coordinates(project, &plant);
     let chosen = project.family.clone().unwrap_or_default();
-    let mut members: Vec<Vec<f64>> = chosen.cases.iter().map(|case| member(case, &plant)).collect();
+    let mut members: Vec<Vec<f64>> =
+        chosen.cases.iter().map(|case| values(case, plant.parameters())).collect();
     let region = chosen.operating_region.is_some();
     let spans = chosen.grid || chosen.vertices || chosen.random.is_some() || region;
     let extent = if spans || members.is_empty() { Extent::Box } else { Extent::Members };
@@ -67,6 +69,7 @@ pub(super) fn family(
     if let Some(random) = &chosen.random {
         members.extend(family::random(&plant, &coordinates, random.count as usize, random.seed.into())?);
     }
+    let members = on_both_sides(project, plant.parameters(), members, extent);
     let family = UncertainFamily::new(plant, coordinates, distinct(members), extent)?;
     check_delay(&family)?;
     Ok(family)
@@ -95,17 +98,18 @@ fn check_delay(family: &UncertainFamily) -> Result<(), ProjectFamilyError> {
     Ok(())
 }
 
-fn cases(project: &Project) -> &[Case] {
+/// The explicit cases of a project.
+pub(super) fn cases(project: &Project) -> &[Case] {
     project.family.as_ref().map_or(&[], |family| &family.cases)
 }
 
 /// The values of a case; parameters that it does not name are nominal.
-fn member(case: &Case, plant: &UncertainPlant) -> Vec<f64> {
+pub(super) fn values(case: &Case, parameters: &[UncertainParameter]) -> Vec<f64> {
     let value = |parameter: &UncertainParameter| {
         let found = case.parameters.iter().find(|(name, _)| *name == parameter.name);
         found.map_or(parameter.nominal, |(_, value)| *value)
     };
-    plant.parameters().iter().map(value).collect()
+    parameters.iter().map(value).collect()
 }
 
 /// One coordinate for each correlated group, and one for every other parameter that has a range, in

@@ -8,7 +8,7 @@ use phea_dynamics::uncertain_plant::UncertainParameter;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::operating_point::{Settled, operating_point};
-use phea_qft::family::{Extent, UncertainFamily};
+use phea_qft::family::{Coordinate, Extent, UncertainFamily};
 
 use super::ProjectFamilyError;
 use super::hydraulic::{Equal, Open};
@@ -125,6 +125,17 @@ impl Visited {
         })
     }
 
+    /// Command of the operating point at a plant, V.
+    pub(super) fn command(&self, values: &[f64]) -> f64 {
+        self.settled.evaluate(values).first().copied().unwrap_or(f64::NAN)
+    }
+
+    /// Coordinates of a family that move its operating points.
+    pub(super) fn axes(&self, family: &UncertainFamily) -> Vec<usize> {
+        let moves = |one: &Coordinate| one.parameters.iter().any(|index| self.movers.contains(index));
+        (0..family.coordinates().len()).filter(|&axis| moves(&family.coordinates()[axis])).collect()
+    }
+
     /// The chamber, A or B, whose pressure is below the precharge of its gas at a plant.
     pub(super) fn shut_gas(&self, open: &Open<'_>, values: &[f64]) -> Option<char> {
         let &[_, pressure_a, pressure_b] = self.settled.evaluate(values).first_chunk()?;
@@ -150,10 +161,7 @@ impl Visited {
     /// The plants of a family, and the corners of its box, that differ in the numbers that
     /// determine the operating point.
     fn places(&self, family: &UncertainFamily) -> Vec<Vec<f64>> {
-        let moves = |parameters: &[usize]| parameters.iter().any(|index| self.movers.contains(index));
-        let axes: Vec<usize> = (0..family.coordinates().len())
-            .filter(|&axis| family.coordinates().get(axis).is_some_and(|one| moves(&one.parameters)))
-            .collect();
+        let axes = self.axes(family);
         let count = match family.extent() {
             Extent::Box => 1_usize.checked_shl(axes.len() as u32).unwrap_or(CORNERS).min(CORNERS),
             Extent::Members => 0,
@@ -201,7 +209,7 @@ pub(super) fn check(setup: &Setup<'_>, family: &UncertainFamily) -> Result<(), P
 
 /// Both ends of a box and points within it: multiples of the golden ratio fill the unit interval
 /// evenly.
-fn within(parameters: &[UncertainParameter]) -> Vec<Vec<f64>> {
+pub(super) fn within(parameters: &[UncertainParameter]) -> Vec<Vec<f64>> {
     let mut share = 0.0_f64;
     let at = |parameter: &UncertainParameter, share: f64| {
         parameter.minimum + share * (parameter.maximum - parameter.minimum)

@@ -9,7 +9,7 @@ use phea_qft::family::{Coordinate, Extent, Family, UncertainFamily};
 use super::hill::{Hill, SAME, SEED};
 use super::hydraulic::is_linear;
 use super::visited::Visited;
-use super::{ProjectFamilyError, family, uncertain};
+use super::{ProjectFamilyError, family, null_sides};
 use crate::setup::Setup;
 use crate::source::Memory;
 
@@ -62,7 +62,10 @@ const DRAWN: usize = 500;
 pub fn visited_box(setup: &Setup<'_>) -> Result<Option<Vec<VisitedRange>>, ProjectFamilyError> {
     let project = setup.project;
     let Some(declared) = &project.actuator else { return Ok(None) };
-    let parameters = uncertain::parameters(project)?;
+    if project.family.as_ref().is_some_and(|declared| !declared.measured.is_empty()) {
+        return Ok(None);
+    }
+    let parameters = null_sides::parameters(setup)?;
     if parameters.iter().all(|parameter| is_linear(&parameter.name)) {
         return Ok(None);
     }

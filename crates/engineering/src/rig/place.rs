@@ -4,6 +4,7 @@
 use phea_dynamics::scalar::Scalar;
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::operating_point::{Steady, SteadyLoad};
+use phea_hydraulics::servovalve::SpoolDirection;
 
 use super::numbers::Numbers;
 use crate::project::{self, Project};
@@ -46,6 +47,13 @@ fn is_free(project: &Project) -> bool {
     declared.is_some_and(|declared| {
         matches!(declared.load, project::Load::SpringMassDamper { stiffness: 0.0, .. })
     })
+}
+
+/// The side of null from which the slopes of a spool at null are taken; without a stated one their
+/// mean is the nominal plant.
+pub(crate) fn spool_side<S: Scalar>(project: &Project, numbers: &Numbers<'_, S>) -> SpoolDirection<S> {
+    let declared = project.resolved_operating_point().spool_side.unwrap_or(0.0);
+    SpoolDirection::Between(numbers.at("operating_point.spool_side", declared))
 }
 
 /// The force that holds the weight of a load that yields; `None` where there is none.

@@ -49,10 +49,11 @@ pub(crate) fn yielding_supply<S: Scalar>(
     numbers: &Numbers<'_, S>,
     balance: &Balance<S>,
     settled: &SettledSupply<S>,
+    side: SpoolDirection<S>,
 ) -> Option<YieldingSupply<S>> {
     let PowerUnit::PumpLimited(unit) = power_unit(declared, numbers) else { return None };
     let drops = [balance.supply.pressure, tare_drop(declared, numbers, balance)];
-    Some(YieldingSupply::new(&unit, balance, drops, settled, SpoolDirection::Mean))
+    Some(YieldingSupply::new(&unit, balance, drops, settled, side))
 }
 
 /// Power in W that the valve takes from the supply at the operating point: leakage and tare flow

@@ -100,6 +100,7 @@ pub(super) fn assess(problem: &SizingProblem, option: &HoseOption, branch: Branc
         bending(&candidate, &mut findings);
         stiffening(option, &mut findings);
         settling(problem, &candidate, &mut findings);
+        null_sides(problem, &candidate, &mut findings);
     }
     findings.sort_by_key(|finding| match finding.severity {
         Consequence::Rejects => 0,
@@ -271,6 +272,23 @@ fn stiffening(option: &HoseOption, findings: &mut Vec<SizingReason>) {
         let text = "[line] declares no `dynamic_stiffening`: the wall has its static modulus, and a stiffer one takes more hose";
         warns(findings, text.to_string());
     }
+}
+
+/// The time constant with the flow gains of both sides of null, at the least stiffness.
+fn null_sides(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<SizingReason>) {
+    let Some(gains) = problem.null_flow_gains else { return };
+    let softest = problem.with_stiffness(candidate.branch.stiffness.minimum);
+    let [below, above] = gains.map(|flow_gain| {
+        closed_loop_time_constant(&LinearParameters { flow_gain, ..softest }, candidate.branch.gain_v_per_n)
+    });
+    let text = format!(
+        "K_qU at null is {} m3/(s.V) retracting and {} extending, and its mean is sized with: the time constant is {} s and {} s",
+        significant(gains[0], 3),
+        significant(gains[1], 3),
+        significant(below, 3),
+        significant(above, 3)
+    );
+    warns(findings, text);
 }
 
 fn settling(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<SizingReason>) {

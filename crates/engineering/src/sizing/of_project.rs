@@ -93,6 +93,12 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
         },
         sensor_alone: rig.softened(&rig.linear).sensor_stiffness,
         load: sized_load(actuator, rig),
+        null_flow_gains: rig.null_flow_gains().filter(|_| {
+            wish.flow_gain
+                .or(project.linear.get("flow_gain"))
+                .or(project.operating_point.spool_side)
+                .is_none()
+        }),
         fluid_modulus: components.fluid.modulus_at(rig.actuator.mean_pressure()),
         density: components.fluid.density,
         flow_pressure_coefficient_maximum: leakage

@@ -39,7 +39,7 @@ impl<S: Scalar> YieldingSupply<S> {
         balance: &Balance<S>,
         [stated, tare_drop]: [S; 2],
         settled: &SettledSupply<S>,
-        direction: SpoolDirection,
+        direction: SpoolDirection<S>,
     ) -> YieldingSupply<S> {
         let (valve, pressure) = (&balance.valve, settled.supply.pressure);
         let opens = stated - unit.relief_override;

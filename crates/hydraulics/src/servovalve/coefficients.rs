@@ -4,16 +4,34 @@ use super::flow::left;
 use super::{Edges, LeakageModel, Openings, Servovalve, Supply, edge_conductances};
 use crate::orifice::{regular_root, regular_root_slope};
 
-/// Which side of null is meant where the spool stands exactly at null, as other edges open on each
-/// side.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SpoolDirection {
+/// The side of null from which slopes are taken where the spool is exactly at null, as other edges
+/// open on each side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SpoolDirection<S = f64> {
     /// U > 0: supply to A, B to tank.
     Extending,
     /// U < 0: supply to B, A to tank.
     Retracting,
     /// The mean of both, as a small symmetric motion about null sees it.
     Mean,
+    /// Slopes of chords across null, from -1, retracting, to 1, extending.
+    ///
+    /// ```text
+    /// (q(b) - q(a))/(b - a) = (1 + n)/2 q'(0+) + (1 - n)/2 q'(0-),      n = (b + a)/(b - a),      a <= 0 <= b, both small
+    /// ```
+    Between(S),
+}
+
+impl<S: Scalar> SpoolDirection<S> {
+    /// n of [`SpoolDirection::Between`].
+    fn side(self) -> S {
+        match self {
+            SpoolDirection::Extending => S::from(1.0),
+            SpoolDirection::Retracting => S::from(-1.0),
+            SpoolDirection::Mean => S::from(0.0),
+            SpoolDirection::Between(side) => side,
+        }
+    }
 }
 
 /// Derivatives of the flows of each chamber. Units: m3/(s V), m3/(s Pa). All positive in ordinary
@@ -64,7 +82,7 @@ pub fn chamber_coefficients<S: Scalar>(
     spool: S,
     pressure_a: S,
     pressure_b: S,
-    direction: SpoolDirection,
+    direction: SpoolDirection<S>,
 ) -> ChamberCoefficients<S> {
     let conductances = edge_conductances(valve, spool);
     let slopes = conductance_slopes(valve, spool, direction);
@@ -106,7 +124,7 @@ pub(crate) fn supply_coefficients<S: Scalar>(
     supply: &Supply<S>,
     spool: S,
     pressures: [S; 2],
-    direction: SpoolDirection,
+    direction: SpoolDirection<S>,
 ) -> SupplyCoefficients<S> {
     let conductances = edge_conductances(valve, spool);
     let slopes = conductance_slopes(valve, spool, direction);
@@ -127,7 +145,7 @@ pub(crate) fn supply_coefficients<S: Scalar>(
 /// G_i' = K_vi u+-' + k (O^3 sech' - k^2 sech^3 O')/(O^2 - k^2 sech^2)^(3/2)      one curve
 ///        with O = K_vj u+- + K_vinj sech of the other edge at the same port
 /// ```
-fn conductance_slopes<S: Scalar>(valve: &Servovalve<S>, spool: S, direction: SpoolDirection) -> Edges<S> {
+fn conductance_slopes<S: Scalar>(valve: &Servovalve<S>, spool: S, direction: SpoolDirection<S>) -> Edges<S> {
     let (flow, leak) = (&valve.flow_coefficients, &valve.leakage_coefficients);
     let Openings { forward, backward, leakage } = Openings::at(valve, spool);
     let (forward_slope, backward_slope, leakage_slope) = opening_slopes(valve, spool, leakage, direction);
@@ -179,16 +197,11 @@ fn opening_slopes<S: Scalar>(
     valve: &Servovalve<S>,
     spool: S,
     leakage: S,
-    direction: SpoolDirection,
+    direction: SpoolDirection<S>,
 ) -> (S, S, S) {
     let (one, half) = (S::from(1.0), S::from(0.5));
-    let at_null = S::from(match direction {
-        SpoolDirection::Extending => 1.0,
-        SpoolDirection::Retracting => -1.0,
-        SpoolDirection::Mean => 0.0,
-    });
     let zero = S::from(0.0);
-    let backward_or_null = S::select(spool.less_than(zero), -one, at_null);
+    let backward_or_null = S::select(spool.less_than(zero), -one, direction.side());
     let sign = S::select(zero.less_than(spool), one, backward_or_null);
     let argument = valve.leakage_shape * spool / valve.nominal_voltage;
     let decay = (S::from(-2.0) * argument.abs()).exp();
@@ -243,7 +256,7 @@ pub fn control_coefficients<S: Scalar>(
     supply: &Supply<S>,
     spool: S,
     load_pressure: S,
-    direction: SpoolDirection,
+    direction: SpoolDirection<S>,
 ) -> ControlCoefficients<S> {
     let mean = supply.pressure + supply.tank_pressure;
     let half = S::from(0.5);
@@ -306,5 +319,6 @@ pub fn velocity_gain(
         SpoolDirection::Extending => extending,
         SpoolDirection::Retracting => retracting,
         SpoolDirection::Mean => Some((extending? + retracting?) / 2.0),
+        SpoolDirection::Between(side) => Some((extending? * (1.0 + side) + retracting? * (1.0 - side)) / 2.0),
     }
 }

@@ -40,7 +40,7 @@ pub struct TwoPressureLinearParameters<S = f64> {
 pub fn two_pressure_linear_parameters<S: Scalar>(
     model: &TwoPressureModel<S>,
     point: &OperatingPoint<S>,
-    direction: SpoolDirection,
+    direction: SpoolDirection<S>,
 ) -> TwoPressureLinearParameters<S> {
     let OperatingPoint { position, command, pressure_a, pressure_b, .. } = *point;
     TwoPressureLinearParameters {

@@ -17,6 +17,7 @@ pub(crate) fn body(
     Object::new()
         .each("derived", derived, row)
         .maybe("visited_box", visited.map(|ranges| ranges.iter().map(range).collect::<Vec<_>>()))
+        .maybe("visited_box_evidence", visited.map(|_| "search"))
         .each("replaced", &replaced_ranges(&loaded.project, visited.unwrap_or_default()), replaced)
         .each("wishes", wishes, wish_row)
         .with("warnings", told.into_iter().chain(warnings).collect::<Vec<_>>())

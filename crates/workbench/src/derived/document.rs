@@ -38,6 +38,10 @@ fn cells(quantity: &Derived) -> [Cell; 4] {
     ]
 }
 
+/// How the box was found.
+const SEARCHED: &str =
+    "found by a search from the members and both sides of null, not proven: the family may reach beyond";
+
 /// The box of linear parameters that the family visits, for people.
 pub(crate) fn visited(project: &Project, ranges: &[VisitedRange]) -> Document {
     let mut out = Document::default();
@@ -57,6 +61,7 @@ pub(crate) fn visited(project: &Project, ranges: &[VisitedRange]) -> Document {
         [place("least", range.symbol, &range.minimum), place("most", range.symbol, &range.maximum)]
     });
     out.sentences(ends.flatten());
+    out.sentences([SEARCHED.to_string()]);
     let replaced = replaced_ranges(project, ranges);
     if !replaced.is_empty() {
         out.section("The ranges that the family replaces", replaced_table(&replaced));

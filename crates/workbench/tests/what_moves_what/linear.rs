@@ -33,6 +33,8 @@ const NOT_LISTED: &[(&str, &[&str])] = &[
             "valve.tare_flow",
         ],
     ),
+    // K_qU that is stated has no sides
+    ("flow_gain", &["operating_point.spool_side"]),
     // through the stiffnesses by which the flows of both chambers are weighed
     ("flow_gain", &["cylinder.stroke", "line.length"]),
     // of a telescopic cylinder alone

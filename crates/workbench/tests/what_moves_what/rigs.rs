@@ -231,7 +231,7 @@ fn without_uncertainty(text: &str) -> String {
 }
 
 /// Values of what may be absent, or is not a number.
-const STATED: [(&str, &str); 82] = [
+const STATED: [(&str, &str); 83] = [
     ("cross_port.mass", "1 kg"),
     ("cross_port.price", "100 EUR"),
     ("line.accumulator.mass", "1 kg"),
@@ -270,6 +270,7 @@ const STATED: [(&str, &str); 82] = [
     ("operating_point.load_pressure", "10 bar"),
     ("operating_point.load_force", "2 kN"),
     ("operating_point.velocity", "20 mm/s"),
+    ("operating_point.spool_side", "1"),
     ("controller.numerator", "0.002*s + 0.01"),
     ("controller.denominator", "s*(0.001*s + 1)"),
     ("controller.gain", "0.002"),

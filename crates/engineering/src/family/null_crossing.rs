@@ -1,0 +1,94 @@
+//! Plants of a box next to those whose spool is at null.
+//!
+//! K_qU of unequal edges jumps there, and K_c has its least values within the few hundredths of a
+//! volt in which the edges leak: between the corners of a box nothing points to them. They are
+//! members of the family, from which every search inside the box starts.
+
+use std::collections::BTreeSet;
+
+use phea_qft::family::{Extent, UncertainFamily};
+
+use super::ProjectFamilyError;
+use super::visited::Visited;
+use crate::setup::Setup;
+
+/// Boxes with more coordinates are crossed from their nominal plant only.
+const CORNER_COORDINATES: usize = 6;
+/// Largest number of crossings that become members.
+const CROSSINGS: usize = 64;
+/// Halvings of a coordinate: to far less than what moves a spool from null to beside it.
+const HALVINGS: usize = 40;
+/// Share of the nominal voltage by which a spool is beside null.
+const BESIDE: f64 = 1e-8;
+
+/// The family with the plants on both sides of null, where its operating points cross it: on the
+/// edges of the box, and along each coordinate from the nominal plant.
+pub(super) fn with_crossings(
+    setup: &Setup<'_>,
+    family: UncertainFamily,
+) -> Result<UncertainFamily, ProjectFamilyError> {
+    if setup.project.actuator.is_none() || family.extent() != Extent::Box {
+        return Ok(family);
+    }
+    let visited = Visited::new(setup, family.plant().parameters())?;
+    let found = crossings(&visited, &family);
+    if found.is_empty() {
+        return Ok(family);
+    }
+    let mut seen = BTreeSet::new();
+    let bits = |values: &Vec<f64>| values.iter().map(|value| value.to_bits()).collect::<Vec<u64>>();
+    let all = family.members().iter().cloned().chain(found);
+    let members: Vec<Vec<f64>> = all.filter(|values| seen.insert(bits(values))).collect();
+    let coordinates = family.coordinates().to_vec();
+    Ok(UncertainFamily::new(family.plant().clone(), coordinates, members, Extent::Box)?)
+}
+
+/// The plants on either side of each crossing.
+fn crossings(visited: &Visited, family: &UncertainFamily) -> Vec<Vec<f64>> {
+    let nominal = family.shares(&family.plant().nominal());
+    let count = nominal.len();
+    let corners = if count <= CORNER_COORDINATES { 1_usize << count } else { 0 };
+    let corner = |corner: usize| -> Vec<f64> {
+        (0..count).map(|axis| f64::from(u8::from(corner >> axis & 1 == 1))).collect()
+    };
+    let mut found = Vec::new();
+    for axis in visited.axes(family) {
+        let lower = (0..corners).filter(|corner| corner >> axis & 1 == 0).map(corner);
+        let lines = std::iter::once(nominal.clone()).chain(lower);
+        found.extend(
+            lines.map(|from| beside_null(visited, family, &from, axis)).filter(|two| !two.is_empty()),
+        );
+    }
+    let step = found.len().div_ceil(CROSSINGS).max(1);
+    found.into_iter().step_by(step).flatten().collect()
+}
+
+/// The plants along one coordinate between which the spool passes through null, below and above it,
+/// a little beside: exactly there it has no side. Only one of them where the box ends at null.
+fn beside_null(visited: &Visited, family: &UncertainFamily, from: &[f64], axis: usize) -> Vec<Vec<f64>> {
+    let beside = BESIDE * visited.rig.actuator.components().valve.nominal_voltage;
+    let at = |share: f64| {
+        let mut shares = from.to_vec();
+        shares[axis] = share;
+        family.values(&shares)
+    };
+    let mut found = Vec::new();
+    for sign in [-1.0, 1.0] {
+        let is_there = |share: f64| sign * visited.command(&at(share)) > beside;
+        for [mut there, mut beyond] in [[0.0, 1.0], [1.0, 0.0]] {
+            if !is_there(there) || is_there(beyond) {
+                continue;
+            }
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (there + beyond);
+                if is_there(middle) {
+                    there = middle;
+                } else {
+                    beyond = middle;
+                }
+            }
+            found.push(at(there));
+        }
+    }
+    found
+}
