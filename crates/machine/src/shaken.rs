@@ -2,6 +2,7 @@
 //! settled.
 
 use num_complex::Complex64;
+use phea_dynamics::scalar::Dual;
 use phea_dynamics::simulation::{
     Input, Plant, Sampler, SimulationError, SimulationSettings, SinePlan, SineResponse, sine_response,
     small_signal,
@@ -52,8 +53,8 @@ impl Control {
 /// states.
 ///
 /// # Example
-/// At rest the machine pushes with the force of its operating point; an amplitude of its state j
-/// times as large pushes with j times that force.
+/// At rest the machine pushes with the force of its operating point; without a progressive spring,
+/// an amplitude j times as large as its state pushes with j times that force.
 /// ```
 /// # use num_complex::Complex64;
 /// # use phea_dynamics::portable::magnitude;
@@ -69,7 +70,8 @@ impl Control {
 /// let beginning = machine.rest(&point)?;
 /// assert!((force(&machine, &beginning.state) - 3e3).abs() < 1e-6);
 /// let turned: Vec<Complex64> = beginning.state.iter().map(|state| Complex64::I * state).collect();
-/// assert!(magnitude(force_amplitude(&machine, &turned) - Complex64::I * 3e3) < 1e-6);
+/// let amplitude = force_amplitude(&machine, &beginning.state, &turned);
+/// assert!(magnitude(amplitude - Complex64::I * 3e3) < 1e-6);
 /// assert!(force(&machine, &[]).is_nan());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -78,8 +80,23 @@ pub fn force(machine: &Machine, state: &[f64]) -> f64 {
     state.get(..own).map_or(f64::NAN, |state| Plant::<f64>::measurement(machine, state, &[]))
 }
 
-/// The same for complex amplitudes, in which it is linear.
-pub fn force_amplitude(machine: &Machine, amplitudes: &[Complex64]) -> Complex64 {
-    let part = |of: fn(&Complex64) -> f64| force(machine, &amplitudes.iter().map(of).collect::<Vec<_>>());
-    Complex64::new(part(|amplitude| amplitude.re), part(|amplitude| amplitude.im))
+/// Complex amplitude of the force for small complex amplitudes of the states about a rest; NaN for
+/// fewer states.
+///
+/// ```text
+/// F^ = (dF/dy at y_0) y^
+/// ```
+pub fn force_amplitude(machine: &Machine, rest: &[f64], amplitudes: &[Complex64]) -> Complex64 {
+    let own: usize = Plant::<f64>::states(machine);
+    let moved: Vec<Dual<2>> = rest
+        .iter()
+        .zip(amplitudes)
+        .take(own)
+        .map(|(&value, amplitude)| Dual::new(value, [amplitude.re, amplitude.im]))
+        .collect();
+    if moved.len() < own {
+        return Complex64::new(f64::NAN, f64::NAN);
+    }
+    let &[re, im] = Plant::<f64>::measurement(machine, &moved, &[]).gradient();
+    Complex64::new(re, im)
 }

@@ -216,6 +216,39 @@ fn a_sampled_loop_around_waves_is_that_of_their_response() {
     }
 }
 
+/// A progressive spring under load is stiffer than at rest: alone, damped, and before a mass, what
+/// is linearised is the machine where it is loaded.
+#[test]
+fn a_preloaded_progressive_spring_is_linearised_under_its_load() {
+    for more in ["", ", damping = 500", ", damping = 500, mass = 2"] {
+        let spring =
+            format!("series={{ stiffness = \"2.24 MN/m\", progression = 0.5, travel = \"5.5 mm\"{more} }}");
+        let settings = [spring.as_str(), "operating_point.load_force=4 kN", "controller.numerator=0.0001*s + 0.0008"];
+        let found = shaken(&smooth(&settings), &[1.0, 30.0, 200.0], [2e-4, 1.0]);
+        let closed = found.closed_loop.unwrap();
+        for point in found.open_loop.points.iter().chain(&closed.points) {
+            assert!(apart(point.linearised_machine.unwrap(), point.linear_plant) < 1e-6, "{more} {point:?}");
+            assert!(apart(point.machine, point.linear_plant) < 1e-3, "{more} {point:?}");
+        }
+    }
+}
+
+/// A sensor that shows twice the force: the loop rests where the controller sees twice the force of
+/// the operating point, and is linearised there.
+#[test]
+fn a_loop_rests_at_what_its_sensor_shows() {
+    let sensor = "sensor={ numerator = \"4000\", denominator = \"s + 2000\" }";
+    let leaky = "controller.denominator=s + 1";
+    for more in [&[][..], &[leaky], &[leaky, "controller.sample_time=1 ms"]] {
+        let law = "controller.numerator=0.0001*s + 0.0008";
+        let settings = [&[sensor, law, "operating_point.load_force=4 kN"], more].concat();
+        let found = shaken(&smooth(&settings), &[1.0, 30.0, 200.0], [2e-4, 1.0]);
+        for point in &found.closed_loop.unwrap().points {
+            assert!(apart(point.machine, point.linear_plant) < 2e-3, "{more:?} {point:?}");
+        }
+    }
+}
+
 /// Bristles hold the piston: below their break-away the machine is stiffer than any plant of
 /// viscous friction, and the sines see it. A spring of 1e7 N/m in addition to the load cell of 2e7
 /// N/m leaves two thirds of the force.

@@ -87,6 +87,13 @@ struct RestedMachine {
     settings: SimulationSettings,
 }
 
+impl RestedMachine {
+    /// Force on the load for amplitudes of the states about the equilibrium, in N.
+    fn force_amplitude(&self, amplitudes: &[Complex64]) -> Complex64 {
+        phea_machine::force_amplitude(&self.machine, &self.rest.state, amplitudes)
+    }
+}
+
 impl MachineResponses {
     /// Whether every point settled.
     pub fn is_settled(&self) -> bool {

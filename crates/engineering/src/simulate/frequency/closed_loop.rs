@@ -10,7 +10,7 @@ use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
 use phea_dynamics::simulation::{CommandedPlant, Input, Profile, Sensed, SimulationSettings};
 use phea_hydraulics::machine::Machine;
-use phea_machine::{Control, ControllerSamples, Digital, Sampled, Waking, force_amplitude};
+use phea_machine::{Control, ControllerSamples, Digital, Sampled, Waking};
 use phea_qft::closed_loop::{Compensation, Member};
 
 use super::open_loop::profile;
@@ -42,11 +42,12 @@ pub(super) fn measured(
     let bench = ControlledMachine::new(setup)?;
     let amplitude = request.reference_amplitude_n.unwrap_or(USUAL_AMPLITUDE * rested.push_n);
     let model = LinearizedLoop::new(setup, rested, given)?;
-    let reference_n = held_reference(rested, given)?;
+    let measured_n = setup.sensor.dc_gain() * rested.force_n;
+    let reference_n = held_reference(rested, given, measured_n)?;
     if !reference_n.is_finite() {
         return Ok(Err("no reference holds the force of the operating point".to_string()));
     }
-    let shared = LoopParts { rested, model: &model, reference_n, amplitude };
+    let shared = LoopParts { rested, model: &model, reference_n, measured_n, amplitude };
     match &bench.control {
         Control::Continuous(closed) => {
             shared.continuous((&bench.control, closed), frequencies, goes_on).map(Ok)
@@ -56,12 +57,20 @@ pub(super) fn measured(
     }
 }
 
-/// The reference at which the controller maintains the force and the command of the equilibrium:
-/// (F_0 + U_0/G(0))/F(0).
-fn held_reference(rested: &RestedMachine, given: &Controller) -> Result<f64, SimulateError> {
+/// The reference at which the controller maintains the command of the equilibrium under this
+/// measurement of its force.
+///
+/// ```text
+/// r_0 = (m_0 + U_0/G(0))/F(0),    m_0 = H(0) F_0
+/// ```
+fn held_reference(
+    rested: &RestedMachine,
+    given: &Controller,
+    measured_n: f64,
+) -> Result<f64, SimulateError> {
     let gain = given.feedback.transfer_function()?.dc_gain();
     let error = if rested.rest.command == 0.0 { 0.0 } else { rested.rest.command / gain };
-    Ok((rested.force_n + error) / given.prefilter.transfer_function()?.dc_gain())
+    Ok((measured_n + error) / given.prefilter.transfer_function()?.dc_gain())
 }
 
 /// The data that both kinds of loop need.
@@ -69,6 +78,8 @@ struct LoopParts<'a> {
     rested: &'a RestedMachine,
     model: &'a LinearizedLoop,
     reference_n: f64,
+    /// The measurement of the controller at rest, N.
+    measured_n: f64,
     amplitude: f64,
 }
 
@@ -112,12 +123,12 @@ impl LoopParts<'_> {
         let rest = &self.rested.rest;
         let mut state = rest.state.clone();
         state.extend(closed.plant().sensor_at_rest(self.rested.force_n));
-        state.extend(closed.controller_at_rest(self.reference_n, self.rested.force_n, rest.command));
+        state.extend(closed.controller_at_rest(self.reference_n, self.measured_n, rest.command));
         control.rest_at(&mut state, rest.inputs[0]);
         let waves = control.under_way(&state, &[self.reference_n], rest);
         let inputs = [&[self.reference_n], &rest.inputs[..], &waves].concat();
         let orbit = |frequency: f64| control.orbit(&state, &inputs, frequency);
-        let force = |orbit: &Vec<Complex64>| force_amplitude(&self.rested.machine, orbit);
+        let force = |orbit: &Vec<Complex64>| self.rested.force_amplitude(orbit);
         let start = [state.as_slice(), &waves].concat();
         let mut points = Vec::new();
         for (index, frequency) in frequencies.iter().enumerate() {
@@ -154,7 +165,7 @@ impl LoopParts<'_> {
         let (held, rest) = (&quiet.held, &self.rested.rest);
         let mut state = rest.state.clone();
         state.extend(held.plant().sensor_at_rest(self.rested.force_n));
-        state.extend(held.controller_at_rest(self.reference_n, self.rested.force_n, rest.command));
+        state.extend(held.controller_at_rest(self.reference_n, self.measured_n, rest.command));
         let control = Control::Sampled(Box::new(quiet.clone()));
         control.rest_at(&mut state, rest.inputs[0]);
         let waves = control.under_way(&state, &[rest.command, self.reference_n], rest);

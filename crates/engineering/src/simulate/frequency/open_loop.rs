@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
 use phea_dynamics::simulation::{CommandedPlant, Input, Plant, Profile, Sensed};
-use phea_machine::{Control, force_amplitude};
+use phea_machine::Control;
 
 use super::point::{RestingRig, finer, point, respond};
 use super::{FrequencyRequest, MachineResponse, RestedMachine, SimulateError, USUAL_AMPLITUDE, curve};
@@ -25,7 +25,7 @@ pub(super) fn measured(
             break;
         }
         let orbit = orbit(&control, rested, *frequency);
-        let linearised = orbit.as_deref().map(|orbit| force_amplitude(&rested.machine, orbit));
+        let linearised = orbit.as_deref().map(|orbit| rested.force_amplitude(orbit));
         let plant = rested.rig.response(*frequency);
         let amplitude =
             request.command_amplitude_v.unwrap_or_else(|| usual(rested, linearised.unwrap_or(plant)));
@@ -49,8 +49,7 @@ pub(super) fn measured(
         points.push(point([*frequency, amplitude], &found, plant, linearised));
     }
     let curve_rad_per_s = curve(frequencies);
-    let of_machine =
-        |frequency: &f64| Some(force_amplitude(&rested.machine, &orbit(&control, rested, *frequency)?));
+    let of_machine = |frequency: &f64| Some(rested.force_amplitude(&orbit(&control, rested, *frequency)?));
     Ok(MachineResponse {
         points,
         linear_plant: curve_rad_per_s.iter().map(|frequency| rested.rig.response(*frequency)).collect(),
