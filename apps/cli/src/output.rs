@@ -30,7 +30,7 @@ impl<'f> Folder<'f> {
         Folder { path, inputs, begun: RefCell::default() }
     }
 
-    /// Every file that was begun, in order; all are complete if nothing failed.
+    /// Every file that was begun, once, in order; all are complete if nothing failed.
     pub(crate) fn into_begun(self) -> Vec<PathBuf> {
         self.begun.into_inner()
     }
@@ -42,7 +42,10 @@ impl Destination for Folder<'_> {
         let refuse = |reason| WriteError { path: path.display().to_string(), reason };
         let file = Pending::begin(&path).map_err(|error| refuse(reason(&error)))?;
         self.inputs.expect_kept(&path).map_err(refuse)?;
-        self.begun.borrow_mut().push(path);
+        let mut begun = self.begun.borrow_mut();
+        if !begun.contains(&path) {
+            begun.push(path);
+        }
         Ok(Box::new(file))
     }
 

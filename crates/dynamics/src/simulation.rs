@@ -11,6 +11,7 @@ mod derivatives;
 mod driver;
 mod equilibrium;
 mod explicit;
+mod frozen;
 mod growth;
 mod history;
 mod kernel;
@@ -41,6 +42,7 @@ pub use course::{
 pub use derivatives::DIRECTIONS;
 pub use driver::drive;
 pub use equilibrium::{EquilibriumError, equilibrium};
+pub use frozen::{Frozen, FrozenMode, FrozenWatch, SampledLaw};
 pub use growth::Sliding;
 pub use method::Method;
 pub use profile::{Harmonic, Moment, Profile, ProfileError, ProfilePiece, schroeder_phases};

@@ -5,6 +5,7 @@ mod closed_loop;
 mod delays;
 mod events;
 mod explicit;
+mod frozen;
 mod growth;
 mod kinks;
 mod lanes;

@@ -6,6 +6,7 @@ mod check;
 mod columns;
 mod compare;
 mod course;
+mod divergence;
 mod equilibrium;
 mod exceeded;
 mod file_names;
@@ -23,6 +24,7 @@ mod motion_file;
 mod parts;
 mod plausible;
 mod record;
+mod repetition;
 mod run;
 mod saved;
 pub(crate) mod shortest_number;
@@ -39,6 +41,7 @@ pub use bench::ControlledMachine;
 pub use check::{Difference, MetricDifferences, ToleranceCheck, simulate_checked};
 pub use columns::{GAS_TEMPERATURES, LOOP_SIGNALS};
 pub use compare::{ScenarioComparison, compare_projects};
+pub use divergence::Divergence;
 pub use exceeded::{Exceeded, LINE_OCCURRENCES, LimitPlace, RigLimit, words as exceeded_words};
 pub use frequency::{FrequencyRequest, MachineResponse, MachineResponses, ResponsePoint, frequency_response};
 pub use gas::GasRange;
@@ -49,12 +52,17 @@ pub use measured::Overlay;
 pub use metrics::{Cause, Measured, Metrics, Window};
 pub use parts::SignalParts;
 pub use record::{Look, Record};
+pub(crate) use repetition::moved;
+pub use repetition::{
+    Pass, PassAgreement, PassPlan, PassResult, PassSpread, Repetition, SMALLEST_TOLERANCE, repeated,
+};
+use run::RunPass;
 pub use run::{BeyondExpansion, Occurrence, ScenarioRun, StoppedRun, UnresolvedMode};
-pub use run::{COMMAND_LIMIT, ERRORS_AMPLIFIED, errors_amplified};
+pub use run::{COMMAND_LIMIT, DIVERGED, ERRORS_AMPLIFIED, REPEATED, amplification};
 pub use saved::SavedState;
 
 pub use bench::options;
-pub(crate) use course::course_of;
+pub(crate) use course::{PreparedScenario, course_of};
 pub use course::{ScenarioDrive, driven};
 pub(crate) use file_names::table_names;
 pub use files::{RunTable, files};
@@ -63,14 +71,14 @@ pub use run::occurrences;
 pub use wish::{HeldWish, TrackingWish};
 
 use phea_dynamics::linear::LinearError;
-use phea_dynamics::simulation::{EquilibriumError, ProfileError, SimulationError};
+use phea_dynamics::simulation::{Attention, EquilibriumError, ProfileError, SimulationError};
 use phea_hydraulics::line::LineError;
 use phea_hydraulics::machine::MachineError;
 use phea_hydraulics::operating_point::OperatingPointError;
 
 use crate::linear_loop::LoopError;
 use crate::number_table::TableFormat;
-use crate::project::Refusal;
+use crate::project::{Refusal, Scenario};
 use crate::quantity::{FORCE, LENGTH, RATIO, TIME, VOLTAGE, display};
 use crate::rig::RigError;
 use crate::setup::ControlError;
@@ -246,11 +254,11 @@ pub fn simulate_project(
     setup: &Setup<'_>,
     watch: Watch<'_>,
 ) -> Result<Vec<ScenarioRun>, SimulateError> {
-    simulate_into(source, setup, RunOutput { samples: true, ..RunOutput::default() }, watch)
+    simulate_into(source, setup, RunOutput::new(true, None), watch)
 }
 
 /// What runs leave in addition to their metrics and events.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub struct RunOutput<'a> {
     /// Whether each keeps its samples in memory, for figures; without them its record is empty.
     pub samples: bool,
@@ -259,10 +267,57 @@ pub struct RunOutput<'a> {
     pub table: Option<(&'a dyn Destination, TableFormat)>,
     /// Whether each has its accounts of oil and energy, which cost about as much as its solution.
     pub ledger: bool,
+    /// How closely steps are followed: as a whole, or as a campaign does, whose runs under a sampled
+    /// controller go from sample to sample by known matrices.
+    pub attention: Attention,
+}
+
+impl<'a> RunOutput<'a> {
+    /// Samples, and a table where a destination is given.
+    pub fn new(samples: bool, table: Option<(&'a dyn Destination, TableFormat)>) -> RunOutput<'a> {
+        RunOutput { samples, table, ledger: false, attention: Attention::Everything }
+    }
+}
+
+/// A scenario ready to be run, as often as needed.
+struct PreparedRun<'p> {
+    scenario: &'p Scenario,
+    bench: ControlledMachine,
+    course: PreparedScenario,
+    measured: Vec<measured::Measurement>,
+}
+
+/// All scenarios of a project.
+fn prepared<'p>(source: &dyn Source, setup: &Setup<'p>) -> Result<Vec<PreparedRun<'p>>, SimulateError> {
+    let project = setup.project;
+    if project.scenarios.is_empty() {
+        return Err(SimulateError::NoScenario);
+    }
+    let prepare = |scenario: &'p Scenario| {
+        let bench = ControlledMachine::of_scenario(setup, scenario)?;
+        let course = course::course(source, project, &bench, scenario)?;
+        let measured = measured::measurements(source, project, scenario).map_err(SimulateError::Motion)?;
+        Ok(PreparedRun { scenario, bench, course, measured })
+    };
+    project.scenarios.iter().map(prepare).collect()
+}
+
+impl PreparedRun<'_> {
+    /// One pass, its rows in a table of this name.
+    fn pass<'t>(
+        &self,
+        plan: PassPlan,
+        (output, name): (&RunOutput<'t>, &str),
+        watch: &mut dyn FnMut(f64) -> bool,
+    ) -> Result<RunPass<'t>, SimulateError> {
+        let begin = |(destination, format)| RunTable::begin((destination, name), format, &self.bench);
+        let table = output.table.filter(|_| !plan.moved).map(begin).transpose()?;
+        run::run(&self.bench, self.scenario, (&self.course, &self.measured), (plan, table, output), watch)
+    }
 }
 
 /// The same, with the output that is asked for: samples cost more than the solution of the
-/// equations.
+/// equations. A run whose errors may be visible is [`repeated`]; its table is that of the last pass.
 ///
 /// # Errors
 /// As [`simulate_project`], and [`SimulateError::Write`].
@@ -272,31 +327,30 @@ pub fn simulate_into(
     output: RunOutput<'_>,
     watch: Watch<'_>,
 ) -> Result<Vec<ScenarioRun>, SimulateError> {
-    let project = setup.project;
-    if project.scenarios.is_empty() {
-        return Err(SimulateError::NoScenario);
-    }
-    let mut prepared = Vec::new();
-    for scenario in &project.scenarios {
-        let bench = ControlledMachine::of_scenario(setup, scenario)?;
-        let course = course::course(source, project, &bench, scenario)?;
-        let measured = measured::measurements(source, project, scenario).map_err(SimulateError::Motion)?;
-        prepared.push((bench, course, measured));
-    }
-    let whole: f64 = project.scenarios.iter().map(|scenario| scenario.duration).sum();
+    let scenarios = &setup.project.scenarios;
+    let prepared = prepared(source, setup)?;
+    let whole: f64 = scenarios.iter().map(|scenario| scenario.duration).sum();
     let (mut before, mut runs) = (0.0, Vec::new());
     let ending = output.table.map_or("csv", |(_, format)| format.ending());
-    let names = table_names(project.scenarios.iter().map(|scenario| scenario.name.as_str()), ending);
-    for ((scenario, (bench, course, measured)), name) in project.scenarios.iter().zip(&prepared).zip(&names) {
-        let begin = |(destination, format)| RunTable::begin((destination, name), format, bench);
-        let table = output.table.map(begin).transpose()?;
-        let mut told =
-            |time_s: f64| watch(Progress { stage: "simulating", share: (before + time_s) / whole });
-        let run =
-            run::run(bench, scenario, (course, measured), (table, output.samples, output.ledger), &mut told)?;
+    let names = table_names(scenarios.iter().map(|scenario| scenario.name.as_str()), ending);
+    for (prepared, name) in prepared.iter().zip(&names) {
+        let tolerance = prepared.bench.settings.tolerance;
+        let mut pass = |plan: PassPlan| {
+            let stage =
+                if plan.is_first(tolerance) { "simulating" } else { "repeating at a smaller tolerance" };
+            let mut told = |time_s: f64| watch(Progress { stage, share: (before + time_s) / whole });
+            prepared.pass(plan, (&output, name), &mut told)
+        };
+        let first = pass(PassPlan { tolerance, moved: false })?;
+        let errors_amplified = first.run.errors_amplified;
+        let (last, _, repetition) = repeated((tolerance, first), RunPass::result, pass)?;
+        if let Some(table) = last.table {
+            table.finish().map_err(SimulateError::Write)?;
+        }
+        let run = ScenarioRun { repetition, errors_amplified, ..last.run };
         let stopped = run.was_cancelled();
         runs.push(run);
-        before += scenario.duration;
+        before += prepared.scenario.duration;
         if stopped {
             break;
         }

@@ -4,9 +4,10 @@ use std::cell::RefCell;
 
 use phea_dynamics::controller::ControllerState;
 use phea_dynamics::random;
-use phea_dynamics::simulation::{Plant, Sampler};
+use phea_dynamics::simulation::{FrozenWatch, Plant, Sampler};
 
 use super::control::Sampled;
+use super::frozen::{Sample, least_stable};
 use super::samples::{ControllerSample, ControllerSamples};
 
 /// The state of a sampled controller.
@@ -44,6 +45,8 @@ pub struct Digital<'a> {
     random: u64,
     /// Before its first command takes effect, V.
     held: f64,
+    /// The growth of the loop from sample to sample.
+    watch: FrozenWatch,
     log: &'a RefCell<ControllerSamples>,
     /// Where it stores its state.
     memory: Option<&'a RefCell<DigitalMemory>>,
@@ -64,7 +67,7 @@ impl<'a> Digital<'a> {
                 (resumed, memory.command_v, memory.random)
             }
         };
-        Digital { sampled, state, random, held, log, memory: None }
+        Digital { sampled, state, random, held, watch: FrozenWatch::default(), log, memory: None }
     }
 
     /// Stores its state after each sample.
@@ -111,6 +114,8 @@ impl Sampler for Digital<'_> {
         if let Some(converter) = self.sampled.measurement_converter {
             measurement = converter.rounded(measurement);
         }
+        let looked = self.watch.passes(1, time_s);
+        let before = looked.then(|| self.state.clone());
         let output = controller.step(&mut self.state, reference, measurement);
         let mut forward = 0.0;
         if *feed_forward != 0.0 {
@@ -118,6 +123,11 @@ impl Sampler for Digital<'_> {
         }
         let wanted = output.command + forward;
         let within = wanted.clamp(-command_limit, *command_limit);
+        if let Some(memory) = before {
+            let sample = Sample { state, inputs, memory, read: [reference, measurement] };
+            self.watch.take(time_s, least_stable(self.sampled, &sample));
+            self.log.borrow_mut().amplification = self.watch.amplification();
+        }
         let command_v = self.sampled.command_converter.map_or(within, |converter| converter.rounded(within));
         self.log.borrow_mut().take(ControllerSample {
             time_s,

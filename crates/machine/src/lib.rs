@@ -13,6 +13,7 @@
 
 mod control;
 mod digital;
+mod frozen;
 mod lanes;
 mod rest;
 mod samples;

@@ -1,5 +1,7 @@
 //! The record of a sampled controller during a run.
 
+use phea_dynamics::simulation::Amplification;
+
 /// The events of one sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControllerSample {
@@ -26,6 +28,8 @@ pub struct ControllerSamples {
     pub last: Option<ControllerSample>,
     /// When the command reached its limit (`true`) or left it, s.
     pub limits: Vec<(f64, bool)>,
+    /// What grew most from sample to sample.
+    pub amplification: Option<Amplification>,
 }
 
 impl ControllerSamples {

@@ -6,6 +6,7 @@ mod document;
 mod figures;
 mod frequency;
 mod metrics;
+mod repetition;
 mod together;
 
 pub use phea_engineering::simulate::*;

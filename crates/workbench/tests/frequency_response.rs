@@ -223,7 +223,8 @@ fn a_preloaded_progressive_spring_is_linearised_under_its_load() {
     for more in ["", ", damping = 500", ", damping = 500, mass = 2"] {
         let spring =
             format!("series={{ stiffness = \"2.24 MN/m\", progression = 0.5, travel = \"5.5 mm\"{more} }}");
-        let settings = [spring.as_str(), "operating_point.load_force=4 kN", "controller.numerator=0.0001*s + 0.0008"];
+        let settings =
+            [spring.as_str(), "operating_point.load_force=4 kN", "controller.numerator=0.0001*s + 0.0008"];
         let found = shaken(&smooth(&settings), &[1.0, 30.0, 200.0], [2e-4, 1.0]);
         let closed = found.closed_loop.unwrap();
         for point in found.open_loop.points.iter().chain(&closed.points) {

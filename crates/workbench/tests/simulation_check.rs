@@ -107,8 +107,19 @@ fn an_answer_tells_the_check_where_it_was_asked_for() {
     let named = |name: &str| signals.iter().find(|signal| signal["name"] == name).unwrap();
     assert_eq!(named("force_n")["difference"], check["force_difference_n"]);
     assert!(named("control_v")["part_of_peak"].is_f64());
-    let (unsure, text) = ask(&SLOW, &with_check());
+    // repeated until its metrics agree, it passes the check too
+    let (right, text) = ask(&SLOW, &with_check());
+    assert!(right["check"]["part_of_peak"].as_f64().unwrap() < 1e-3 && !text.contains(doubt), "{text}");
+    // too few steps for a second pass
+    let passes: Vec<u64> = right["repetition"]["passes"].as_array().unwrap()[..2]
+        .iter()
+        .map(|pass| pass["steps"].as_u64().unwrap() + pass["rejected"].as_u64().unwrap())
+        .collect();
+    let few = format!("simulation.maximum_steps={}", (passes[0] + passes[1]) / 2);
+    let (unsure, text) = ask(&[&SLOW[..], &[few.as_str()]].concat(), &with_check());
+    assert_eq!(unsure["repetition"]["status"], "stopped");
     assert!(unsure["check"]["part_of_peak"].as_f64().unwrap() > 1e-3 && text.contains(doubt), "{text}");
+    assert!(text.contains("could not be confirmed"), "{text}");
 }
 
 /// Without a check, too, it is reported where errors may have grown until they are visible: within

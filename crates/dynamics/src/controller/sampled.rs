@@ -83,6 +83,11 @@ impl SampledController {
         self.sample_time_s
     }
 
+    /// The same without a limit of its command.
+    pub(crate) fn unlimited(&self) -> SampledController {
+        SampledController { command_limit: f64::INFINITY, ..self.clone() }
+    }
+
     /// The state at rest.
     pub fn at_rest(&self) -> ControllerState {
         ControllerState {

@@ -205,15 +205,17 @@ pub struct StepCounts {
 /// Part of the scale of a state from which on an error is visible.
 const VISIBLE: f64 = 1e-3;
 
-/// An oscillation that grew by itself, without being suppressed by the method.
+/// A mode that grew by itself, without being suppressed by the method.
 ///
 /// ```text
 /// factor = exp(integral of Re(lambda) over the time from its begin to its end)
 /// ```
 ///
-/// lambda is the least stable of the fast eigenvalues of the Jacobian along the trajectory, as far
-/// as these are known between the steps at which they are computed. The factor shows where errors
-/// of the solver may have been amplified; it is not the ratio of two amplitudes.
+/// lambda is the least stable of the fast eigenvalues of the Jacobian along the trajectory, or of the
+/// slower ones with the delays in the loop, or from sample to sample that of the loop with its
+/// controller ([`super::Frozen`]), as far as these are known between the steps at which they are
+/// computed. The factor shows where errors of the solver may have been amplified; it is not the
+/// ratio of two amplitudes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Amplification {
     /// Logarithm of the factor.
@@ -227,6 +229,19 @@ pub struct Amplification {
 }
 
 impl Amplification {
+    /// The one that grew more.
+    pub fn larger(all: [Option<Amplification>; 2]) -> Option<Amplification> {
+        let [one, other] = all;
+        let more = other.filter(|other| one.is_none_or(|one| one.logarithm < other.logarithm));
+        more.or(one)
+    }
+
+    /// Whether rounding may have grown to a thousandth of the scales of the states: no tolerance
+    /// determines the result then.
+    pub fn may_show_rounding(&self) -> bool {
+        self.may_show_errors(f64::EPSILON)
+    }
+
     /// Whether errors as large as the tolerance may have grown to a thousandth of the scales of the
     /// states.
     pub fn may_show_errors(&self, tolerance: f64) -> bool {

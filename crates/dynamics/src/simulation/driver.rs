@@ -7,7 +7,10 @@ mod queued;
 pub use queued::drive;
 
 use super::Lane;
-use super::course::{Attention, Event, Observer, Outcome, SimulationError, SimulationSettings, Status};
+use super::course::{
+    Amplification, Attention, Event, Observer, Outcome, SimulationError, SimulationSettings, Status,
+};
+use super::frozen::{Frozen, FrozenWatch};
 use super::growth::GrowthWatch;
 use super::history::NODES;
 use super::kernel::Kernel;
@@ -24,6 +27,8 @@ struct Drive<'a, S, O> {
     method: Stepper<S>,
     /// The known modes of each lane.
     watches: Vec<GrowthWatch>,
+    /// The growth of slower modes, and of those that delays close, in each lane without samples.
+    frozen: Vec<FrozenWatch>,
     /// For lanes that are sampled.
     propagator: Propagator<S>,
     settings: SimulationSettings,
@@ -75,6 +80,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         Ok(Drive {
             method,
             watches: vec![watch; S::COUNT],
+            frozen: vec![FrozenWatch::default(); S::COUNT],
             propagator: Propagator::new(states),
             settings: *settings,
             slots: (0..S::COUNT).map(|_| None).collect(),
@@ -142,6 +148,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         self.fresh = true;
         self.propagator.forget(lane);
         self.watches[lane].forget();
+        self.frozen[lane] = FrozenWatch::default();
         let states = vec![0.0; system.states()];
         let Task { sampler, observer, .. } = task;
         passage.attention = observer.attention();
@@ -169,7 +176,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         if fresh {
             self.linearize(system);
         }
-        self.watch();
+        self.watch(system);
         let error =
             self.method.attempt(system, &self.state, self.step, &self.inputs, self.settings.tolerance);
         self.between.extensions.fill(None);
@@ -200,7 +207,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
     }
 
     /// Shortens steps that would calm a mode that grows.
-    fn watch(&mut self) {
+    fn watch(&mut self, system: &dyn Kernel<S>) {
         for lane in 0..S::COUNT {
             let Some(slot) = &mut self.slots[lane] else { continue };
             if slot.propagated || slot.unwatched == 0 {
@@ -208,7 +215,17 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
             }
             let steps = std::mem::take(&mut slot.unwatched);
             let (time_s, step_s) = (slot.passage.time_s, slot.passage.step_s);
-            let growing = self.watches[lane].bound(time_s, step_s, steps, self.method.jacobian(), lane);
+            let watch = &mut self.watches[lane];
+            let growing = watch.bound(time_s, step_s, steps, self.method.jacobian(), lane);
+            let (frozen, looked) = (&mut self.frozen[lane], watch.slow_modes());
+            if slot.sampler.is_none() && (frozen.grows(steps, time_s) || looked.is_some()) {
+                let known = looked.filter(|_| slot.passage.histories.is_empty());
+                let modes = known.unwrap_or_else(|| {
+                    let inputs = &self.inputs.stages[0];
+                    Frozen::of(system, &self.state, inputs, lane).least_stable(watch.slower())
+                });
+                frozen.take(time_s, modes);
+            }
             if slot.passage.limit(growing) {
                 self.begin_step(lane);
             }
@@ -418,7 +435,8 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         let mut events = passage.events;
         sort_by_number(&mut events, |event| event.time_s);
         let end = self.state.iter().map(|state| state.lane(lane)).collect();
-        let amplification = self.watches[lane].amplification();
+        let all = [self.watches[lane].amplification(), self.frozen[lane].amplification()];
+        let amplification = Amplification::larger(all);
         Some((Outcome { status, events, work: passage.work, end, amplification }, observer))
     }
 }

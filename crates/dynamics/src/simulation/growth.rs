@@ -4,8 +4,13 @@
 //! decaying mode, but it would suppress a growing one, and no error estimate detects this while the
 //! amplitude is small. So each step is limited by the modes of its own Jacobian.
 
+mod amplifying;
+
+pub(super) use amplifying::Amplifying;
+
 use nalgebra::DMatrix;
 
+use super::frozen::FrozenMode;
 use super::rosenbrock::Rosenbrock;
 use super::{Amplification, Lane};
 use crate::linear::working_eigenvalues;
@@ -121,33 +126,6 @@ impl Mode {
     }
 }
 
-/// The growth since it last began, and the largest so far.
-#[derive(Clone, Copy, Debug, Default)]
-struct Amplifying {
-    /// Time and growth rate of the last step that was asked for.
-    before: Option<(f64, f64)>,
-    from_s: f64,
-    logarithm: f64,
-    largest: Option<Amplification>,
-}
-
-impl Amplifying {
-    /// The trapezoidal rule over the growth rate; decay below the initial amplitude is forgotten.
-    fn advance(&mut self, time_s: f64, growth_per_s: f64, frequency_rad_per_s: f64) {
-        let (before_s, before) = self.before.replace((time_s, growth_per_s)).unwrap_or((time_s, 0.0));
-        let logarithm = self.logarithm + 0.5 * (before + growth_per_s) * (time_s - before_s);
-        if logarithm > 0.0 {
-            self.logarithm = logarithm;
-        } else {
-            (self.logarithm, self.from_s) = (0.0, time_s);
-        }
-        if self.logarithm > self.largest.map_or(0.0, |largest| largest.logarithm) {
-            let (logarithm, from_s) = (self.logarithm, self.from_s);
-            self.largest = Some(Amplification { logarithm, from_s, until_s: time_s, frequency_rad_per_s });
-        }
-    }
-}
-
 /// The known modes of the machine in one lane.
 ///
 /// Eigenvalues cost several steps, so they are computed only when they may have changed: at fixed
@@ -176,6 +154,8 @@ pub(super) struct GrowthWatch {
     small_s: f64,
     /// Largest growth of those that are about as fast, in 1/s.
     growth: f64,
+    /// The least stable of the slower modes.
+    slow: Option<FrozenMode>,
     /// d at the last look.
     damping: f64,
     /// When growth was last estimated, and its value.
@@ -261,9 +241,20 @@ impl GrowthWatch {
         }
     }
 
+    /// The least stable of the slower modes, where the last call evaluated the modes; `Some(None)`
+    /// where there is none.
+    pub(super) fn slow_modes(&self) -> Option<Option<FrozenMode>> {
+        (self.age == Some(0)).then_some(self.slow)
+    }
+
+    /// Modes below this in rad/s are slower than those whose growth is followed.
+    pub(super) fn slower(&self) -> f64 {
+        if self.fastest > 0.0 { FAST * self.fastest } else { f64::INFINITY }
+    }
+
     /// What has grown most.
     pub(super) fn amplification(&self) -> Option<Amplification> {
-        self.growing.largest
+        self.growing.largest()
     }
 
     /// The longest step that shows how what has grown decays.
@@ -331,6 +322,7 @@ impl GrowthWatch {
         self.modes.clear();
         (self.fastest, self.most) = (0.0, f64::NEG_INFINITY);
         let mut eigenvalues: Vec<Mode> = Vec::new();
+        let mut all: Vec<FrozenMode> = Vec::new();
         for block in &self.blocks {
             let order = block.len();
             let matrix = DMatrix::from_fn(order, order, |row, column| jacobian[(block[row], block[column])]);
@@ -338,6 +330,7 @@ impl GrowthWatch {
             let zero = ZERO * values.iter().map(|value| portable::magnitude(*value)).fold(0.0, f64::max);
             for value in values {
                 let mode = Mode { magnitude: portable::magnitude(value), growth: value.re };
+                all.push(FrozenMode { growth_per_s: mode.growth, frequency_rad_per_s: mode.magnitude });
                 if mode.magnitude > zero && (value.im > 0.0 || (value.im == 0.0 && value.re > 0.0)) {
                     eigenvalues.push(mode);
                     let mode = self.told(mode, value.im);
@@ -352,6 +345,7 @@ impl GrowthWatch {
             fast.fold(f64::NEG_INFINITY, |most, mode| most.max(mode.growth))
         };
         (self.growth, self.eigenvalue) = (growth(&self.modes), growth(&eigenvalues));
+        self.slow = FrozenMode::least_stable(&all, self.slower());
         self.small_s = if self.fastest > 0.0 { SMALL_ANGLE / self.fastest } else { 0.0 };
         self.damping = self.friction(method, lane);
     }

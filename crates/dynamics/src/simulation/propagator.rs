@@ -1,6 +1,7 @@
 //! Steps of one and the same length, taken with matrices found once: how a machine that is nearly
 //! linear for a while gets from sample to sample.
 
+use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::kernel::StepTrial;
@@ -132,6 +133,19 @@ impl<S: Lane> Propagator<S> {
         }
         sum.times(1.0 / self.states.max(1) as f64).sqrt().times(1.0 / tolerance)
     }
+}
+
+/// phi_1 of a matrix.
+pub(super) fn first_function(z: &DMatrix<f64>) -> DMatrix<f64> {
+    let order = z.nrows();
+    let mut square = Square::new(order);
+    for column in 0..order {
+        for row in 0..order {
+            *square.entry(row, column) = z[(row, column)];
+        }
+    }
+    let [mut first, _] = Arch::new().dispatch(Functions { z: square });
+    DMatrix::from_fn(order, order, |row, column| *first.entry(row, column))
 }
 
 /// [`first_and_third`] with the vector instructions that there are.

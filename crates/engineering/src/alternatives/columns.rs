@@ -6,7 +6,7 @@ use super::comparison::{ColumnSense, sense_of};
 use super::{JudgedAlternative, no_rig};
 use crate::design::LoopFigures;
 use crate::quantity::DisplayUnit;
-use crate::simulate::{Metrics, NOT_SETTLED, ScenarioRun};
+use crate::simulate::{DIVERGED, Metrics, NOT_SETTLED, ScenarioRun, StoppedRun};
 
 /// A number of an alternative.
 #[derive(Clone, Debug, PartialEq)]
@@ -184,7 +184,7 @@ fn driven(run: Result<&ScenarioRun, String>) -> [AlternativeColumn; 6] {
 /// ```
 fn energy_from_supply(run: &ScenarioRun) -> Result<f64, String> {
     if let Some(stopped) = run.stopped() {
-        return Err(format!("the run ended at {} s: {}", stopped.time_s, stopped.word));
+        return Err(end_of(&stopped));
     }
     let record = &run.record;
     let [pressure, flow] = ["supply_pressure_pa", "supply_flow_m3_per_s"].map(|name| record.signal(name));
@@ -193,11 +193,18 @@ fn energy_from_supply(run: &ScenarioRun) -> Result<f64, String> {
     Ok(steps.map(|(times, powers)| 0.5 * (powers[0] + powers[1]) * (times[1] - times[0])).sum())
 }
 
+fn end_of(StoppedRun { time_s, word, .. }: &StoppedRun) -> String {
+    match *word {
+        DIVERGED => format!("the run diverges from {time_s} s on"),
+        word => format!("the run ended at {time_s} s: {word}"),
+    }
+}
+
 /// The greatest value over all events; none where the run ended early, or the force does not settle
 /// after one of them.
 fn greatest(run: &ScenarioRun, metric: fn(&Metrics) -> crate::simulate::Measured) -> Result<f64, String> {
     if let Some(stopped) = run.stopped() {
-        return Err(format!("the run ended at {} s: {}", stopped.time_s, stopped.word));
+        return Err(end_of(&stopped));
     }
     let values = || run.windows.iter().map(|(_, metrics)| metric(metrics));
     if values().any(|value| value == Err(NOT_SETTLED)) {

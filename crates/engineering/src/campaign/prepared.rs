@@ -3,17 +3,21 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use phea_dynamics::simulation::{Attention, Input, InputSchedule, Observer, Outcome, Sampler, Stretch, Task};
+use phea_dynamics::simulation::{
+    Amplification, Attention, Input, InputSchedule, Observer, Outcome, Sampler, SimulationError,
+    SimulationSettings, Stretch, Task,
+};
 use phea_hydraulics::machine::{Machine, MachineOptions};
-use phea_machine::{Control, ControllerSamples, Digital, Waking, Watcher};
+use phea_machine::{Control, ControllerSamples, Digital, Watcher};
 
 use super::plan::{Draw, Plan};
 use super::row::{Ran, Row, RowOutcome, numbers};
 use crate::rig::{RigError, actuator};
 use crate::setup::Setup;
 use crate::simulate::{
-    COMMAND_LIMIT, ControlledMachine, ERRORS_AMPLIFIED, Follower, LineLimits, LineWatch, Occurrence,
-    SimulateError, StoppedRun, course_of, errors_amplified, occurrences, options,
+    COMMAND_LIMIT, ControlledMachine, Divergence, ERRORS_AMPLIFIED, Follower, LineLimits, LineWatch,
+    Occurrence, PassAgreement, PassPlan, PassResult, PreparedScenario, REPEATED, Repetition, SimulateError,
+    StoppedRun, amplification, course_of, moved, occurrences, options,
 };
 
 /// A run ready to be driven.
@@ -23,8 +27,7 @@ pub(super) struct Prepared {
     /// The controller around this machine.
     pub(super) bench: ControlledMachine,
     course: InputSchedule,
-    start: Vec<f64>,
-    waking: Waking,
+    scenario: PreparedScenario,
     /// What a sampled controller did.
     log: RefCell<ControllerSamples>,
 }
@@ -68,11 +71,11 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
     };
     let (bench, course) = made().map_err(|error| refused(error.to_string(), lumps))?;
     let driving = course.machine_inputs();
-    let reference = Input::Value(course.reference);
+    let reference = Input::Value(course.reference.clone());
     let first = match &bench.control {
         Control::Continuous(_) => vec![reference],
         Control::Sampled(_) => vec![Input::Command, reference],
-        Control::Open(_) => vec![Input::Value(course.command), reference],
+        Control::Open(_) => vec![Input::Value(course.command.clone()), reference],
     };
     let inputs = first.into_iter().chain(driving).collect();
     let scenario = &plan.scenario;
@@ -81,8 +84,7 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
         lumps,
         bench,
         course: InputSchedule { duration_s: scenario.duration, output_step_s: scenario.output_step, inputs },
-        start: course.start,
-        waking: course.waking,
+        scenario: course,
         log: RefCell::default(),
     })
 }
@@ -90,25 +92,68 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
 impl Prepared {
     /// The task of a lane.
     pub(super) fn task<'a>(&'a self, observer: Watcher<'a>) -> Task<'a, Watcher<'a>> {
+        self.task_from(self.scenario.start.clone(), observer)
+    }
+
+    fn task_from<'a>(&'a self, start: Vec<f64>, observer: Watcher<'a>) -> Task<'a, Watcher<'a>> {
         let sampler: Option<Box<dyn Sampler + 'a>> = match &self.bench.control {
             Control::Continuous(_) | Control::Open(_) => None,
-            Control::Sampled(sampled) => Some(Box::new(Digital::new(sampled, &self.waking, &self.log))),
+            Control::Sampled(sampled) => {
+                Some(Box::new(Digital::new(sampled, &self.scenario.waking, &self.log)))
+            }
         };
-        Task { start: self.start.clone(), course: &self.course, sampler, observer }
+        Task { start, course: &self.course, sampler, observer }
+    }
+
+    /// Drives it again, alone; its watcher stops it by returning false.
+    pub(super) fn again<'a>(
+        &'a self,
+        plan: &'a Plan,
+        (pass, every_look): (PassPlan, bool),
+        watch: &mut dyn FnMut() -> bool,
+    ) -> Result<DrivenPass<'a>, SimulationError> {
+        self.log.replace(ControllerSamples::default());
+        let mut start = self.scenario.start.clone();
+        if pass.moved {
+            moved(&mut start, &self.bench.control.scales());
+        }
+        let watched = Watched::new(plan, self, every_look);
+        let settings = SimulationSettings { tolerance: pass.tolerance, ..self.bench.settings };
+        let task = self.task_from(start, watched.watcher());
+        let outcome = self.bench.control.drive(task, &settings, &mut |_| watch())?;
+        Ok(self.driven(outcome, watched))
+    }
+
+    /// A run that was driven, with what its controller did.
+    pub(super) fn driven<'a>(&self, outcome: Outcome, watched: Watched<'a>) -> DrivenPass<'a> {
+        let inputs = self.scenario.other_inputs();
+        let divergence = watched.seen.borrow().follower.divergence(&inputs);
+        DrivenPass { outcome, watched, divergence, log: self.log.borrow().clone() }
     }
 
     /// What came of it.
-    pub(super) fn row(&self, outcome: &Outcome, seen: &Watched<'_>) -> Row {
-        let seen = seen.seen.borrow();
+    pub(super) fn row(&self, pass: &DrivenPass<'_>, repetition: Option<&Repetition>) -> Row {
+        let DrivenPass { outcome, watched, .. } = pass;
+        let seen = watched.seen.borrow();
         let metrics = seen.follower.metrics();
         let stopped = StoppedRun::of(outcome.status);
+        let stopped = stopped.or_else(|| pass.divergence.as_ref().map(StoppedRun::diverged));
         let mut kinds: Vec<&'static str> = Vec::new();
         let of_lines = seen.lines.found().filter_map(|exceeded| Occurrence::of(&exceeded));
-        let all = self.occurrences(outcome).into_iter().chain(of_lines);
+        let all = self.occurrences(pass).into_iter().chain(of_lines);
         for occurrence in all.filter(|occurrence| occurrence.begins) {
             if !kinds.contains(&occurrence.kind) {
                 kinds.push(occurrence.kind);
             }
+        }
+        let agreed = |repetition: &Repetition| repetition.agreement == PassAgreement::Agreed;
+        let doubt =
+            pass.amplification().is_some_and(|grown| grown.may_show_errors(self.bench.settings.tolerance));
+        match repetition {
+            Some(repetition) if agreed(repetition) => kinds.push(REPEATED),
+            Some(_) => kinds.push(ERRORS_AMPLIFIED),
+            None if doubt => kinds.push(ERRORS_AMPLIFIED),
+            None => {}
         }
         let ran = Ran {
             status: stopped.map_or("completed", |stopped| stopped.word),
@@ -126,7 +171,7 @@ impl Prepared {
         }
     }
 
-    fn occurrences(&self, outcome: &Outcome) -> Vec<Occurrence> {
+    fn occurrences(&self, DrivenPass { outcome, log, .. }: &DrivenPass<'_>) -> Vec<Occurrence> {
         let value = |input: &Input| match input {
             Input::Value(profile) => profile.value(0.0),
             Input::Rate(profile) => profile.rate(0.0),
@@ -135,15 +180,47 @@ impl Prepared {
         let mut first: Vec<f64> = self.course.inputs.iter().map(value).collect();
         let control = &self.bench.control;
         let [states, _] = control.size();
-        first.extend(self.start.iter().skip(states));
-        let mut found = occurrences(control, &self.start, &first, &outcome.events);
-        if let Some((time_s, begins)) = self.log.borrow().limits.first().copied() {
+        let start = &self.scenario.start;
+        first.extend(start.iter().skip(states));
+        let mut found = occurrences(control, start, &first, &outcome.events);
+        if let Some((time_s, begins)) = log.limits.first().copied() {
             found.push(Occurrence { time_s, kind: COMMAND_LIMIT, begins });
         }
-        if let Some(grown) = errors_amplified(&self.bench, outcome) {
-            found.push(Occurrence { time_s: grown.from_s, kind: ERRORS_AMPLIFIED, begins: true });
-        }
         found
+    }
+}
+
+/// A run that was driven to its end, or as far as it went.
+pub(super) struct DrivenPass<'a> {
+    outcome: Outcome,
+    watched: Watched<'a>,
+    divergence: Option<Divergence>,
+    /// What a sampled controller did.
+    log: ControllerSamples,
+}
+
+impl DrivenPass<'_> {
+    fn amplification(&self) -> Option<Amplification> {
+        amplification(&self.outcome, &self.log)
+    }
+
+    /// As passes are compared.
+    pub(super) fn result(&self) -> PassResult {
+        let seen = self.watched.seen.borrow();
+        let windows = seen.plan.windows().iter().copied();
+        PassResult {
+            status: self.outcome.status,
+            work: self.outcome.work,
+            amplification: self.amplification(),
+            swings: self.divergence.as_ref().is_some_and(Divergence::swings),
+            metrics: windows.zip(seen.follower.metrics()).collect(),
+            force_n: seen.of_bands().collect(),
+        }
+    }
+
+    /// The force at every recorded time that was kept, N.
+    pub(super) fn force_n(&self) -> Vec<f64> {
+        self.watched.force_n()
     }
 }
 
@@ -166,7 +243,7 @@ struct Seen<'a> {
 
 impl<'a> Watched<'a> {
     pub(super) fn new(plan: &'a Plan, prepared: &'a Prepared, every_look: bool) -> Watched<'a> {
-        let windows = (plan.windows(), plan.scenario.settling_band_percent);
+        let windows = (plan.windows(), plan.scenario.settling_band_percent, plan.scenario.duration);
         let reference = &plan.driven.reference;
         let follower = Follower::of(&prepared.bench, &plan.look, &prepared.log, reference, windows);
         let kept = if every_look { plan.times_s.len() } else { plan.band_looks.len() };
@@ -180,8 +257,7 @@ impl<'a> Watched<'a> {
         Box::new(Watched { plan: self.plan, seen: Rc::clone(&self.seen) })
     }
 
-    /// The force at every recorded time that was kept, N.
-    pub(super) fn force_n(&self) -> Vec<f64> {
+    fn force_n(&self) -> Vec<f64> {
         self.seen.borrow().force_n.clone()
     }
 }

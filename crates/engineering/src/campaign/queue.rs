@@ -11,10 +11,10 @@ use phea_hydraulics::machine::{Machine, MachineError};
 use phea_machine::{Control, Fleet, Lanewise, Watcher};
 
 use super::plan::Plan;
-use super::prepared::{Prepared, Watched, prepared};
+use super::prepared::{DrivenPass, Prepared, Watched, prepared};
 use super::row::{Row, RowOutcome};
 use super::supply::RemainingRuns;
-use crate::simulate::SimulateError;
+use crate::simulate::{Repetition, SimulateError, repeated};
 
 use super::CampaignError;
 
@@ -111,8 +111,10 @@ fn driven(
     drive: impl for<'a> FnOnce(&mut Batch<'a>) -> Result<(), SimulationError>,
 ) -> Result<(), CampaignError> {
     let made: Vec<OnceCell<Prepared>> = (0..most).map(|_| OnceCell::new()).collect();
-    let mut batch = Batch { shared, made: &made, next: 0, in_lanes: Vec::new(), works: false, give };
+    let mut batch =
+        Batch { shared, made: &made, next: 0, in_lanes: Vec::new(), works: false, give, fault: None };
     let outcome = drive(&mut batch);
+    let outcome = outcome.and(batch.fault.take().map_or(Ok(()), Err));
     if batch.works {
         shared.rest();
     }
@@ -130,9 +132,33 @@ struct Batch<'a> {
     /// Whether a run was taken.
     works: bool,
     give: Give<'a>,
+    /// Why a run could not be repeated.
+    fault: Option<SimulationError>,
 }
 
 impl Batch<'_> {
+    /// A run after its first pass, repeated alone where its errors may be visible; `None` where it was
+    /// stopped.
+    fn repeated<'a>(
+        &self,
+        prepared: &'a Prepared,
+        first: DrivenPass<'a>,
+    ) -> Result<Option<Finished>, SimulationError>
+    where
+        Self: 'a,
+    {
+        let shared = self.shared;
+        let mut goes_on = || !shared.stop.load(Ordering::Relaxed);
+        let again = |pass| prepared.again(shared.plan, (pass, shared.forces), &mut goes_on);
+        let (last, _, repetition) =
+            repeated((prepared.bench.settings.tolerance, first), DrivenPass::result, again)?;
+        if repetition.as_ref().is_some_and(Repetition::was_cancelled) {
+            return Ok(None);
+        }
+        let force_n = if shared.forces { last.force_n() } else { Vec::new() };
+        Ok(Some(Finished { row: prepared.row(&last, repetition.as_ref()), force_n }))
+    }
+
     fn refuse(&mut self, row: Row) {
         self.shared.done.fetch_add(1, Ordering::Relaxed);
         (self.give)(Finished { row, force_n: Vec::new() });
@@ -176,11 +202,14 @@ impl<'a> Fleet<'a> for Batch<'a> {
     fn done(&mut self, lane: usize, outcome: Outcome) {
         let found = self.in_lanes.get_mut(lane).and_then(Option::take);
         let stopped = matches!(outcome.status, Status::Cancelled { .. });
-        if let (false, Some((prepared, watched))) = (stopped, found) {
-            let row = prepared.row(&outcome, &watched);
-            let force_n = if self.shared.forces { watched.force_n() } else { Vec::new() };
-            self.shared.done.fetch_add(1, Ordering::Relaxed);
-            (self.give)(Finished { row, force_n });
+        let (false, Some((prepared, watched))) = (stopped, found) else { return };
+        match self.repeated(prepared, prepared.driven(outcome, watched)) {
+            Ok(Some(finished)) => {
+                self.shared.done.fetch_add(1, Ordering::Relaxed);
+                (self.give)(finished);
+            }
+            Ok(None) => {}
+            Err(error) => self.fault = Some(error),
         }
     }
 

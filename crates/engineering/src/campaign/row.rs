@@ -7,7 +7,9 @@ use phea_quantity::MotionKind;
 
 use super::csv::{Csv, quoted};
 use super::shortest_number;
-use super::simulate::{COMMAND_LIMIT, Cause, ERRORS_AMPLIFIED, LINE_OCCURRENCES, Metrics, Window};
+use super::simulate::{
+    COMMAND_LIMIT, Cause, DIVERGED, ERRORS_AMPLIFIED, LINE_OCCURRENCES, Metrics, REPEATED, Window,
+};
 
 /// Names of the metrics, in the order of a row.
 pub const METRIC_NAMES: [&str; 9] = [
@@ -29,8 +31,15 @@ const LUMP_COLUMNS: [&str; 3] =
     ["hydraulic_stiffness_n_per_m", "flow_gain_m3_per_s_v", "flow_pressure_coefficient_m3_per_s_pa"];
 
 /// How a run ended, in the words of a row.
-pub const STATUS_WORDS: [&str; 6] =
-    ["completed", "refused", "step_too_small", "not_finite", "too_many_steps", "unresolved_oscillation"];
+pub const STATUS_WORDS: [&str; 7] = [
+    "completed",
+    "refused",
+    "step_too_small",
+    "not_finite",
+    "too_many_steps",
+    "unresolved_oscillation",
+    DIVERGED,
+];
 
 const REFUSED: &str = "refused";
 
@@ -85,9 +94,9 @@ pub enum RowOutcome {
 pub struct Ran {
     /// One of [`STATUS_WORDS`].
     pub status: &'static str,
-    /// When it ended before its time, s.
+    /// When it ended before its time, or diverged, s.
     pub ended_s: Option<f64>,
-    /// Accepted steps.
+    /// Accepted steps of the pass that is reported.
     pub steps: u64,
     /// Events on the way, each kind once: `cavitation_a`, `command_limit` and so on.
     pub occurrences: Vec<&'static str>,
@@ -267,7 +276,8 @@ impl CampaignColumns {
         if status == REFUSED {
             return Some(Row { run, values, lumps, outcome: RowOutcome::Refused(reason) });
         }
-        let known = || INDICATORS.iter().chain(&LINE_OCCURRENCES).chain([&COMMAND_LIMIT, &ERRORS_AMPLIFIED]);
+        let more = [&COMMAND_LIMIT, &ERRORS_AMPLIFIED, &REPEATED];
+        let known = || INDICATORS.iter().chain(&LINE_OCCURRENCES).chain(more);
         let kinds = happened.split(';').filter(|kind| !kind.is_empty());
         let occurrences = kinds.map(|kind| known().find(|known| **known == kind).copied());
         let went = forces.iter().take_while(|force| !force.is_empty());

@@ -5,16 +5,16 @@ use phea_hydraulics::machine::SIGNALS;
 
 use super::metrics::Measured;
 use super::{
-    Metrics, Record, RunOutput, ScenarioRun, SimulateError, StoppedRun, Window, simulate_into,
-    simulate_project,
+    Metrics, PassPlan, Record, RunOutput, ScenarioRun, SimulateError, StoppedRun, Window, prepared,
+    simulate_into,
 };
 use crate::number_table::TableFormat;
 use crate::setup::Setup;
 use crate::source::{Destination, Source};
 use phea_dynamics::watch::{Progress, Watch};
 
-/// Ratio of the second run's tolerance to that of the first.
-const TIGHTER: f64 = 0.1;
+/// Ratio of the first run's tolerance to that of the second.
+pub(super) const FOLD: f64 = 10.0;
 /// Share of the peak above which a difference of the force is reported.
 pub(super) const LARGEST_PART: f64 = 1e-3;
 /// Beside [`SIGNALS`].
@@ -85,7 +85,7 @@ impl ToleranceCheck {
     }
 }
 
-/// As [`simulate_into`] with samples, and each scenario a second time at a tenth of the tolerance,
+/// As [`simulate_into`] with samples, and each scenario once more at a tenth of its last tolerance,
 /// which fills [`ScenarioRun::check`].
 ///
 /// # Errors
@@ -97,19 +97,26 @@ pub fn simulate_checked(
     watch: Watch<'_>,
 ) -> Result<Vec<ScenarioRun>, SimulateError> {
     let half = |progress: Progress| Progress { share: 0.5 * progress.share, ..progress };
-    let output = RunOutput { samples: true, table, ledger: true };
+    let output = RunOutput { ledger: true, ..RunOutput::new(true, table) };
     let mut runs = simulate_into(source, setup, output, &mut |progress| watch(half(progress)))?;
     if runs.iter().any(ScenarioRun::was_cancelled) {
         return Ok(runs);
     }
-    let mut tighter = setup.project.clone();
-    tighter.simulation.tolerance *= TIGHTER;
-    let mut told = |progress: Progress| {
-        watch(Progress { stage: "checking at a tenth of the tolerance", share: 0.5 + half(progress).share })
-    };
-    let others = simulate_project(source, &setup.asked(&tighter), &mut told)?;
-    for (run, other) in runs.iter_mut().zip(&others) {
-        run.check = Some(check(run, other, tighter.simulation.tolerance));
+    let output = RunOutput::new(true, None);
+    let whole: f64 = setup.project.scenarios.iter().map(|scenario| scenario.duration).sum();
+    let mut before = 0.0;
+    for (run, prepared) in runs.iter_mut().zip(&prepared(source, setup)?) {
+        let mut told = |time_s: f64| {
+            let share = 0.5 + 0.5 * (before + time_s) / whole;
+            watch(Progress { stage: "checking at a tenth of the tolerance", share })
+        };
+        let plan = PassPlan { tolerance: run.tolerance / FOLD, moved: false };
+        let other = prepared.pass(plan, (&output, ""), &mut told)?.run;
+        run.check = Some(check(run, &other, plan.tolerance));
+        before += prepared.scenario.duration;
+        if other.was_cancelled() {
+            break;
+        }
     }
     Ok(runs)
 }
@@ -119,7 +126,7 @@ fn check(run: &ScenarioRun, other: &ScenarioRun, tolerance: f64) -> ToleranceChe
     let metrics = run.windows.iter().zip(&other.windows).map(metric_differences).collect();
     ToleranceCheck {
         tolerance,
-        stopped: other.stopped(),
+        stopped: StoppedRun::of(other.status),
         look_s: run.look_s * run.record.looks_apart.max(other.record.looks_apart) as f64,
         force: signals.iter().find(|signal| signal.name == "force_n").cloned(),
         signals,

@@ -7,6 +7,7 @@ use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 use phea_machine::{Control, HeldInputs, Rest, Waking};
 
 use super::bench::ControlledMachine;
+use super::divergence::OtherInputs;
 use super::equilibrium::{RestedLoop, rest};
 use super::motion_file::{self, CHANGES, FORCES, VOLTAGES};
 use super::saved::{self, SavedState};
@@ -55,6 +56,12 @@ pub struct ScenarioDrive {
 }
 
 impl PreparedScenario {
+    /// The inputs that move what the controller does not.
+    pub(crate) fn other_inputs(&self) -> OtherInputs<'_> {
+        let more = [&self.external_force, &self.setting_change].into_iter().flatten();
+        OtherInputs { reference: &self.reference, of_load: [&self.ground].into_iter().chain(more).collect() }
+    }
+
     /// The inputs of the machine other than its command.
     pub(crate) fn machine_inputs(&self) -> Vec<Input> {
         let ground = [Input::Value(self.ground.clone()), Input::Rate(self.ground.clone())];

@@ -6,6 +6,7 @@ use std::cell::RefCell;
 use phea_dynamics::simulation::{Profile, ProfilePiece, Quartic, Stretch};
 use phea_machine::ControllerSamples;
 
+use super::divergence::{Divergence, DivergenceWatch, OtherInputs};
 use super::sum::SignalSum;
 use super::tally::{CommandStretch, Passed, Tally};
 use super::{Metrics, Window};
@@ -37,6 +38,8 @@ pub struct Follower<'a> {
     first: usize,
     /// Room for all inputs.
     inputs: Vec<f64>,
+    /// None in an open loop.
+    divergence: Option<DivergenceWatch>,
 }
 
 impl<'a> Follower<'a> {
@@ -53,7 +56,18 @@ impl<'a> Follower<'a> {
             Tally::new(*window, band, reference.map(|reference| last_value(reference, window)))
         };
         let tallies = windows.iter().map(tally).collect();
-        Follower { force, commanded, reference, tallies, first: 0, inputs: vec![0.0; inputs] }
+        let inputs = vec![0.0; inputs];
+        Follower { force, commanded, reference, tallies, first: 0, inputs, divergence: None }
+    }
+
+    /// The same, watching for a divergence where the loop is closed.
+    pub(super) fn watching(self, watch: DivergenceWatch) -> Follower<'a> {
+        Follower { divergence: self.reference.map(|_| watch), ..self }
+    }
+
+    /// How the run diverges, if it does, under these inputs.
+    pub(crate) fn divergence(&self, inputs: &OtherInputs<'_>) -> Option<Divergence> {
+        self.divergence.as_ref()?.found(inputs)
     }
 
     /// The metrics of each window, as far as it was followed.
@@ -69,6 +83,7 @@ impl<'a> Follower<'a> {
     /// Takes note of a step.
     pub fn follow(&mut self, stretch: &Stretch<'_>) {
         let (start_s, end_s) = (stretch.start_s(), stretch.end_s());
+        self.watch(stretch);
         let rounding_s = SAME * (end_s - start_s);
         while self.tallies.get(self.first).is_some_and(|one| one.window.end_s <= start_s + rounding_s) {
             self.first += 1;
@@ -108,6 +123,22 @@ impl<'a> Follower<'a> {
             };
             self.pass(&passed);
         }
+    }
+
+    /// Takes the end of a step for a divergence.
+    fn watch(&mut self, stretch: &Stretch<'_>) {
+        let (Some(watch), Some(reference)) = (&mut self.divergence, self.reference) else { return };
+        let end_s = stretch.end_s();
+        let force = self.force.over(stretch.states).at(1.0);
+        let asked_for = reference.piece(0.5 * (stretch.start_s() + end_s)).at(end_s).value;
+        let command = match &self.commanded {
+            CommandSource::Sampled(log) => log.borrow().last.map_or(0.0, |sample| sample.command_v),
+            CommandSource::Continuously(sum, _) => {
+                let driven = if sum.has_inputs() { sum.driven(stretch, 1.0, &mut self.inputs) } else { 0.0 };
+                sum.over(stretch.states).at(1.0) + driven
+            }
+        };
+        watch.take(end_s, [force, asked_for, command]);
     }
 
     /// The command over a part of a step.

@@ -7,18 +7,19 @@ use phea_machine::{Control, ControllerSamples};
 
 use super::Window;
 use super::bench::ControlledMachine;
+use super::divergence::DivergenceWatch;
 use super::follower::{CommandSource, Follower};
 use super::sums;
 
 impl<'a> Follower<'a> {
-    /// Of the loop of a bench whose observer wants these states, in windows in the order of their
-    /// starts; the band of settling times in percent.
+    /// Of the loop of a bench whose observer wants these states, over a run of this length in s, in
+    /// windows in the order of their starts; the band of settling times in percent.
     pub fn of(
         bench: &'a ControlledMachine,
         wanted: &[usize],
         samples: &'a RefCell<ControllerSamples>,
         reference: &'a Profile,
-        (windows, band): (&[Window], f64),
+        (windows, band, duration_s): (&[Window], f64, f64),
     ) -> Follower<'a> {
         let commanded = match &bench.control {
             Control::Continuous(closed) => {
@@ -29,6 +30,17 @@ impl<'a> Follower<'a> {
         };
         let reference = if matches!(bench.control, Control::Open(_)) { None } else { Some(reference) };
         let [_, inputs] = bench.control.size();
+        let range_v = bench.rig.actuator.components().valve.nominal_voltage.min(limit(bench));
+        let watch = DivergenceWatch::new(range_v, duration_s, windows);
         Follower::new(sums::force(bench, wanted), commanded, inputs, reference, (windows, band))
+            .watching(watch)
+    }
+}
+
+/// Largest magnitude of the command, V.
+fn limit(bench: &ControlledMachine) -> f64 {
+    match &bench.control {
+        Control::Continuous(closed) | Control::Open(closed) => closed.limit(),
+        Control::Sampled(sampled) => sampled.command_limit,
     }
 }

@@ -10,6 +10,7 @@ use super::adjusted::{AdjustmentWatch, AdjustmentWork};
 use super::bench::ControlledMachine;
 use super::columns::LOOP_SIGNALS;
 use super::course::PreparedScenario;
+use super::divergence::Divergence;
 use super::exceeded::{Exceeded, LimitWatch};
 use super::files::RunTable;
 use super::follower::Follower;
@@ -25,10 +26,15 @@ use super::{Metrics, SimulateError};
 use crate::source::WriteError;
 
 /// The observations of a run.
-pub(super) struct Sighted {
+pub(super) struct Sighted<'t> {
     pub(super) record: Record,
     /// Metrics of each window.
     pub(super) metrics: Vec<Metrics>,
+    pub(super) divergence: Option<Divergence>,
+    /// The table with all its rows, which has no name yet.
+    pub(super) table: Option<RunTable<'t>>,
+    /// The force at some hundreds of samples, N.
+    pub(super) force_n: Vec<f64>,
     /// Highest pressures of chambers A and B, Pa.
     pub(super) peak_pressures_pa: [f64; 2],
     pub(super) measured: Vec<Overlay>,
@@ -51,8 +57,11 @@ struct LoopLook {
     of_loop: [f64; LOOP_SIGNALS.len()],
 }
 
+/// Samples at which the force is kept for comparison.
+const FORCES: f64 = 500.0;
+
 /// Observes a machine and its controller.
-pub(super) struct Looking<'a> {
+pub(super) struct Looking<'a, 't> {
     bench: &'a ControlledMachine,
     /// The last output of a sampled controller.
     samples: &'a RefCell<ControllerSamples>,
@@ -61,7 +70,7 @@ pub(super) struct Looking<'a> {
     /// Looks so far.
     count: u64,
     looks_per_row: u64,
-    table: Option<RunTable<'a>>,
+    table: Option<RunTable<'t>>,
     /// `None` where no samples are kept.
     record: Option<Record>,
     limits: LimitWatch,
@@ -75,23 +84,29 @@ pub(super) struct Looking<'a> {
     pressures: [SignalSum<'a>; 2],
     peak_pressures_pa: [f64; 2],
     overlays: Vec<Overlaying<'a>>,
+    /// How closely the steps are followed.
+    attention: Attention,
+    /// Samples between two that are kept of the force, and those.
+    apart: u64,
+    force_n: Vec<f64>,
+    course: &'a PreparedScenario,
     /// The error of the table, if it accepts no more rows.
     full: &'a Cell<bool>,
     fault: Option<WriteError>,
 }
 
-impl<'a> Looking<'a> {
+impl<'a, 't> Looking<'a, 't> {
     pub(super) fn new(
         bench: &'a ControlledMachine,
         samples: &'a RefCell<ControllerSamples>,
-        (table, looks_per_row): (Option<RunTable<'a>>, usize),
+        (table, looks_per_row): (Option<RunTable<'t>>, usize),
         measurements: &'a [Measurement],
         full: &'a Cell<bool>,
-        (course, band): (&'a PreparedScenario, f64),
-    ) -> Looking<'a> {
+        (course, band, duration_s): (&'a PreparedScenario, f64, f64),
+    ) -> Looking<'a, 't> {
         let [states, _] = bench.control.size();
         let wanted: Vec<usize> = (0..states).collect();
-        let windows = (course.windows.as_slice(), band);
+        let windows = (course.windows.as_slice(), band, duration_s);
         let follower = Follower::of(bench, &wanted, samples, &course.reference, windows);
         let pressures = sums::pressures(bench, &wanted);
         let gas = GasWatch::of(bench, &wanted);
@@ -115,37 +130,47 @@ impl<'a> Looking<'a> {
             pressures,
             peak_pressures_pa: [f64::NEG_INFINITY; 2],
             overlays: measurements.iter().map(|one| Overlaying::new(one, &parts)).collect(),
+            attention: Attention::Everything,
+            apart: 1,
+            force_n: Vec::new(),
+            course,
             full,
             fault: None,
         }
     }
 
+    /// The same, following the steps no closer than this, and keeping the force of about this many
+    /// samples at some hundreds of them.
+    pub(super) fn following(self, attention: Attention, looks: f64) -> Looking<'a, 't> {
+        Looking { attention, apart: (looks / FORCES).ceil().max(1.0) as u64, ..self }
+    }
+
     /// The same, with a record of its samples, about as many as this.
-    pub(super) fn keeping(mut self, looks: f64) -> Looking<'a> {
+    pub(super) fn keeping(mut self, looks: f64) -> Looking<'a, 't> {
         self.record.get_or_insert_default().reserve(looks as usize);
         self
     }
 
     /// The same, with the accounts of oil and energy.
-    pub(super) fn accounting(mut self) -> Looking<'a> {
+    pub(super) fn accounting(mut self) -> Looking<'a, 't> {
         self.ledger = Some(LedgerWatch::of(self.bench));
         self
     }
 
-    /// The observations, with the table finished.
+    /// The observations.
     ///
     /// # Errors
     /// [`SimulateError::Write`] where a row could not be written.
-    pub(super) fn finish(self) -> Result<Sighted, SimulateError> {
+    pub(super) fn finish(self) -> Result<Sighted<'t>, SimulateError> {
         if let Some(fault) = self.fault {
             return Err(SimulateError::Write(fault));
-        }
-        if let Some(table) = self.table {
-            table.finish().map_err(SimulateError::Write)?;
         }
         let measured = self.overlays.into_iter().map(Overlaying::finish).collect();
         let metrics = self.follower.metrics();
         Ok(Sighted {
+            divergence: self.follower.divergence(&self.course.other_inputs()),
+            table: self.table,
+            force_n: self.force_n,
             record: self.record.unwrap_or_default(),
             metrics,
             peak_pressures_pa: self.peak_pressures_pa,
@@ -213,7 +238,7 @@ impl<'a> Looking<'a> {
     }
 }
 
-impl Observer for Looking<'_> {
+impl Observer for Looking<'_, '_> {
     fn wanted(&self) -> &[usize] {
         &self.wanted
     }
@@ -224,6 +249,9 @@ impl Observer for Looking<'_> {
         }
         let (of_loop, others) = self.loop_look(states, inputs);
         self.limits.take_loop(time_s, of_loop.asked_for.map(|[reference, _]| reference), of_loop.control_v);
+        if self.count.is_multiple_of(self.apart) {
+            self.force_n.push(self.follower.force_n(states));
+        }
         if !self.needs_signals() {
             self.count += 1;
             return;
@@ -246,7 +274,11 @@ impl Observer for Looking<'_> {
     }
 
     fn attention(&self) -> Attention {
-        Attention::Everything
+        self.attention
+    }
+
+    fn looks_closer(&self, stretch: &Stretch<'_>) -> bool {
+        self.follower.looks_closer(stretch)
     }
 
     fn follow(&mut self, stretch: &Stretch<'_>) {

@@ -4,7 +4,8 @@ use std::cell::{Cell, RefCell};
 
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::simulation::{
-    Amplification, Event, Input, InputSchedule, Outcome, Sampler, Status, StepCounts, Task,
+    Amplification, Attention, Event, Input, InputSchedule, Outcome, Sampler, SimulationSettings, Status,
+    StepCounts, Task,
 };
 use phea_hydraulics::machine::INDICATORS;
 use phea_machine::{Control, ControllerSamples, Digital, DigitalMemory, Watcher};
@@ -12,6 +13,7 @@ use phea_machine::{Control, ControllerSamples, Digital, DigitalMemory, Watcher};
 use super::adjusted::AdjustmentWork;
 use super::bench::ControlledMachine;
 use super::course::PreparedScenario;
+use super::divergence::Divergence;
 use super::exceeded::Exceeded;
 use super::gas::GasRange;
 use super::look::Looking;
@@ -19,8 +21,9 @@ use super::measured::{Measurement, Overlay};
 use super::metrics::Metrics;
 use super::parts::SignalParts;
 use super::record::Record;
+use super::repetition::{self, PassPlan, PassResult, Repetition};
 use super::saved::{self, SavedState};
-use super::{RunLedger, RunTable, SimulateError, ToleranceCheck, Window};
+use super::{RunLedger, RunOutput, RunTable, SimulateError, ToleranceCheck, Window};
 use crate::project::Scenario;
 
 /// Longest time between two samples, from which figures are drawn: 1 ms would cut off the peaks of
@@ -40,6 +43,12 @@ pub struct ScenarioRun {
     pub status: Status,
     /// What it cost.
     pub work: StepCounts,
+    /// Tolerance of the integration.
+    pub tolerance: f64,
+    /// The passes that were made because errors may be visible; `None` where one was enough.
+    pub repetition: Option<Repetition>,
+    /// How it diverges, though it ran to its end; `None` if it does not.
+    pub divergence: Option<Divergence>,
     /// The record, every [`ScenarioRun::look_s`], or less often in a long run; empty where it was
     /// not asked for.
     pub record: Record,
@@ -47,6 +56,8 @@ pub struct ScenarioRun {
     pub looks_per_row: usize,
     /// Time between two samples, s: shorter events are not drawn.
     pub look_s: f64,
+    /// How closely its steps were followed.
+    pub attention: Attention,
     /// Each window with its metrics.
     pub windows: Vec<(Window, Metrics)>,
     /// The events of the run, in the order of time.
@@ -59,8 +70,8 @@ pub struct ScenarioRun {
     pub measured: Vec<Overlay>,
     /// The difference from a run at a tenth of the tolerance; `None` if it was not requested.
     pub check: Option<ToleranceCheck>,
-    /// An oscillation that grew so much that errors within the tolerance may be visible; `None` if
-    /// there is none.
+    /// A mode that grew so much that errors within the tolerance of the first pass may be visible;
+    /// `None` if there is none.
     pub errors_amplified: Option<Amplification>,
     /// Whether a stated command drove the valve, and no controller.
     pub open_loop: bool,
@@ -131,21 +142,27 @@ pub struct UnresolvedMode {
 impl ScenarioRun {
     /// Whether it is so long that it was sampled less often than its figures need.
     pub fn is_coarse(&self) -> bool {
-        self.look_s > LONGEST_LOOK_S * (1.0 + 1e-9)
+        self.attention == Attention::Everything && self.look_s > LONGEST_LOOK_S * (1.0 + 1e-9)
     }
 
-    /// Whether whoever watched ended it.
+    /// Whether whoever watched ended it, or a repetition.
     pub fn was_cancelled(&self) -> bool {
-        matches!(self.status, Status::Cancelled { .. })
+        let repeating = self.repetition.as_ref().is_some_and(Repetition::was_cancelled);
+        matches!(self.status, Status::Cancelled { .. }) || repeating
     }
 
-    /// Why and when it ended early; `None` if it did not.
+    /// Why and when it ended early or diverged; `None` if it did neither.
     pub fn stopped(&self) -> Option<StoppedRun> {
-        StoppedRun::of(self.status)
+        StoppedRun::of(self.status).or_else(|| self.divergence.as_ref().map(StoppedRun::diverged))
     }
 }
 
 impl StoppedRun {
+    /// That of a run to its end that diverges.
+    pub fn diverged(divergence: &Divergence) -> StoppedRun {
+        StoppedRun { time_s: divergence.since_s(), word: DIVERGED, mode: None }
+    }
+
     /// The meaning of a status; `None` for a run that was completed.
     pub fn of(status: Status) -> Option<StoppedRun> {
         let mut mode = None;
@@ -164,16 +181,41 @@ impl StoppedRun {
     }
 }
 
-/// Runs a scenario, writes its rows into a table, if one is given, and keeps its samples, if they
-/// are asked for; `watch` is called with the simulated time at intervals.
-pub(super) fn run(
+/// A pass over a scenario.
+pub(super) struct RunPass<'t> {
+    pub(super) run: ScenarioRun,
+    /// Its rows, to be finished.
+    pub(super) table: Option<RunTable<'t>>,
+    /// The force at some times, N.
+    force_n: Vec<f64>,
+    /// What grew most.
+    amplification: Option<Amplification>,
+}
+
+impl RunPass<'_> {
+    /// As passes are compared.
+    pub(super) fn result(&self) -> PassResult {
+        PassResult {
+            status: self.run.status,
+            work: self.run.work,
+            amplification: self.amplification,
+            swings: self.run.divergence.as_ref().is_some_and(Divergence::swings),
+            metrics: self.run.windows.clone(),
+            force_n: self.force_n.clone(),
+        }
+    }
+}
+
+/// Runs a scenario once, writes its rows into a table, if one is given, and keeps its samples, if
+/// they are asked for; `watch` is called with the simulated time at intervals.
+pub(super) fn run<'t>(
     bench: &ControlledMachine,
     scenario: &Scenario,
     (course, measurements): (&PreparedScenario, &[Measurement]),
-    (table, samples_kept, ledger_kept): (Option<RunTable<'_>>, bool, bool),
+    (plan, table, output): (PassPlan, Option<RunTable<'t>>, &RunOutput<'_>),
     watch: &mut dyn FnMut(f64) -> bool,
-) -> Result<ScenarioRun, SimulateError> {
-    let looks_per_row = looks_per_row(scenario);
+) -> Result<RunPass<'t>, SimulateError> {
+    let looks_per_row = if output.attention == Attention::Steps { 1 } else { looks_per_row(scenario) };
     let look_s = scenario.output_step / looks_per_row as f64;
     let (samples, full) = (RefCell::new(ControllerSamples::default()), Cell::new(false));
     let memory = RefCell::new(DigitalMemory::default());
@@ -185,9 +227,12 @@ pub(super) fn run(
     let inputs = inputs(&bench.control, course);
     let drive = InputSchedule { duration_s: scenario.duration, output_step_s: look_s, inputs };
     let band = scenario.settling_band_percent;
-    let looking = Looking::new(bench, &samples, (table, looks_per_row), measurements, &full, (course, band));
-    let looking = if samples_kept { looking.keeping(scenario.duration / look_s + 2.0) } else { looking };
-    let mut looking = if ledger_kept { looking.accounting() } else { looking };
+    let during = (course, band, scenario.duration);
+    let looks = scenario.duration / look_s;
+    let looking = Looking::new(bench, &samples, (table, looks_per_row), measurements, &full, during);
+    let looking = looking.following(output.attention, looks);
+    let looking = if output.samples { looking.keeping(looks + 2.0) } else { looking };
+    let mut looking = if output.ledger { looking.accounting() } else { looking };
     let sampler = match &bench.control {
         Control::Continuous(_) | Control::Open(_) => None,
         Control::Sampled(sampled) => {
@@ -196,9 +241,14 @@ pub(super) fn run(
         }
     };
     let observer: Watcher<'_> = Box::new(&mut looking);
-    let task = Task { start: course.start.clone(), course: &drive, sampler, observer };
+    let mut start = course.start.clone();
+    if plan.moved {
+        repetition::moved(&mut start, &bench.control.scales());
+    }
+    let task = Task { start, course: &drive, sampler, observer };
+    let settings = SimulationSettings { tolerance: plan.tolerance, ..bench.settings };
     let named = |error| SimulateError::Simulation { name: scenario.name.clone(), error };
-    let outcome = bench.control.drive(task, &bench.settings, &mut watch).map_err(named)?;
+    let outcome = bench.control.drive(task, &settings, &mut watch).map_err(named)?;
     let seen = looking.finish()?;
     let occurrences = found((bench, course), &outcome, &samples.borrow(), &seen.exceeded);
     let windows = course.windows.iter().copied().zip(seen.metrics).collect();
@@ -207,19 +257,24 @@ pub(super) fn run(
     let memory = matches!(bench.control, Control::Sampled(_)).then_some(&memory);
     let end = saved::of_end(bench, course, (outcome.status, &outcome.end, scenario.duration), memory);
     let record = Record { motion: bench.motion, parts: SignalParts::of(bench), ..seen.record };
-    Ok(ScenarioRun {
+    let amplification = amplification(&outcome, &samples.borrow());
+    let run = ScenarioRun {
         name: scenario.name.clone(),
         status: outcome.status,
         work: outcome.work,
+        tolerance: plan.tolerance,
+        repetition: None,
+        divergence: seen.divergence,
         record,
         looks_per_row,
         look_s,
+        attention: output.attention,
         windows,
         occurrences,
         outside_model_s,
         settling_band_percent: band,
         measured: seen.measured,
-        errors_amplified: errors_amplified(bench, &outcome),
+        errors_amplified: amplification.filter(|grown| grown.may_show_errors(plan.tolerance)),
         open_loop: scenario.is_open_loop(),
         beyond_expansion: beyond_expansion(bench, seen.peak_pressures_pa),
         exceeded: seen.exceeded,
@@ -228,7 +283,8 @@ pub(super) fn run(
         ledger: seen.ledger,
         end,
         check: None,
-    })
+    };
+    Ok(RunPass { run, table: seen.table, force_n: seen.force_n, amplification })
 }
 
 /// Inputs of the loop, then those of its machine.
@@ -299,13 +355,19 @@ fn looks_per_row(scenario: &Scenario) -> usize {
 /// of a machine.
 pub const COMMAND_LIMIT: &str = "command_limit";
 
-/// What a campaign calls [`ScenarioRun::errors_amplified`], with the names of what a machine
-/// reports.
+/// What a campaign calls a run whose errors may be visible though it was repeated, with the names of
+/// what a machine reports.
 pub const ERRORS_AMPLIFIED: &str = "errors_amplified";
 
-/// The oscillation that grew so much that errors within the tolerance may be visible.
-pub fn errors_amplified(bench: &ControlledMachine, outcome: &Outcome) -> Option<Amplification> {
-    outcome.amplification.filter(|grown| grown.may_show_errors(bench.settings.tolerance))
+/// What a campaign calls a run that was repeated until its metrics agreed.
+pub const REPEATED: &str = "repeated";
+
+/// Status of a run that ran to its end and diverged.
+pub const DIVERGED: &str = "diverged";
+
+/// What grew most between the samples of a controller, or from one to the next.
+pub fn amplification(outcome: &Outcome, samples: &ControllerSamples) -> Option<Amplification> {
+    Amplification::larger([outcome.amplification, samples.amplification])
 }
 
 /// Inputs at time zero: those of the loop, the ground, the external force, the setting, and the

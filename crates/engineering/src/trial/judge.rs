@@ -12,7 +12,7 @@ use super::steps::Steps;
 use crate::audit::ProjectAudit;
 use crate::quantity::{DisplayUnit, FORCE, significant};
 use crate::robust::RobustProblem;
-use crate::simulate::{ScenarioRun, SimulateError};
+use crate::simulate::{DIVERGED, ScenarioRun, SimulateError};
 
 /// Motion of a force that counts as settled, as a share of the step.
 const STILL: f64 = 0.01;
@@ -86,7 +86,11 @@ pub(super) fn judge(
     let broken = if promised { Agreement::Contradicts } else { Agreement::Differs };
     if let Some(stopped) = driven.run.stopped() {
         let time = DisplayUnit::MILLISECOND.text(stopped.time_s, 3);
-        return (broken, format!("the run ended after {time} as {}", stopped.word));
+        let words = match stopped.word {
+            DIVERGED => format!("the machine diverges from {time} on"),
+            word => format!("the run ended after {time} as {word}"),
+        };
+        return (broken, words);
     }
     let (whole, linear) = (driven.whole(), driven.linear);
     if whole.settling_time_s.is_none() {

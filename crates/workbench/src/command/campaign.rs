@@ -8,6 +8,7 @@ use crate::project::{self, Loaded};
 use crate::setup::Setup;
 use crate::simulate::{self, RunOutput, simulate_into};
 use crate::source::{Destination, Source};
+use phea_dynamics::simulation::Attention;
 
 /// A request on the campaign that a project declares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,7 +88,7 @@ fn one(
         .map_err(|report| CampaignError::Settings(Box::new(report)))?;
     drawn.project.scenarios.retain(|scenario| scenario.name == plan.scenario());
     let table = destination.map(|destination| (destination, TableFormat::Csv));
-    let output = RunOutput { samples: false, table, ledger: true };
+    let output = RunOutput { ledger: true, attention: Attention::Steps, ..RunOutput::new(false, table) };
     let runs = simulate_into(source, &Setup::new(&drawn.project)?, output, watch)?;
     Ok(Unprinted {
         document: campaign::run_document(&draw, &settings, &drawn, &runs),

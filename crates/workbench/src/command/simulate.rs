@@ -84,7 +84,12 @@ pub(super) fn simulate_answer(
     let runs = if asked.check {
         simulate_checked(source, &setup, table, watch)?
     } else {
-        simulate_into(source, &setup, RunOutput { samples: asked.figures, table, ledger: true }, watch)?
+        simulate_into(
+            source,
+            &setup,
+            RunOutput { ledger: true, ..RunOutput::new(asked.figures, table) },
+            watch,
+        )?
     };
     let mut written = files(loaded, &runs);
     if asked.figures {

@@ -6,8 +6,8 @@ use crate::project::Project;
 use crate::quantity::DisplayUnit;
 use crate::setup::Setup;
 use crate::simulate::{
-    Cause, NamedRun, OVERSHOOT, SETTLING, ScenarioRun, SimulateError, TrackingWish, Window, cause_words,
-    cells_of, simulate_project,
+    Cause, DIVERGED, NamedRun, OVERSHOOT, SETTLING, ScenarioRun, SimulateError, TrackingWish, Window,
+    cause_words, cells_of, simulate_project,
 };
 use crate::source::Source;
 use crate::specification::wishes;
@@ -105,8 +105,11 @@ fn run_of(side: &DrivenSide, index: usize) -> Option<&ScenarioRun> {
 /// The first step and the greatest disturbance of these runs.
 fn told(runs: &[ScenarioRun]) -> Option<String> {
     if let Some((run, stopped)) = runs.iter().find_map(|run| Some((run, run.stopped()?))) {
-        let word = stopped.word.replace('_', " ");
-        return Some(format!("{} ended at {} s: {word}", run.name, significant(stopped.time_s, 3)));
+        let (word, time) = (stopped.word.replace('_', " "), significant(stopped.time_s, 3));
+        return Some(match stopped.word {
+            DIVERGED => format!("{} diverges from {time} s on", run.name),
+            _ => format!("{} ended at {time} s: {word}", run.name),
+        });
     }
     let windows = || runs.iter().flat_map(|run| &run.windows);
     let is_step = |window: &Window| matches!(window.cause, Cause::ReferenceStep { .. });

@@ -4,8 +4,11 @@ use super::MachineResponses;
 use super::check;
 use super::frequency;
 use super::metrics::metrics_row;
+use super::repetition;
 use super::state_names;
-use super::{AccountSum, Cause, Exceeded, Metrics, RunLedger, ScenarioComparison, ScenarioRun, Window};
+use super::{
+    AccountSum, Cause, Exceeded, Metrics, RunLedger, ScenarioComparison, ScenarioRun, StoppedRun, Window,
+};
 use crate::answer::{Object, body_in_use};
 use crate::project::Loaded;
 
@@ -54,7 +57,7 @@ fn adjustment(run: &ScenarioRun) -> Object {
         })
 }
 
-const NOT_AMPLIFIED: &str = "no oscillation grew so much that errors within the tolerance may be visible";
+const NOT_AMPLIFIED: &str = "no mode grew so much that errors within the tolerance may be visible";
 /// Why there is no work of an adjustment, or no temperature.
 const NOT_ADJUSTED: &str = "no setting of an accumulator moves, and no valve leads to its gas";
 const NO_GAS_VALVE: &str = "no valve lies between a chamber and its gas";
@@ -76,13 +79,19 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
             .with("from_s", grown.from_s)
             .with("until_s", grown.until_s)
             .with("frequency_rad_per_s", grown.frequency_rad_per_s)
+            .with("growth_logarithm", grown.logarithm)
     });
+    let repetition = run.repetition.as_ref().map(repetition::row);
+    let divergence = run.divergence.as_ref().map(repetition::divergence_row);
+    let ended_s = StoppedRun::of(run.status).map(|stopped| stopped.time_s);
     Object::new()
         .with("name", run.name.as_str())
         .with("status", stopped.map_or("completed", |stopped| stopped.word))
-        .told("ended_s", stopped.map(|stopped| stopped.time_s).ok_or("it ran to its end"))
+        .told("ended_s", ended_s.ok_or("it ran to its end"))
+        .told("divergence", divergence.ok_or("it does not diverge"))
         .told("unresolved_mode", mode.ok_or("every mode that grew was resolved"))
         .with("work", work)
+        .with("tolerance", run.tolerance)
         .with("look_s", run.look_s)
         .with("open_loop", run.open_loop)
         .told("state_file", run.end.as_ref().map(|_| state_file).map_err(|reason| *reason))
@@ -105,6 +114,7 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
                 .told("nrmse", overlay.nrmse)
         })
         .told("errors_amplified", amplified.ok_or(NOT_AMPLIFIED))
+        .told("repetition", repetition.ok_or("one pass was enough"))
         .told("check", run.check.as_ref().map(check::row).ok_or("it was not checked"))
         .each("beyond_expansion", &run.beyond_expansion, |beyond| {
             Object::new()

@@ -3,6 +3,7 @@
 use super::check;
 use super::exceeded_words;
 use super::metrics::{METRICS, OVERSHOOT, SETTLING, cells_of};
+use super::repetition::{divergence_words, sentences as doubts, work_words};
 use super::{
     AdjustmentWork, BeyondExpansion, Cause, GasRange, Metrics, Occurrence, Overlay, ScenarioComparison,
     ScenarioRun, StoppedRun, TrackingWish, Window,
@@ -39,9 +40,10 @@ pub(crate) fn document(loaded: &Loaded, runs: &[ScenarioRun]) -> Document {
 
 /// Name and end of a run, and its effort.
 pub(crate) fn headline(run: &ScenarioRun) -> String {
-    let work = format!("{} steps, {} rejected", run.work.steps, run.work.rejected);
+    let work = work_words(run);
     let loop_words = if run.open_loop { " open loop" } else { "" };
-    match run.stopped() {
+    match StoppedRun::of(run.status) {
+        None if run.divergence.is_some() => format!("{}: diverged{loop_words} ({work})", run.name),
         None => format!("{}: completed{loop_words} ({work})", run.name),
         Some(stopped) => {
             let why = why(&stopped);
@@ -196,16 +198,6 @@ pub(crate) fn coarse_sentence(run: &ScenarioRun) -> Option<String> {
     })
 }
 
-/// Results that may depend on the tolerance.
-fn amplified_sentence(run: &ScenarioRun) -> Option<String> {
-    let grown = run.errors_amplified?;
-    let [from, until] = [grown.from_s, grown.until_s].map(|time| DisplayUnit::SECOND.number(time, 4));
-    Some(format!(
-        "from {from} to {until} s an oscillation of {} rad/s grows so much that errors within the tolerance may become visible: `--check` estimates how far the result depends on them",
-        significant(grown.frequency_rad_per_s, 3),
-    ))
-}
-
 /// The work of accumulators that are adjusted.
 pub(crate) fn adjustment_sentence(run: &ScenarioRun) -> Option<String> {
     let AdjustmentWork { brought_j, taken_j, throttled_j } = run.adjustment?;
@@ -259,7 +251,8 @@ pub(crate) fn occurrence_sentences(run: &ScenarioRun) -> Vec<String> {
     if found.len() > TOLD {
         sentences.push(format!("and {} more changes of this kind, listed in the JSON", found.len() - TOLD));
     }
-    sentences.extend(amplified_sentence(run));
+    sentences.extend(run.divergence.as_ref().map(divergence_words));
+    sentences.extend(doubts(run));
     sentences.extend(run.beyond_expansion.iter().map(beyond_words));
     sentences.extend(run.exceeded.iter().map(exceeded_words));
     sentences.extend(run.outside_model_s.map(|time_s| {
@@ -349,7 +342,9 @@ pub(crate) fn comparison(comparison: &ScenarioComparison<'_>, asked: &[Loaded]) 
         out.table(side_by_side(&columns));
         for (number, run) in columns.iter().enumerate() {
             let exceeded = run.iter().flat_map(|run| &run.exceeded).map(exceeded_words);
-            for sentence in run.and_then(amplified_sentence).into_iter().chain(exceeded) {
+            let diverges = run.and_then(|run| run.divergence.as_ref()).map(divergence_words);
+            let doubts = run.iter().flat_map(|run| doubts(run));
+            for sentence in diverges.into_iter().chain(doubts).chain(exceeded) {
                 out.line(format!("   {}: {sentence}", letter(number)));
             }
         }

@@ -63,11 +63,7 @@ pub(super) fn measured(
 /// ```text
 /// r_0 = (m_0 + U_0/G(0))/F(0),    m_0 = H(0) F_0
 /// ```
-fn held_reference(
-    rested: &RestedMachine,
-    given: &Controller,
-    measured_n: f64,
-) -> Result<f64, SimulateError> {
+fn held_reference(rested: &RestedMachine, given: &Controller, measured_n: f64) -> Result<f64, SimulateError> {
     let gain = given.feedback.transfer_function()?.dc_gain();
     let error = if rested.rest.command == 0.0 { 0.0 } else { rested.rest.command / gain };
     Ok((measured_n + error) / given.prefilter.transfer_function()?.dc_gain())

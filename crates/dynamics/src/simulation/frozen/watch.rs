@@ -1,0 +1,78 @@
+//! When the modes of a frozen loop are evaluated, and what has grown.
+
+use super::FrozenMode;
+use crate::simulation::Amplification;
+use crate::simulation::growth::Amplifying;
+
+/// Steps between two evaluations while something grows.
+const GROWING: u64 = 32;
+/// Steps between two evaluations without growth: each interval is four times the one before, from the
+/// first up to the last.
+const CALM: [u64; 2] = [64, 4096];
+
+/// Growth between two evaluations, as a logarithm.
+const MOST_GROWN: f64 = 0.5;
+
+/// The growth of the least stable mode along a run.
+///
+/// ```text
+/// between two evaluations the mean of both growths, or nothing where one grows and the other decays
+/// ```
+///
+/// A mode that grows for an instant, as friction makes it at one velocity, so counts for nothing.
+#[derive(Clone, Debug, Default)]
+pub struct FrozenWatch {
+    steps: u64,
+    due: u64,
+    interval: u64,
+    before: Option<(f64, f64)>,
+    growing: Amplifying,
+}
+
+impl FrozenWatch {
+    /// Counts steps until a time in s; whether the modes are to be evaluated now.
+    pub fn passes(&mut self, steps: u64, time_s: f64) -> bool {
+        self.steps += steps;
+        self.steps > self.due || self.grows_until(time_s) > MOST_GROWN
+    }
+
+    /// The same where they are evaluated for another reason too, as long as nothing grows.
+    pub(in crate::simulation) fn grows(&mut self, steps: u64, time_s: f64) -> bool {
+        self.passes(steps, time_s) && self.grows_until(time_s) > 0.0
+    }
+
+    /// Growth since the last evaluation, as a logarithm, if it has not changed.
+    fn grows_until(&self, time_s: f64) -> f64 {
+        self.before.map_or(0.0, |(before_s, growth)| growth * (time_s - before_s))
+    }
+
+    /// Takes the least stable mode at a time in s.
+    ///
+    /// # Example
+    /// A growth of 3 1/s for two seconds; one that is seen once is none.
+    /// ```
+    /// use phea_dynamics::simulation::{FrozenMode, FrozenWatch};
+    /// let mode = |growth_per_s| Some(FrozenMode { growth_per_s, frequency_rad_per_s: 40.0 });
+    /// let mut watch = FrozenWatch::default();
+    /// for (time_s, growth) in [(0.0, -1.0), (1.0, 3.0), (2.0, -1.0), (3.0, 3.0), (5.0, 3.0)] {
+    ///     watch.take(time_s, mode(growth));
+    /// }
+    /// let grown = watch.amplification().unwrap();
+    /// assert_eq!((grown.logarithm, grown.from_s, grown.until_s), (6.0, 3.0, 5.0));
+    /// ```
+    pub fn take(&mut self, time_s: f64, mode: Option<FrozenMode>) {
+        let growth = mode.map_or(0.0, |mode| mode.growth_per_s);
+        let frequency_rad_per_s = mode.map_or(0.0, |mode| mode.frequency_rad_per_s);
+        let (before_s, before) = self.before.replace((time_s, growth)).unwrap_or((time_s, growth));
+        let both = if before * growth > 0.0 { 0.5 * (before + growth) } else { 0.0 };
+        self.growing.add(time_s, both * (time_s - before_s), frequency_rad_per_s);
+        let [least, most] = CALM;
+        self.interval = if growth > 0.0 { 0 } else { (4 * self.interval).clamp(least, most) };
+        self.due = self.steps + self.interval.max(GROWING);
+    }
+
+    /// What has grown most.
+    pub fn amplification(&self) -> Option<Amplification> {
+        self.growing.largest()
+    }
+}

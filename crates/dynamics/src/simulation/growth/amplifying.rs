@@ -1,0 +1,40 @@
+//! The growth of an error along a run.
+
+use crate::simulation::Amplification;
+
+/// The growth since it last began, and the largest so far.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::simulation) struct Amplifying {
+    /// Time and growth rate of the last step that was asked for.
+    before: Option<(f64, f64)>,
+    from_s: f64,
+    logarithm: f64,
+    largest: Option<Amplification>,
+}
+
+impl Amplifying {
+    /// The trapezoidal rule over the growth rate.
+    pub(super) fn advance(&mut self, time_s: f64, growth_per_s: f64, frequency_rad_per_s: f64) {
+        let (before_s, before) = self.before.replace((time_s, growth_per_s)).unwrap_or((time_s, 0.0));
+        self.add(time_s, 0.5 * (before + growth_per_s) * (time_s - before_s), frequency_rad_per_s);
+    }
+
+    /// Growth until a time, as a logarithm; decay below the initial amplitude is forgotten.
+    pub(in crate::simulation) fn add(&mut self, time_s: f64, grown: f64, frequency_rad_per_s: f64) {
+        let logarithm = self.logarithm + grown;
+        if logarithm > 0.0 {
+            self.logarithm = logarithm;
+        } else {
+            (self.logarithm, self.from_s) = (0.0, time_s);
+        }
+        if self.logarithm > self.largest.map_or(0.0, |largest| largest.logarithm) {
+            let (logarithm, from_s) = (self.logarithm, self.from_s);
+            self.largest = Some(Amplification { logarithm, from_s, until_s: time_s, frequency_rad_per_s });
+        }
+    }
+
+    /// What has grown most.
+    pub(in crate::simulation) fn largest(&self) -> Option<Amplification> {
+        self.largest
+    }
+}

@@ -1,0 +1,230 @@
+//! A run whose errors may be visible, made again at a tenth of the tolerance until its metrics agree.
+
+use phea_dynamics::portable;
+use phea_dynamics::simulation::{Amplification, Status, StepCounts};
+
+use super::check::{FOLD, LARGEST_PART};
+use super::metrics::Measured;
+use super::{Cause, Metrics, StoppedRun, Window};
+
+/// No pass is made at a smaller tolerance: rounding shows then.
+pub const SMALLEST_TOLERANCE: f64 = 1e-10;
+
+/// So many passes must agree with the one before each where errors as large as their tolerance may
+/// still be visible: two that agree may both be wrong.
+const TRUSTED: u32 = 2;
+
+/// What a pass over a scenario is made with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PassPlan {
+    /// Tolerance of the integration.
+    pub tolerance: f64,
+    /// Whether each state begins a few roundings away.
+    pub moved: bool,
+}
+
+impl PassPlan {
+    /// Whether it is the one at the tolerance of the project.
+    pub fn is_first(&self, tolerance: f64) -> bool {
+        self.tolerance == tolerance && !self.moved
+    }
+}
+
+/// A pass that was made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pass {
+    /// What it was made with.
+    pub plan: PassPlan,
+    /// What it cost.
+    pub work: StepCounts,
+    /// How it ended early, if it did.
+    pub stopped: Option<StoppedRun>,
+}
+
+/// Whether the passes agree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PassAgreement {
+    /// The last two do, within a thousandth.
+    Agreed,
+    /// The last two do not, and no smaller tolerance is used.
+    Apart,
+    /// A start moved by a few roundings gives another result: no solver determines it.
+    Undetermined,
+    /// A pass ended early; the one before is reported.
+    Stopped,
+}
+
+/// All passes of a run that was repeated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Repetition {
+    /// In order.
+    pub passes: Vec<Pass>,
+    /// Whether they agree.
+    pub agreement: PassAgreement,
+    /// The largest difference between the last two that were compared; `None` where they have no
+    /// number in common.
+    pub spread: Option<PassSpread>,
+}
+
+/// What differs most between two passes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PassSpread {
+    /// The window of the metric, counted from 0; `None` for the force of a run without metrics.
+    pub window: Option<usize>,
+    /// Name of the metric, or `force_n`.
+    pub name: &'static str,
+    /// In the earlier pass and in the later.
+    pub values: [Measured; 2],
+    /// The difference over the metric; over the step for an overshoot, over the largest deviation of
+    /// the window for a steady-state error. Infinite where one pass has no such number.
+    pub part: f64,
+}
+
+/// The results of a pass, as far as passes are compared.
+#[derive(Clone, Debug)]
+pub struct PassResult {
+    /// How it ended.
+    pub status: Status,
+    /// What it cost.
+    pub work: StepCounts,
+    /// What grew most.
+    pub amplification: Option<Amplification>,
+    /// Whether the command swings from end to end of its range: such a run separates from its
+    /// neighbours.
+    pub swings: bool,
+    /// Of each window.
+    pub metrics: Vec<(Window, Metrics)>,
+    /// The force at some times of the run, N.
+    pub force_n: Vec<f64>,
+}
+
+impl PassResult {
+    /// Whether errors as large as a tolerance may be visible.
+    fn grows(&self, tolerance: f64) -> bool {
+        self.amplification.is_some_and(|grown| grown.may_show_errors(tolerance))
+    }
+
+    fn pass(&self, plan: PassPlan) -> Pass {
+        Pass { plan, work: self.work, stopped: StoppedRun::of(self.status) }
+    }
+}
+
+impl Repetition {
+    /// Whether its watcher ended a pass.
+    pub fn was_cancelled(&self) -> bool {
+        self.passes.iter().any(|pass| pass.stopped.is_some_and(|stopped| stopped.word == "cancelled"))
+    }
+
+    /// Steps of all passes.
+    pub fn steps(&self) -> u64 {
+        self.passes.iter().map(|pass| pass.work.steps).sum()
+    }
+}
+
+/// The result that is reported, after the first pass at a tolerance: where its errors may be visible,
+/// that of the last complete pass, each at a tenth of the tolerance of the one before, until two
+/// agree. Where even rounding may be visible, a pass from a start moved by rounding follows.
+///
+/// # Errors
+/// That of a pass.
+pub fn repeated<R, E>(
+    (tolerance, first): (f64, R),
+    result: impl Fn(&R) -> PassResult,
+    mut again: impl FnMut(PassPlan) -> Result<R, E>,
+) -> Result<(R, f64, Option<Repetition>), E> {
+    let (mut kept, mut seen, mut tolerance) = (result(&first), first, tolerance);
+    if !(kept.grows(tolerance) || kept.swings) || kept.status != Status::Completed {
+        return Ok((seen, tolerance, None));
+    }
+    let plan = |tolerance, moved| PassPlan { tolerance, moved };
+    let mut passes = vec![kept.pass(plan(tolerance, false))];
+    let (first, mut fold, mut agreed) = (tolerance, 1.0, 0);
+    let (mut agreement, mut found) = (PassAgreement::Apart, None);
+    while agreement == PassAgreement::Apart && tolerance > SMALLEST_TOLERANCE {
+        fold *= FOLD;
+        let tighter = portable::rounded(first / fold, 12).max(SMALLEST_TOLERANCE);
+        let next = again(plan(tighter, false))?;
+        let later = result(&next);
+        passes.push(later.pass(plan(tighter, false)));
+        if later.status != Status::Completed {
+            agreement = PassAgreement::Stopped;
+            break;
+        }
+        found = spread(&kept, &later);
+        agreed = if found.is_none_or(|found| found.part <= LARGEST_PART) { agreed + 1 } else { 0 };
+        let needed = if tighter > SMALLEST_TOLERANCE && later.grows(tighter) { TRUSTED } else { 1 };
+        if agreed >= needed {
+            agreement = PassAgreement::Agreed;
+        }
+        (kept, seen, tolerance) = (later, next, tighter);
+    }
+    let rounded = kept.amplification.is_some_and(|grown| grown.may_show_rounding());
+    if rounded && agreement != PassAgreement::Stopped {
+        let moved = result(&again(plan(tolerance, true))?);
+        passes.push(moved.pass(plan(tolerance, true)));
+        let moved = spread(&kept, &moved);
+        if moved.is_some_and(|moved| moved.part > LARGEST_PART) {
+            (agreement, found) = (PassAgreement::Undetermined, moved);
+        }
+    }
+    Ok((seen, tolerance, Some(Repetition { passes, agreement, spread: found })))
+}
+
+/// A state whose values are moved by a few roundings, each in its own direction.
+pub(crate) fn moved(start: &mut [f64], scales: &[f64]) {
+    for (place, (state, scale)) in start.iter_mut().zip(scales).enumerate() {
+        let towards = if place.is_multiple_of(2) { 4.0 } else { -4.0 };
+        *state += towards * f64::EPSILON * (state.abs() + scale);
+    }
+}
+
+/// The largest difference between the metrics of two passes; between their forces where no window
+/// has a number.
+fn spread(one: &PassResult, other: &PassResult) -> Option<PassSpread> {
+    let windows = one.metrics.iter().zip(&other.metrics).enumerate();
+    let of_metrics = windows.flat_map(|(place, ((window, one), (_, other)))| {
+        let numbers = one.named().into_iter().zip(other.named());
+        numbers.filter_map(move |((name, here), (_, there))| {
+            let part = match (here, there) {
+                (Err(_), Err(_)) => return None,
+                (Ok(here), Ok(there)) => {
+                    part((here - there).abs(), magnitude(name, window, [one, other], [here, there]))
+                }
+                _ => f64::INFINITY,
+            };
+            Some(PassSpread { window: Some(place), name, values: [here, there], part })
+        })
+    });
+    let largest = of_metrics.max_by(|one, other| one.part.total_cmp(&other.part));
+    largest.or_else(|| of_forces(&one.force_n, &other.force_n))
+}
+
+fn of_forces(one: &[f64], other: &[f64]) -> Option<PassSpread> {
+    let all = one.iter().chain(other);
+    let peak = all.fold(0.0_f64, |peak, force| peak.max(force.abs()));
+    let pairs = one.iter().zip(other);
+    let (here, there) = pairs.max_by(|(a, b), (c, d)| (*a - *b).abs().total_cmp(&(*c - *d).abs()))?;
+    let part = part((here - there).abs(), peak);
+    Some(PassSpread { window: None, name: "force_n", values: [Ok(*here), Ok(*there)], part })
+}
+
+fn part(difference: f64, magnitude: f64) -> f64 {
+    if difference > 0.0 { difference / magnitude } else { 0.0 }
+}
+
+/// What a difference of a metric is compared with.
+fn magnitude(name: &str, window: &Window, both: [&Metrics; 2], values: [f64; 2]) -> f64 {
+    let own = values[0].abs().max(values[1].abs());
+    match name {
+        "overshoot_percent" => own.max(100.0),
+        "steady_state_error_n" => {
+            let step = match window.cause {
+                Cause::ReferenceStep { from_n, to_n } => (to_n - from_n).abs(),
+                _ => 0.0,
+            };
+            let peaks = both.iter().flat_map(|one| [one.disturbance_peak_n, one.tracking_error_peak_n]);
+            peaks.flatten().fold(own.max(step), f64::max)
+        }
+        _ => own,
+    }
+}

@@ -1,0 +1,36 @@
+//! The loop from sample to sample, frozen at a sample.
+
+use phea_dynamics::controller::ControllerState;
+use phea_dynamics::simulation::{Frozen, FrozenMode, Plant, SampledLaw};
+
+use super::control::Sampled;
+
+/// A sample at which the loop is frozen.
+pub(crate) struct Sample<'a> {
+    /// States of the plant.
+    pub(crate) state: &'a [f64],
+    /// Its inputs.
+    pub(crate) inputs: &'a [f64],
+    /// The state of the controller before.
+    pub(crate) memory: ControllerState,
+    /// Filtered reference and measurement, N.
+    pub(crate) read: [f64; 2],
+}
+
+/// The least stable mode of the loop.
+pub(crate) fn least_stable(sampled: &Sampled, sample: &Sample<'_>) -> Option<FrozenMode> {
+    let Sampled { held, controller, feed_forward, delay_s, .. } = sampled;
+    let Sample { state, inputs, memory, read } = sample;
+    let frozen = Frozen::at(held, state, inputs);
+    let rows = [0, 1].map(|place| {
+        frozen.row(state, inputs, |state, inputs| held.sampled::<f64, f64>(state, inputs)[place])
+    });
+    let law = SampledLaw::new(controller, *delay_s, memory, *read).reading(rows);
+    if *feed_forward == 0.0 {
+        return frozen.least_stable_sampled(&law);
+    }
+    let own: usize = Plant::<f64>::states(held.plant());
+    let velocity =
+        frozen.row(state, inputs, |state, inputs| held.plant().disturbance(&state[..own], &inputs[2..]));
+    frozen.least_stable_sampled(&law.fed(*feed_forward, velocity))
+}

@@ -1,0 +1,155 @@
+//! Runs that were repeated, and runs that diverge, in an answer and for people.
+
+use super::{Divergence, Pass, PassAgreement, PassSpread, Repetition, ScenarioRun, metric_of};
+use crate::answer::{Object, significant};
+use crate::quantity::{DisplayUnit, FORCE, VOLTAGE, display};
+
+/// The object `repetition` of a scenario.
+pub(super) fn row(repetition: &Repetition) -> Object {
+    Object::new()
+        .with("status", word(repetition.agreement))
+        .each("passes", &repetition.passes, pass)
+        .told("spread", repetition.spread.as_ref().map(spread).ok_or("the passes have no number in common"))
+}
+
+fn word(agreement: PassAgreement) -> &'static str {
+    match agreement {
+        PassAgreement::Agreed => "agreed",
+        PassAgreement::Apart => "apart",
+        PassAgreement::Undetermined => "undetermined",
+        PassAgreement::Stopped => "stopped",
+    }
+}
+
+fn pass(pass: &Pass) -> Object {
+    Object::new()
+        .with("tolerance", pass.plan.tolerance)
+        .with("moved_start", pass.plan.moved)
+        .with("status", pass.stopped.map_or("completed", |stopped| stopped.word))
+        .with("steps", pass.work.steps)
+        .with("rejected", pass.work.rejected)
+        .with("evaluations", pass.work.evaluations)
+}
+
+fn spread(spread: &PassSpread) -> Object {
+    let [before, after] = spread.values;
+    Object::new()
+        .told("event", spread.window.map(|window| window + 1).ok_or("no event has a metric"))
+        .with("metric", spread.name)
+        .told("before", before)
+        .told("after", after)
+        .with("part", spread.part)
+}
+
+/// The object `divergence` of a scenario.
+pub(super) fn divergence_row(divergence: &Divergence) -> Object {
+    let row = |kind: &'static str| Object::new().with("kind", kind).with("since_s", divergence.since_s());
+    match *divergence {
+        Divergence::CommandBeyondRange { range_v, .. } => {
+            row("command_beyond_range").with("range_v", range_v)
+        }
+        Divergence::CommandSwings { range_v, swings, .. } => {
+            row("command_swings").with("range_v", range_v).with("swings", swings)
+        }
+        Divergence::ForceBeyondReference { force_n, reference_n, .. } => {
+            row("force_beyond_reference").with("force_n", force_n).with("reference_n", reference_n)
+        }
+    }
+}
+
+/// How a run diverges.
+pub(super) fn divergence_words(divergence: &Divergence) -> String {
+    let since = DisplayUnit::SECOND.number(divergence.since_s(), 4);
+    match *divergence {
+        Divergence::CommandBeyondRange { range_v, .. } => format!(
+            "from {since} s to the end the command is at the end of the valve's range of {}, or beyond: the loop does not come back",
+            display(range_v, &VOLTAGE, 4)
+        ),
+        Divergence::CommandSwings { range_v, swings, .. } => format!(
+            "from {since} s to the end the command swings {swings} times from one end of the valve's range of {} to the other while no \
+             input moves: the loop does not come to rest",
+            display(range_v, &VOLTAGE, 4)
+        ),
+        Divergence::ForceBeyondReference { force_n, reference_n, .. } => format!(
+            "the force comes to {} at {since} s, more than ten times the largest reference of {}, and nothing else moves the load",
+            display(force_n, &FORCE, 4),
+            display(reference_n, &FORCE, 4)
+        ),
+    }
+}
+
+/// Results that may depend on the tolerance, and what came of repeating the run.
+pub(super) fn sentences(run: &ScenarioRun) -> Vec<String> {
+    let grown = run.errors_amplified.map(|grown| {
+        let [from, until] = [grown.from_s, grown.until_s].map(|time| DisplayUnit::SECOND.number(time, 4));
+        format!(
+            "from {from} to {until} s a mode of {} rad/s grows so much that errors within the tolerance may become visible",
+            significant(grown.frequency_rad_per_s, 3),
+        )
+    });
+    let repeated = run.repetition.as_ref().map(|repetition| agreement_words(run, repetition));
+    let unknown = "the run was not repeated: `--check` estimates how far its result depends on them";
+    let doubt = grown.is_some() && repeated.is_none();
+    let sentences = grown.into_iter().chain(repeated);
+    sentences.chain(doubt.then(|| unknown.to_string())).collect()
+}
+
+fn agreement_words(run: &ScenarioRun, repetition: &Repetition) -> String {
+    let tolerance = significant(run.tolerance, 2);
+    let apart =
+        repetition.spread.map_or("they have no number in common".to_string(), |spread| apart(&spread));
+    match repetition.agreement {
+        PassAgreement::Agreed => format!(
+            "so the run was repeated until its metrics agreed to a thousandth, at a tolerance of {tolerance}; of the last two passes, \
+             {apart}"
+        ),
+        PassAgreement::Apart => format!(
+            "repeated down to a tolerance of {tolerance} its metrics do not agree to a thousandth: of the last two passes, {apart}; no \
+             number is more exact than that"
+        ),
+        PassAgreement::Undetermined => format!(
+            "even rounding becomes visible: a start moved by a few roundings gives another result ({apart}), so that no solver determines \
+             it"
+        ),
+        PassAgreement::Stopped => {
+            let stopped = repetition.passes.last().and_then(|pass| Some((pass.plan, pass.stopped?)));
+            let why = stopped.map_or(String::new(), |(plan, stopped)| {
+                format!(
+                    ": a pass at a tolerance of {} ended as {}",
+                    significant(plan.tolerance, 2),
+                    stopped.word.replace('_', " ")
+                )
+            });
+            format!("the result at a tolerance of {tolerance} could not be confirmed{why}")
+        }
+    }
+}
+
+/// What differs most, in words.
+fn apart(spread: &PassSpread) -> String {
+    let name = metric_of(spread.name).map_or("force", |metric| metric.word);
+    let unit = metric_of(spread.name).map_or("N", |metric| metric.unit);
+    let event = spread.window.map_or(String::new(), |window| format!(" of event {}", window + 1));
+    let number = |value: Result<f64, &'static str>| match value {
+        Ok(value) => format!("{} {unit}", significant(value, 5)),
+        Err(_) => "none".to_string(),
+    };
+    let [before, after] = spread.values.map(number);
+    if spread.part.is_finite() {
+        let percent = significant(100.0 * spread.part, 2);
+        format!("the {name}{event} differs most: {before} and {after}, {percent} %")
+    } else {
+        format!("the {name}{event} is {before} and {after}")
+    }
+}
+
+/// Steps of the run that is reported, and of all passes.
+pub(super) fn work_words(run: &ScenarioRun) -> String {
+    let work = format!("{} steps, {} rejected", run.work.steps, run.work.rejected);
+    match &run.repetition {
+        None => work,
+        Some(repetition) => {
+            format!("{work}; {} steps in {} passes", repetition.steps(), repetition.passes.len())
+        }
+    }
+}

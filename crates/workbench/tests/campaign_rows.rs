@@ -1,0 +1,84 @@
+//! A run of a campaign by itself: what its row holds, to the last bit, whatever the rig.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+
+use phea_workbench::campaign::{Effort, METRIC_NAMES, Plan};
+use phea_workbench::command::{self, CampaignRequest, CampaignRuns, Request};
+use phea_workbench::project;
+use phea_workbench::source::Memory;
+use serde_json::Value;
+
+const CAMPAIGN: &str = include_str!("../../../examples/benchmark/campaign.toml");
+
+/// One step of the force, and a load that moves.
+const SHORT: [&str; 4] = [
+    "scenario.0.duration=0.4 s",
+    "scenario.0.reference.0.at=0.05 s",
+    "scenario.0.load_motion.start=0.2 s",
+    "scenario.0.load_motion.duration=50 ms",
+];
+
+/// The row of a run in a campaign of a few, and the same run by itself.
+fn agree(more: &[&str]) {
+    let source = Memory::default().with("campaign.toml", CAMPAIGN);
+    let settings: Vec<String> = SHORT.iter().chain(more).map(|text| (*text).to_string()).collect();
+    let loaded =
+        project::read(&source, "campaign.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
+    let plan = Plan::new(&source, &loaded, 5).unwrap();
+    let rows = plan.rows(0..4, Effort { threads: 1, lanes: true }).unwrap();
+    for row in &rows[..3] {
+        let ran = row.ran().unwrap_or_else(|| panic!("{row:?}"));
+        let request = CampaignRequest { seed: 5, asked: CampaignRuns::One(row.run), files: false };
+        let answer = command::answer(&source, &loaded, &[], &Request::Campaign(request)).unwrap();
+        let json: Value = serde_json::from_str(&answer.json).unwrap();
+        let run = &json["scenarios"][0];
+        assert_eq!(
+            (&run["status"], &run["work"]["steps"]),
+            (&ran.status.into(), &ran.steps.into()),
+            "{more:?}"
+        );
+        let events = run["events"].as_array().unwrap();
+        assert_eq!(events.len(), ran.metrics.len());
+        for (event, numbers) in events.iter().zip(&ran.metrics) {
+            for (name, number) in METRIC_NAMES.iter().zip(numbers) {
+                let own = event["metrics"][*name].as_f64();
+                let bits = |value: Option<f64>| value.map(f64::to_bits);
+                assert_eq!(bits(own), bits(*number), "{more:?}, run {}: {name} {own:?} {number:?}", row.run);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_continuous_loop_is_repeated_to_the_bit() {
+    agree(&[]);
+    agree(&["controller.delay=1 ms"]);
+}
+
+#[test]
+fn a_sampled_loop_is_repeated_to_the_bit() {
+    agree(&["controller.sample_time=1 ms"]);
+    // rows between the samples, and a command that arrives between them
+    agree(&["controller.sample_time=0.7 ms", "controller.delay=0.4 ms", "scenario.0.output_step=0.3 ms"]);
+    agree(&["controller.sample_time=2 ms", "force_sensor.noise=2 N"]);
+}
+
+#[test]
+fn waves_and_gas_are_repeated_to_the_bit() {
+    let waves =
+        "line={ hose = \"eaton_synflex_3130_08\", length = \"1.5 m\", model = \"transmission_line\" }";
+    let gas = "line.accumulator={ gas_volume = \"50 mL\", precharge_pressure = \"20 bar\", polytropic_exponent = 1.4 }";
+    let without = "campaign.parameters={ \"supply.pressure\" = { spread = \"20 %\" } }";
+    for more in [&[waves][..], &[waves, "controller.sample_time=1 ms"], &[gas, "controller.sample_time=1 ms"]]
+    {
+        agree(&[&[without], more].concat());
+    }
+}
+
+#[test]
+fn a_load_that_yields_is_repeated_to_the_bit() {
+    let sprung = "load={ model = \"spring_mass_damper\", mass = 100, stiffness = \"2 MN/m\", damping = \"500 N.s/m\" }";
+    let fed = "controller.load_velocity_feed_forward.gain=5";
+    agree(&[sprung, fed]);
+    agree(&[sprung, fed, "controller.sample_time=1 ms"]);
+}
