@@ -355,7 +355,10 @@ def check(text):
         return 2, [*told, f"No certificate that can be checked: {problem}."]
     except Rejected as reason:
         return 1, [*told, f"{reason}."]
-    return 0, [*told, f"Every claim holds: {len(file['claims'])}."]
+    told.append(f"Every claim holds: {len(file['claims'])}.")
+    if not any(claim["claim"] == "stable" for claim in file["claims"]):
+        told.append("Nothing is claimed of stability: without it no magnitude describes a response.")
+    return 0, told
 
 
 def main():

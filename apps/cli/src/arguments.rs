@@ -75,13 +75,7 @@ pub(crate) enum Command {
     },
     /// Check a certificate of `verify --certificate` again: every claim in it, with rounding
     /// outwards
-    CheckCertificate {
-        /// The certificate
-        file: PathBuf,
-        /// Print one JSON object on standard output and nothing else
-        #[arg(long)]
-        json: bool,
-    },
+    CheckCertificate(Certified),
     /// Shape the controller by hand: change its elements in the order given, see every margin at
     /// the design frequencies
     Shape {
@@ -222,6 +216,21 @@ pub(crate) struct Several {
     /// A catalogue file or folder of your own, searched before the built-in one; may be repeated
     #[arg(long = "catalogue", value_name = "PATH")]
     pub(crate) catalogues: Vec<String>,
+}
+
+/// A certificate, and the project that it must be of.
+#[derive(Debug, Args)]
+pub(crate) struct Certified {
+    /// The certificate
+    pub(crate) file: PathBuf,
+    /// The project that it must be of: plant, box, laws and specifications are compared
+    pub(crate) project: Option<PathBuf>,
+    /// Set one value of the project, as `path=value`
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub(crate) settings: Vec<String>,
+    /// Print one JSON object on standard output and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// What every command on a project takes.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use phea_workbench::answer::{Answer, OutputFile};
-use phea_workbench::audit::{CERTIFICATE_FILE, check_certificate};
+use phea_workbench::audit::{CERTIFICATE_FILE, check_certificate, check_certificate_of};
 use phea_workbench::command::{
     self, AlternativesRequest, CommandError, FrequencyOptions, OutputNames, Request, SimulateRequest,
 };
@@ -16,7 +16,7 @@ use phea_workbench::project::{self, Loaded, STARTER};
 use phea_workbench::shaping::{SHAPED_PROJECT, Shaped};
 use phea_workbench::source::Destination;
 
-use crate::arguments::{Arguments, Command, Common, Several};
+use crate::arguments::{Arguments, Certified, Command, Common, Several};
 use crate::failure::{DONE, Failure, NO, WRONG_INPUT};
 use crate::file_system::{FileSystem, reason};
 use crate::inputs::Inputs;
@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
             let request = Request::Verify { proof: prove || certificate.is_some(), on_machine };
             on_project(&common, &request, certificate.as_deref())
         }
-        Command::CheckCertificate { file, json } => told(json, checked(&file)),
+        Command::CheckCertificate(asked) => told(asked.json, checked(&asked)),
         Command::Shape { common, changes, prefilter, save } => {
             let shaped = if prefilter { Shaped::Prefilter } else { Shaped::Controller };
             on_project(&common, &Request::Shape { shaped, changes: changes.0 }, save.as_deref())
@@ -152,15 +152,23 @@ fn schema(out: Option<&Path>) -> Result<u8, Failure> {
 }
 
 /// A certificate, checked again.
-fn checked(path: &Path) -> Result<(Answer, Vec<PathBuf>), Failure> {
+fn checked(Certified { file, project, settings, .. }: &Certified) -> Result<(Answer, Vec<PathBuf>), Failure> {
     let explain = |reason: String| {
-        let message = format!("{}: {reason}", path.display());
+        let message = format!("{}: {reason}", file.display());
         let json = command::failure_json(Some("check-certificate"), None, &message);
         Failure::wrong_input(format!("error: {message}")).with_json(json)
     };
-    let text = std::fs::read_to_string(path).map_err(|error| explain(reason(&error)))?;
-    let answer = check_certificate(&text).map_err(|error| explain(error.to_string()))?;
-    Ok((answer, vec![]))
+    let text = std::fs::read_to_string(file).map_err(|error| explain(reason(&error)))?;
+    let answer = match project {
+        None => check_certificate(&text),
+        Some(project) => {
+            let loaded = load(&project.to_string_lossy(), settings, &[], "check-certificate")?;
+            let problem = command::robust_problem_of(&FileSystem, &loaded, &mut |_| true)
+                .map_err(|error| explain(command::error_text(&loaded, &error)))?;
+            check_certificate_of(&text, &problem)
+        }
+    };
+    Ok((answer.map_err(|error| explain(error.to_string()))?, vec![]))
 }
 
 /// Answers a request on a project; the designed or shaped project or the certificate is written to

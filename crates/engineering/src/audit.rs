@@ -2,6 +2,7 @@
 //! `phea_qft`, and their wording.
 
 mod alone;
+mod dead_time;
 mod proven;
 mod remark;
 mod stability;
@@ -12,6 +13,7 @@ pub(crate) use words::rounded;
 pub use words::{evidence_key, evidence_sentence, finding_sentence, place_words};
 
 pub(crate) use alone::{caveat as caveat_of_rig, unexamined as unexamined_rig};
+pub use dead_time::LoopDeadTime;
 pub use proven::{prove_audit, standing_word, try_to_prove, why_not_proven};
 pub use remark::remark_sentences;
 pub use stability::{stability_reason, stability_sentence};
@@ -23,14 +25,12 @@ pub use words::{
 use phea_dynamics::portable;
 use phea_qft::family::{Extent, Family};
 use phea_qft::proof::Proof;
-use phea_qft::verification::{
-    Audit, AuditProblem, SpecificationFinding, TOLERANCE_DB, TrackingJudgement, Verdict,
-};
+use phea_qft::verification::{Audit, AuditProblem, SpecificationFinding, TrackingJudgement, Verdict};
 
 use crate::caveat::Caveat;
 use crate::plant_names::PlantNames;
 use crate::quantity::DisplayUnit;
-use crate::robust::{RobustError, RobustProblem, robust_problem};
+use crate::robust::{LINES_IN_MOTION, RobustError, RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::source::Source;
 use phea_dynamics::watch::{Stopped, Watch, part};
@@ -88,14 +88,14 @@ pub fn audit_project(
 /// [`Stopped`] where the watch stops it.
 pub fn audit_problem(problem: &RobustProblem, watch: Watch<'_>) -> Result<ProjectAudit, Stopped> {
     let share = if problem.rig_outside.is_some() { 0.8 } else { 1.0 };
-    let asked = asked(problem, &problem.family);
+    let asked = audit_request(problem, &problem.family);
     let audit = phea_qft::audit::audit(&asked, &mut part(watch, STAGE, [0.0, share]))?;
     let of_rig = caveat_of_rig(problem, &mut part(watch, STAGE, [share, 1.0]))?;
     Ok(ProjectAudit::new(problem, audit, of_rig))
 }
 
 /// Audits a problem, possibly over another family.
-fn asked<'a>(problem: &'a RobustProblem, family: &'a Family) -> AuditProblem<'a> {
+pub fn audit_request<'a>(problem: &'a RobustProblem, family: &'a Family) -> AuditProblem<'a> {
     AuditProblem {
         family,
         compensation: &problem.compensation,
@@ -104,7 +104,7 @@ fn asked<'a>(problem: &'a RobustProblem, family: &'a Family) -> AuditProblem<'a>
             true => TrackingJudgement::Magnitude,
             false => TrackingJudgement::Spread,
         },
-        tolerance_db: TOLERANCE_DB,
+        tolerance_db: problem.tolerance_db,
     }
 }
 
@@ -127,6 +127,8 @@ pub struct ProjectAudit {
     pub sample_time_s: Option<f64>,
     /// Delay of the loop, s.
     pub delay_s: f64,
+    /// Dead time of plant, sensor and controller.
+    pub dead_time: LoopDeadTime,
     /// Declared effects that the audit does not include.
     pub caveats: Vec<Caveat>,
     /// What the worst plant of each specification reaches, where that is a magnitude against a
@@ -177,6 +179,15 @@ fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<Re
         let magnitude = upper * portable::exp(-worst.margin_db / DECIBELS_PER_NEPER);
         return single.then_some(ReachedLimit { magnitude, limit: upper, side: LimitSide::Only });
     }
+    if lower.is_none() {
+        // of all plants that a measured response may be this is the worst
+        let magnitude = upper * portable::exp(-worst.margin_db / DECIBELS_PER_NEPER);
+        return Some(ReachedLimit { magnitude, limit: upper, side: LimitSide::Only });
+    }
+    if worst.margin_db == f64::NEG_INFINITY {
+        let limit = lower?.magnitude(frequency)?;
+        return Some(ReachedLimit { magnitude: 0.0, limit, side: LimitSide::Lower });
+    }
     let response = problem.response(&problem.member(&worst.plant)?, frequency)?;
     let magnitude = portable::magnitude(finding.requirement.closed_loop().response(&response));
     let (limit, side) = match lower {
@@ -216,6 +227,7 @@ impl ProjectAudit {
             whole_box: matches!(family, Family::Uncertain(family) if family.extent() == Extent::Box),
             sample_time_s: compensation.sample_time_s(),
             delay_s: compensation.delay_s(),
+            dead_time: LoopDeadTime::of(problem),
             caveats,
             velocity_noise,
             proof: None,
@@ -225,6 +237,11 @@ impl ProjectAudit {
     /// What a specification is called.
     pub fn name_of(&self, index: usize) -> &str {
         self.specification_names.get(index).map_or("", String::as_str)
+    }
+
+    /// Whether the plants have lines with waves, which are fitted.
+    pub fn has_lines_in_motion(&self) -> bool {
+        self.without_polynomials == Some(LINES_IN_MOTION)
     }
 
     /// A specification by its number, from 1, and name.
@@ -256,9 +273,15 @@ impl ProjectAudit {
 
     /// Delay and samples of the loop, in a sentence.
     pub fn loop_sentence(&self) -> String {
+        let of_parts = self.dead_time.words();
         let delay = match self.delay_s {
-            0.0 => "without delay".to_string(),
-            delay => format!("with a delay of {}", DisplayUnit::MILLISECOND.text(delay, 3)),
+            0.0 if of_parts.is_empty() => "without delay".to_string(),
+            0.0 => format!("without delay of its own, {of_parts}"),
+            delay => {
+                let parts =
+                    [format!("with a delay of {}", DisplayUnit::MILLISECOND.text(delay, 3)), of_parts];
+                parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
+            }
         };
         match self.sample_time_s {
             None => format!("Loop: continuous, {delay}."),

@@ -5,7 +5,7 @@ mod gain_slopes;
 mod hill;
 mod hydraulic;
 mod in_motion;
-pub mod measured;
+mod measured;
 mod moved;
 mod null_crossing;
 mod null_sides;

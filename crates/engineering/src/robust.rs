@@ -12,15 +12,12 @@ use phea_qft::closed_loop::{Compensation, Member};
 use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::specification::{LoopResponse, Specification};
 use phea_qft::template::{BuiltTemplate, TemplateError, TemplateOptions, Templates};
-use phea_qft::verification::PlantPoint;
+use phea_qft::verification::{PlantPoint, TOLERANCE_DB};
 
 use crate::caveat::{Caveat, caveats};
-use crate::family::measured::{WidestDisc, widest_disc};
 use crate::family::{ProjectFamilyError, family};
 use crate::plant_names::PlantNames;
-use crate::project::Project;
 use crate::quantity::MotionKind;
-use crate::quantity::significant;
 use crate::setup::{ControlError, Setup, velocity_noise};
 use crate::source::Source;
 use crate::specification::{SpecificationError, kind_words, of_rounding, specifications};
@@ -50,6 +47,8 @@ pub struct RobustProblem {
     pub without_polynomials: Option<&'static str>,
     /// Noise of the velocity that a sampled controller feeds forward, m/s rms; zero without.
     pub velocity_noise: f64,
+    /// A margin of minus this much still counts as met, dB.
+    pub tolerance_db: f64,
     /// How the rig moves.
     pub motion: MotionKind,
     /// Declared effects that none of this includes.
@@ -141,27 +140,19 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
             None => None,
         },
         velocity_noise: velocity_noise(setup.project),
+        tolerance_db: setup.project.tolerance_db().unwrap_or(TOLERANCE_DB),
         motion: setup.project.motion(),
-        caveats: caveats(setup).into_iter().chain(discs(setup.project, source)).collect(),
+        caveats: caveats(setup),
     })
 }
 
-/// That the confidence of measured responses is not in their family.
-fn discs(project: &Project, source: &dyn Source) -> Option<Caveat> {
-    let WidestDisc { file, share, frequency } = widest_disc(project, source)?;
-    let (percent, at) = (significant(100.0 * share, 2), significant(frequency, 3));
-    Some(Caveat {
-        sentence: format!(
-            "the family is the responses as they were measured, and the 95 % discs around them (`confidence_95`) are not in it: the widest is {percent} % of its response, at {at} rad/s in {file}"
-        ),
-        unproven: false,
-    })
-}
+/// Why plants whose lines move have no polynomials.
+pub(crate) const LINES_IN_MOTION: &str = "lines in motion";
 
 fn without_polynomials(setup: &Setup<'_>, family: &Family) -> Option<&'static str> {
     let Family::Uncertain(family) = family else { return None };
     let moves = setup.rig().is_ok_and(|rig| rig.in_motion.is_some());
-    let why = if moves { "lines in motion" } else { "the load's velocity fed forward late" };
+    let why = if moves { LINES_IN_MOTION } else { "the load's velocity fed forward late" };
     (!family.plant().is_rational()).then_some(why)
 }
 

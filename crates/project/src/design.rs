@@ -4,7 +4,7 @@ use super::controller::DeclaredElement;
 use super::key::{key, plain};
 use super::visitor::{Variants, Visitor};
 use phea_dynamics::controller::Objective;
-use phea_quantity::{ANGULAR_FREQUENCY, RATIO, TIME};
+use phea_quantity::{ANGULAR_FREQUENCY, GAIN, RATIO, TIME};
 
 /// What is optimised, and among which controllers.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +19,9 @@ pub struct DeclaredDesign {
     pub seed: u32,
     /// s, which every plant must tolerate in addition to the delay of the loop.
     pub minimum_delay_margin: f64,
+    /// Factor by which every limit is kept, above what counts as met; absent: what the recordings
+    /// of an identified valve leave open.
+    pub reserve: Option<f64>,
     /// Least and greatest gain of `structure`; both negative for a controller of negative sign.
     pub gain: Option<[f64; 2]>,
     /// The controller's factors; empty: structures of growing order are tried.
@@ -81,6 +84,7 @@ impl Default for DeclaredDesign {
             prefilter_maximum_order: 3,
             seed: 1,
             minimum_delay_margin: 0.0,
+            reserve: None,
             gain: None,
             structure: vec![],
         }
@@ -104,6 +108,8 @@ impl DeclaredDesign {
         let doc = "Delay beyond that of the loop that every plant must tolerate.";
         let k = key("minimum_delay_margin", &TIME, doc).not_negative().or(0.0);
         v.quantity(k, &mut self.minimum_delay_margin);
+        let doc = "Margin that the design keeps to every limit; absent: what recordings leave open.";
+        v.optional(key("reserve", &GAIN, doc).at_least(1.0).at_most(2.0), &mut self.reserve);
         v.pair(key("gain", &RATIO, "Least and greatest gain of `structure`."), &mut self.gain);
         let k = plain("structure", "Factors of the controller; absent: structures of growing order.");
         v.tables(k, &mut self.structure, |one, v| v.variant(plain("kind", "Which factor."), one, true));

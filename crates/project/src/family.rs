@@ -27,6 +27,8 @@ pub struct DeclaredFamily {
     pub measured: Vec<String>,
     /// Open-loop poles of each measured plant in the right half plane.
     pub unstable_poles: u32,
+    /// Poles less zeros of each measured plant at the origin; absent: what its slope shows.
+    pub integrators: Option<u32>,
 }
 
 /// Ranges of the operating point: the plants are correlated through the resulting pressures.
@@ -86,6 +88,9 @@ impl DeclaredFamily {
             key("unstable_poles", &RATIO, doc).not_negative().at_most(1000.0).or(0.0),
             &mut self.unstable_poles,
         );
+        let doc = "Integrators of each measured plant; absent: what the slope of its response shows.";
+        let k = key("integrators", &RATIO, doc).not_negative().at_most(1000.0);
+        v.optional_count(k, &mut self.integrators);
     }
 }
 

@@ -72,6 +72,7 @@ mod tree;
 mod uncertainty;
 mod validate;
 mod valve;
+mod verification;
 mod visitor;
 
 pub use adjustment::*;
@@ -119,6 +120,7 @@ pub use sizing::*;
 pub use specification::*;
 pub use uncertainty::*;
 pub use valve::*;
+pub use verification::*;
 
 pub(crate) use key::{key, plain};
 pub(crate) use reader::Reader;
@@ -129,6 +131,7 @@ pub use tree::{Entry, TreeNode, Value as TreeValue, read as read_tree, value_or_
 pub(crate) use visitor::Visitor;
 pub use visitor::word_of;
 
+use phea_dynamics::portable;
 use phea_quantity::{MotionKind, RATIO};
 
 /// A commented project to start from.
@@ -169,6 +172,8 @@ pub struct Project {
     pub prefilter: Option<Prefilter>,
     /// How a controller is designed; absent: by the defaults.
     pub design: Option<DeclaredDesign>,
+    /// How a controller is judged; absent: by the defaults.
+    pub verification: Option<DeclaredVerification>,
     /// What is simulated.
     pub scenarios: Vec<Scenario>,
     /// How scenarios are simulated.
@@ -186,6 +191,12 @@ pub struct Project {
 }
 
 impl Project {
+    /// What still counts as met, dB, if it is stated.
+    pub fn tolerance_db(&self) -> Option<f64> {
+        let declared = self.verification.as_ref()?;
+        declared.tolerance.map(|factor| 20.0 * portable::log10(factor))
+    }
+
     /// The tables that make the system: the actuator or the plant.
     fn visit_system<V: Visitor>(&mut self, v: &mut V) {
         let mut schema = 1;
@@ -221,6 +232,8 @@ impl Project {
         let k = plain("prefilter", "Given, to be verified; absent, to be designed.");
         v.table(k, &mut self.prefilter, Prefilter::visit);
         v.table(plain("design", "How a controller is designed."), &mut self.design, DeclaredDesign::visit);
+        let k = plain("verification", "How a controller is judged.");
+        v.table(k, &mut self.verification, DeclaredVerification::visit);
         v.tables(plain("scenario", "What is simulated."), &mut self.scenarios, Scenario::visit);
         let k = plain("simulation", "How exactly scenarios are simulated.");
         v.table_or_default(k, &mut self.simulation, Simulation::visit);

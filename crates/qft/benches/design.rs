@@ -123,6 +123,7 @@ fn options(task: &Task, seed: u64) -> DesignOptions {
         prefilter: PrefilterChoice::None,
         seed,
         tolerance_db: TOLERANCE_DB,
+        reserve_db: 0.0,
         coefficients: CoefficientFormat::Double,
     }
 }

@@ -159,7 +159,8 @@ fn proved(uncertain: usize, margin_db: f64) -> Result<(Effort, f64, f64), Failur
         tolerance_db: TOLERANCE_DB,
     };
     let found = audit(&problem, &mut unwatched)?;
-    let options = ProofOptions { width_db: margin_db, leaves_maximum: BOXES_MAXIMUM };
+    let options =
+        ProofOptions { width_db: margin_db, leaves_maximum: BOXES_MAXIMUM, ..ProofOptions::default() };
     let begun = Instant::now();
     let certificate = prove(&problem, &found, options, &mut unwatched)?.certificate.ok_or("not stated")?;
     let seconds = begun.elapsed().as_secs_f64();

@@ -1,9 +1,11 @@
 //! The loop around a plant: controller, prefilter, sensor, delay and sampling, and the closed loops
 //! of one member.
 
+mod disc;
 mod fed_forward;
 mod images;
 mod member;
+mod sampled_end;
 
 use std::sync::Arc;
 
@@ -17,6 +19,7 @@ use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember, RationalCoefficients, UncertainPlant};
 
 use crate::family::MeasuredPlant;
+pub(crate) use disc::DiscFactors;
 pub use fed_forward::FedForward;
 use fed_forward::{FedBack, rate_path};
 pub(crate) use fed_forward::{closed, moved_rate};

@@ -22,6 +22,7 @@ mod bounds;
 mod certificate;
 mod checker;
 mod claimed;
+mod comparison;
 mod count;
 mod dead_time;
 mod direction;
@@ -47,6 +48,7 @@ pub use certificate::{
     StableBox,
 };
 pub use checker::{Rejection, check};
+pub use comparison::{CertificateDifference, differences};
 pub use prove::{ProofOptions, prove};
 pub use walk::ProofRegion;
 

@@ -41,7 +41,7 @@ pub use finding::{ClosestApproach, DelayMargin, StabilityFinding, StabilityMetho
 use crate::closed_loop::{Compensation, Member};
 use characteristic::Characteristic;
 pub(crate) use characteristic::FeedbackPath;
-pub(crate) use measured::{is_stable as is_stable_by_points, points_with_sensor};
+pub(crate) use measured::{LoopPoint, is_stable as is_stable_by_points, points_with_sensor};
 use responding::PoleCounting;
 pub(crate) use responding::own_poles;
 
@@ -131,6 +131,25 @@ pub enum Irresolution {
     LowEnd {
         /// rad/s
         frequency_rad_per_s: f64,
+        /// Interval of d ln|L|/d ln w from there on; `None` where the points do not reach over a
+        /// factor of two.
+        slope: Option<[f64; 2]>,
+    },
+    /// The slope at the lowest frequencies contradicts the stated integrators of the plant.
+    Integrators {
+        /// rad/s
+        frequency_rad_per_s: f64,
+        /// Those of the loop, by the statement.
+        integrators: f64,
+    },
+    /// The disc around a measured response is so wide that 1 + L may turn either way round.
+    Confidence {
+        /// rad/s
+        frequency_rad_per_s: f64,
+        /// |1 + L| of its centre.
+        distance: f64,
+        /// Its radius, of L.
+        radius: f64,
     },
     /// The turns do not add up to a number of poles.
     Count {

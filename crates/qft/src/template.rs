@@ -20,6 +20,7 @@ use phea_dynamics::portable;
 use crate::closed_loop::Compensation;
 use crate::family::Family;
 
+pub(crate) use build::around_disc;
 pub use build::template;
 
 /// How finely a template is resolved.

@@ -74,6 +74,12 @@ pub enum Remark {
         /// From and to.
         table_rad_per_s: [f64; 2],
     },
+    /// A lower limit reaches pi/T, where prefilter or controller have a zero: no lower limit can be
+    /// met there.
+    ZeroAtNyquist {
+        /// pi/T
+        nyquist_rad_per_s: f64,
+    },
     /// There is no limit within the band.
     NothingDemanded,
     /// A design frequency lies outside of the band.
@@ -85,6 +91,13 @@ pub enum Remark {
     JudgedBySpread,
     /// Between two frequencies of a measurement the response is interpolated.
     Interpolated,
+    /// The margin is that of the worst plant within the confidence discs of a measurement.
+    WorstWithinDiscs,
+    /// Some plants within the confidence discs violate the specification, and others do not.
+    OpenWithinDiscs {
+        /// Worst margin that every plant within them has at most, dB.
+        certain_margin_db: f64,
+    },
     /// The band extends beyond the range in which every plant was measured.
     BeyondMeasurements {
         /// From and to.

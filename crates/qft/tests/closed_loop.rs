@@ -200,6 +200,8 @@ fn measured_lag_at(a: f64, points: i32) -> MeasuredPlant {
         command,
         disturbance: None,
         unstable_poles: 0,
+        radii: vec![],
+        integrators: None,
         is_resolved: false,
     }
 }

@@ -115,6 +115,8 @@ fn measured(frequencies: &[f64], command: Vec<Complex64>) -> MeasuredPlant {
         command,
         disturbance: None,
         unstable_poles: 0,
+        radii: vec![],
+        integrators: None,
         is_resolved: false,
     }
 }

@@ -25,7 +25,7 @@ use phea_qft::verification::{
 
 use crate::verification::thesis::{thesis_family, thesis_loop, thesis_specifications};
 
-fn problem<'a>(
+pub(crate) fn problem<'a>(
     family: &'a Family,
     compensation: &'a Compensation,
     specifications: &'a [Specification],
@@ -83,10 +83,10 @@ fn delay_belongs_to_what_is_proven() {
 }
 
 /// A random problem: a plant of two or three poles over a box, under a controller with as many.
-struct RandomProblem {
-    family: Family,
-    compensation: Compensation,
-    specifications: Vec<Specification>,
+pub(crate) struct RandomProblem {
+    pub(crate) family: Family,
+    pub(crate) compensation: Compensation,
+    pub(crate) specifications: Vec<Specification>,
 }
 
 fn between(state: &mut u64, low: f64, high: f64) -> f64 {
@@ -134,7 +134,7 @@ fn random_family(state: &mut u64) -> Family {
     Family::Uncertain(UncertainFamily::new(plant, coordinates, members, Extent::Box).unwrap())
 }
 
-fn random_problem(seed: u64, sampled: bool) -> RandomProblem {
+pub(crate) fn random_problem(seed: u64, sampled: bool) -> RandomProblem {
     let state = &mut stream(if sampled { 22 } else { 20 }, seed);
     let family = random_family(state);
     let delay_s = if share(state) < 0.4 { 0.15 * share(state) } else { 0.0 };
@@ -183,7 +183,7 @@ fn six_specifications() -> Vec<Specification> {
 }
 
 /// An audit that has looked at nothing: the prover has to find everything itself.
-fn blind(problem: &RandomProblem, nominal: Vec<f64>) -> Audit {
+pub(crate) fn blind(problem: &RandomProblem, nominal: Vec<f64>) -> Audit {
     let finding = |specification: &Specification| SpecificationFinding {
         requirement: specification.requirement.clone(),
         verdict: Verdict::NotProven,
@@ -221,7 +221,7 @@ pub(crate) fn sound(problems: std::ops::Range<u64>, points: usize, sampled: bool
         let Family::Uncertain(family) = &random.family else { panic!("a box") };
         let plant = family.plant();
         let asked = problem(&random.family, &random.compensation, &random.specifications);
-        let options = ProofOptions { width_db: 0.2, leaves_maximum: 1000 };
+        let options = ProofOptions { width_db: 0.2, leaves_maximum: 1000, ..ProofOptions::default() };
         let proof = prove(&asked, &blind(&random, plant.nominal()), options, &mut unwatched).unwrap();
         // what is claimed was checked already, claim by claim
         if seed % 20 == 0 {

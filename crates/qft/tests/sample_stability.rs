@@ -298,6 +298,8 @@ fn measured_plants_are_counted_by_nyquist() {
         command,
         disturbance: None,
         unstable_poles: 0,
+        radii: vec![],
+        integrators: None,
         is_resolved: false,
     };
     let mut plants = SampleStability::new(&compensation, vec![compensation.measured(&measured)]);

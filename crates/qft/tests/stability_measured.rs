@@ -35,6 +35,8 @@ fn measured(plant: &TransferFunction, from: f64, to: f64, points: usize) -> Meas
         command,
         disturbance: None,
         unstable_poles,
+        radii: vec![],
+        integrators: None,
         is_resolved: false,
     }
 }

@@ -10,6 +10,6 @@ pub use answer::files;
 pub(crate) use answer::json;
 pub(crate) use answer::{body, stable};
 pub(crate) use certificate::certificate_of;
-pub use certificate::{CERTIFICATE_FILE, CertificateError, check_certificate};
+pub use certificate::{CERTIFICATE_FILE, CertificateError, check_certificate, check_certificate_of};
 pub use document::output;
 pub(crate) use document::{basis, document, proven, summary};

@@ -50,7 +50,7 @@ use crate::project::{Loaded, refused};
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::report_beside;
 use crate::rig::RigError;
-use crate::robust::robust_problem;
+use crate::robust::{RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::shaping::{self, RequestedChange, Shaped, shape};
 use crate::simulate::compare_projects;
@@ -187,6 +187,23 @@ pub fn answer_into(
         answer_as_read(source, loaded, catalogues, request, destination, watch)
     });
     answer.map_err(|error| error.into_refusal(source, loaded))
+}
+
+/// The robust problem of a project, its valve as identified from its recordings where it asks for
+/// that.
+///
+/// # Errors
+/// [`CommandError`] for a project that is no such problem.
+pub fn robust_problem_of(
+    source: &dyn Source,
+    loaded: &Loaded,
+    watch: Watch<'_>,
+) -> Result<RobustProblem, CommandError> {
+    let problem = with_recordings(source, loaded, watch).and_then(|identified| {
+        let project = &identified.as_ref().unwrap_or(loaded).project;
+        Ok(robust_problem(source, &Setup::new(project)?)?)
+    });
+    problem.map_err(|error| error.into_refusal(source, loaded))
 }
 
 /// The project with its valve as identified from its recordings, where it asks for that.

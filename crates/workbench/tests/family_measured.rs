@@ -237,3 +237,72 @@ fn check_reads_what_was_measured() {
     assert!(checked("frequency_hz,real,imaginary\n1,1,0\n").unwrap().contains("measured"));
     assert!(checked("frequency_hz,real,imaginary\n1,x,0\n").unwrap_err().contains("rigs/a.csv:2:3"));
 }
+
+/// `integrators` are those of each plant, and the radii of `confidence_95` are widened until all of
+/// n rows hold at once with 95 %: for a normal error by sqrt(ln(20 n)/ln 20), and where the
+/// standard deviation states two blocks, F(2, 2), by sqrt((20 n - 1)/19).
+#[test]
+fn integrators_and_discs_are_read() {
+    let read_with = |extra: &str, csv: &str| match read(&format!("{PROJECT}{extra}"), csv) {
+        Ok(Family::Measured(family)) => family,
+        other => panic!("{other:?}"),
+    };
+    let rows = |columns: &str, values: &str| {
+        let rows: Vec<String> = (1..=8).map(|row| format!("{row},1,-1{values}")).collect();
+        format!("frequency_hz,real,imaginary{columns}\n{}\n", rows.join("\n"))
+    };
+    let plain = read_with("integrators = 2\n", &rows("", ""));
+    assert_eq!((plain.plants()[0].integrators, plain.plants()[0].radii.as_slice()), (Some(2), [].as_slice()));
+    let normal = read_with("", &rows(",confidence_95", ",0.1"));
+    assert_eq!(normal.plants()[0].integrators, None);
+    let factor = (160.0_f64.ln() / 20.0_f64.ln()).sqrt();
+    assert!(normal.plants()[0].radii.iter().all(|radius| (radius / (0.1 * factor) - 1.0).abs() < 1e-5));
+    // ORIGIN: analytic, r = sqrt(F(2, 2)) s with F(2, 2) = 1/p - 1 = 19
+    let deviation = 0.1 / 19.0_f64.sqrt();
+    let two = read_with("", &rows(",standard_deviation,confidence_95", &format!(",{deviation},0.1")));
+    let factor = (159.0_f64 / 19.0).sqrt();
+    assert!(two.plants()[0].radii.iter().all(|radius| (radius / (0.1 * factor) - 1.0).abs() < 1e-6));
+}
+
+fn verified(family: &str, csv: &str, rest: &str) -> phea_workbench::answer::Answer {
+    let text = format!(
+        "schema = 1\n[family]\nmeasured = [\"a.csv\"]\n{family}[[specification]]\nkind = \"robust_stability\"\nlimit = 1.6\n\
+         frequencies = [1]\nband = [0.1, 100]\n[controller]\nnumerator = \"1\"\ndenominator = \"1\"\n{rest}"
+    );
+    let source = Memory::default().with("rigs/p.toml", text).with("rigs/a.csv", csv);
+    let loaded = project::read(&source, "rigs/p.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}"));
+    let request = Request::Verify { proof: false, on_machine: false };
+    answer(&source, &loaded, &[], &request).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// 4/(s (s + 4)) around 1: |T| is at most 1. Within discs of 20 % the limit of 1.6 is met; with a
+/// limit between the best and the worst plant of the discs it is not proven, in text and JSON; the
+/// stated tolerance is that of the verdict.
+#[test]
+fn discs_and_tolerance_decide_the_verdict() {
+    let csv = |radius: f64| {
+        let rows: Vec<String> = (0..120)
+            .map(|row| {
+                let w = 0.1 * portable::exp(f64::from(row) * 0.058_05);
+                let s = Complex64::new(0.0, w);
+                let plant = 4.0 / (s * (s + 4.0));
+                format!("{w},{},{},{}", plant.re, plant.im, radius * portable::magnitude(plant))
+            })
+            .collect();
+        format!("frequency_rad_per_s,real,imaginary,confidence_95\n{}\n", rows.join("\n"))
+    };
+    let json = |answer: &phea_workbench::answer::Answer| -> serde_json::Value {
+        serde_json::from_str(&answer.json).unwrap()
+    };
+    let met = verified("", &csv(0.05), "");
+    assert_eq!(json(&met)["verdict"], "met", "{}", met.text);
+    let open = verified("", &csv(0.35), "");
+    assert_eq!(json(&open)["verdict"], "not_proven", "{}", open.text);
+    assert!(open.text.contains("leaves it open"), "{}", open.text);
+    let worst = json(&open)["specifications"][0]["worst_margin_db"].as_f64().unwrap();
+    let tolerance = format!("[verification]\ntolerance = \"{} dB\"\n", -worst + 0.01);
+    let tolerated = verified("", &csv(0.35), &tolerance);
+    assert_eq!(json(&tolerated)["verdict"], "met", "{}", tolerated.text);
+    let told = json(&tolerated)["tolerance_db"].as_f64().unwrap();
+    assert!((told - (0.01 - worst)).abs() < 1e-9, "{told}");
+}

@@ -8,7 +8,7 @@ use phea_workbench::answer::Answer;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use phea_workbench::audit::{CERTIFICATE_FILE, CertificateError, check_certificate};
+use phea_workbench::audit::{CERTIFICATE_FILE, CertificateError, check_certificate, check_certificate_of};
 use phea_workbench::command::Request;
 use serde_json::Value;
 
@@ -202,4 +202,79 @@ fn the_delay_of_a_sensor_is_not_that_of_the_plant() {
         );
         assert!(check_certificate(&certificate).unwrap().affirmative);
     }
+}
+
+/// A problem of a project text, with settings.
+fn problem(project: &str, settings: &[&str]) -> phea_workbench::robust::RobustProblem {
+    let source = phea_workbench::source::Memory::default().with("p.toml", project);
+    let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
+    let loaded = phea_workbench::project::read(&source, "p.toml", &settings, &[]).unwrap();
+    phea_workbench::command::robust_problem_of(&source, &loaded, &mut |_| true).unwrap()
+}
+
+const COMPARED: &str = "schema = 1\n[plant]\nnumerator = \"k\"\ndenominator = \"s*(s + a)\"\n\
+    [uncertainty]\nk = { nominal = 2, minimum = 1, maximum = 3 }\na = { nominal = 2, minimum = 2, maximum = 4 }\n\
+    [[specification]]\nkind = \"robust_stability\"\nlimit = 1.6\nfrequencies = [1]\nband = [0, inf]\n\
+    [[specification]]\nkind = \"tracking\"\nupper = 1.5\nlower = { numerator = \"0.4\", denominator = \"(s + 1)^4\" }\nfrequencies = [1]\nband = [0, 10]\n\
+    [controller]\nnumerator = \"1\"\ndenominator = \"1\"\n\
+    [prefilter]\nnumerator = \"1\"\ndenominator = \"s/20 + 1\"\n";
+
+/// A certificate is that of its project, and of no project with another plant, box, controller,
+/// prefilter or specification: each is named, though every claim holds.
+#[test]
+fn a_certificate_is_compared_with_a_project() {
+    let (verdict, text) = proven(COMPARED, &[]);
+    assert_eq!((verdict["verdict"].as_str(), verdict["evidence"].as_str()), (Some("met"), Some("proof")));
+    let compared = |project: &str, settings: &[&str]| {
+        let answer = check_certificate_of(&text, &problem(project, settings)).unwrap();
+        let object: Value = serde_json::from_str(&answer.json).unwrap();
+        assert_eq!(
+            (object["valid"].as_bool(), object["stability_claimed"].as_bool()),
+            (Some(true), Some(true))
+        );
+        let found = object["differences"].as_array().unwrap().clone();
+        assert_eq!(answer.affirmative, found.is_empty(), "{}", answer.text);
+        found.iter().map(|one| one.as_str().unwrap().to_string()).collect::<Vec<_>>().join("; ")
+    };
+    assert_eq!(compared(COMPARED, &[]), "");
+    let differs = |what: &str| format!("{what} of the certificate is not that of the project");
+    for (settings, what) in [
+        (["plant.denominator=s*(s + 2*a)"], differs("the plant")),
+        (["plant.delay=1 ms"], differs("the plant")),
+        (["uncertainty.k.maximum=3.001"], differs("the box of uncertain numbers")),
+        (["uncertainty.a.minimum=1.9"], differs("the box of uncertain numbers")),
+        (["controller.numerator=1.0001"], differs("the controller")),
+        (["prefilter.denominator=s/21 + 1"], differs("the prefilter")),
+    ] {
+        let found = compared(COMPARED, &settings);
+        assert!(found.contains(&what), "{settings:?}: {found}");
+    }
+    let specified = [
+        (COMPARED.replace("limit = 1.6", "limit = 1.59"), "the limit of specification 1"),
+        (COMPARED.replace("upper = 1.5", "upper = 1.49"), "the limit of specification 2"),
+        (COMPARED.replace("\"0.4\"", "\"0.41\""), "the lower limit of specification 2"),
+        (COMPARED.replace("band = [0, 10]", "band = [0, 11]"), "the lower limit of specification 2"),
+    ];
+    for (project, what) in specified {
+        let found = compared(&project, &[]);
+        assert!(found.contains(what), "{what}: {found}");
+    }
+}
+
+/// Without its claim of stability a certificate still holds, and both its text and its JSON say
+/// that nothing is claimed of stability.
+#[test]
+fn a_certificate_without_stability_says_so() {
+    let (_, text) = proven(COMPARED, &[]);
+    let mut file: Value = serde_json::from_str(&text).unwrap();
+    let claims = file["claims"].as_array_mut().unwrap();
+    claims.retain(|claim| claim["claim"] == "reached");
+    let without = serde_json::to_string(&file).unwrap();
+    let answer = check_certificate(&without).unwrap();
+    assert!(answer.text.contains("Nothing is claimed of stability"), "{}", answer.text);
+    let object: Value = serde_json::from_str(&answer.json).unwrap();
+    assert_eq!(object["stability_claimed"], false);
+    let compared = check_certificate_of(&without, &problem(COMPARED, &[])).unwrap();
+    assert!(!compared.affirmative);
+    assert!(compared.text.contains("does not claim that every plant is stable"), "{}", compared.text);
 }

@@ -3,14 +3,14 @@
 use phea_dynamics::watch::{Stopped, Watch};
 use phea_qft::verification::{Audit, Verdict};
 
-use super::asked;
+use super::audit_request;
 use crate::caveat::Caveat;
 use crate::robust::RobustProblem;
 
 /// The audit of the rig itself in the loop of a problem, where the family does not contain it.
 pub(crate) fn caveat(problem: &RobustProblem, watch: Watch<'_>) -> Result<Option<Caveat>, Stopped> {
     let Some((alone, beyond)) = &problem.rig_outside else { return Ok(None) };
-    let audit = phea_qft::audit::audit(&asked(problem, alone), watch)?;
+    let audit = phea_qft::audit::audit(&audit_request(problem, alone), watch)?;
     Ok(Some(of_rig(beyond, does(problem, &audit), audit.verdict != Verdict::Met)))
 }
 

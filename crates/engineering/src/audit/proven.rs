@@ -4,7 +4,7 @@ use phea_dynamics::watch::{Stopped, Watch};
 use phea_qft::proof::{NotProven, Proof, ProofOptions, Standing, prove};
 use phea_qft::verification::{Evidence, Verdict};
 
-use super::{ProjectAudit, asked, rounded};
+use super::{ProjectAudit, audit_request, rounded};
 use crate::robust::RobustProblem;
 
 /// Proves or refutes stability and every specification of an audit. What is neither proven nor
@@ -18,7 +18,7 @@ pub fn prove_audit(
     view: &mut ProjectAudit,
     watch: Watch<'_>,
 ) -> Result<(), Stopped> {
-    let proof = prove(&asked(problem, &problem.family), &view.audit, ProofOptions::default(), watch)?;
+    let proof = prove(&audit_request(problem, &problem.family), &view.audit, ProofOptions::default(), watch)?;
     rest_on(view, proof, Verdict::NotProven);
     Ok(())
 }
@@ -34,7 +34,7 @@ pub fn try_to_prove(
     watch: Watch<'_>,
 ) -> Result<(), Stopped> {
     let options = ProofOptions { leaves_maximum: TRIED_LEAVES, ..ProofOptions::default() };
-    let proof = prove(&asked(problem, &problem.family), &view.audit, options, watch)?;
+    let proof = prove(&audit_request(problem, &problem.family), &view.audit, options, watch)?;
     rest_on(view, proof, Verdict::Met);
     Ok(())
 }
@@ -146,7 +146,7 @@ pub fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -
         NotProven::Budget(region) => {
             let [from, to] = region.band_rad_per_s.map(rounded);
             format!(
-                "too many boxes: between {from} and {to} rad/s it remains open{}",
+                "the boxes that one claim may take are used up: between {from} and {to} rad/s it remains open{}",
                 part_of(view, proof, region)
             )
         }

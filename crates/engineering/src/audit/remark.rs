@@ -19,6 +19,10 @@ fn sentence(remark: &Remark, finding: &SpecificationFinding, names: &PlantNames)
             let [low, high] = table_rad_per_s.map(rounded);
             format!("the table reaches from {low} to {high} rad/s: nothing is demanded beyond it")
         }
+        Remark::ZeroAtNyquist { nyquist_rad_per_s } => format!(
+            "at pi/T = {} rad/s prefilter or controller have a zero, so that no lower limit can be met there: end `band` below it",
+            rounded(*nyquist_rad_per_s)
+        ),
         Remark::NothingDemanded => "nothing is demanded within the band".to_string(),
         Remark::DesignFrequencyOutside { frequency_rad_per_s } => {
             format!("the design frequency {frequency_rad_per_s} rad/s lies outside of the band")
@@ -28,6 +32,12 @@ fn sentence(remark: &Remark, finding: &SpecificationFinding, names: &PlantNames)
             "measured plants: between two frequencies of the measurement the response is interpolated"
                 .to_string()
         }
+        Remark::WorstWithinDiscs => {
+            "the margin is that of the worst plant within the discs that hold all measured responses of a file with 95 %".to_string()
+        }
+        Remark::OpenWithinDiscs { certain_margin_db } => format!(
+            "the measurement leaves it open: of the plants within the discs that hold all measured responses of a file with 95 % the worst violates it, and nothing shows that all do (margin {certain_margin_db:.3} dB at the least for the best of them)"
+        ),
         Remark::BeyondMeasurements { measured_rad_per_s } => {
             let [from, to] = measured_rad_per_s.map(rounded);
             format!("the measurements reach from {from} to {to} rad/s: nothing is known beyond")

@@ -101,8 +101,19 @@ fn irresolution_words(irresolution: &Irresolution) -> String {
                 "the measurement ends at {} rad/s where |L| = {gain:.2} is not well below one",
                 rounded(*frequency_rad_per_s)
             ),
-        Irresolution::LowEnd { frequency_rad_per_s } => format!(
-                "below {} rad/s, where the measurement begins, the loop's integrators cannot be identified",
+        Irresolution::LowEnd { frequency_rad_per_s, slope } => {
+            let begins = rounded(*frequency_rad_per_s);
+            let slope = slope.map_or(String::new(), |[low, high]| {
+                format!(" (|L| follows w to the power {low:.2} to {high:.2} there)")
+            });
+            format!("below {begins} rad/s, where the measurement begins, the loop's integrators cannot be identified{slope}: points over a factor of two must show them, or `integrators` in [family] states them")
+        }
+        Irresolution::Integrators { frequency_rad_per_s, integrators } => format!(
+                "the slope of |L| above {} rad/s contradicts the {integrators} integrators that `integrators` in [family] makes of the loop",
+                rounded(*frequency_rad_per_s)
+            ),
+        Irresolution::Confidence { frequency_rad_per_s, distance, radius } => format!(
+                "at {} rad/s |1 + L| = {distance:.3}, and the confidence disc of the measurement has the radius {radius:.3} there: it decides on neither side of -1",
                 rounded(*frequency_rad_per_s)
             ),
         Irresolution::Count { count } => format!(

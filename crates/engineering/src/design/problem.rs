@@ -2,9 +2,9 @@
 
 use phea_dynamics::controller::Element;
 use phea_dynamics::linear::LinearError;
+use phea_dynamics::portable;
 use phea_qft::design::{ControllerChoice, DesignOptions, DesignProblem, PrefilterChoice, gain_range};
 use phea_qft::loop_shaping::{Structure, StructureFactor};
-use phea_qft::verification::TOLERANCE_DB;
 
 use super::DesignError;
 use crate::project::StructurePart;
@@ -52,7 +52,8 @@ pub fn design_options(
         controller,
         prefilter: prefilter_choice(setup, given, design.prefilter_maximum_order)?,
         seed: u64::from(seed.unwrap_or(design.seed)),
-        tolerance_db: TOLERANCE_DB,
+        tolerance_db: given.tolerance_db,
+        reserve_db: design.reserve.map_or(0.0, |factor| 20.0 * portable::log10(factor)),
         coefficients: setup.quantization.coefficients,
     })
 }

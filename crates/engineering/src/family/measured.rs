@@ -8,6 +8,7 @@
 //! A row for each frequency; the unit belongs to the name of a column.
 
 mod column;
+mod disc;
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -30,29 +31,38 @@ pub(super) fn family(
     for name in &declared.measured {
         let path = project.path_of(name);
         let bytes = findings.bytes_of(source, &path);
-        let unstable_poles = declared.unstable_poles as usize;
-        plants.extend(bytes.and_then(|bytes| plant(name, &path, bytes, unstable_poles, &mut findings)));
+        let read = bytes.and_then(|bytes| plant(name, &path, bytes, &mut findings));
+        plants.extend(read.map(|plant| MeasuredPlant {
+            unstable_poles: declared.unstable_poles as usize,
+            integrators: declared.integrators.map(|count| count as usize),
+            ..plant
+        }));
     }
     Ok(MeasuredFamily::new(findings.or_refused(plants).map_err(ProjectFamilyError::Measurement)?)?)
 }
 
 /// The plant of one file; `None` if it has an error.
-fn plant(
-    name: &str,
-    path: &str,
-    bytes: Vec<u8>,
-    unstable_poles: usize,
-    findings: &mut Findings,
-) -> Option<MeasuredPlant> {
+fn plant(name: &str, path: &str, bytes: Vec<u8>, findings: &mut Findings) -> Option<MeasuredPlant> {
     let table = MeasuredTable::read(path, bytes, &MeasurementColumns::sought(), None, findings)?;
     let columns = MeasurementColumns::find(&table, findings)?;
     let forms = || std::iter::once(&columns.command).chain(&columns.load_motion);
-    let wanted: Vec<&Column> =
-        std::iter::once(&columns.frequency).chain(forms().flat_map(ResponseForm::parts)).collect();
+    let spread: Vec<&Column> = columns.radius.iter().chain(&columns.deviation).collect();
+    let wanted: Vec<&Column> = std::iter::once(&columns.frequency)
+        .chain(spread.iter().copied())
+        .chain(forms().flat_map(ResponseForm::parts))
+        .collect();
     let before = findings.error_count();
     let numbers = table.all_numbers(&wanted, findings);
-    let (frequencies, parts) = numbers.split_first()?;
+    let (frequencies, rest) = numbers.split_first()?;
+    let (spread, parts) = rest.split_at(spread.len());
     rising(&table, &columns.frequency, frequencies, findings);
+    let radii = columns.radius.as_ref().zip(spread.first());
+    if let Some((column, radii)) = radii {
+        for row in (0..radii.len()).filter(|row| radii.get(*row).is_some_and(|radius| *radius < 0.0)) {
+            let found = table.error(row, column, "a radius is not negative", findings);
+            findings.push(found.expected("the radius of the disc that holds the response with 95 %"));
+        }
+    }
     let responses: Vec<Vec<Complex64>> = forms()
         .zip(parts.chunks_exact(2))
         .map(|(form, parts)| responses(&table, form, parts, findings))
@@ -69,50 +79,14 @@ fn plant(
         frequencies_rad_per_s: frequencies.clone(),
         command,
         disturbance: responses.next(),
-        unstable_poles,
+        unstable_poles: 0,
+        radii: radii.map_or_else(Vec::new, |(_, radii)| {
+            disc::of_all_rows(radii, if columns.radius.is_some() { spread.get(1) } else { None })
+        }),
+        integrators: None,
         is_resolved: false,
     };
     (findings.error_count() == before).then_some(plant)
-}
-
-/// How well the responses of a family are known, where that is worst.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct WidestDisc {
-    /// As the project names it.
-    pub(crate) file: String,
-    /// Radius of the 95 % disc over the magnitude of the response.
-    pub(crate) share: f64,
-    /// rad/s
-    pub(crate) frequency: f64,
-}
-
-/// The widest 95 % disc of the files; `None` where none states any.
-pub(crate) fn widest_disc(project: &Project, source: &dyn Source) -> Option<WidestDisc> {
-    let declared = project.family.iter().flat_map(|family| &family.measured);
-    let discs = declared.filter_map(|name| {
-        // errors of the file are those of its family
-        let mut findings = Findings::default();
-        let path = project.path_of(name);
-        let bytes = source.read(&path).ok()?;
-        let table = MeasuredTable::read(&path, bytes, &MeasurementColumns::sought(), None, &mut findings)?;
-        let columns = MeasurementColumns::find(&table, &mut findings)?;
-        let radius = columns.radius.as_ref()?;
-        let wanted: Vec<&Column> =
-            [&columns.frequency, radius].into_iter().chain(columns.command.parts()).collect();
-        let numbers = table.all_numbers(&wanted, &mut findings);
-        let [frequencies, radii, parts @ ..] = numbers.as_slice() else { return None };
-        let found = responses(&table, &columns.command, parts, &mut findings);
-        let shares = found.iter().zip(radii).zip(frequencies).map(|((response, radius), frequency)| {
-            let share = radius / portable::magnitude(*response);
-            WidestDisc { file: name.clone(), share, frequency: *frequency }
-        });
-        widest(shares)
-    });
-    widest(discs)
-}
-
-fn widest(discs: impl Iterator<Item = WidestDisc>) -> Option<WidestDisc> {
-    discs.filter(|one| !one.share.is_nan()).max_by(|one, other| one.share.total_cmp(&other.share))
 }
 
 /// Reports frequencies that are not above the greatest one before.

@@ -56,7 +56,9 @@ pub fn in_use(
         IdentifiedUse::Valve | IdentifiedUse::Nothing => None,
     };
     let (numbers, kept) = numbers(&found, &loaded.project);
-    let settings = settings(&found, &numbers, region.as_ref());
+    let mut settings = settings(&found, &numbers, region.as_ref());
+    let stated = loaded.project.design.as_ref().and_then(|design| design.reserve);
+    settings.extend(region.as_ref().filter(|_| stated.is_none()).map(reserve));
     let family = region.map(|region| IdentifiedFamily {
         effects: region.effects,
         left_out: region.left_out,
@@ -165,6 +167,12 @@ fn settings(
         settings.push(format!("uncertainty_direction=[{}]", directions.join(", ")));
     }
     settings
+}
+
+/// The margin that a design keeps for what another recording of the same valve may move: its plants
+/// have other gains, and a closed loop changes by no more where a limit on it binds.
+fn reserve(region: &JointRegion) -> String {
+    format!("design.reserve={:e}", 1.0 + region.change_left_out)
 }
 
 /// A direction as an inline table.

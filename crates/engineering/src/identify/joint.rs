@@ -29,6 +29,10 @@ const PATHS: [&str; COUNT] = [
 /// Probability that the true coefficients lie in the region.
 pub const COVERAGE: f64 = 0.95;
 
+/// Standard deviations of one recording that two of the same valve differ by at most with 95 %:
+/// 1.96 sqrt 2.
+const BETWEEN_TWO: f64 = 2.771_8;
+
 /// Relative change of K_qU and K_c that the directions left out may make together, where nothing
 /// else is asked.
 pub const SMALLEST_EFFECT: f64 = 0.01;
@@ -44,6 +48,9 @@ pub struct JointRegion {
     pub left_out: usize,
     /// Largest relative change of K_qU or K_c that those make together.
     pub effect_left_out: f64,
+    /// Relative change of K_qU or K_c by those from one recording of the same valve to another that
+    /// is not exceeded with 95 %.
+    pub change_left_out: f64,
     /// Standard deviations to either side.
     pub deviations: f64,
 }
@@ -114,12 +121,16 @@ pub fn joint_region(
     let (effects, changes) = (effects * &turned, spread * turned);
     let deviations = deviations(COUNT);
     let kept = kept(&effects, smallest_effect / deviations);
+    let scatter = |row: usize| {
+        (kept..COUNT).map(|column| effects[(row, column)] * effects[(row, column)]).sum::<f64>().sqrt()
+    };
     let left_out = |row: usize| (kept..COUNT).map(|column| effects[(row, column)].abs()).sum::<f64>();
     let effect = |column: usize| effects.column(column).iter().map(|one| one.abs()).fold(0.0, f64::max);
     let region = JointRegion {
         directions: (0..kept).map(|column| direction(&changes, column, deviations)).collect(),
         effects: (0..kept).map(|column| deviations * effect(column)).collect(),
         left_out: COUNT - kept,
+        change_left_out: BETWEEN_TWO * (0..effects.nrows()).map(scatter).fold(0.0, f64::max),
         effect_left_out: deviations * (0..effects.nrows()).map(left_out).fold(0.0, f64::max),
         deviations,
     };

@@ -148,6 +148,33 @@ impl SamplingImages<'_> {
         Some(sampled(sum, load_motion))
     }
 
+    /// Radius of the disc around P, and around P H over |H|, that the discs of a measurement and of
+    /// its images make.
+    ///
+    /// ```text
+    /// r = sum over k of r(v) |sin(v T/2)/(v T/2)|,     v = w + 2 pi k/T
+    /// ```
+    pub(super) fn radius(&self, plant: &MeasuredPlant, frequency_rad_per_s: f64, sensor: Complex64) -> f64 {
+        let Some(sample_time_s) = self.sample_time_s else { return plant.radius(frequency_rad_per_s) };
+        let spacing = 2.0 * std::f64::consts::PI / sample_time_s;
+        let Some(&reach) = plant.frequencies_rad_per_s.last() else { return 0.0 };
+        let [mut own, mut with_sensor] = [0.0; 2];
+        let mut add = |v: f64| {
+            let radius = plant.radius(v.abs()) * hold(v, sample_time_s).abs();
+            own += radius;
+            with_sensor += radius * portable::magnitude(self.sensor.at_frequency(v.abs()));
+        };
+        add(frequency_rad_per_s);
+        for sign in [1.0, -1.0] {
+            let mut v = frequency_rad_per_s + sign * spacing;
+            while v.abs() <= reach {
+                add(v);
+                v += sign * spacing;
+            }
+        }
+        own.max(with_sensor / portable::magnitude(sensor))
+    }
+
     fn unsampled(&self, command: Complex64, load_motion: Complex64, frequency: f64) -> MemberResponse {
         let plant = command * turned(frequency, self.delay_s);
         MemberResponse { plant, load_motion, sensor: self.sensor.at_frequency(frequency) }

@@ -42,6 +42,17 @@ impl Member {
         }
     }
 
+    /// Radius of the disc around the P of [`Member::response`] that holds the true one; zero where
+    /// the response is exact.
+    pub(crate) fn radius(&self, frequency_rad_per_s: f64, response: &MemberResponse) -> f64 {
+        match (self, self.images()) {
+            (Member::Measured { plant, .. }, Some(images)) if !plant.radii.is_empty() => {
+                images.radius(plant, frequency_rad_per_s, response.sensor)
+            }
+            _ => 0.0,
+        }
+    }
+
     /// K H_v P_v(jw) of a plant without polynomials, with the delay of the loop and sampled where
     /// that samples; `None` of other plants, and where its images do not die out.
     pub(crate) fn fed_back(&self, frequency_rad_per_s: f64) -> Option<Complex64> {

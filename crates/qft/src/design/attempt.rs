@@ -121,7 +121,7 @@ impl Attempt {
         relaxes: bool,
         beginning: StartingPoints,
     ) -> Result<Attempt, LoopDesignError> {
-        let reserve_db = if relaxes { 0.0 } else { RESERVE_DB };
+        let reserve_db = if relaxes { 0.0 } else { RESERVE_DB + options.reserve_db };
         samples.keep_in_reserve(reserve_db);
         let aim = match options.objective {
             _ if relaxes => Aim::WorstMargin,

@@ -114,7 +114,7 @@ struct LearntPlants {
 ///     objective: Objective::LeastHighFrequencyGain,
 ///     controller: ControllerChoice::Given(gain_alone),
 ///     prefilter: PrefilterChoice::None,
-///     seed: 1, tolerance_db: TOLERANCE_DB, coefficients: CoefficientFormat::Double,
+///     seed: 1, tolerance_db: TOLERANCE_DB, reserve_db: 0.0, coefficients: CoefficientFormat::Double,
 /// };
 /// let found = design(&problem, &options, &mut unwatched)?.design.ok_or("none was found")?;
 /// assert_eq!(found.status, DesignStatus::Met);

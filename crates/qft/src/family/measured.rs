@@ -14,8 +14,14 @@ pub struct MeasuredPlant {
     pub command: Vec<Complex64>,
     /// Pd(j w) at each frequency, where the load-motion path was measured too.
     pub disturbance: Option<Vec<Complex64>>,
+    /// Radius of the disc around each P(j w) that holds the true response, all of them at once with
+    /// the confidence of the verdict; empty where the responses are exact.
+    pub radii: Vec<f64>,
     /// Number of open-loop poles in the right half plane, which cannot be seen from a response.
     pub unstable_poles: usize,
+    /// Poles less zeros at the origin, where they are stated: otherwise the slope at the lowest
+    /// frequencies must show them.
+    pub integrators: Option<usize>,
     /// Whether the response between two points is known to be the interpolated one, as it is for
     /// [`super::tabulated`]. Nothing is assumed that a measurement does not show.
     pub is_resolved: bool,
@@ -34,7 +40,7 @@ pub enum MeasurementError {
     #[error("no response was measured")]
     Empty,
     /// Frequencies must be positive, finite and increasing; responses must be finite, not zero, and
-    /// equal in number.
+    /// equal in number; radii are not negative.
     #[error(
         "{plant}: point {point} is not one of increasing positive frequencies with a finite response that is not zero"
     )]
@@ -79,7 +85,9 @@ impl MeasuredPlant {
                 .disturbance
                 .as_ref()
                 .map_or(Some(true), |values| values.get(point).map(|value| value.is_finite()));
-            let good = frequency > previous
+            let radius = self.radii.get(point).is_none_or(|radius| *radius >= 0.0);
+            let good = radius
+                && frequency > previous
                 && frequency.is_finite()
                 && self.command.get(point).is_some_and(sound)
                 && disturbance == Some(true);
@@ -88,7 +96,9 @@ impl MeasuredPlant {
             }
             previous = frequency;
         }
-        let lengths = [self.command.len(), self.disturbance.as_ref().map_or(count, Vec::len)];
+        let disturbance = self.disturbance.as_ref().map_or(count, Vec::len);
+        let radii = if self.radii.is_empty() { count } else { self.radii.len() };
+        let lengths = [self.command.len(), disturbance, radii];
         if count == 0 || lengths.iter().any(|&length| length != count) { Some(count) } else { None }
     }
 
@@ -115,5 +125,18 @@ impl MeasuredPlant {
             from * portable::exp_complex(turn * share)
         };
         Some((between(&self.command), self.disturbance.as_ref().map(|values| between(values))))
+    }
+
+    /// Radius of the disc around P at a frequency; between two points the wider of theirs, each in
+    /// relation to its response. Zero where the responses are exact.
+    pub(crate) fn radius(&self, frequency_rad_per_s: f64) -> f64 {
+        let upper = self.frequencies_rad_per_s.partition_point(|&w| w < frequency_rad_per_s);
+        let Some(&radius) = self.radii.get(upper) else { return 0.0 };
+        if self.frequencies_rad_per_s[upper] == frequency_rad_per_s {
+            return radius;
+        }
+        let relative = |point: usize| self.radii[point] / portable::magnitude(self.command[point]);
+        let widest = upper.checked_sub(1).map_or(0.0, relative).max(relative(upper));
+        self.response(frequency_rad_per_s).map_or(0.0, |(command, _)| widest * portable::magnitude(command))
     }
 }

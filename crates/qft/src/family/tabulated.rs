@@ -79,6 +79,8 @@ pub(crate) fn table(found: Vec<TabulatedPoint>, unstable_poles: Option<usize>) -
         frequencies_rad_per_s: found.iter().map(|point| point.0).collect(),
         command: found.iter().map(|point| point.1[0]).collect(),
         disturbance: Some(found.iter().map(|point| point.1[1]).collect()),
+        radii: Vec::new(),
+        integrators: None,
         is_resolved: unstable_poles.is_some(),
         unstable_poles: unstable_poles.unwrap_or(0),
     }

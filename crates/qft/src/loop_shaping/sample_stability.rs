@@ -14,7 +14,6 @@ mod rounded_polynomial;
 
 use std::cell::OnceCell;
 
-use num_complex::Complex64;
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
@@ -22,7 +21,7 @@ use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use crate::closed_loop::{Compensation, Member};
 use crate::family::{COARSE, MeasuredPlant, points, table, tabulated};
 use crate::stability::{
-    FeedbackPath, Irresolution, StabilityStatus, is_stable_by_points, member_stability, own_poles,
+    FeedbackPath, Irresolution, LoopPoint, StabilityStatus, is_stable_by_points, member_stability, own_poles,
     points_with_sensor, poles_lie_below,
 };
 use quotient::BilinearQuotient;
@@ -92,7 +91,7 @@ struct PlantInLoop {
     /// With its dead time, if any, approximated by a quotient: for ranking only.
     approximation: Option<BilinearQuotient>,
     /// Frequency in rad/s and P H of a measured plant, which a controller does not move.
-    with_sensor: Vec<(f64, Complex64)>,
+    with_sensor: Vec<LoopPoint>,
 }
 
 /// The controller that is tested.

@@ -15,9 +15,10 @@ use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember, UncertainPlant};
 
 use super::margins::{Demand, Keeping, demands};
-use crate::closed_loop::{Compensation, Member};
+use crate::closed_loop::{Compensation, Member, MemberResponse};
 use crate::family::{Extent, Family, MeasuredPlant, UncertainFamily};
 use crate::loop_shaping::DesignProblem;
+use crate::template::around_disc;
 use crate::verification::{PlantPoint, TrackingJudgement};
 
 /// At an undamped pole, where a plant has no response, it is evaluated at a frequency higher by
@@ -323,19 +324,18 @@ impl Samples {
         let finite = |frequency: f64| {
             let response = self.members[plant].response(frequency)?;
             let parts = [response.plant, response.plant * response.sensor, response.load_motion];
-            parts.iter().all(|part| part.is_finite()).then_some(parts)
+            let is_finite = parts.iter().all(|part| part.is_finite());
+            is_finite.then(|| (response, self.members[plant].radius(frequency, &response)))
         };
-        let Some([response, with_sensor, load_motion]) =
+        let Some((response, radius)) =
             finite(column.frequency).or_else(|| finite(column.frequency * (1.0 + BESIDE)))
         else {
             return false;
         };
-        column.plants.push(plant);
-        column.loop_re.push(with_sensor.re);
-        column.loop_im.push(with_sensor.im);
-        column.loop_squared.push(with_sensor.norm_sqr());
-        column.plant_squared.push(response.norm_sqr());
-        column.load_motion_squared.push(load_motion.norm_sqr());
+        column.push(plant, &response);
+        for corner in around_disc(response.plant, radius) {
+            column.push(plant, &MemberResponse { plant: corner, ..response });
+        }
         true
     }
 }
@@ -353,6 +353,17 @@ impl FrequencyColumn {
             plant_squared: vec![],
             load_motion_squared: vec![],
         }
+    }
+
+    /// A response of a plant; one that is known within a disc has several.
+    fn push(&mut self, plant: usize, response: &MemberResponse) {
+        let with_sensor = response.plant * response.sensor;
+        self.plants.push(plant);
+        self.loop_re.push(with_sensor.re);
+        self.loop_im.push(with_sensor.im);
+        self.loop_squared.push(with_sensor.norm_sqr());
+        self.plant_squared.push(response.plant.norm_sqr());
+        self.load_motion_squared.push(response.load_motion.norm_sqr());
     }
 
     /// P H of the plant at this place.

@@ -3,7 +3,8 @@
 use phea_dynamics::portable;
 
 use super::PrefilterError;
-use crate::closed_loop::{Compensation, Member};
+use crate::closed_loop::{Compensation, DiscFactors, Member};
+use crate::specification::ClosedLoop;
 
 /// At an undamped pole of the plant, where it has no response, the closed loop is evaluated at a
 /// frequency higher by this share.
@@ -24,7 +25,8 @@ pub struct TrackingExtremes {
     pub least_member: usize,
 }
 
-/// The extremes of a family at each frequency, the prefilter left out.
+/// The extremes of a family at each frequency, the prefilter left out; those within the discs of
+/// measured plants.
 ///
 /// ```text
 /// max |T|,  min |T|,    T = P G/(1 + P G H)                thesis (3.22), (3.23) with F = 1
@@ -86,19 +88,22 @@ fn extremes_at(
         let closed = |frequency: f64| {
             let response = plant.response(frequency)?;
             let forward = response.plant * feedback;
-            let magnitude = portable::magnitude(forward / (1.0 + forward * response.sensor));
-            magnitude.is_finite().then_some(magnitude)
+            let open = forward * response.sensor;
+            let magnitude = portable::magnitude(forward / (1.0 + open));
+            let radius = plant.radius(frequency, &response) * portable::magnitude(feedback * response.sensor);
+            let [least, most] = DiscFactors::of(open, radius).of_closed_loop(ClosedLoop::Tracking);
+            magnitude.is_finite().then(|| [least, most].map(|one| magnitude * one.sqrt()))
         };
         // the closed loop is continuous where the plant alone is infinite
         let magnitude = closed(frequency_rad_per_s).or_else(|| closed(frequency_rad_per_s * (1.0 + BESIDE)));
-        let Some(magnitude) = magnitude else {
+        let Some([least, most]) = magnitude else {
             return Err(PrefilterError::NoResponse { member, frequency_rad_per_s });
         };
-        if magnitude > found.greatest {
-            (found.greatest, found.greatest_member) = (magnitude, member);
+        if most > found.greatest {
+            (found.greatest, found.greatest_member) = (most, member);
         }
-        if magnitude < found.least {
-            (found.least, found.least_member) = (magnitude, member);
+        if least < found.least {
+            (found.least, found.least_member) = (least, member);
         }
     }
     Ok(found)

@@ -23,7 +23,7 @@ const RAISES_MAXIMUM: usize = 40;
 /// The certificate with bounds on images, where its loop is sampled; `None` where there are none.
 pub(super) fn with_bounds(
     mut certificate: Certificate,
-    effort: ProofEffort,
+    effort: ProofEffort<'_>,
     watch: Watch<'_>,
 ) -> Result<Option<Certificate>, Stopped> {
     let Some(mut sampling) = certificate.sampling.take() else { return Ok(Some(certificate)) };
@@ -62,7 +62,7 @@ fn bounded(
     claimed: &Claimed<f64>,
     variables: usize,
     begin: f64,
-    effort: ProofEffort,
+    effort: ProofEffort<'_>,
     watch: Watch<'_>,
 ) -> Result<Option<(f64, Vec<FrequencyPanel>)>, Stopped> {
     // where it begins, with all variables at one

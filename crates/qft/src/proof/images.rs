@@ -230,6 +230,11 @@ pub(crate) struct ImageDisc<S> {
 }
 
 impl<S: Decimal> ImagePoints<S> {
+    /// Number of control points.
+    pub(super) fn size(&self) -> usize {
+        self.each.iter().map(|(points, _)| points.points().len()).sum()
+    }
+
     /// Both halves of the box across an axis.
     pub(super) fn halves(self, axis: usize) -> [ImagePoints<S>; 2] {
         let rest = self.rest;

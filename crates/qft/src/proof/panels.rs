@@ -9,7 +9,7 @@ use super::claimed::Claimed;
 use super::dead_time::ends;
 use super::points::PanelRange;
 use super::polynomial::{BoxPolynomial, InS};
-use super::walk::{ProofEffort, WalkOutcome, walk};
+use super::walk::{ProofEffort, ProofRegion, WalkOutcome, walk};
 
 /// Points per decade at which plants are evaluated.
 const POINTS_PER_DECADE: f64 = 24.0;
@@ -29,7 +29,7 @@ pub(super) fn walk_band(
     claimed: &Claimed<f64>,
     variables: usize,
     band: [f64; 2],
-    effort: ProofEffort,
+    effort: ProofEffort<'_>,
     watch: Watch<'_>,
 ) -> Result<WalkOutcome, Stopped> {
     let decades = decades(band, claimed);
@@ -48,9 +48,8 @@ pub(super) fn walk_band(
             waiting.extend([[middle, to], [from, middle]]);
             continue;
         }
-        let mut over = |late: Late, effort: ProofEffort| {
-            walk(claimed, variables, PanelRange { from, to, late }, effort, &mut *watch)
-        };
+        let mut over =
+            |late: Late, effort| walk(claimed, variables, PanelRange { from, to, late }, effort, &mut *watch);
         let found = match ends(&claimed.dead_time) {
             _ if claimed.dead_time.value.is_zero() => over(Late::Not, effort)?,
             _ if to.is_infinite() => over(Late::Less, effort)?,
@@ -70,6 +69,15 @@ pub(super) fn walk_band(
         };
         match found {
             WalkOutcome::Shown(panels) => shown.extend(panels),
+            // the panels are taken in order: all from here on are left
+            WalkOutcome::Open(region) if effort.budget.is_spent() => {
+                let variables = vec![[0.0, 1.0]; variables];
+                return Ok(WalkOutcome::Open(ProofRegion {
+                    band_rad_per_s: [from, band[1]],
+                    variables,
+                    ..region
+                }));
+            }
             other => return Ok(other),
         }
     }
@@ -77,9 +85,9 @@ pub(super) fn walk_band(
 }
 
 /// Whether it is shown, or refuted, whatever the angle of the dead time.
-fn any(
-    over: &mut impl FnMut(Late, ProofEffort) -> Result<WalkOutcome, Stopped>,
-    effort: ProofEffort,
+fn any<'a>(
+    over: &mut impl FnMut(Late, ProofEffort<'a>) -> Result<WalkOutcome, Stopped>,
+    effort: ProofEffort<'a>,
 ) -> Result<Option<WalkOutcome>, Stopped> {
     let (leaves, depth) = TRIAL;
     for late in [Late::Less, Late::More] {

@@ -51,6 +51,15 @@ impl<S: Decimal> Patch<S> {
         Some(Patch { own, images })
     }
 
+    /// Number of its control points, those of the images included.
+    pub(crate) fn size(&self) -> usize {
+        let of_images = self.images.as_ref().map_or(0, |images| {
+            let own = images.multiplied.points().len() + images.of_u.size();
+            own + images.of_v.as_ref().map_or(0, ImagePoints::size)
+        });
+        self.own.points().len() + of_images
+    }
+
     pub(crate) fn axes(&self) -> usize {
         self.own.axes()
     }

@@ -16,7 +16,7 @@ use super::panels::walk_band;
 use super::sampling::poles_of_law;
 use super::statement::{limit, member_of, stated, values_of};
 use super::supremum::{EnclosedSupremum, PlantAtFrequency, SoughtSupremum, corners, enclose};
-use super::walk::{ProofEffort, ProofRegion, WalkOutcome};
+use super::walk::{ProofBudget, ProofEffort, ProofRegion, WalkOutcome};
 use super::{NotProven, Proof, SpecificationProof, Standing};
 use crate::family::Family;
 use crate::specification::{Limit, Specification};
@@ -29,14 +29,17 @@ use crate::verification::{
 pub struct ProofOptions {
     /// Largest width of the enclosure of a supremum, dB.
     pub width_db: f64,
-    /// Largest number of leaves of one claim.
+    /// Largest number of leaves of one panel.
     pub leaves_maximum: usize,
+    /// Largest number of control points of all boxes that one claim may take; the time is in
+    /// proportion to them.
+    pub points_maximum: u64,
 }
 
 impl Default for ProofOptions {
     /// 0.05 dB, and enough leaves for every known example.
     fn default() -> ProofOptions {
-        ProofOptions { width_db: 0.05, leaves_maximum: 100_000 }
+        ProofOptions { width_db: 0.05, leaves_maximum: 100_000, points_maximum: 1_000_000_000 }
     }
 }
 
@@ -116,12 +119,15 @@ pub fn prove(
         Ok(stated) => stated,
         Err(reason) => return Ok(nothing(problem, reason)),
     };
-    let effort = ProofEffort { leaves: options.leaves_maximum, depth: DEPTH_MAXIMUM, room: ROOMS[0] };
+    let budget = ProofBudget::new(options.points_maximum);
+    let (leaves, budget) = (options.leaves_maximum, &budget);
+    let effort = ProofEffort { leaves, depth: DEPTH_MAXIMUM, room: ROOMS[0], budget };
     let Some(certificate) = with_bounds(certificate, effort, watch)? else {
         return Ok(nothing(problem, NotProven::Images));
     };
     let mut prover = Prover { problem, certificate, options, effort };
     let parts = problem.specifications.len() as f64 + 1.0;
+    budget.renew();
     let stability = prover.stability(audit, &mut part(watch, "proving", [0.0, 1.0 / parts]))?;
     let mut specifications = Vec::with_capacity(problem.specifications.len());
     for (index, (specification, finding)) in
@@ -129,6 +135,7 @@ pub fn prove(
     {
         let share = [(index as f64 + 1.0) / parts, (index as f64 + 2.0) / parts];
         let watch = &mut part(watch, "proving", share);
+        budget.renew();
         specifications.push(prover.specification(specification, finding, &stability, watch)?);
     }
     Ok(Proof { certificate: Some(prover.certificate), stability, specifications })
@@ -154,7 +161,7 @@ struct Prover<'a> {
     problem: &'a AuditProblem<'a>,
     certificate: Certificate,
     options: ProofOptions,
-    effort: ProofEffort,
+    effort: ProofEffort<'a>,
 }
 
 impl Prover<'_> {
@@ -323,15 +330,8 @@ impl Prover<'_> {
             return Ok(SpecificationProof::without(Standing::NotProven(NotProven::Spread)));
         }
         let hints: Vec<PlantAtFrequency> = self.hints(finding);
-        let (lower, upper) = requirement.limits();
-        let lower = lower
-            .filter(|lower| **lower != Limit::Constant(0.0))
-            .map(|lower| (CertificateSide::Lower, lower));
         let mut whole = SpecificationProof::without(Standing::Proven);
-        for (side, own) in lower.into_iter().chain([(CertificateSide::Upper, upper)]) {
-            let (closed_loop, limit) = (requirement.closed_loop(), limit(own));
-            let limited =
-                LimitedLoop { closed_loop, side, limit, band_rad_per_s: specification.band_rad_per_s };
+        for limited in limited_loops(specification) {
             whole = whole.and(self.side(&limited, &hints, stability, watch)?);
         }
         Ok(whole)
@@ -427,6 +427,21 @@ impl Prover<'_> {
     }
 }
 
+/// What a specification limits, the lower side first.
+pub(super) fn limited_loops(specification: &Specification) -> Vec<LimitedLoop> {
+    let requirement = &specification.requirement;
+    let (lower, upper) = requirement.limits();
+    let lower = lower.filter(|lower| **lower != Limit::Constant(0.0));
+    let sides = lower.map(|lower| (CertificateSide::Lower, lower)).into_iter();
+    let limited = |(side, own): (CertificateSide, &Limit)| LimitedLoop {
+        closed_loop: requirement.closed_loop(),
+        side,
+        limit: limit(own),
+        band_rad_per_s: specification.band_rad_per_s,
+    };
+    sides.chain([(CertificateSide::Upper, upper)]).map(limited).collect()
+}
+
 /// The position of the poles of a loop with one plant: all within the boundary of stability, or at
 /// least one on it or beyond.
 enum PoleLocation {
@@ -462,6 +477,6 @@ fn db(ratio: f64) -> f64 {
     20.0 * portable::log10(ratio)
 }
 
-fn from_db(decibels: f64) -> f64 {
+pub(super) fn from_db(decibels: f64) -> f64 {
     portable::pow(10.0, decibels / 20.0)
 }

@@ -40,13 +40,13 @@ pub(super) struct EnclosedSupremum {
 
 /// What is looked for.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct SoughtSupremum {
+pub(super) struct SoughtSupremum<'a> {
     /// Largest ratio of the two ends of the enclosure.
     pub(super) width: f64,
     /// A ratio that decides: the search ends once it is shown or refuted, even if the enclosure
     /// could be narrower.
     pub(super) decisive: f64,
-    pub(super) effort: ProofEffort,
+    pub(super) effort: ProofEffort<'a>,
     /// Whether only points are evaluated.
     pub(super) only_points: bool,
 }
@@ -57,7 +57,7 @@ pub(super) fn enclose(
     certificate: &Certificate,
     limited: &LimitedLoop,
     hints: &[PlantAtFrequency],
-    wanted: SoughtSupremum,
+    wanted: SoughtSupremum<'_>,
     watch: Watch<'_>,
 ) -> Result<Option<EnclosedSupremum>, Stopped> {
     let boxes = 0..certificate.plant.boxes.len();
@@ -103,7 +103,7 @@ enum Boxes {
 fn walk_boxes(
     certificate: &Certificate,
     (claims, ratio): (&[Vec<BandClaim<f64>>], f64),
-    effort: ProofEffort,
+    effort: ProofEffort<'_>,
     watch: Watch<'_>,
 ) -> Result<Boxes, Stopped> {
     let mut shown = vec![vec![]; claims.len()];

@@ -1,7 +1,9 @@
 //! The prover: halves boxes until every leaf is shown, in plain numbers. The checker must confirm
 //! what it finds.
 
-use phea_dynamics::watch::{Stopped, Watch, tell};
+use std::cell::Cell;
+
+use phea_dynamics::watch::{Progress, Stopped, Watch};
 
 use super::certificate::{FrequencyPanel, LEAF};
 use super::claimed::Claimed;
@@ -42,13 +44,46 @@ pub struct ProofRegion {
 
 /// How far a walk goes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ProofEffort {
+pub(crate) struct ProofEffort<'a> {
     /// Largest number of leaves of a panel.
     pub(crate) leaves: usize,
     /// Halvings on the way to a leaf at most.
     pub(crate) depth: usize,
     /// Reserve for the rounding of the checker, as a share of |V|^2.
     pub(crate) room: f64,
+    /// What all walks of one claim may cost together.
+    pub(crate) budget: &'a ProofBudget,
+}
+
+/// The cost of one claim, in control points: the time is in proportion to them.
+#[derive(Debug)]
+pub(crate) struct ProofBudget {
+    whole: u64,
+    left: Cell<u64>,
+}
+
+impl ProofBudget {
+    pub(crate) fn new(points: u64) -> ProofBudget {
+        ProofBudget { whole: points, left: Cell::new(points) }
+    }
+
+    /// Begins another claim.
+    pub(crate) fn renew(&self) {
+        self.left.set(self.whole);
+    }
+
+    pub(crate) fn is_spent(&self) -> bool {
+        self.left.get() == 0
+    }
+
+    fn spend(&self, points: usize) {
+        self.left.set(self.left.get().saturating_sub(points as u64));
+    }
+
+    fn tell(&self, watch: Watch<'_>) -> Result<(), Stopped> {
+        let spent = 1.0 - self.left.get() as f64 / self.whole.max(1) as f64;
+        if watch(Progress { stage: PROVING, share: spent }) { Ok(()) } else { Err(Stopped) }
+    }
 }
 
 /// A box to be processed: its control points, and its range on each axis of its panel.
@@ -59,7 +94,7 @@ struct WaitingBox {
 }
 
 const PROVING: &str = "proving";
-/// Number of leaves after which the watch is consulted.
+/// Number of boxes after which the watch is consulted.
 const LOOK: usize = 64;
 
 /// Looks for a tree that shows |V| <= |U| over one panel, and returns it if it is found.
@@ -67,27 +102,33 @@ pub(crate) fn walk(
     claimed: &Claimed<f64>,
     variables: usize,
     range: PanelRange,
-    effort: ProofEffort,
+    effort: ProofEffort<'_>,
     watch: Watch<'_>,
 ) -> Result<WalkOutcome, Stopped> {
     let Some(whole) = Patch::over(claimed, variables, range) else { return Ok(WalkOutcome::TooLarge) };
     let sides = vec![[0.0, 1.0]; whole.axes()];
     let mut waiting = vec![WaitingBox { patch: whole, sides, depth: 0 }];
-    let (mut tree, mut leaves) = (vec![], 0);
+    let (mut tree, mut leaves, mut looked) = (vec![], 0, 0);
     while let Some(WaitingBox { patch, sides, depth }) = waiting.pop() {
+        effort.budget.spend(patch.size());
+        looked += 1;
+        if looked % LOOK == 0 {
+            effort.budget.tell(watch)?;
+        }
         match look(&patch, effort.room) {
             LeafOutcome::Shown(direction) => {
                 tree.push(LEAF);
                 tree.extend(direction.iter().flat_map(|part| part.to_be_bytes()));
                 leaves += 1;
-                if leaves % LOOK == 0 {
-                    tell(watch, PROVING, leaves, effort.leaves)?;
-                }
             }
             LeafOutcome::Wrong { corner, ratio } => {
                 return Ok(WalkOutcome::Wrong { at: at(range, &sides, corner), ratio });
             }
-            LeafOutcome::Halve(axis) if leaves + waiting.len() < effort.leaves && depth < effort.depth => {
+            LeafOutcome::Halve(axis)
+                if leaves + waiting.len() < effort.leaves
+                    && depth < effort.depth
+                    && !effort.budget.is_spent() =>
+            {
                 tree.push(axis as u8);
                 let [lower, upper] = patch.halves(axis);
                 let [low_sides, high_sides] = halved(&sides, axis);

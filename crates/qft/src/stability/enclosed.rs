@@ -89,7 +89,7 @@ impl EnclosedLoop<'_> {
             }
             first /= 2.0;
         }
-        Err(Irresolution::LowEnd { frequency_rad_per_s: first })
+        Err(Irresolution::LowEnd { frequency_rad_per_s: first, slope: None })
     }
 
     /// L at one frequency.

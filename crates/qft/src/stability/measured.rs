@@ -5,7 +5,10 @@
 //! ```
 //!
 //! Nothing is assumed that the points do not show: turns between two of them, the loop below the
-//! first, and the loop above the last.
+//! first, and the loop above the last. Where a disc is known around each point, the count is that
+//! of every response within the discs.
+
+mod low_end;
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
@@ -13,7 +16,9 @@ use phea_dynamics::portable;
 
 use super::{Approach, CriticalDelay, Instability, Irresolution, MemberStability, StabilityStatus};
 use crate::closed_loop::{Compensation, Member};
+use crate::family::MeasuredPlant;
 use crate::minimum::between;
+use low_end::{LowEnd, opening};
 
 /// Largest turn between two points, rad.
 const TURN_MAXIMUM: f64 = std::f64::consts::FRAC_PI_3;
@@ -27,15 +32,25 @@ const SMALL_GAIN: f64 = 0.5;
 const LARGE_GAIN: f64 = 2.0;
 /// Relative accuracy of the frequency of the least |1 + L|.
 const POLISHED: f64 = 1e-7;
-/// How near to a whole number of integrators the slope of ln|L| must be at the low end.
-const SLOPE_TOLERANCE: f64 = 0.3;
+
+/// L, or P H, at one frequency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LoopPoint {
+    /// rad/s
+    frequency: f64,
+    value: Complex64,
+    /// Radius of the disc around it that holds the true response; zero where it is exact.
+    radius: f64,
+}
 
 /// L at these frequencies, up to half the sampling rate.
 pub(super) struct OpenLoop<'a> {
     member: &'a Member,
     compensation: &'a Compensation,
     around: MeasuredLoop,
-    points: Vec<(f64, Complex64)>,
+    points: Vec<LoopPoint>,
+    /// Whether the response is known between the points too.
+    is_known_between: bool,
 }
 
 /// Which loop L is of.
@@ -60,32 +75,36 @@ pub(super) fn stability(member: &Member, compensation: &Compensation) -> MemberS
     }
 }
 
-/// P H of a measured plant at its points up to half the sampling rate, frequencies in rad/s: it
-/// does not change with the controller. Empty for other plants.
-pub(crate) fn points_with_sensor(member: &Member, compensation: &Compensation) -> Vec<(f64, Complex64)> {
+/// P H of a measured plant at its points up to half the sampling rate: it does not change with the
+/// controller. Empty for other plants.
+pub(crate) fn points_with_sensor(member: &Member, compensation: &Compensation) -> Vec<LoopPoint> {
     let Member::Measured { plant, .. } = member else { return vec![] };
     let highest = compensation.highest_frequency_rad_per_s();
     let frequencies = plant.frequencies_rad_per_s.iter().take_while(|&&frequency| frequency <= highest);
-    let at = |&frequency: &f64| {
-        let response = member.response(frequency)?;
-        Some((frequency, response.plant * response.sensor))
-    };
-    frequencies.filter_map(at).collect()
+    frequencies.filter_map(|&frequency| point_with_sensor(member, frequency)).collect()
+}
+
+/// P H; `None` where it is not known.
+fn point_with_sensor(member: &Member, frequency: f64) -> Option<LoopPoint> {
+    let response = member.response(frequency)?;
+    let radius = member.radius(frequency, &response) * portable::magnitude(response.sensor);
+    Some(LoopPoint { frequency, value: response.plant * response.sensor, radius })
 }
 
 /// Whether a measured plant is stable within its loop, given its [`points_with_sensor`]: the status
 /// of [`super::member_stability`] without the other results.
-pub(crate) fn is_stable(
-    member: &Member,
-    with_sensor: &[(f64, Complex64)],
-    compensation: &Compensation,
-) -> bool {
+pub(crate) fn is_stable(member: &Member, with_sensor: &[LoopPoint], compensation: &Compensation) -> bool {
     let Member::Measured { plant, sensor, .. } = member else { return false };
     let feedback = compensation.feedback();
-    let points =
-        with_sensor.iter().map(|&(frequency, path)| (frequency, path * feedback.at_frequency(frequency)));
-    let mut open_loop = OpenLoop { member, compensation, around: MeasuredLoop::Output, points: Vec::new() };
-    open_loop.extend(points, plant.is_resolved);
+    let points = with_sensor.iter().map(|point| point.times(feedback.at_frequency(point.frequency)));
+    let mut open_loop = OpenLoop {
+        member,
+        compensation,
+        around: MeasuredLoop::Output,
+        points: Vec::new(),
+        is_known_between: plant.is_resolved,
+    };
+    open_loop.extend(points);
     open_loop.unstable_closed_loop_poles(plant.unstable_poles, sensor) == Ok(0)
 }
 
@@ -101,18 +120,17 @@ impl<'a> OpenLoop<'a> {
     ) -> OpenLoop<'a> {
         let highest = compensation.highest_frequency_rad_per_s();
         let frequencies = frequencies_rad_per_s.iter().take_while(|&&frequency| frequency <= highest);
-        let mut open_loop = OpenLoop { member, compensation, around, points: Vec::new() };
-        let points = frequencies.filter_map(|&frequency| Some((frequency, open_loop.at(frequency)?)));
-        let points: Vec<(f64, Complex64)> = points.collect();
-        open_loop.extend(points.into_iter(), is_known_between);
+        let mut open_loop = OpenLoop { member, compensation, around, points: Vec::new(), is_known_between };
+        let points: Vec<LoopPoint> = frequencies.filter_map(|&one| open_loop.at(one)).collect();
+        open_loop.extend(points.into_iter());
         open_loop
     }
 
     /// Adds these points, with as many between them as 1 + L needs where the response is known
     /// there.
-    fn extend(&mut self, points: impl Iterator<Item = (f64, Complex64)>, is_known_between: bool) {
+    fn extend(&mut self, points: impl Iterator<Item = LoopPoint>) {
         for point in points {
-            if is_known_between {
+            if self.is_known_between {
                 self.fill_up_to(point);
             }
             self.points.push(point);
@@ -136,13 +154,14 @@ impl<'a> OpenLoop<'a> {
 
     /// Points between the last one and this one, as many as are needed for 1 + L to turn little
     /// from each to the next.
-    fn fill_up_to(&mut self, end: (f64, Complex64)) {
+    fn fill_up_to(&mut self, end: LoopPoint) {
         let mut ahead = vec![end];
         while let (Some(&next), Some(&last)) = (ahead.last(), self.points.last()) {
-            let near = next.0 - last.0 <= CLOSEST * next.0 || turns_little(last.1, next.1);
-            let middle = (last.0 * next.0).sqrt();
+            let close = next.frequency - last.frequency <= CLOSEST * next.frequency;
+            let near = close || turns_little(last.value, next.value);
+            let middle = (last.frequency * next.frequency).sqrt();
             match Some(middle).filter(|_| !near).and_then(|middle| self.at(middle)) {
-                Some(value) => ahead.push((middle, value)),
+                Some(point) => ahead.push(point),
                 None => {
                     ahead.pop();
                     if !ahead.is_empty() {
@@ -153,12 +172,31 @@ impl<'a> OpenLoop<'a> {
         }
     }
 
-    fn at(&self, frequency: f64) -> Option<Complex64> {
+    /// L at any frequency; `None` where it is not known.
+    fn at(&self, frequency: f64) -> Option<LoopPoint> {
         if self.around == MeasuredLoop::Rate {
-            return self.member.fed_back(frequency).map(|back| -back);
+            let back = self.member.fed_back(frequency)?;
+            return Some(LoopPoint { frequency, value: -back, radius: 0.0 });
         }
-        let response = self.member.response(frequency)?;
-        Some(response.plant * response.sensor * self.compensation.feedback().at_frequency(frequency))
+        let feedback = self.compensation.feedback().at_frequency(frequency);
+        point_with_sensor(self.member, frequency).map(|point| point.times(feedback))
+    }
+
+    /// Poles less zeros of L at the origin, if those of the plant are stated.
+    fn integrators(&self) -> Option<f64> {
+        let Member::Measured { plant: MeasuredPlant { integrators, .. }, sensor, .. } = self.member else {
+            return None;
+        };
+        let at_origin = |function: &TransferFunction| {
+            let origin = zero_frequency(function);
+            let count = |roots: &[Complex64]| roots.iter().filter(|root| **root == origin).count() as f64;
+            count(function.poles()) - count(function.zeros())
+        };
+        Some(
+            integrators.as_ref().map(|own| *own as f64)?
+                + at_origin(sensor)
+                + at_origin(self.compensation.feedback()),
+        )
     }
 
     /// Number of poles of the closed loop outside the stable region, given the number of those of
@@ -176,25 +214,25 @@ impl<'a> OpenLoop<'a> {
 
     /// Number of zeros of 1 + L outside the stable region, given the number of poles of L there.
     pub(super) fn unstable_poles(&self, own: usize) -> Result<usize, Irresolution> {
-        let &[first, second, ..] = self.points.as_slice() else { return Err(Irresolution::Points) };
-        let turned_below = turn_below(first, second)?;
+        let &[first, _, ..] = self.points.as_slice() else { return Err(Irresolution::Points) };
+        let low =
+            LowEnd { points: &self.points, integrators: self.integrators(), is_known: self.is_known_between };
+        let turned_below = low.turn()?;
         let mut rounds = 0.0;
         for pair in self.points.windows(2) {
-            let &[(from_rad_per_s, before), (to_rad_per_s, after)] = pair else { continue };
-            if !turns_little(before, after) {
-                let turn_deg = turn(before, after).to_degrees();
-                return Err(Irresolution::Coarse { from_rad_per_s, to_rad_per_s, turn_deg });
-            }
-            rounds += rounds_begun(1.0 + before, 1.0 + after);
+            let &[from, to] = pair else { continue };
+            followed(from, to)?;
+            rounds += rounds_begun(1.0 + from.value, 1.0 + to.value);
         }
-        let &(frequency_rad_per_s, last) = self.points.last().ok_or(Irresolution::Points)?;
-        let gain = portable::magnitude(last);
+        let last = self.points.last().ok_or(Irresolution::Points)?;
+        let gain = portable::magnitude(last.value) + last.radius;
         if gain.is_nan() || gain > SMALL_GAIN {
-            return Err(Irresolution::HighEnd { frequency_rad_per_s, gain });
+            return Err(Irresolution::HighEnd { frequency_rad_per_s: last.frequency, gain });
         }
         // from the first point to the last 1 + L turns by 2 pi rounds and the difference of the
         // angles there, from the last on back to zero
-        let turned = turned_below - portable::argument(1.0 + first.1) + 2.0 * std::f64::consts::PI * rounds;
+        let turned =
+            turned_below - portable::argument(1.0 + first.value) + 2.0 * std::f64::consts::PI * rounds;
         let count = own as f64 - turned / std::f64::consts::PI;
         if (count - count.round()).abs() > 1e-6 || count.round() < 0.0 {
             return Err(Irresolution::Count { count });
@@ -203,59 +241,133 @@ impl<'a> OpenLoop<'a> {
     }
 
     /// The least |1 + L|: that of the points, refined around the least of them where the response
-    /// is known.
+    /// is known; the least within their discs.
     pub(super) fn closest_approach(&self) -> Approach {
-        let distance = |value: Complex64| portable::magnitude(1.0 + value);
-        let order = |one: &&[(f64, Complex64)], other: &&[(f64, Complex64)]| {
-            distance(one[1].1).total_cmp(&distance(other[1].1))
-        };
-        let ends = self
-            .points
-            .iter()
-            .map(|&(frequency_rad_per_s, value)| Approach { distance: distance(value), frequency_rad_per_s });
+        let order =
+            |one: &&[LoopPoint], other: &&[LoopPoint]| one[1].distance().total_cmp(&other[1].distance());
         let none = Approach { distance: f64::INFINITY, frequency_rad_per_s: f64::INFINITY };
-        let least =
-            ends.fold(none, |nearest, next| if next.distance < nearest.distance { next } else { nearest });
+        let least = self.points.iter().fold(none, |nearest, next| match next.distance() {
+            distance if distance < nearest.distance => {
+                Approach { distance, frequency_rad_per_s: next.frequency }
+            }
+            _ => nearest,
+        });
         let Some(&[before, nearest, after]) =
             self.points.windows(3).min_by(order).and_then(|points| points.first_chunk())
         else {
             return least;
         };
-        if nearest.0 != least.frequency_rad_per_s {
+        if nearest.frequency != least.frequency_rad_per_s {
             return least;
         }
-        let at = |frequency: f64| self.at(frequency).map_or(f64::INFINITY, distance);
-        let start = (nearest.0, least.distance);
-        let (frequency_rad_per_s, found) = between(at, [before.0, after.0], start, POLISHED * nearest.0);
+        let at = |frequency: f64| self.at(frequency).map_or(f64::INFINITY, |point| point.distance());
+        let start = (nearest.frequency, least.distance);
+        let ends = [before.frequency, after.frequency];
+        let (frequency_rad_per_s, found) = between(at, ends, start, POLISHED * nearest.frequency);
         if found < least.distance { Approach { distance: found, frequency_rad_per_s } } else { least }
     }
 
-    /// Crossovers lie where the line between two points crosses one.
+    /// Crossovers lie where the line between two points crosses one, and where a disc touches the
+    /// unit circle.
     pub(super) fn critical_delay(&self) -> CriticalDelay {
-        let above = |value: Complex64| portable::magnitude(value) >= 1.0;
         let mut least = CriticalDelay::NONE;
+        let mut take = |point: &LoopPoint| {
+            if let Some(delay_s) = point.critical_delay().filter(|delay_s| *delay_s < least.delay_s) {
+                least = CriticalDelay { delay_s, frequency_rad_per_s: point.frequency };
+            }
+        };
+        self.points.iter().filter(|point| point.radius > 0.0).for_each(&mut take);
         for pair in self.points.windows(2) {
-            let &[(mut low, before), (mut high, after)] = pair else { continue };
-            if above(before) == above(after) {
-                continue;
-            }
-            for _ in 0..60 {
-                let middle = 0.5 * (low + high);
-                if self.at(middle).is_some_and(|value| above(value) == above(before)) {
-                    low = middle;
-                } else {
-                    high = middle;
-                }
-            }
-            let Some(value) = self.at(high) else { continue };
-            let lag = portable::argument(-value);
-            let lag = if lag < 0.0 { lag + 2.0 * std::f64::consts::PI } else { lag };
-            if lag / high < least.delay_s {
-                least = CriticalDelay { delay_s: lag / high, frequency_rad_per_s: high };
+            if let &[before, after] = pair
+                && before.is_above_one() != after.is_above_one()
+                && let Some(crossing) = self.crossing(before, after)
+            {
+                take(&crossing);
             }
         }
         least
     }
+
+    /// Where |L| passes one between two points.
+    fn crossing(&self, before: LoopPoint, after: LoopPoint) -> Option<LoopPoint> {
+        let (mut low, mut high) = (before.frequency, after.frequency);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if self.at(middle).is_some_and(|point| point.is_above_one() == before.is_above_one()) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let crossing = self.at(high)?;
+        Some(LoopPoint { value: crossing.value / portable::magnitude(crossing.value), ..crossing })
+    }
+}
+
+impl LoopPoint {
+    fn times(self, factor: Complex64) -> LoopPoint {
+        LoopPoint {
+            value: self.value * factor,
+            radius: if self.radius == 0.0 { 0.0 } else { self.radius * portable::magnitude(factor) },
+            ..self
+        }
+    }
+
+    /// The least |1 + L| within the disc.
+    fn distance(&self) -> f64 {
+        (portable::magnitude(1.0 + self.value) - self.radius).max(0.0)
+    }
+
+    fn is_above_one(&self) -> bool {
+        portable::magnitude(self.value) >= 1.0
+    }
+
+    /// The least delay that turns a point of the disc with |L| = 1 to -1, s; `None` where it has no
+    /// such point.
+    ///
+    /// ```text
+    /// cos(opening) = (1 + |L|^2 - r^2)/(2 |L|)
+    /// ```
+    fn critical_delay(&self) -> Option<f64> {
+        let size = portable::magnitude(self.value);
+        let cosine = (1.0 + size * size - self.radius * self.radius) / (2.0 * size);
+        // beyond rounding of a crossover, whose disc is a point
+        let opening = if self.radius == 0.0 {
+            0.0
+        } else {
+            portable::acos(Some(cosine).filter(|one| one.abs() <= 1.0)?)
+        };
+        let lag = portable::argument(-self.value);
+        let lag = if lag < 0.0 { lag + 2.0 * std::f64::consts::PI } else { lag };
+        Some((lag - opening).max(0.0) / self.frequency)
+    }
+}
+
+/// Whether 1 + L can be followed from one point to the next, wherever in their discs it is.
+fn followed(from: LoopPoint, to: LoopPoint) -> Result<(), Irresolution> {
+    let open = [from, to].map(|point| opening(1.0 + point.value, point.radius));
+    let turn_rad = turn(from.value, to.value);
+    if !turns_little(from.value, to.value) {
+        return Err(Irresolution::Coarse {
+            from_rad_per_s: from.frequency,
+            to_rad_per_s: to.frequency,
+            turn_deg: turn_rad.to_degrees(),
+        });
+    }
+    if open[0] + open[1] + turn_rad.min(TURN_MAXIMUM) < std::f64::consts::PI {
+        return Ok(());
+    }
+    let wider = if open[1] > open[0] { to } else { from };
+    Err(Irresolution::Confidence {
+        frequency_rad_per_s: wider.frequency,
+        distance: portable::magnitude(1.0 + wider.value),
+        radius: wider.radius,
+    })
+}
+
+/// The point of the boundary of stability at zero frequency: s = 0, or z = 1.
+fn zero_frequency(function: &TransferFunction) -> Complex64 {
+    Complex64::new(if function.domain() == TimeDomain::Continuous { 0.0 } else { 1.0 }, 0.0)
 }
 
 /// Whether [`turn`] is at most [`TURN_MAXIMUM`], by products alone.
@@ -301,36 +413,10 @@ fn turn(before: Complex64, after: Complex64) -> f64 {
 pub(super) fn outside_of_stable_region(function: &TransferFunction) -> Result<usize, Irresolution> {
     let continuous = function.domain() == TimeDomain::Continuous;
     let excess = |pole: &Complex64| if continuous { pole.re } else { portable::magnitude(*pole) - 1.0 };
-    let at_zero_frequency = if continuous { Complex64::new(0.0, 0.0) } else { Complex64::new(1.0, 0.0) };
+    let at_zero_frequency = zero_frequency(function);
     let poles = || function.poles().iter().filter(|pole| **pole != at_zero_frequency);
     if poles().any(|pole| excess(pole) == 0.0) {
         return Err(Irresolution::UndampedController);
     }
     Ok(poles().filter(|pole| excess(pole) > 0.0).count())
-}
-
-/// The change of arg(1 + L) from zero frequency, where 1 + L is real, to the first point, passing m
-/// integrators on the right: -m pi/2 and the small deviation of the first point. The slope of |L|
-/// there determines m.
-fn turn_below(first: (f64, Complex64), second: (f64, Complex64)) -> Result<f64, Irresolution> {
-    let unknown = Err(Irresolution::LowEnd { frequency_rad_per_s: first.0 });
-    let gain = portable::magnitude(first.1);
-    let slope = portable::ln(portable::magnitude(second.1) / gain) / portable::ln(second.0 / first.0);
-    let integrators = (-slope).round();
-    if gain <= SMALL_GAIN && integrators <= 0.0 {
-        return Ok(portable::argument(1.0 + first.1));
-    }
-    let whole = (slope + integrators).abs() <= SLOPE_TOLERANCE;
-    if !whole || integrators < 0.0 || (integrators > 0.0 && gain < LARGE_GAIN) {
-        return unknown;
-    }
-    let quarter = std::f64::consts::FRAC_PI_2;
-    let mut rest = 1.0 + first.1;
-    let mut done = 0.0;
-    while done < integrators {
-        rest *= Complex64::new(0.0, 1.0);
-        done += 1.0;
-    }
-    let off = portable::argument(if rest.re < 0.0 { -rest } else { rest });
-    if off.abs() > TURN_MAXIMUM { unknown } else { Ok(off - integrators * quarter) }
 }

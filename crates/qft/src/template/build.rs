@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use num_complex::Complex64;
+use phea_dynamics::portable;
 
 use super::explore::{Exploration, explore};
 use super::plants::{Plants, Stop};
@@ -45,6 +46,8 @@ use crate::family::{Extent, Family, MeasuredFamily};
 ///     command: vec![response; 3],
 ///     disturbance: None,
 ///     unstable_poles: 0,
+///     radii: vec![],
+///     integrators: None,
 ///     is_resolved: true,
 /// };
 /// let plants = vec![measured("one", Complex64::new(1.0, 0.0)), measured("other", Complex64::new(0.0, 2.0))];
@@ -78,19 +81,42 @@ pub fn template(
     }
 }
 
+/// Corners of the polygon around a disc, 2 % outside of it.
+const CORNERS: usize = 16;
+
 fn measured(
     family: &MeasuredFamily,
     compensation: &Compensation,
     frequency_rad_per_s: f64,
 ) -> Result<BuiltTemplate, TemplateError> {
-    let mut points = vec![];
+    let (mut points, mut around, mut outlines) = (vec![], vec![], vec![]);
     for (member, plant) in family.plants().iter().enumerate() {
-        let response = compensation.measured(plant).response(frequency_rad_per_s);
+        let within = compensation.measured(plant);
+        let response = within.response(frequency_rad_per_s);
         let response = response.ok_or(TemplateError::OutOfReach { frequency_rad_per_s })?;
         points.push(finite(point(Some(member), vec![], response), frequency_rad_per_s)?);
+        let mut outline = vec![];
+        for plant in around_disc(response.plant, within.radius(frequency_rad_per_s, &response)) {
+            let corner = point(Some(member), vec![], MemberResponse { plant, ..response });
+            outline.push(corner.response);
+            around.push(finite(corner, frequency_rad_per_s)?);
+        }
+        outlines.extend(Some(outline).filter(|outline| !outline.is_empty()));
     }
     let evaluations = points.len();
-    built(frequency_rad_per_s, points, vec![], Resolution::Members, evaluations)
+    points.extend(around);
+    built(frequency_rad_per_s, points, outlines, Resolution::Members, evaluations)
+}
+
+/// Corners of a polygon around the disc of a response; none around an exact one.
+pub(crate) fn around_disc(centre: Complex64, radius: f64) -> impl Iterator<Item = Complex64> {
+    let corners = if radius > 0.0 { CORNERS } else { 0 };
+    let step = 2.0 * std::f64::consts::PI / CORNERS as f64;
+    let reach = radius / portable::cos(step / 2.0);
+    (0..corners).map(move |corner| {
+        let angle = step * corner as f64;
+        centre + Complex64::new(portable::cos(angle), portable::sin(angle)) * reach
+    })
 }
 
 fn uncertain(plants: &mut Plants, frequency_rad_per_s: f64) -> Result<BuiltTemplate, TemplateError> {

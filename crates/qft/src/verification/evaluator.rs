@@ -99,6 +99,16 @@ impl<'a> Evaluator<'a> {
         self.finite(criterion, member, frequency).map(|(_, margin_db)| margin_db)
     }
 
+    /// The margin that every plant of a disc has at most, in dB, at a frequency that is neither
+    /// zero nor infinite.
+    pub(super) fn certain_margin_db(&self, criterion: usize, member: &Member, frequency: f64) -> Option<f64> {
+        let criterion = self.criteria.get(criterion)?;
+        let only = std::slice::from_ref(criterion);
+        let at = LoopAt::new(self.compensation, only, self.with_prefilter, frequency);
+        let closed = self.closed(&at, member)?;
+        Some(decibels(at.excess(0, criterion, &closed)?.certain))
+    }
+
     /// A quantity that vanishes at a resonance, and the margin in dB, at a frequency that is
     /// neither zero nor infinite.
     pub(super) fn resonance(
@@ -116,7 +126,7 @@ impl<'a> Evaluator<'a> {
         let only = std::slice::from_ref(criterion);
         let at = LoopAt::new(self.compensation, only, self.with_prefilter, frequency);
         let closed = self.closed(&at, member)?;
-        let excess = at.excess(0, criterion, &closed)?;
+        let excess = at.excess(0, criterion, &closed)?.worst;
         (!excess.is_nan()).then(|| (closed, decibels(excess)))
     }
 

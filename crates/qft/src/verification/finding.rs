@@ -29,6 +29,8 @@ pub(super) struct SpecificationCriteria {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FoundMargin {
     pub(super) margin_db: f64,
+    /// What it is at most for every plant within a disc of measurement: the same without one.
+    pub(super) certain_db: f64,
     pub(super) frequency: f64,
     /// The criterion; both for a spread.
     pub(super) criteria: Vec<usize>,
@@ -43,6 +45,7 @@ pub(super) struct FoundMargin {
 pub(super) struct EnvelopePoint {
     pub(super) frequency: f64,
     pub(super) margin_db: f64,
+    pub(super) certain_db: f64,
     pub(super) criteria: Vec<usize>,
     pub(super) plants: Vec<usize>,
 }
@@ -71,9 +74,16 @@ impl SpecificationCriteria {
             vec![own.flatten().max_by(|left, right| left.1.excess.total_cmp(&right.1.excess))?]
         };
         let margin_db: f64 = chosen.iter().map(|(_, worst)| decibels(worst.excess)).sum();
+        let certain = if self.spread {
+            chosen.iter().map(|(_, worst)| decibels(worst.certain)).sum()
+        } else {
+            let own = self.criteria().filter_map(|one| worst.get(one).copied().flatten());
+            own.map(|worst| decibels(worst.certain)).fold(f64::INFINITY, f64::min)
+        };
         (!margin_db.is_nan()).then(|| EnvelopePoint {
             frequency,
             margin_db,
+            certain_db: certain,
             criteria: chosen.iter().map(|(criterion, _)| *criterion).collect(),
             plants: chosen.iter().map(|(_, worst)| worst.plant).collect(),
         })
@@ -143,10 +153,15 @@ impl Joining<'_> {
         let interior = |case: &&FoundMargin| case.interior || minima.contains(&case.frequency);
         let interior = least(all.iter().filter(interior)).filter(|_| at_an_end);
         let unresolved = self.part.criteria().find_map(|criterion| scan.unresolved(criterion));
-        let violated = worst.is_some_and(|worst| worst.margin_db < -self.tolerance());
+        let certain_db = all.iter().map(|case| case.certain_db).fold(f64::INFINITY, f64::min);
+        let violated = certain_db < -self.tolerance();
+        let is_open = !violated && worst.is_some_and(|worst| worst.margin_db < -self.tolerance());
         SpecificationFinding {
             requirement: self.specification.requirement.clone(),
-            verdict: match (violated, unresolved.is_none() && self.undefined.is_none() && worst.is_some()) {
+            verdict: match (
+                violated,
+                !is_open && unresolved.is_none() && self.undefined.is_none() && worst.is_some(),
+            ) {
                 (true, _) => Verdict::Violated,
                 (false, true) => Verdict::Met,
                 (false, false) => Verdict::NotProven,
@@ -163,8 +178,14 @@ impl Joining<'_> {
                 .map(worst_case)
                 .collect(),
             envelope: self.drawn(&envelope),
-            remarks: remarks(self, worst, unresolved),
+            remarks: remarks(self, worst, unresolved, is_open.then_some(certain_db)),
         }
+    }
+
+    /// Whether a plant is known within confidence discs.
+    pub(super) fn has_discs(&self) -> bool {
+        let Family::Measured(family) = self.family else { return false };
+        family.plants().iter().any(|plant| !plant.radii.is_empty())
     }
 
     fn tolerance(&self) -> f64 {
@@ -174,6 +195,7 @@ impl Joining<'_> {
     fn case(&self, point: &EnvelopePoint) -> FoundMargin {
         FoundMargin {
             margin_db: point.margin_db,
+            certain_db: point.certain_db,
             frequency: point.frequency,
             criteria: point.criteria.clone(),
             points: points(self.plants, &point.plants),
@@ -197,7 +219,7 @@ impl Joining<'_> {
         envelope: &[EnvelopePoint],
         all: &[FoundMargin],
     ) -> Vec<ViolatedBand> {
-        let violated = |point: &EnvelopePoint| point.margin_db < -self.tolerance();
+        let violated = |point: &EnvelopePoint| point.certain_db < -self.tolerance();
         let mut bands = Vec::new();
         let mut from: Option<usize> = None;
         for (index, point) in envelope.iter().enumerate() {
@@ -236,7 +258,7 @@ impl Joining<'_> {
             let middle = (violated * kept).sqrt();
             let worst = scan.family_at(self.evaluator, self.plants, middle);
             match self.part.combined(middle, &worst) {
-                Some(point) if point.margin_db < -self.tolerance() => violated = middle,
+                Some(point) if point.certain_db < -self.tolerance() => violated = middle,
                 _ => kept = middle,
             }
         }

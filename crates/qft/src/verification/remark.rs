@@ -1,5 +1,6 @@
 //! What was not looked at.
 
+use super::criterion::{Criterion, MarginSide};
 use super::finding::{FoundMargin, Joining};
 use super::scan::ScannedPlant;
 use super::{PlantPoint, Remark};
@@ -10,12 +11,21 @@ pub(super) fn remarks(
     joining: &Joining,
     worst: Option<&FoundMargin>,
     unresolved: Option<(f64, usize)>,
+    open_certain_db: Option<f64>,
 ) -> Vec<Remark> {
     let mut remarks = Vec::new();
     let [from, to] = joining.specification.band_rad_per_s;
     let highest = joining.evaluator.compensation.highest_frequency_rad_per_s();
     if to > highest {
         remarks.push(Remark::BandEndsAtNyquist { nyquist_rad_per_s: highest });
+    }
+    let ends = joining.evaluator.compensation.ends_at_zero();
+    let from_below = |criterion: &Criterion| {
+        criterion.side == MarginSide::Above && criterion.limit.magnitude(highest).is_some_and(|one| one > 0.0)
+    };
+    let mut criteria = joining.part.criteria().filter_map(|index| joining.evaluator.criteria.get(index));
+    if ends && criteria.any(|criterion| criterion.demands(highest) && from_below(criterion)) {
+        remarks.push(Remark::ZeroAtNyquist { nyquist_rad_per_s: highest });
     }
     for criterion in joining.part.criteria().filter_map(|index| joining.evaluator.criteria.get(index)) {
         let [low, high] = criterion.band;
@@ -37,6 +47,12 @@ pub(super) fn remarks(
     }
     if joining.plants.iter().any(|plant| matches!(plant.point, PlantPoint::Measured(_))) {
         remarks.push(Remark::Interpolated);
+    }
+    if joining.has_discs() {
+        remarks.push(match open_certain_db {
+            Some(certain_margin_db) => Remark::OpenWithinDiscs { certain_margin_db },
+            None => Remark::WorstWithinDiscs,
+        });
     }
     remarks.extend(unresolved.map(|(frequency, plant)| without_response(joining, frequency, plant)));
     remarks

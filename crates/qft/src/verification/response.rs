@@ -11,7 +11,7 @@ use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 
 use super::criterion::{Criterion, MarginSide};
-use crate::closed_loop::{Compensation, Member};
+use crate::closed_loop::{Compensation, DiscFactors, Member};
 use crate::specification::ClosedLoop;
 
 /// A complex number as a quotient whose denominator may be zero.
@@ -43,6 +43,17 @@ pub(super) struct LoopAround {
     plant_numerator: Complex64,
     loop_denominator: Complex64,
     load_motion: Fraction,
+    /// How far the magnitudes reach where the plant is known within a disc.
+    disc: DiscFactors,
+}
+
+/// The square of how far a criterion is exceeded, over all plants that one response may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Excess {
+    /// By the worst of them.
+    pub(super) worst: f64,
+    /// By all of them.
+    pub(super) certain: f64,
 }
 
 impl Fraction {
@@ -117,10 +128,19 @@ impl LoopAt {
             limit.map(|limit| limit * limit)
         };
         let one = Complex64::new(1.0, 0.0);
+        let own = |function: &TransferFunction| {
+            let found = Fraction::of_transfer_function(function, frequency);
+            let vanishes = compensation.vanishes(function, frequency);
+            Fraction { numerator: if vanishes { Complex64::ZERO } else { found.numerator }, ..found }
+        };
+        let prefilter = match compensation.vanishes(compensation.prefilter(), frequency) {
+            true => Complex64::ZERO,
+            false => compensation.prefilter().at_frequency(frequency),
+        };
         LoopAt {
             frequency,
-            feedback: Fraction::of_transfer_function(compensation.feedback(), frequency),
-            prefilter: if with_prefilter { compensation.prefilter().at_frequency(frequency) } else { one },
+            feedback: own(compensation.feedback()),
+            prefilter: if with_prefilter { prefilter } else { one },
             sensor: compensation.sensor().at_frequency(frequency),
             limits_squared: criteria.iter().map(limit).collect(),
             load_motion: criteria.iter().any(|criterion| criterion.closed_loop == ClosedLoop::LoadMotion),
@@ -135,6 +155,7 @@ impl LoopAt {
             Some(path) if self.load_motion => Fraction::of_coefficients(path, frequency),
             _ => none,
         };
+        let mut radius = 0.0;
         let (plant_numerator, around, load_motion) = match member {
             Member::Continuous { plant, fed_forward, .. } => {
                 let Fraction { mut numerator, denominator } =
@@ -166,13 +187,17 @@ impl LoopAt {
             Member::Responding { .. } | Member::Measured { .. } => {
                 let response = member.response(frequency)?;
                 let around = Fraction::of_value(response.plant * response.sensor);
+                radius = member.radius(frequency, &response) * portable::magnitude(response.sensor);
                 (response.plant, around, Fraction::of_value(response.load_motion))
             }
         };
         let a = around.denominator * self.feedback.denominator;
         let b = around.numerator * self.feedback.numerator;
         let loop_denominator = around.denominator;
-        Some(LoopAround { characteristic: a + b, a, b, plant_numerator, loop_denominator, load_motion })
+        // a is that of the controller alone where a plant is known within a disc
+        let disc = DiscFactors::of(b / a, radius * portable::magnitude(self.feedback.numerator / a));
+        let characteristic = a + b;
+        Some(LoopAround { characteristic, a, b, plant_numerator, loop_denominator, load_motion, disc })
     }
 
     /// Pd + K V_d P over the denominator of Pd.
@@ -191,7 +216,7 @@ impl LoopAt {
 
     /// The square of how far a criterion is exceeded: (quantity/limit)^2 for an upper limit, its
     /// inverse for a lower one. `None` where nothing is demanded; NaN where it is not defined.
-    pub(super) fn excess(&self, index: usize, criterion: &Criterion, closed: &LoopAround) -> Option<f64> {
+    pub(super) fn excess(&self, index: usize, criterion: &Criterion, closed: &LoopAround) -> Option<Excess> {
         let limit = (*self.limits_squared.get(index)?)?;
         let numerator = match criterion.closed_loop {
             ClosedLoop::RobustStability => closed.b.norm_sqr(),
@@ -206,9 +231,16 @@ impl LoopAt {
             }
         };
         let characteristic = closed.characteristic.norm_sqr();
+        let [least, most] = closed.disc.of_closed_loop(criterion.closed_loop);
         Some(match criterion.side {
-            MarginSide::Below => numerator / (characteristic * limit),
-            MarginSide::Above => characteristic * limit / numerator,
+            MarginSide::Below => {
+                let excess = numerator / (characteristic * limit);
+                Excess { worst: excess * most, certain: excess * least }
+            }
+            MarginSide::Above => {
+                let excess = characteristic * limit / numerator;
+                Excess { worst: excess / least, certain: excess / most }
+            }
         })
     }
 

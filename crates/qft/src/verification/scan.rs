@@ -8,7 +8,7 @@ use phea_dynamics::portable;
 use super::PlantPoint;
 use super::evaluator::Evaluator;
 use super::frequencies::Features;
-use super::response::LoopAt;
+use super::response::{Excess, LoopAt};
 use crate::closed_loop::Member;
 
 /// A characteristic value that turns by more than this from one point to the next has a resonance
@@ -35,6 +35,8 @@ pub(super) struct WorstPlant {
     /// (quantity/limit)^2, or its inverse.
     pub(super) excess: f64,
     pub(super) plant: usize,
+    /// The greatest excess that some plant has wherever in its disc it is.
+    pub(super) certain: f64,
 }
 
 /// A local maximum of the excess of one plant, with the frequencies next to it.
@@ -62,7 +64,7 @@ pub(super) struct Scan {
 struct PlantSample {
     frequency: f64,
     characteristic: Option<Complex64>,
-    excess: Vec<Option<f64>>,
+    excess: Vec<Option<Excess>>,
 }
 
 impl Scan {
@@ -176,10 +178,11 @@ impl Scan {
                 (Some((at, closed)), _) => at.excess(number, criterion, closed),
                 (None, Some(member)) if at.is_none() => evaluator
                     .margin_db(number, member, frequency)
-                    .map(|margin| portable::pow(10.0, -margin / 10.0)),
+                    .map(|margin| portable::pow(10.0, -margin / 10.0))
+                    .map(|excess| Excess { worst: excess, certain: excess }),
                 (None, _) => None,
             };
-            let value = value.filter(|value| !value.is_nan());
+            let value = value.filter(|value| !value.worst.is_nan());
             if value.is_none() && criterion.demands(frequency) {
                 self.note_unresolved(number, frequency, index);
             }
@@ -224,7 +227,8 @@ impl Scan {
 
     fn keep_peaks(&mut self, plant: usize, samples: &[PlantSample]) {
         for (criterion, peaks) in self.peaks.iter_mut().enumerate() {
-            let excess = |sample: &PlantSample| sample.excess.get(criterion).copied().flatten();
+            let excess =
+                |sample: &PlantSample| sample.excess.get(criterion).copied().flatten().map(|one| one.worst);
             let highest = peaks.iter().map(|peak| peak.excess).fold(0.0, f64::max);
             for triple in samples.windows(3) {
                 let [before, here, after] = triple else { continue };
@@ -247,11 +251,18 @@ fn loop_at(evaluator: &Evaluator<'_>, frequency: f64) -> Option<LoopAt> {
     (frequency > 0.0 && frequency < f64::INFINITY).then(|| evaluator.loop_at(frequency))
 }
 
-fn worse(so_far: Option<WorstPlant>, excess: Option<f64>, plant: usize) -> Option<WorstPlant> {
-    match (so_far, excess) {
-        (Some(worst), Some(excess)) if excess <= worst.excess => Some(worst),
-        (_, Some(excess)) => Some(WorstPlant { excess, plant }),
-        (so_far, None) => so_far,
+fn worse(so_far: Option<WorstPlant>, excess: Option<Excess>, plant: usize) -> Option<WorstPlant> {
+    let Some(Excess { worst, certain }) = excess else { return so_far };
+    match so_far {
+        Some(before) => {
+            let certain = before.certain.max(certain);
+            Some(if worst <= before.excess {
+                WorstPlant { certain, ..before }
+            } else {
+                WorstPlant { excess: worst, plant, certain }
+            })
+        }
+        None => Some(WorstPlant { excess: worst, plant, certain }),
     }
 }
 

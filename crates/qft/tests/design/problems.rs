@@ -134,6 +134,7 @@ pub(crate) fn least_gain(structure: Structure, seed: u64) -> DesignOptions {
         prefilter: PrefilterChoice::None,
         seed,
         tolerance_db: TOLERANCE_DB,
+        reserve_db: 0.0,
         coefficients: CoefficientFormat::Double,
     }
 }

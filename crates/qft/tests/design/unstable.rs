@@ -24,6 +24,7 @@ fn growing(maximum_order: usize, prefilter: PrefilterChoice, seed: u64) -> Desig
         prefilter,
         seed,
         tolerance_db: TOLERANCE_DB,
+        reserve_db: 0.0,
         coefficients: CoefficientFormat::Double,
     }
 }

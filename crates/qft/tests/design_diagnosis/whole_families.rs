@@ -76,6 +76,8 @@ fn frequencies_out_of_reach() {
         command: vec![Complex64::new(1.0, 0.0); 2],
         disturbance: None,
         unstable_poles: 0,
+        radii: vec![],
+        integrators: None,
         is_resolved: false,
     };
     let found = diagnose(&of(Family::Measured(MeasuredFamily::new(vec![measured]).unwrap())));
@@ -101,6 +103,8 @@ fn measured_plants_have_a_water_bed_too() {
         frequencies_rad_per_s: frequencies,
         disturbance: None,
         unstable_poles: 0,
+        radii: vec![],
+        integrators: None,
         is_resolved: false,
     };
     let specifications = vec![

@@ -106,6 +106,8 @@ fn beyond_a_measurement_nothing_is_looked_at() {
         command,
         disturbance: None,
         unstable_poles: 0,
+        radii: vec![],
+        integrators: None,
         is_resolved: false,
     };
     let family = Family::Measured(MeasuredFamily::new(vec![plant]).unwrap());

@@ -85,6 +85,8 @@ fn between_members_nothing_is_claimed() {
         command: vec![Complex64::new(gain, 0.0), Complex64::new(0.0, -gain)],
         disturbance: None,
         unstable_poles: 0,
+        radii: vec![],
+        integrators: None,
         is_resolved: false,
     };
     let measured = MeasuredFamily::new(vec![measured("first", 1.0), measured("second", 2.0)]).unwrap();

@@ -39,6 +39,8 @@ fn measured(gains: &[f64], from: f64, to: f64) -> Family {
             .collect(),
         disturbance: None,
         unstable_poles: 0,
+        radii: vec![],
+        integrators: None,
         is_resolved: false,
     };
     Family::Measured(MeasuredFamily::new(gains.iter().map(plant).collect()).unwrap())
@@ -192,4 +194,44 @@ fn a_plant_that_cannot_be_sampled_is_not_proven() {
     assert_eq!((finding.verdict, finding.worst), (Verdict::NotProven, None));
     let cannot = |remark: &Remark| matches!(remark, Remark::NotSampled { .. });
     assert!(finding.remarks.iter().any(cannot), "{:?}", finding.remarks);
+}
+
+/// A bilinear prefilter, a bilinear controller, and a prefilter of second order have zeros at
+/// z = -1: at pi/T nothing of the reference arrives, so that no lower limit is met there, and this
+/// is said; with a band that ends below, or without zero, nothing of the kind is said.
+#[test]
+fn no_lower_limit_is_met_where_the_prefilter_ends_at_zero() {
+    let plant = UncertainPlant::record(vec![], |_| PlantCoefficients {
+        command: RationalCoefficients {
+            numerator: vec![1.0.into()],
+            denominator: vec![1.0.into(), 0.0.into()],
+        },
+        disturbance: None,
+        dead_time_s: 0.0.into(),
+        rate: None,
+    })
+    .unwrap();
+    let family = Family::Uncertain(UncertainFamily::of_nominal(plant));
+    let timing = Timing { sample_time_s: Some(0.1), ..Timing::default() };
+    let highest = std::f64::consts::PI / 0.1;
+    let lag = || rational(&[1.0], &[0.1, 1.0]);
+    let one = || TransferFunction::gain_only(1.0);
+    let tracking = |to: f64| {
+        let limits = (Limit::Constant(1e-9), Limit::Constant(2.0));
+        specification(Requirement::tracking(limits.0, limits.1), &[1.0], [0.1, to])
+    };
+    let cases = [(one(), lag()), (lag(), one()), (one(), rational(&[1.0], &[0.01, 0.2, 1.0]))];
+    for (feedback, prefilter) in cases {
+        let around = compensation(feedback, prefilter, timing);
+        let whole = judged(&family, &around, &tracking(f64::INFINITY));
+        assert_eq!(whole.verdict, Verdict::Violated);
+        assert!(whole.remarks.contains(&Remark::ZeroAtNyquist { nyquist_rad_per_s: highest }), "{whole:?}");
+        let worst = whole.worst.as_ref().unwrap();
+        assert_eq!((worst.margin_db, worst.frequency_rad_per_s), (f64::NEG_INFINITY, highest));
+        let below = judged(&family, &around, &tracking(0.99 * highest));
+        assert_eq!(below.verdict, Verdict::Met, "{below:?}");
+        assert!(!below.remarks.iter().any(|one| matches!(one, Remark::ZeroAtNyquist { .. })));
+    }
+    let without = judged(&family, &compensation(one(), one(), timing), &tracking(f64::INFINITY));
+    assert_eq!((without.verdict, without.remarks.len()), (Verdict::Met, 1), "{without:?}");
 }

@@ -1,6 +1,7 @@
 //! The file of a certificate: written by `verify --certificate`, read by `check-certificate` and by
 //! checkers of others.
 
+mod comparison;
 mod layout;
 
 use phea_dynamics::portable;
@@ -10,6 +11,7 @@ use super::ProjectAudit;
 use crate::answer::{Answer, Object, OutputFile, SCHEMA};
 use crate::document::Document;
 use crate::project::Loaded;
+use crate::robust::RobustProblem;
 use crate::specification::closed_loop_key;
 pub use layout::CertificateError;
 use layout::File;
@@ -35,11 +37,25 @@ fn file(loaded: &Loaded, certificate: &Certificate) -> OutputFile {
 /// # Errors
 /// [`CertificateError`] for a file that is not a certificate.
 pub fn check_certificate(text: &str) -> Result<Answer, CertificateError> {
+    checked(text, None)
+}
+
+/// The same, and whether it is the certificate of this problem: the answer is yes where every claim
+/// holds, and plant, box, laws and specifications are those of the problem.
+///
+/// # Errors
+/// Those of [`check_certificate`].
+pub fn check_certificate_of(text: &str, problem: &RobustProblem) -> Result<Answer, CertificateError> {
+    checked(text, Some(problem))
+}
+
+fn checked(text: &str, problem: Option<&RobustProblem>) -> Result<Answer, CertificateError> {
     let file = File::read(text)?;
     let (title, project_sha256) = (file.title.clone(), file.project_sha256.clone());
     let certificate = file.certificate()?;
     let rejected = check(&certificate).err();
-    Ok(answer(&title, &project_sha256, &certificate, rejected.as_ref()))
+    let compared = problem.map(|problem| comparison::words(&certificate, problem));
+    Ok(answer(&title, &project_sha256, &certificate, rejected.as_ref(), compared))
 }
 
 fn answer(
@@ -47,6 +63,7 @@ fn answer(
     project_sha256: &str,
     certificate: &Certificate,
     rejected: Option<&(usize, Rejection)>,
+    differences: Option<Vec<String>>,
 ) -> Answer {
     let claims: Vec<String> = certificate.claims.iter().map(|claim| sentence(certificate, claim)).collect();
     let mut out = Document::default();
@@ -63,6 +80,17 @@ fn answer(
         Some((number, reason)) => format!("The certificate is rejected at claim {number}: {reason}."),
         None => format!("Every claim holds: {}.", claims.len()),
     });
+    if !certificate.claims_stability() {
+        out.line("Nothing is claimed of stability: without it no magnitude describes a response.");
+    }
+    if let Some(found) = &differences {
+        out.line(match found.as_slice() {
+            [] => "It is the certificate of this project: plant, box, laws and specifications agree.",
+            _ => "It is not the certificate of this project:",
+        });
+        out.sentences(found.iter().cloned());
+    }
+    let is_of_project = differences.as_ref().is_none_or(Vec::is_empty);
     let body = Object::new()
         .with("schema", SCHEMA)
         .with("version", env!("CARGO_PKG_VERSION"))
@@ -71,9 +99,16 @@ fn answer(
         .with("project_sha256", project_sha256)
         .with("valid", rejected.is_none())
         .with("claims", claims)
+        .with("stability_claimed", certificate.claims_stability())
+        .maybe("differences", differences)
         .maybe("rejected_claim", rejected.map(|(number, _)| *number))
         .maybe("reason", rejected.map(|(_, reason)| reason.to_string()));
-    Answer { text: out.text(), json: body.print(), files: vec![], affirmative: rejected.is_none() }
+    Answer {
+        text: out.text(),
+        json: body.print(),
+        files: vec![],
+        affirmative: rejected.is_none() && is_of_project,
+    }
 }
 
 /// The frequencies of a claim.

@@ -1,5 +1,6 @@
 //! An audit for people.
 
+use phea_dynamics::portable;
 use phea_qft::proof::{Proof, Standing};
 use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
@@ -8,7 +9,6 @@ use super::{
     closed_loop_symbol, evidence_sentence, finding_sentence, place_words, remark_sentences,
     stability_sentence, standing_word, verdict_words, why_not_proven, worst_at_design,
 };
-use crate::answer::significant;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::figure::Figure;
 use crate::grouped::grouped;
@@ -194,10 +194,22 @@ pub(crate) fn basis(view: &ProjectAudit) -> Vec<String> {
         view.family_sentence(),
         view.loop_sentence(),
         evidence_sentence(audit.evidence, audit.verdict, view.names.headings().is_empty()).to_string(),
-        format!("A margin of -{} dB still counts as met.", significant(audit.tolerance_db, 1)),
+        tolerance(view),
     ];
     sentences.extend(remarks(view));
     sentences
+}
+
+/// What counts as met, and how well the plants are known at the resonances of fitted lines.
+fn tolerance(view: &ProjectAudit) -> String {
+    let met = portable::rounded(view.audit.tolerance_db, 3);
+    let fitted = match view.has_lines_in_motion() {
+        true => {
+            ", but near the resonances of the lines no margin is known to better than about 0.3 dB, the error of their fitted waves"
+        }
+        false => "",
+    };
+    format!("A margin of -{met} dB still counts as met{fitted}.")
 }
 
 /// Each remark once, with the specifications that it concerns.

@@ -58,6 +58,7 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
         .with("published", published)
         .maybe("continuous_as_sampled", view.continuous.as_ref().map(audited))
         .with("minimum_delay_margin_s", view.minimum_delay_margin_s)
+        .with("reserve_db", view.options.reserve_db)
         .maybe("published_reason", no_published)
         .each("rounds", &design.rounds, round)
         .known("starts", starts, "no search ended")

@@ -27,6 +27,15 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
         let asked = DisplayUnit::MILLISECOND.text(view.minimum_delay_margin_s, 3);
         out.sentences([format!("the loop {does} the delay of {asked} that was asked for")]);
     }
+    if view.options.reserve_db > 0.0 {
+        let reserve = significant(view.options.reserve_db, 2);
+        let mut recorded = loaded.recorded.iter().flat_map(|recorded| &recorded.settings);
+        let why = match recorded.any(|setting| setting.starts_with("design.reserve=")) {
+            true => ", for what the recordings leave out of the family",
+            false => "",
+        };
+        out.sentences([format!("the search kept a reserve of {reserve} dB to every limit{why}")]);
+    }
     if let Some(trial) = &view.trial {
         out.append(trial::document(trial, None));
     }

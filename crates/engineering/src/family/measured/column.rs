@@ -40,6 +40,8 @@ pub(super) struct MeasurementColumns {
     pub(super) load_motion: Option<ResponseForm>,
     /// Radius of the disc that holds the true response with 95 %, in the unit of the response.
     pub(super) radius: Option<Column>,
+    /// Its standard deviation, in the same unit.
+    pub(super) deviation: Option<Column>,
 }
 
 impl ResponseForm {
@@ -75,8 +77,8 @@ impl MeasurementColumns {
         }
         let (columns, _) = found.filter(|_| findings.error_count() == before)?;
         let columns: [Option<Column>; 12] = columns.try_into().ok()?;
-        // the plants are the responses as they are: how well they are known is reported separately
-        let [frequency, magnitude, phase, real, imaginary, one, two, three, four, _, _, radius] = columns;
+        let [frequency, magnitude, phase, real, imaginary, one, two, three, four, _, deviation, radius] =
+            columns;
         let load = [one, two, three, four];
         let has_load = load.iter().any(Option::is_some);
         let [command, load_motion] = [[magnitude, phase, real, imaginary], load].map(ResponseForm::of);
@@ -94,7 +96,7 @@ impl MeasurementColumns {
                 ));
             }
             (Some(frequency), Some(command)) => {
-                return Some(MeasurementColumns { frequency, command, load_motion, radius });
+                return Some(MeasurementColumns { frequency, command, load_motion, radius, deviation });
             }
         }
         None

@@ -46,7 +46,8 @@ impl Attempt {
             return self.shaping.judge(&self.x);
         }
         let Ok(law) = self.compensation() else { return Judgement::UNUSABLE };
-        self.shaping.keep_in_reserve(if self.relaxes { 0.0 } else { RESERVE_DB });
+        let least_db = RESERVE_DB + self.options.reserve_db;
+        self.shaping.keep_in_reserve(if self.relaxes { 0.0 } else { least_db });
         let judgement = self.shaping.judge_deployed(&self.x, &law);
         self.shaping.keep_in_reserve(self.reserve_db);
         judgement

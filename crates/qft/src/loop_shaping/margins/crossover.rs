@@ -113,14 +113,15 @@ pub(crate) fn bandwidth(columns: &[FrequencyColumn], feedback: &[Complex64]) -> 
     })
 }
 
-/// L of this number of plants along the columns.
+/// L of this number of plants along the columns; the centre of a plant that is known within discs.
 fn paths(columns: &[FrequencyColumn], feedback: &[Complex64], plants: usize) -> Vec<Vec<LoopValue>> {
     let mut paths = vec![Vec::with_capacity(columns.len()); plants];
     for (index, (column, feedback)) in columns.iter().zip(feedback).enumerate() {
         let logarithm_of_frequency = portable::ln(column.frequency);
         for (place, &plant) in column.plants.iter().enumerate() {
             let open = column.loop_at(place) * feedback;
-            if let Some(path) = paths.get_mut(plant) {
+            let is_centre = |path: &&mut Vec<LoopValue>| path.last().is_none_or(|last| last.column != index);
+            if let Some(path) = paths.get_mut(plant).filter(is_centre) {
                 path.push(LoopValue { column: index, logarithm_of_frequency, open });
             }
         }

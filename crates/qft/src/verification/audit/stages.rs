@@ -65,8 +65,11 @@ impl SpecificationAudit<'_> {
                         member.and_then(|member| self.evaluator.polished(criterion, member, peak.bracket));
                     let Some((frequency, margin_db)) = polished else { continue };
                     worst = worst.min(margin_db);
+                    let certain = member
+                        .and_then(|member| self.evaluator.certain_margin_db(criterion, member, frequency));
                     cases.push(FoundMargin {
                         margin_db,
+                        certain_db: certain.unwrap_or(margin_db),
                         frequency,
                         criteria: vec![criterion],
                         points: vec![plant.point.clone()],
@@ -127,6 +130,7 @@ impl SpecificationAudit<'_> {
             let worst = self.scan.family_at(&self.evaluator, &self.plants, frequency);
             cases.extend(part.combined(frequency, &worst).map(|point| FoundMargin {
                 margin_db: point.margin_db,
+                certain_db: point.certain_db,
                 frequency,
                 criteria: point.criteria,
                 points: finding::points(&self.plants, &point.plants),
@@ -177,6 +181,7 @@ impl SpecificationAudit<'_> {
         if let Some(cases) = self.cases.get_mut(number) {
             cases.push(FoundMargin {
                 margin_db: found.margin_db,
+                certain_db: found.margin_db,
                 frequency: found.frequency,
                 criteria: task.criteria.clone(),
                 points: found.values.iter().cloned().map(PlantPoint::Parameters).collect(),

@@ -1,0 +1,57 @@
+//! The dead time that is in the loop in addition to its own delay.
+
+use phea_dynamics::scalar::Interval;
+use phea_qft::family::Family;
+
+use crate::quantity::DisplayUnit;
+use crate::robust::RobustProblem;
+
+/// Dead time of the parts of a loop, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopDeadTime {
+    /// Least and greatest of the plants of the family, as far as they have polynomials.
+    pub plant_s: [f64; 2],
+    /// Of the sensor.
+    pub sensor_s: f64,
+    /// Of the controller.
+    pub controller_s: f64,
+}
+
+impl LoopDeadTime {
+    pub(super) fn of(problem: &RobustProblem) -> LoopDeadTime {
+        LoopDeadTime {
+            plant_s: of_plants(&problem.family).unwrap_or([0.0; 2]),
+            sensor_s: problem.compensation.sensor().dead_time_s(),
+            controller_s: problem.compensation.feedback().dead_time_s(),
+        }
+    }
+
+    /// The dead times that are not zero; empty where all are.
+    pub(super) fn words(&self) -> String {
+        let text = |time_s: f64| DisplayUnit::MILLISECOND.text(time_s, 3);
+        let [least, most] = self.plant_s;
+        let plant = match least == most {
+            true => text(most),
+            false => format!("{} to {}", text(least), text(most)),
+        };
+        let parts = [
+            (most, format!("{plant} in the plant")),
+            (self.sensor_s, format!("{} in the sensor", text(self.sensor_s))),
+            (self.controller_s, format!("{} in the controller", text(self.controller_s))),
+        ];
+        let parts: Vec<String> =
+            parts.into_iter().filter(|(time_s, _)| *time_s != 0.0).map(|(_, words)| words).collect();
+        if parts.is_empty() { String::new() } else { format!("with a dead time of {}", parts.join(" and ")) }
+    }
+}
+
+/// The dead time over the box of a family.
+fn of_plants(family: &Family) -> Option<[f64; 2]> {
+    let Family::Uncertain(family) = family else { return None };
+    let parameters = family.plant().parameters().iter();
+    let ranges: Vec<Interval> = parameters.map(|one| Interval::new(one.minimum, one.maximum)).collect();
+    let enclosed = family.plant().enclosures(&ranges)?.dead_time_s;
+    // no plant has less than none
+    (enclosed.low().is_finite() && enclosed.high().is_finite())
+        .then(|| [enclosed.low().max(0.0), enclosed.high()])
+}

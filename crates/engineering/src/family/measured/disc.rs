@@ -1,0 +1,54 @@
+//! From discs that each hold one response to discs that hold all of them at once.
+//!
+//! ```text
+//! r_all^2 = F(2, m; 0.05/n) sigma^2           n rows, each outside with 0.05/n: all inside with 95 % at least
+//! F(2, m; p) = (m/2) (p^(-2/m) - 1)           r^2 = F(2, m; 0.05) sigma^2 states m
+//! ```
+//!
+//! A verdict rests on every row: of a hundred discs of 95 % five do not hold their response.
+
+use phea_dynamics::portable;
+
+/// Probability that a disc does not hold its response.
+const OUTSIDE: f64 = 0.05;
+/// The largest m/2 that is distinguished from a normal distribution.
+const HALF_MAXIMUM: f64 = 1e6;
+/// Halvings of the search for m.
+const HALVINGS: usize = 80;
+
+/// The radii widened to hold every response at once with 95 %; the standard deviations state how
+/// many blocks each rests on, and without them the error is taken as normal.
+pub(super) fn of_all_rows(radii: &[f64], deviations: Option<&Vec<f64>>) -> Vec<f64> {
+    let outside = OUTSIDE / radii.len().max(1) as f64;
+    let widened = |(row, radius): (usize, &f64)| {
+        let deviation = deviations.and_then(|all| all.get(row)).copied();
+        let ratio = deviation.map_or(f64::NAN, |deviation| radius / deviation);
+        let half = half_of(ratio * ratio);
+        radius * (quantile(half, outside) / quantile(half, OUTSIDE)).sqrt()
+    };
+    radii.iter().enumerate().map(widened).collect()
+}
+
+/// F(2, 2 half; p)
+fn quantile(half: f64, outside: f64) -> f64 {
+    half * (portable::pow(outside, -1.0 / half) - 1.0)
+}
+
+/// The half number of degrees of freedom at which the quantile of 95 % has this value; as for the
+/// normal distribution where it has less.
+fn half_of(value: f64) -> f64 {
+    if !(value > quantile(HALF_MAXIMUM, OUTSIDE)) || !value.is_finite() {
+        return HALF_MAXIMUM;
+    }
+    // the quantile falls with the degrees of freedom
+    let [mut low, mut high] = [0.5, HALF_MAXIMUM];
+    for _ in 0..HALVINGS {
+        let middle = (low * high).sqrt();
+        if quantile(middle, OUTSIDE) > value {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
+}

@@ -1,0 +1,42 @@
+//! Proofs that may spend little.
+
+use phea_dynamics::watch::unwatched;
+use phea_qft::family::Family;
+use phea_qft::proof::{NotProven, ProofOptions, Standing, check, prove};
+
+use crate::proof::{blind, problem, random_problem};
+
+/// Whatever budget a proof has, it says what remains: from a frequency on, or nothing; more of it
+/// never shows less, and none makes a claim that does not hold.
+#[test]
+fn a_proof_within_a_budget_says_what_remains() {
+    let mut last = 0;
+    for points in [0, 2_000, 20_000, 200_000, 100_000_000] {
+        let mut shown = 0;
+        for seed in 0..6 {
+            let random = random_problem(seed, seed % 2 == 1);
+            let Family::Uncertain(family) = &random.family else { panic!("a box") };
+            let nominal = family.plant().nominal();
+            let asked = problem(&random.family, &random.compensation, &random.specifications);
+            let options = ProofOptions { points_maximum: points, ..ProofOptions::default() };
+            let proof = prove(&asked, &blind(&random, nominal), options, &mut unwatched).unwrap();
+            if let Some(certificate) = &proof.certificate {
+                assert_eq!(check(certificate), Ok(()), "seed {seed}");
+            }
+            let standings = proof.specifications.iter().map(|one| &one.standing);
+            for standing in std::iter::once(&proof.stability).chain(standings) {
+                match standing {
+                    Standing::Proven | Standing::Refuted => shown += 1,
+                    Standing::NotProven(NotProven::Budget(region)) => {
+                        let [from, to] = region.band_rad_per_s;
+                        assert!(0.0 <= from && from < to, "{region:?}");
+                    }
+                    Standing::NotProven(_) => {}
+                }
+            }
+        }
+        assert!(shown >= last, "{points}: {shown} after {last}");
+        last = shown;
+    }
+    assert!(last > 0);
+}

@@ -1,0 +1,38 @@
+//! In what a certificate differs from a project, in words.
+
+use phea_qft::proof::{Certificate, CertificateDifference, CertificateSide, differences};
+
+use crate::audit::audit_request;
+use crate::robust::RobustProblem;
+
+/// A sentence without its full stop for each difference.
+pub(super) fn words(certificate: &Certificate, problem: &RobustProblem) -> Vec<String> {
+    let found = differences(certificate, &audit_request(problem, &problem.family));
+    found.iter().map(|one| sentence(one, problem)).collect()
+}
+
+fn sentence(difference: &CertificateDifference, problem: &RobustProblem) -> String {
+    let differs = |what: &str| format!("{what} of the certificate is not that of the project");
+    match difference {
+        CertificateDifference::Plant => differs("the plant"),
+        CertificateDifference::Box => differs("the box of uncertain numbers"),
+        CertificateDifference::Feedback => differs("the controller"),
+        CertificateDifference::Prefilter => differs("the prefilter"),
+        CertificateDifference::Sensor => differs("the sensor"),
+        CertificateDifference::Sampling => differs("the sampling"),
+        CertificateDifference::Stability => {
+            "the certificate does not claim that every plant is stable".to_string()
+        }
+        CertificateDifference::Specification { index, side } => {
+            let limit = match side {
+                CertificateSide::Upper => "limit",
+                CertificateSide::Lower => "lower limit",
+            };
+            let name = problem.name_of(*index);
+            format!("the certificate does not claim the {limit} of specification {} ({name})", index + 1)
+        }
+        CertificateDifference::NotStated(_) => {
+            "no certificate can be of the loop of this project".to_string()
+        }
+    }
+}
