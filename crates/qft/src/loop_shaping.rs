@@ -7,6 +7,7 @@
 //!
 //! All free numbers are natural logarithms, so that every search direction is a change by factors.
 
+mod best_seen;
 mod descent;
 mod margins;
 mod problem;
@@ -18,6 +19,7 @@ mod start;
 mod structure;
 mod subproblem;
 
+pub(crate) use best_seen::BestSeen;
 pub use descent::{Binding, DescentOptions, DescentResult, DescentStatus, DescentWork, descend};
 pub use problem::DesignProblem;
 pub use sample_stability::{SampleJudgement, SampleStability};

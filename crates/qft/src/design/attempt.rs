@@ -23,8 +23,8 @@ use super::result::{DesignRound, Starts};
 use crate::closed_loop::Compensation;
 use crate::kept_plants::KeptPlants;
 use crate::loop_shaping::{
-    Aim, DescentOptions, DesignProblem, Judgement, Samples, SearchProblem, SearchStatus, Shaping, Structure,
-    descend, search,
+    Aim, BestSeen, DescentOptions, DesignProblem, Judgement, Samples, SearchProblem, SearchStatus, Shaping,
+    Structure, descend, search,
 };
 use crate::prefilter::{FittedPrefilter, PrefilterBand, PrefilterOptions, PrefilterOutcome, fit_prefilter};
 use crate::specification::Specification;
@@ -213,6 +213,11 @@ impl Attempt {
         &self.x
     }
 
+    /// The worst margin of its controller over its samples, dB; `None` without a controller.
+    pub(super) fn worst_margin_db(&mut self) -> Option<f64> {
+        (!self.x.is_empty()).then(|| self.shaping.judge(&self.x).worst_margin_db)
+    }
+
     pub(super) fn rounds(&self) -> &[DesignRound] {
         &self.rounds
     }
@@ -225,8 +230,12 @@ impl Attempt {
     /// Searches, and fits a prefilter to what was found.
     fn search(&mut self, given: Vec<Vec<f64>>, seed: u64, watch: Watch<'_>) -> Result<(), Leave> {
         let options = search_options(self.aim, seed, self.relaxes, self.is_hard);
-        let found = search(&mut self.shaping, given, &options, &mut part(watch, SHAPING, WHOLE))?;
-        let Some(result) = found else { return Err(Leave::Ended(AttemptEnding::NotStabilised)) };
+        let mut seen = BestSeen::new(&mut self.shaping, self.aim);
+        let found = search(&mut seen, given, &options, &mut part(watch, SHAPING, WHOLE));
+        if found.is_err() {
+            self.x = seen.x().unwrap_or_default();
+        }
+        let Some(result) = found? else { return Err(Leave::Ended(AttemptEnding::NotStabilised)) };
         self.starts = Some(Starts::of(&result));
         self.x = result.x;
         if matches!(result.status, SearchStatus::NotStabilised { .. }) {

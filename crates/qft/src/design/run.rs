@@ -3,12 +3,13 @@
 use std::collections::VecDeque;
 
 use phea_dynamics::linear::TransferFunction;
-use phea_dynamics::watch::{Progress, Watch, unwatched};
+use phea_dynamics::watch::{Progress, Watch};
 
 use super::attempt::{Attempt, AttemptEnding, FEASIBLE_DB, LoopDesignError, StartingPoints};
 use super::binding::{all_conflicts, binding_limits};
 use super::candidates::Ground;
-use super::diagnosis::{Finding, FindingSeverity, diagnose};
+use super::diagnosis::{FindingSeverity, diagnose};
+use super::outcome::{DesignOutcome, LearntPlants};
 use super::problem::{ControllerChoice, DesignOptions};
 use super::result::{Design, DesignRound, DesignStatus, Relaxation};
 use super::stabilising::has_poles_to_move;
@@ -28,48 +29,6 @@ const MEMBERS_MAXIMUM: usize = 200;
 const SEED_AGAIN: u64 = 1000;
 /// A larger order is worth its poles where it lowers the relaxation by more than this, dB.
 const RELAXATION_GAINED_DB: f64 = 0.01;
-
-/// What a design ended with.
-#[derive(Clone, Debug)]
-pub struct DesignOutcome {
-    /// The best design; `None` where no controller was found.
-    pub design: Option<Design>,
-    /// What no controller can achieve, and what will be hard; see [`diagnose`].
-    pub findings: Vec<Finding>,
-    /// Whether the watch stopped it: then the design is the best so far.
-    pub stopped: bool,
-    /// What was tried when it was stopped.
-    at_hand: Option<Box<Attempt>>,
-    known: LearntPlants,
-}
-
-impl DesignOutcome {
-    /// If it was stopped before any design existed, audits the present controller, which becomes a
-    /// design that has not converged.
-    ///
-    /// # Errors
-    /// Those of [`design`].
-    pub fn conclude(&mut self) -> Result<(), LoopDesignError> {
-        let at_hand = self.at_hand.take().filter(|attempt| !attempt.x().is_empty());
-        if let (None, Some(mut attempt)) = (&self.design, at_hand) {
-            let audit = attempt.audited_as_it_is(&self.known.plants, &mut unwatched)?;
-            let status = DesignStatus::NotConverged { rounds: attempt.rounds().len() };
-            self.known.rounds.extend_from_slice(attempt.rounds());
-            self.design = Some(design_of(&attempt, status, audit, &self.known.rounds)?);
-        }
-        Ok(())
-    }
-}
-
-/// What was learnt about the plants.
-#[derive(Clone, Debug, Default)]
-struct LearntPlants {
-    /// The samples that searches evaluate; `None` before the first search.
-    samples: Option<Samples>,
-    /// The plants that audits sampled.
-    plants: KeptPlants,
-    rounds: Vec<DesignRound>,
-}
 
 /// Designs a controller and its prefilter: structures of growing order are tried, each by search
 /// and audit, until one meets every specification; then with fewer zeros, as long as these also
@@ -195,7 +154,7 @@ struct DesignProgress<'a> {
     again: Option<(Structure, Option<TransferFunction>)>,
     begun_again: bool,
     /// The attempt that came nearest, with its worst margin over rate.
-    nearest: Option<(f64, Structure, Option<TransferFunction>)>,
+    nearest: Option<(f64, Box<Attempt>)>,
     /// The controller of the attempt before.
     before: Option<TransferFunction>,
     /// The last attempt that found no stable loop.
@@ -253,7 +212,7 @@ impl<'a> DesignProgress<'a> {
         while let Some((structure, feedback)) = self.next() {
             let mut attempt = self.attempt(structure, feedback)?;
             match attempt.run(self.kept, &mut self.part(watch)) {
-                Err(LoopDesignError::Stopped(_)) => return Ok(Some(attempt)),
+                Err(LoopDesignError::Stopped(_)) => return Ok(Some(self.nearer(attempt))),
                 ending => {
                     if self.is_done_with(attempt, ending?)? {
                         return Ok(None);
@@ -286,9 +245,18 @@ impl<'a> DesignProgress<'a> {
             };
             return Some((structure, self.before.clone()));
         }
-        let (_, structure, feedback) = self.nearest.take().filter(|_| !self.found && !self.relaxing)?;
+        let (_, nearest) = self.nearest.take().filter(|_| !self.found && !self.relaxing)?;
         self.relaxing = true;
-        Some((structure, feedback))
+        Some((nearest.structure().clone(), nearest.feedback()))
+    }
+
+    /// The attempt that is stopped, or the nearest before it if that came nearer.
+    fn nearer(&mut self, mut stopped: Attempt) -> Attempt {
+        let reached_db = stopped.worst_margin_db().unwrap_or(f64::NEG_INFINITY);
+        match self.nearest.take() {
+            Some((worst_margin_db, nearest)) if worst_margin_db > reached_db => *nearest,
+            _ => stopped,
+        }
     }
 
     /// The watch of one attempt. The share is an estimate, because the number of structures is not
@@ -364,8 +332,8 @@ impl<'a> DesignProgress<'a> {
                 Ok(self.waiting.is_empty())
             }
             AttemptEnding::Missed { worst_margin_db, audit: None } => {
-                if self.nearest.as_ref().is_none_or(|(best, ..)| worst_margin_db > *best) {
-                    self.nearest = Some((worst_margin_db, attempt.structure().clone(), attempt.feedback()));
+                if self.nearest.as_ref().is_none_or(|(best, _)| worst_margin_db > *best) {
+                    self.nearest = Some((worst_margin_db, Box::new(attempt)));
                 }
                 Ok(self.found)
             }
@@ -404,7 +372,7 @@ impl<'a> DesignProgress<'a> {
     }
 }
 
-fn design_of(
+pub(super) fn design_of(
     attempt: &Attempt,
     status: DesignStatus,
     audit: Audit,

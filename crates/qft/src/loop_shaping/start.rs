@@ -110,7 +110,7 @@ impl JudgedPoint {
     /// Stable before unstable. Among stable points the larger worst margin is better or, where both
     /// nearly satisfy the limits and the objective is the aim, the lesser objective; among unstable
     /// ones the lesser instability.
-    fn is_better_than(&self, other: &JudgedPoint, aim: Aim) -> bool {
+    pub(super) fn is_better_than(&self, other: &JudgedPoint, aim: Aim) -> bool {
         match (is_usable(&self.judgement), is_usable(&other.judgement)) {
             (true, true) => {
                 let [own, others] = [&self.judgement, &other.judgement];
