@@ -270,7 +270,7 @@ fn designed(
     outcome.conclude()?;
     let (DesignRun { problem, outcome }, proven) =
         proven::proven((setup, &given), DesignRun { problem, outcome }, &options, watch)?;
-    let stopped = outcome.stopped;
+    let mut stopped = outcome.stopped;
     let explanations = outcome.findings.iter().map(Explanation::of).collect::<Vec<_>>();
     match outcome.design.clone() {
         Some(design) => {
@@ -279,8 +279,8 @@ fn designed(
                 told.designed.view = view;
             }
             let continuous =
-                if stopped { None } else { continuous_as_sampled(setup, &problem, &told, watch)? };
-            let trial = if stopped { None } else { tried_design(source, project, &told, watch)? };
+                unless_stopped(&mut stopped, || continuous_as_sampled(setup, &problem, &told, &mut *watch))?;
+            let trial = unless_stopped(&mut stopped, || tried_design(source, project, &told, &mut *watch))?;
             let run = DesignRun { problem, outcome };
             Ok((run, ProjectDesign { stopped, published, explanations, continuous, trial, ..told }))
         }
@@ -289,6 +289,23 @@ fn designed(
             let sentences = explanations.into_iter().map(|explanation| explanation.sentence).collect();
             Err(DesignError::NoController(sentences))
         }
+    }
+}
+
+/// A result that follows a design; absent once the watch has stopped it, since the design remains.
+fn unless_stopped<Found>(
+    stopped: &mut bool,
+    find: impl FnOnce() -> Result<Option<Found>, DesignError>,
+) -> Result<Option<Found>, DesignError> {
+    if *stopped {
+        return Ok(None);
+    }
+    match find() {
+        Err(DesignError::Stopped(_)) => {
+            *stopped = true;
+            Ok(None)
+        }
+        found => found,
     }
 }
 

@@ -116,6 +116,8 @@ const SETTLING_TIMES: f64 = 5.0;
 const HOLD_S: [f64; 2] = [0.5, 20.0];
 /// Ratio of the largest step to the first from which a run of its own is worth its time.
 const WORTH: f64 = 1.25;
+/// Ratio below which no smaller step is driven.
+const LEAST: f64 = 0.2;
 /// Factor by which a step is reduced that meets a limit, and number of such reductions.
 const REDUCTION: f64 = 0.75;
 const REDUCTIONS: usize = 6;
@@ -145,7 +147,7 @@ pub(super) fn runs(
     let mut steps = tenth.enlarged(rig, CommandLimits::of(setup.project, rig), driven);
     for reduction in 0..REDUCTIONS {
         let ratio = steps.size() / tenth.size();
-        if (ratio < WORTH && !is_limited(driven)) || ratio < 1.0 / WORTH.powi(REDUCTIONS as i32) {
+        if (ratio < WORTH && !is_limited(driven)) || ratio < LEAST {
             break;
         }
         let from = 0.3 + 0.7 * reduction as f64 / REDUCTIONS as f64;
