@@ -5,6 +5,8 @@
 
 #[path = "../src/simulate/columns.rs"]
 mod columns;
+#[path = "../src/simulate/divergence.rs"]
+mod divergence;
 #[path = "../src/design/factors.rs"]
 mod factors;
 #[path = "../src/simulate/file_names.rs"]

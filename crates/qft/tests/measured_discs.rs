@@ -1,6 +1,8 @@
 //! Measured plants that are known within discs: verdicts hold for every response within them, and
 //! the turns below the first point are those of the integrators that noise does not hide.
 
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
+
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller, Element};
 use phea_dynamics::frequency::logarithmic_grid;
@@ -19,6 +21,9 @@ use phea_qft::verification::{
     Audit, AuditProblem, Remark, SpecificationFinding, TOLERANCE_DB, TrackingJudgement, Verdict,
     audit_specifications,
 };
+
+/// A closed loop of a plant and a gain.
+type Closed = fn(Complex64, f64) -> Complex64;
 
 fn unity() -> Compensation {
     around(1.0)
@@ -151,7 +156,7 @@ fn a_disc_is_judged_like_its_plants() {
                 centre + radius * Complex64::new(angle.cos(), angle.sin())
             })
             .collect();
-        let kinds: [(ClosedLoop, fn(Complex64, f64) -> Complex64); 4] = [
+        let kinds: [(ClosedLoop, Closed); 4] = [
             (ClosedLoop::RobustStability, |p, g| p * g / (1.0 + p * g)),
             (ClosedLoop::Sensitivity, |p, g| 1.0 / (1.0 + p * g)),
             (ClosedLoop::PlantInputDisturbance, |p, g| p / (1.0 + p * g)),

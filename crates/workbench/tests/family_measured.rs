@@ -1,6 +1,7 @@
 //! Measured frequency responses: what is read is what was written, and every unsound row is named
 //! with its place.
 
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 #![allow(
     clippy::expect_used,
     clippy::panic,

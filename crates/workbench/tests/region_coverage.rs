@@ -1,6 +1,7 @@
 //! Random operating regions against dense samples of them: every box that is printed encloses its
 //! region, and every margin is the least of the region or on the safe side.
 
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::print_stdout, reason = "how many regions were judged is worth reading")]
 

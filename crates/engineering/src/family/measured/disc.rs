@@ -37,7 +37,7 @@ fn quantile(half: f64, outside: f64) -> f64 {
 /// The half number of degrees of freedom at which the quantile of 95 % has this value; as for the
 /// normal distribution where it has less.
 fn half_of(value: f64) -> f64 {
-    if !(value > quantile(HALF_MAXIMUM, OUTSIDE)) || !value.is_finite() {
+    if value.is_nan() || value <= quantile(HALF_MAXIMUM, OUTSIDE) || value.is_infinite() {
         return HALF_MAXIMUM;
     }
     // the quantile falls with the degrees of freedom
