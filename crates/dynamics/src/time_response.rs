@@ -17,6 +17,7 @@
 
 mod delayed_loop;
 mod of_frequency_response;
+mod sampled_loop;
 mod second_order;
 mod signal;
 mod simulation;
@@ -24,6 +25,7 @@ mod step_metrics;
 
 pub use delayed_loop::delayed_loop_step;
 pub use of_frequency_response::step_of_frequency_response;
+pub use sampled_loop::sampled_loop_step;
 pub use second_order::{SecondOrder, SettlingRule, damping_ratio_from_overshoot};
 pub use signal::{Interpolation, SampledSignal, uniform_times};
 pub use simulation::{forced_response, forced_response_of_states, step_response};

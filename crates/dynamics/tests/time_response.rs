@@ -8,8 +8,8 @@ use phea_dynamics::linear::{LinearError, StateSpace, TimeDomain, TransferFunctio
 use phea_dynamics::portable::{cos, exp, ln, pow, sin};
 use phea_dynamics::time_response::{
     Interpolation, SampledSignal, SecondOrder, Settling, SettlingRule, StepBaseline, TimeResponseError,
-    damping_ratio_from_overshoot, forced_response, forced_response_of_states, step_metrics, step_response,
-    uniform_times,
+    damping_ratio_from_overshoot, delayed_loop_step, forced_response, forced_response_of_states,
+    sampled_loop_step, step_metrics, step_response, uniform_times,
 };
 
 fn c(re: f64, im: f64) -> Complex64 {
@@ -313,4 +313,53 @@ fn the_tracking_bounds_as_printed_are_not_what_they_claim() {
     assert!((upper.overshoot_percent - 2.2).abs() < 0.05, "{}", upper.overshoot_percent);
     assert!((upper.settling.time_s().unwrap() - 0.126).abs() < 5e-4);
     assert!((lower.settling.time_s().unwrap() - 0.356).abs() < 5e-4);
+}
+
+/// Sample by sample, and by the poles of the closed loop: P with its sensor has other dynamics than
+/// P, and the controller passes a jump at once.
+#[test]
+fn a_sampled_loop_by_samples_is_that_by_its_poles() {
+    let domain = TimeDomain::Discrete { sample_time_s: 0.02 };
+    let in_z = |system: TransferFunction| system.in_domain(domain).unwrap();
+    let sensor = in_z(factored(0.4, &[], &[c(0.6, 0.0)]));
+    for (gain, pole) in [(0.05, 0.9), (0.2, 0.7), (0.02, 1.0)] {
+        let plant = in_z(factored(gain, &[c(-0.4, 0.0)], &[c(pole, 0.0), c(0.3, 0.0)]));
+        let feedback = in_z(factored(0.8, &[c(0.8, 0.0)], &[c(1.0, 0.0)]));
+        let prefilter = in_z(factored(0.1, &[], &[c(0.9, 0.0)]));
+        let with_sensor = plant.series(&sensor).unwrap();
+        let (times, values) = sampled_loop_step(&plant, &with_sensor, &feedback, &prefilter, 400).unwrap();
+        let forward = plant.series(&feedback).unwrap();
+        let closed = prefilter.series(&forward.feedback(&sensor).unwrap()).unwrap();
+        let expected = step_response(&closed, &times).unwrap();
+        for (value, expected) in values.iter().zip(&expected) {
+            assert!((value - expected).abs() < 1e-9, "{value} {expected}");
+        }
+    }
+    let other = TransferFunction::gain_only(1.0);
+    assert!(sampled_loop_step(&sensor, &sensor, &sensor, &other, 3).is_err());
+}
+
+/// Dead time of the sensor or of the plant: the loop is the same, the output later by that of the
+/// plant; and a quarter of the error for half the step.
+#[test]
+fn dead_time_may_be_moved_around_the_loop() {
+    let (delay_s, steps) = (0.2, 2000);
+    let path = factored(3.0, &[], &[c(0.0, 0.0), c(-4.0, 0.0)]);
+    let (one, late) = (TransferFunction::gain_only(1.0), TransferFunction::gain_only(1.0));
+    let late = late.with_dead_time(delay_s).unwrap();
+    let prefilter = factored(2.0, &[], &[c(-2.0, 0.0)]);
+    let of = |path: &TransferFunction, sensor: &TransferFunction, steps| {
+        delayed_loop_step(path, sensor, &prefilter, 4.0, steps).unwrap()
+    };
+    let delayed = path.clone().with_dead_time(delay_s).unwrap();
+    let (times, plant) = of(&delayed, &one, steps);
+    let (_, sensor) = of(&path, &late, steps);
+    let shift = times.partition_point(|time| *time < delay_s - 1e-9);
+    for (later, earlier) in plant.iter().skip(shift).zip(&sensor) {
+        assert!((later - earlier).abs() < 1e-12, "{later} {earlier}");
+    }
+    let at_end = |steps| *of(&delayed, &one, steps).1.last().unwrap();
+    let (coarse, fine, exact) = (at_end(400), at_end(800), at_end(12_800));
+    let ratio = (coarse - exact) / (fine - exact);
+    assert!((ratio - 4.0).abs() < 0.1, "{ratio}");
 }

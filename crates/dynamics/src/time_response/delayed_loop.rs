@@ -1,23 +1,25 @@
 //! Step response of a loop with dead time, which is not a rational function when closed.
 
-use nalgebra::DMatrix;
+use nalgebra::DVector;
 
 use super::{TimeResponseError, step_response, uniform_times};
-use crate::linear::{Discretization, LinearError, StateSpace, TransferFunction};
+use crate::linear::matrix_exponential::ExactStep;
+use crate::linear::{LinearError, StateSpace, TransferFunction};
 
-/// The unit step of a continuous loop whose forward path has dead time: times in s, and the output.
+/// The unit step of a continuous loop with dead time: times in s, and the output.
 ///
 /// ```text
 /// y = W(e(t - T)),    e = F r - H y                    W the forward path without its dead time T
 /// ```
 ///
-/// The forward path is held over short steps that divide T: about `steps` of them over
-/// `duration_s`, at least one to T. What is lost is of first order in the step. A dead time of the
-/// sensor is taken to whole steps.
+/// The signals are straight over short steps that divide the dead time of the whole loop: about
+/// `steps` of them over `duration_s`, at least one to the dead time. The error is of second order
+/// in the step; of first order where both W and F pass a jump at once. The dead time of the sensor
+/// acts exactly: it is moved around the loop, and the output is read earlier by it.
 ///
 /// # Errors
-/// [`LinearError::DeadTime`] without dead time in the forward path (close that loop exactly, by
-/// `feedback`), those of the zero-order hold, and those of [`step_response`] for the prefilter.
+/// [`LinearError::DeadTime`] without dead time in the loop (close that loop exactly, by
+/// `feedback`), those of a realisation, and those of [`step_response`] for the prefilter.
 ///
 /// # Example
 /// e^(-s)/s closed with gain 1/2: nothing for 1 s, then a ramp, then a parabola from 2 s on
@@ -26,13 +28,12 @@ use crate::linear::{Discretization, LinearError, StateSpace, TransferFunction};
 /// use phea_dynamics::linear::TransferFunction;
 /// use phea_dynamics::time_response::delayed_loop_step;
 /// # fn main() -> Result<(), phea_dynamics::time_response::TimeResponseError> {
-/// let forward = TransferFunction::from_factors(0.5, vec![], vec![Complex64::new(0.0, 0.0)])?.with_dead_time(1.0)?;
-/// let one = TransferFunction::gain_only(1.0);
-/// let (times, output) = delayed_loop_step(&forward, &one, &one, 3.0, 3000)?;
-/// let at = |time: f64| output[times.partition_point(|other| *other < time)];
-/// assert_eq!(at(0.99), 0.0);
-/// assert!((at(1.6) - 0.5 * 0.6).abs() < 1e-3);
-/// assert!((at(2.6) - (0.5 * 1.6 - 0.25 * 0.6 * 0.6 / 2.0)).abs() < 1e-3);
+/// let forward = TransferFunction::from_factors(0.5, vec![], vec![Complex64::new(0.0,
+/// 0.0)])?.with_dead_time(1.0)?; let one = TransferFunction::gain_only(1.0); let (times, output) =
+/// delayed_loop_step(&forward, &one, &one, 3.0, 3000)?; let at = |time: f64|
+/// output[times.partition_point(|other| *other < time)]; assert_eq!(at(0.99), 0.0);
+/// assert!((at(1.6) - 0.5 * 0.6).abs() < 1e-9); assert!((at(2.6) - (0.5 * 1.6 - 0.25 * 0.6 * 0.6 /
+/// 2.0)).abs() < 1e-6);
 /// # Ok(())
 /// # }
 /// ```
@@ -43,62 +44,66 @@ pub fn delayed_loop_step(
     duration_s: f64,
     steps: usize,
 ) -> Result<(Vec<f64>, Vec<f64>), TimeResponseError> {
-    let dead_time_s = forward.dead_time_s();
+    let dead_time_s = forward.dead_time_s() + sensor.dead_time_s();
     let wanted_s = duration_s / steps.max(1) as f64;
     if !(dead_time_s > 0.0 && wanted_s > 0.0 && wanted_s.is_finite()) {
         return Err(LinearError::DeadTime { dead_time_s }.into());
     }
     let lag = (dead_time_s / wanted_s).ceil().min(steps.max(1) as f64).max(1.0);
     let step_s = dead_time_s / lag;
-    let held = |system: &TransferFunction| -> Result<StateSpace, LinearError> {
-        let rational = system.clone().with_dead_time(0.0)?;
-        StateSpace::from_transfer_function(&rational)?.discretized(step_s, Discretization::ZeroOrderHold)
-    };
-    let (mut path, mut feedback) = (Stepped::new(held(forward)?), Stepped::new(held(sensor)?));
-    let (lag, sensor_lag) = (lag as usize, (sensor.dead_time_s() / step_s).round() as usize);
-    let count = (duration_s / step_s).ceil().min(STEPS_MAXIMUM) as usize + 1;
+    let (mut path, mut feedback) = (RampedSystem::new(forward, step_s)?, RampedSystem::new(sensor, step_s)?);
+    let (lag, earlier_s) = (lag as usize, sensor.dead_time_s());
+    let count = ((duration_s + earlier_s) / step_s).ceil().min(STEPS_MAXIMUM) as usize + 1;
     let times = uniform_times(step_s * (count - 1) as f64, count)?;
     let reference = step_response(prefilter, &times)?;
     let (mut errors, mut outputs): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
-    let earlier = |values: &[f64], index: usize, lag: usize| {
-        index.checked_sub(lag).and_then(|index| values.get(index)).copied().unwrap_or(0.0)
+    let late = |errors: &[f64], index: usize| {
+        index.checked_sub(lag).and_then(|index| errors.get(index)).copied().unwrap_or(0.0)
     };
     for (index, reference) in reference.iter().enumerate() {
-        outputs.push(path.step(earlier(&errors, index, lag)));
-        errors.push(reference - feedback.step(earlier(&outputs, index, sensor_lag)));
+        // before the error begins its end is zero too: its jump is at the beginning of a step
+        let begun = index > lag;
+        let now = late(&errors, index);
+        if let Some(before) = index.checked_sub(1) {
+            path.advance([late(&errors, before), if begun { now } else { 0.0 }]);
+        }
+        let output = path.output(now);
+        if let Some(before) = outputs.last() {
+            feedback.advance([*before, output]);
+        }
+        outputs.push(output);
+        errors.push(reference - feedback.output(output));
     }
-    Ok((times, outputs))
+    let earlier = times.iter().map(|time_s| time_s - earlier_s).zip(outputs);
+    Ok(earlier.filter(|(time_s, _)| *time_s >= 0.0).unzip())
 }
 
 /// Steps that are taken at most, where the dead time is much shorter than the time that is asked
 /// for.
 const STEPS_MAXIMUM: f64 = 1e6;
 
-/// A sampled system with one input and one output, and its state.
-struct Stepped {
+/// A continuous system with one input and one output over equal steps, its input straight over
+/// each.
+struct RampedSystem {
     system: StateSpace,
-    state: Vec<f64>,
+    step: ExactStep,
+    state: DVector<f64>,
 }
 
-impl Stepped {
-    fn new(system: StateSpace) -> Stepped {
-        Stepped { state: vec![0.0; system.order()], system }
+impl RampedSystem {
+    fn new(system: &TransferFunction, step_s: f64) -> Result<RampedSystem, LinearError> {
+        let system = StateSpace::from_transfer_function(&system.clone().with_dead_time(0.0)?)?;
+        let step = ExactStep::new(system.a(), system.b(), step_s);
+        Ok(RampedSystem { state: DVector::zeros(system.order()), system, step })
     }
 
-    /// The output of one sample.
-    ///
-    /// ```text
-    /// y(k) = C x(k) + D u(k),     x(k+1) = A x(k) + B u(k)
-    /// ```
-    fn step(&mut self, input: f64) -> f64 {
-        let (system, state) = (&self.system, &self.state);
-        let row = |matrix: &DMatrix<f64>, row: usize, direct: f64| {
-            let sum: f64 = matrix.row(row).iter().zip(state).map(|(entry, x)| entry * x).sum();
-            sum + direct * input
-        };
-        let output = row(system.c(), 0, system.d()[(0, 0)]);
-        let next = (0..state.len()).map(|index| row(system.a(), index, system.b()[(index, 0)])).collect();
-        self.state = next;
-        output
+    /// y = C x + D u
+    fn output(&self, input: f64) -> f64 {
+        (self.system.c() * &self.state).sum() + self.system.d().sum() * input
+    }
+
+    fn advance(&mut self, [from, to]: [f64; 2]) {
+        let ExactStep { increment, constant, ramp } = &self.step;
+        self.state += increment * &self.state + constant.column(0) * from + ramp.column(0) * (to - from);
     }
 }
