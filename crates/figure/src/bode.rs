@@ -212,5 +212,5 @@ pub(super) fn panel(
             stroke: series_stroke(curve.index),
         })
         .collect();
-    Panel { y, height, marks }
+    Panel::new(y, height, marks)
 }

@@ -91,6 +91,8 @@ pub struct CurvePanel {
     pub zero_line: bool,
     /// Where a response has to settle.
     pub settling_band: Option<SettlingBand>,
+    /// What its curves are called, where this panel says so.
+    pub named: Vec<(String, CurveStyle)>,
 }
 
 impl CurvePanel {
@@ -126,7 +128,18 @@ impl CurvePanel {
             _ => Mark::Line { points, stroke: style.stroke() },
         }));
         marks.extend(self.marked.iter().map(|(at, word)| Mark::dotted(AxisDirection::X, *at, word)));
-        Panel { y, height: self.height, marks }
+        Panel { y, height: self.height, marks, names: self.named.iter().map(entry).collect() }
+    }
+}
+
+/// A name with a sample of its curve.
+fn entry((text, style): &(String, CurveStyle)) -> LegendEntry {
+    match style {
+        CurveStyle::Dots(series) => {
+            let style = MarkerStyle { marker: Marker::Circle, role: series_role(*series), radius: 2.5 };
+            LegendEntry::marker(text, style)
+        }
+        _ => LegendEntry::line(text, style.stroke()),
     }
 }
 
@@ -166,13 +179,6 @@ impl CurveChart {
 
     fn over(&self, words: &Words, x: Axis) -> Figure {
         let panels = self.panels.iter().map(|panel| panel.placed(self.x_range)).collect();
-        let entry = |(text, style): &(String, CurveStyle)| match style {
-            CurveStyle::Dots(series) => {
-                let style = MarkerStyle { marker: Marker::Circle, role: series_role(*series), radius: 2.5 };
-                LegendEntry::marker(text, style)
-            }
-            _ => LegendEntry::line(text, style.stroke()),
-        };
         let bands = self.panels.iter().filter_map(|panel| panel.settling_band);
         let bands =
             bands.map(|band| LegendEntry::area(format!("settling band ±{} %", plain(band.percent)), SETTLED));

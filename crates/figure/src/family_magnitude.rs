@@ -92,7 +92,7 @@ impl FamilyMagnitude {
             let at = vec![(frequency, value)];
             marks.push(Mark::Callout { at, text: mark.text.clone(), role: style.role });
         }
-        let panels = vec![Panel { y, height: 280.0, marks }];
+        let panels = vec![Panel::new(y, 280.0, marks)];
         words.with_plot(x, panels, self.legend())
     }
 

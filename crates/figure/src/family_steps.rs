@@ -45,7 +45,7 @@ impl FamilySteps {
         let x = Axis::linear(unit.title("Time"), unit.of(start), unit.of(end));
         let values = self.shown().flat_map(|series| series.values.iter().copied());
         let y = Axis::fit_linear(&self.quantity, values.filter(|v| VALUES.contains(v)).chain([0.0, 1.1]));
-        let panels = vec![Panel { y, height: 270.0, marks: self.marks(unit) }];
+        let panels = vec![Panel::new(y, 270.0, self.marks(unit))];
         words.with_plot(x, panels, self.legend())
     }
 

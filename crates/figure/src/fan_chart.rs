@@ -77,7 +77,7 @@ impl FanChart {
         let mut legend: Vec<LegendEntry> =
             self.bands.iter().enumerate().map(|(i, band)| LegendEntry::area(&band.name, fill(i))).collect();
         legend.extend(lines.iter().rev().map(|(series, stroke)| LegendEntry::line(&series.name, *stroke)));
-        let panels = vec![Panel { y, height: 260.0, marks }];
+        let panels = vec![Panel::new(y, 260.0, marks)];
         words.with_plot(Axis::linear("Time (s)", start, end), panels, legend)
     }
 

@@ -52,8 +52,7 @@ impl ImpedanceDiagram {
         marks.extend(self.asymptotes.iter().map(|line| asymptote_line(line, &x)));
         marks.extend(self.curves(|response| response.iter().map(|z| magnitude(*z)).collect()));
         marks.extend(self.asymptotes.iter().map(|line| asymptote_label(line, &x)));
-        let mut panels =
-            vec![Panel { y: Axis::fit_logarithmic("|Z| (N·s/m)", values), height: 290.0, marks }];
+        let mut panels = vec![Panel::new(Axis::fit_logarithmic("|Z| (N·s/m)", values), 290.0, marks)];
         if self.with_phase {
             panels.push(self.phase_panel());
         }
@@ -103,7 +102,7 @@ impl ImpedanceDiagram {
         marks.extend([-90.0, 90.0].map(|limit| Mark::reference(AxisDirection::Y, limit, stroke, "")));
         marks.extend(self.curves(degrees));
         let y = Axis::fit_angle("arg Z (°)", [low, high, -95.0, 95.0]);
-        Panel { y, height: 120.0, marks }
+        Panel::new(y, 120.0, marks)
     }
 }
 

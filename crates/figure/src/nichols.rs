@@ -61,7 +61,7 @@ impl NicholsChart<'_> {
     /// Draws the chart.
     pub fn draw(&self, words: &Words) -> Figure {
         let placed = PlacedChart::new(self);
-        let panels = vec![Panel { y: placed.y.clone(), height: 440.0, marks: placed.all_marks() }];
+        let panels = vec![Panel::new(placed.y.clone(), 440.0, placed.all_marks())];
         let (x, legend) = (placed.x.clone(), placed.legend());
         words.with_plot(x, panels, legend)
     }

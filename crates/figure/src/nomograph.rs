@@ -87,7 +87,7 @@ impl Nomograph {
             .collect();
         legend.push(LegendEntry::area("acceptable velocity", Fill::tint(Role::Good)));
         legend.push(LegendEntry::line("exact bores at its limits", limit_stroke()));
-        let panels = vec![Panel { y, height: 340.0, marks }];
+        let panels = vec![Panel::new(y, 340.0, marks)];
         words.with_plot(x, panels, legend)
     }
 

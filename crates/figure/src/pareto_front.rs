@@ -67,7 +67,7 @@ impl ParetoFront {
         let (x, x_unit) = axis(0);
         let panels = (1..self.columns.len()).map(|column| {
             let (y, y_unit) = axis(column);
-            Panel { y, height: 260.0, marks: self.marks(column, [x_unit, y_unit]) }
+            Panel::new(y, 260.0, self.marks(column, [x_unit, y_unit]))
         });
         let panels = panels.collect();
         words.with_plot(x, panels, self.legend())

@@ -165,6 +165,16 @@ pub struct Panel {
     pub height: f64,
     /// Back to front.
     pub marks: Vec<Mark>,
+    /// What its curves are called, in a row above the frame; empty where the legend of the plot
+    /// says it.
+    pub names: Vec<LegendEntry>,
+}
+
+impl Panel {
+    /// A panel whose curves the legend of the plot names.
+    pub const fn new(y: Axis, height: f64, marks: Vec<Mark>) -> Panel {
+        Panel { y, height, marks, names: vec![] }
+    }
 }
 
 /// Panels below each other on one x axis, with a legend at the bottom.

@@ -68,7 +68,7 @@ impl PoleMap {
             legend.push(LegendEntry::line("damping ratio ζ and natural frequency", grid_stroke()));
         }
         legend.push(LegendEntry::area("unstable half plane", unstable_fill()));
-        let panels = vec![Panel { y, height: 380.0, marks }];
+        let panels = vec![Panel::new(y, 380.0, marks)];
         words.with_scene(Plot { x, panels, legend, equal_aspect: self.scale == PoleMapScale::Linear }.draw())
     }
 

@@ -80,7 +80,7 @@ impl PoleSweep {
             marks.push(Mark::Line { points: bandwidth, stroke: series_stroke(BANDWIDTH) });
         }
         marks.extend([markers(false, REAL), markers(true, COMPLEX)]);
-        Panel { y, height: 230.0, marks }
+        Panel::new(y, 230.0, marks)
     }
 
     fn bandwidths(&self) -> impl Iterator<Item = (f64, f64)> {
@@ -100,7 +100,7 @@ impl PoleSweep {
         };
         let points: Vec<_> = ratios.into_iter().map(|(value, ratio)| (value, ratio, String::new())).collect();
         let marks = if points.is_empty() { vec![] } else { vec![Mark::Markers { points, style: COMPLEX }] };
-        Panel { y, height: 110.0, marks }
+        Panel::new(y, 110.0, marks)
     }
 
     fn stiffness(&self) -> Panel {
@@ -114,7 +114,7 @@ impl PoleSweep {
         };
         let values = self.points.iter().flat_map(|point| point.stiffness_n_per_m).map(|value| unit.of(value));
         let y = Axis::fit_linear(unit.title("K_H"), values.chain([0.0]));
-        Panel { y, height: 130.0, marks: vec![line(0, LEAST), line(1, GREATEST)] }
+        Panel::new(y, 130.0, vec![line(0, LEAST), line(1, GREATEST)])
     }
 
     fn legend(&self) -> Vec<LegendEntry> {

@@ -50,7 +50,7 @@ pub fn prefilter_band(words: &Words, panels: &[PrefilterPanel]) -> Figure {
     let panel = |(index, one): (usize, &PrefilterPanel)| {
         let y = axis(&one.name);
         let marks = marks(one, index, y.minimum - 1.0);
-        Panel { y, height, marks }
+        Panel::new(y, height, marks)
     };
     let panels_drawn = panels.iter().enumerate().map(panel).collect();
     words.with_plot(x, panels_drawn, legend(panels))

@@ -66,19 +66,19 @@ impl SizingChart {
         let stiffnesses = self.curves.iter().flat_map(|c| c.stiffness_n_per_m.iter());
         let gains = self.curves.iter().flat_map(|c| c.gain_v_per_n.iter());
         let floors = self.minimum_gain_v_per_n.iter().chain(&self.pole_gain_v_per_n);
-        let upper = Panel {
-            y: Axis::fit_logarithmic(
+        let upper = Panel::new(
+            Axis::fit_logarithmic(
                 stiffness.title("K_H"),
                 stiffnesses
                     .copied()
                     .chain(self.candidates.iter().map(|c| c.stiffness_n_per_m))
                     .map(|v| stiffness.of(v)),
             ),
-            height: 190.0,
-            marks: self.panel_marks(|c| &c.stiffness_n_per_m, |c| c.stiffness_n_per_m, stiffness, true),
-        };
-        let mut lower = Panel {
-            y: Axis::fit_logarithmic(
+            190.0,
+            self.panel_marks(|c| &c.stiffness_n_per_m, |c| c.stiffness_n_per_m, stiffness, true),
+        );
+        let mut lower = Panel::new(
+            Axis::fit_logarithmic(
                 gain.title("K_p"),
                 gains
                     .chain(floors)
@@ -86,9 +86,9 @@ impl SizingChart {
                     .chain(self.candidates.iter().map(|c| c.gain_v_per_n))
                     .map(|v| gain.of(v)),
             ),
-            height: 190.0,
-            marks: self.panel_marks(|c| &c.gain_v_per_n, |c| c.gain_v_per_n, gain, false),
-        };
+            190.0,
+            self.panel_marks(|c| &c.gain_v_per_n, |c| c.gain_v_per_n, gain, false),
+        );
         self.gain_limits(&mut lower.marks);
         words.with_plot(x, vec![upper, lower], self.legend())
     }

@@ -74,7 +74,7 @@ impl StiffnessDiagram {
         }
         let point = self.operating_point.map(|at| place.of(at));
         marks.extend(point.map(|at| Mark::dotted(AxisDirection::X, at, "operating point")));
-        let panels = vec![Panel { y: self.axis(), height: 270.0, marks }];
+        let panels = vec![Panel::new(self.axis(), 270.0, marks)];
         let x = Axis::linear(place.title(title), left, right);
         words.with_plot(x, panels, legend)
     }

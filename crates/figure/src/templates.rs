@@ -47,7 +47,7 @@ pub fn templates(words: &Words, templates: &[Template]) -> Figure {
     let mut marks: Vec<Mark> = placed.iter().flat_map(PlacedTemplate::marks).collect();
     marks.extend(placed.iter().map(|template| template.nominal_mark()));
     marks.extend(placed.iter().map(|template| template.label()));
-    let panels = vec![Panel { y, height: 380.0, marks }];
+    let panels = vec![Panel::new(y, 380.0, marks)];
     let mut legend = vec![LegendEntry::marker("nominal plant", NOMINAL)];
     if templates.iter().any(|template| template.points.len() > 1) {
         let dot = MarkerStyle { marker: Marker::Circle, role: Role::Muted, radius: 2.0 };

@@ -3,7 +3,7 @@
 use crate::gallery;
 use crate::legibility::check;
 use phea_figure::scene::Text;
-use phea_figure::{Figure, FigureError, Theme};
+use phea_figure::{Curve, CurveChart, CurvePanel, CurveStyle, Figure, FigureError, Theme, Words};
 use resvg::usvg::{self, roxmltree};
 
 #[test]
@@ -128,4 +128,31 @@ fn poles_tell_their_value() {
     assert!(svg.contains("50/22 mm, stroke 500 mm"));
     let svg = notes(&gallery::poles(phea_figure::PoleMapScale::SignedLogarithmic));
     assert!(svg.contains("pole at \u{2212}11.6 + 2938j rad/s"));
+}
+
+/// The names of a panel's curves are above its own frame and below the frame before it, each once.
+#[test]
+fn names_of_curves_are_at_their_own_panel() {
+    let line = |value: f64, series| Curve::line([(0.0, value), (1.0, value + 1.0)], series);
+    let panel = |title: &str, names: [&str; 2]| CurvePanel {
+        named: names.iter().enumerate().map(|(i, name)| (name.to_string(), CurveStyle::Line(i))).collect(),
+        ..CurvePanel::new(title, 90.0, vec![line(0.0, 0), line(2.0, 1)])
+    };
+    let panels = vec![panel("Voltage (V)", ["command", "spool"]), panel("Pressure (bar)", ["p_A", "p_B"])];
+    let chart = CurveChart { x_title: "Time (s)".into(), x_range: [0.0, 1.0], panels, legend: vec![] };
+    let figure = chart.draw(&Words::new("names", "names", "names"));
+    check(&figure);
+    let at = |content: &str| {
+        let mut found = figure.scene.texts().filter(|text| text.content == content);
+        let text = found.next().unwrap_or_else(|| panic!("no {content}"));
+        assert!(found.next().is_none(), "{content} twice");
+        text.position.y
+    };
+    let [voltage, pressure] = ["Voltage (V)", "Pressure (bar)"].map(at);
+    for name in ["command", "spool"] {
+        assert!(at(name) < voltage, "{name}");
+    }
+    for name in ["p_A", "p_B"] {
+        assert!((voltage..pressure).contains(&at(name)), "{name}");
+    }
 }

@@ -240,6 +240,7 @@ fn curves_in_panels() {
             marked: r.many(5, |r| (r.number(), r.name())),
             zero_line: r.unit() < 0.5,
             settling_band: r.maybe(|r| SettlingBand { level: r.number(), percent: r.number() }),
+            named: r.many(4, |r| (r.name(), CurveStyle::Line(r.below(9)))),
         };
         let chart = CurveChart {
             x_title: r.name(),

@@ -72,7 +72,7 @@ fn figure() -> Figure {
     ];
     let plot = Plot {
         x: Axis::linear("Uncertain parameters", 0.5, 8.5),
-        panels: vec![Panel { y: Axis::logarithmic("Leaves of the tree", 10.0, 1e7), height: 260.0, marks }],
+        panels: vec![Panel::new(Axis::logarithmic("Leaves of the tree", 10.0, 1e7), 260.0, marks)],
         legend,
         equal_aspect: false,
     };

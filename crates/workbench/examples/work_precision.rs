@@ -58,7 +58,7 @@ fn figure() -> Figure {
             let points = points.into_iter().map(|(error, time)| (error, time, String::new())).collect();
             marks.push(Mark::Markers { points, style: series_marker(index) });
         }
-        Panel { y: Axis::logarithmic(title, 0.2, 500.0), height: 250.0, marks }
+        Panel::new(Axis::logarithmic(title, 0.2, 500.0), 250.0, marks)
     };
     let legend = METHODS.iter().enumerate().map(|(index, (_, name))| LegendEntry {
         marker: Some(series_marker(index)),

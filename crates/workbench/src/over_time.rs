@@ -17,6 +17,15 @@ pub(crate) fn panel(quantity: &str, unit: DisplayUnit, height: f64, lines: Vec<T
     CurvePanel::new(unit.title(quantity), height, lines.collect())
 }
 
+/// The panel with a name for each of its lines, which it shows itself.
+pub(crate) fn named<'n>(panel: CurvePanel, names: impl IntoIterator<Item = &'n str>) -> CurvePanel {
+    let names = names.into_iter().enumerate();
+    let named =
+        names.filter(|(place, _)| panel.curves.get(*place).is_some_and(|curve| !curve.points.is_empty()));
+    let named = named.map(|(place, name)| (name.to_string(), CurveStyle::Line(place))).collect();
+    CurvePanel { named, ..panel }
+}
+
 /// The panel with further lines behind those that it has.
 pub(crate) fn behind(
     mut panel: CurvePanel,
@@ -53,8 +62,9 @@ pub(crate) fn chart(
         panel.marked = events.iter().map(|(time_s, label)| (*time_s, word(label))).collect();
     }
     let named = names.into_iter().enumerate().map(|(place, name)| (name, CurveStyle::Line(place)));
-    let further = [("reference", CurveStyle::Reference), ("wished in time", CurveStyle::Limit)];
-    let drawn = further.into_iter().filter(|(_, style)| panels.iter().any(|panel| has(panel, *style)));
+    let further = [("reference", CurveStyle::Reference), ("required in time", CurveStyle::Limit)];
+    let unnamed = |panel: &CurvePanel, style| has(panel, style) && panel.named.is_empty();
+    let drawn = further.into_iter().filter(|(_, style)| panels.iter().any(|panel| unnamed(panel, *style)));
     let legend = named.chain(drawn.map(|(name, style)| (name.to_string(), style))).collect();
     CurveChart { x_title: "Time (s)".to_string(), x_range: span_s, panels, legend }
 }

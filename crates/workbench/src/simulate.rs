@@ -7,6 +7,7 @@ mod figures;
 mod frequency;
 mod metrics;
 mod repetition;
+mod span;
 mod together;
 
 pub use phea_engineering::simulate::*;
@@ -16,9 +17,10 @@ pub(crate) use document::{
     adjustment_sentence, cause_words, coarse_sentence, comparison, document, gas_sentence, headline,
     measured, metrics_row, occurrence_sentences, published, published_row, windows,
 };
-pub(crate) use figures::{around, comparison_files, figure_files, laid_over, pictures, turns};
+pub(crate) use figures::{comparison_files, figure_files, laid_over, pictures, turns};
 pub(crate) use frequency::{
     document as frequency_document, files as frequency_files, pictures as frequency_pictures,
 };
 pub(crate) use metrics::{METRICS, OVERSHOOT, SETTLING, cells_of, metric_of};
+pub(crate) use span::around;
 pub(crate) use together::{NamedRun, at_a_glance, close_ups, measured_together, together};

@@ -14,6 +14,10 @@ use super::super::templates::PlacedTemplate;
 use super::super::ticks::{TickSteps, decimal, plain};
 use super::{Boundary, NicholsChart, OpenLoopViolation, boundaries, magnitude_contour};
 
+/// Phases that every chart shows, degrees.
+const PHASES: [f64; 2] = [-270.0, 0.0];
+/// A loop below this magnitude is far from the critical points whatever its phase, dB.
+const FAR_BELOW_DB: f64 = -12.0;
 /// Most turns that an axis of phase shows on either side of -360 to 0 degrees.
 const TURNS: i32 = 2;
 
@@ -58,7 +62,7 @@ impl<'a> PlacedChart<'a> {
             violations,
             templates,
             boundaries,
-            x: Axis::linear("Open-loop phase (°)", -360.0, 0.0),
+            x: Axis::linear("Open-loop phase (°)", PHASES[0], PHASES[1]),
             y: Axis::linear("Open-loop magnitude (dB)", -20.0, 20.0),
         };
         placed.y = placed.magnitude_axis();
@@ -96,14 +100,16 @@ impl<'a> PlacedChart<'a> {
         decibel_axis(&self.y.title, marked.chain(filled).chain(near).chain([-20.0, 20.0]))
     }
 
-    /// From -360 to 0 degrees, and on by quarter turns where a loop, a template or a violation that
-    /// can be seen needs it.
+    /// From -270 to 0 degrees, and on by quarter turns where a loop near or above 0 dB, a template
+    /// or a violation that can be seen needs it.
     fn phase_axis(&self) -> Axis {
         let loops = self.loops.iter().flat_map(|one| one.points.iter().copied());
+        let marked = self.marks.iter().map(|mark| (mark.phase_deg, mark.magnitude_db));
+        let loops = loops.filter(|point| point.1 >= FAR_BELOW_DB).chain(marked);
         let filled = self.templates.iter().flat_map(PlacedTemplate::extent);
         let all = loops.chain(filled).chain(self.violations.iter().copied());
         let seen = all.filter(|point| (self.y.minimum..=self.y.maximum).contains(&point.1));
-        let (low, high) = extent(seen.map(|point| point.0).chain([-360.0, 0.0]));
+        let (low, high) = extent(seen.map(|point| point.0).chain(PHASES));
         let most = 360.0 * f64::from(TURNS);
         let low = (90.0 * (low / 90.0).floor()).max(-360.0 - most);
         let high = (90.0 * (high / 90.0).ceil()).min(most);

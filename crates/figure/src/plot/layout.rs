@@ -44,8 +44,10 @@ impl Placed<'_> {
 pub(super) fn draw(plot: &Plot) -> Scene {
     let left = left_margin(plot);
     let right = right_edge(plot);
-    let bottom_of_panels =
-        EDGE + plot.panels.iter().map(|panel| panel.height + BETWEEN).sum::<f64>() - BETWEEN;
+    let names_width = right - left;
+    let names_height = |panel: &Panel| legend::height(&panel.names, names_width);
+    let heights = plot.panels.iter().map(|panel| names_height(panel) + panel.height + BETWEEN);
+    let bottom_of_panels = EDGE + heights.sum::<f64>() - BETWEEN;
     let below_ticks = bottom_of_panels + X_LABEL + LABEL_SIZE;
     let below_title = below_ticks + 8.0 + TITLE_SIZE;
     let legend_left = left.min(70.0);
@@ -55,6 +57,8 @@ pub(super) fn draw(plot: &Plot) -> Scene {
     let mut scene = Scene::new(WIDTH, (below_title + gap + legend_height + EDGE).ceil());
     let mut top = EDGE;
     for (index, panel) in plot.panels.iter().enumerate() {
+        legend::draw(&mut scene, &panel.names, left, top - 0.25 * BETWEEN, names_width);
+        top += names_height(panel);
         let frame = Rectangle { left, top, right, bottom: top + panel.height };
         let last = index + 1 == plot.panels.len();
         draw_panel(&mut scene, plot, panel, frame, last);

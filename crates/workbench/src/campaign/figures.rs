@@ -34,10 +34,21 @@ pub(crate) fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<Figure>, Ca
                 worst_metric(window, plan.is_open_loop())[1]
             ),
         );
-        let span = around(window, end);
+        let span = around(window, after_s(summary, index), end);
         figures.push(picture(&words, plan, summary, span, worst_series(plan, summary, index)?));
     }
     Ok(figures)
+}
+
+/// Settling times of the slowest run that are shown, and what is shown of an event without one, s.
+const SETTLING_TIMES: f64 = 2.0;
+const AFTER_S: f64 = 0.5;
+
+/// How much of a window is shown.
+fn after_s(summary: &Summary, index: usize) -> f64 {
+    let place = METRIC_NAMES.iter().position(|name| *name == "settling_time_s");
+    let spread = place.and_then(|place| summary.metrics.get(index).and_then(|spreads| spreads[place]));
+    spread.map_or(AFTER_S, |spread| SETTLING_TIMES * spread.worst.0)
 }
 
 /// The metric by which a window's worst run is chosen, and what it is of.

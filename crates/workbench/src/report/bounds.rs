@@ -2,6 +2,7 @@
 //! may not be, and whether the given loop satisfies this.
 
 use phea_dynamics::linear::LinearError;
+use phea_dynamics::order::sort_by_number;
 use phea_qft::bound::{Bound, Collision, Feasibility, Placement};
 use phea_qft::template::{Resolution, Template};
 use phea_qft::verification::Verdict;
@@ -86,6 +87,37 @@ fn specification_figures(problem: &RobustProblem, found: &[DesignFrequency]) -> 
     figures
 }
 
+/// Bounds that a chart of loops shows at most.
+const SHOWN_BOUNDS: usize = 5;
+
+/// The bounds of all specifications at the frequencies at which one of these loops comes nearest to
+/// them, rising; and whether others are left out.
+pub(super) fn nearest_bounds(found: &[DesignFrequency], loops: &[&RobustProblem]) -> (Vec<Bound>, bool) {
+    let distance = |one: &DesignFrequency| {
+        let of = |problem: &&RobustProblem| {
+            let feedback = problem.compensation.response(one.frequency_rad_per_s).feedback;
+            match one.exact_bounds.placement(one.template.template.nominal * feedback) {
+                Placement::Allowed { slack_db } => slack_db,
+                Placement::Forbidden { .. } => 0.0,
+            }
+        };
+        loops.iter().map(of).fold(f64::INFINITY, f64::min)
+    };
+    let mut order: Vec<(f64, &DesignFrequency)> = found.iter().map(|one| (distance(one), one)).collect();
+    if !loops.is_empty() {
+        sort_by_number(&mut order, |one| one.0);
+        order.truncate(SHOWN_BOUNDS);
+        sort_by_number(&mut order, |one| one.1.frequency_rad_per_s);
+    }
+    let left_out = order.len() < found.len();
+    (order.into_iter().map(|(_, one)| one.bounds.union.clone()).collect(), left_out)
+}
+
+/// Which bounds a chart shows, in a sentence.
+pub(super) const fn nearest_words(left_out: bool) -> &'static str {
+    if left_out { " Bounds: of the five frequencies nearest to a loop." } else { "" }
+}
+
 /// L0 over the frequencies around those of the design; `None` without a controller or a nominal
 /// plant.
 pub(super) fn nominal_loop(problem: &RobustProblem) -> Result<Option<FrequencySeries>, LinearError> {
@@ -119,7 +151,8 @@ pub(super) fn chart(
     view: Option<&ProjectAudit>,
 ) -> Result<Figure, CommandError> {
     let nominal = nominal_loop(problem)?;
-    let bounds: Vec<Bound> = found.iter().map(|one| one.bounds.union.clone()).collect();
+    let given = [problem];
+    let (bounds, left_out) = nearest_bounds(found, if problem.has_controller { &given } else { &[] });
     let chart = NicholsChart {
         loops: nominal.into_iter().collect(),
         design_frequencies_rad_per_s: problem.design_frequencies(),
@@ -129,6 +162,7 @@ pub(super) fn chart(
         contours_db: vec![],
     };
     let caption = "The bounds of all specifications together, the nominal loop with its design frequencies, and the plants that violate a specification most: a loop above a bound that is open upwards, and outside closed ones, satisfies all of them at that frequency.";
+    let caption = format!("{caption}{}", nearest_words(left_out));
     Ok(chart.draw(&Words::new("nichols", "Nichols chart of the loop", caption)))
 }
 

@@ -1,15 +1,13 @@
 //! Figures of runs over time.
 
+use super::span::{span_of, span_of_events};
 use super::{Cause, GAS_TEMPERATURES, Metrics, Record, ScenarioComparison, ScenarioRun, Window, cause_words};
 use crate::answer::{OutputFile, picture_files, significant};
+use crate::figure::axis::extent;
 use crate::figure::{CurveChart, CurvePanel, CurveStyle, DisplayUnit, Figure, SettlingBand, Words};
-use crate::over_time::{ForceStep, Trace, behind, chart, panel, trace};
+use crate::over_time::{ForceStep, Trace, behind, chart, named, panel, trace};
 use crate::quantity::MotionKind;
 use phea_hydraulics::machine::{GAS_PRESSURE_SIGNALS, HEAT_SIGNALS};
-
-/// Time drawn before and after the start of a window, s.
-pub(super) const BEFORE_S: f64 = 0.02;
-pub(super) const AFTER_S: f64 = 0.5;
 
 /// Largest number of events that are all enlarged; if there are more, all that are not steps, and
 /// the greatest step.
@@ -21,9 +19,9 @@ pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
     let whole = Words::new(
         format!("simulation-{number}"),
         format!("Simulated: {}", run.name),
-        "Force, voltages, pressures and position over the whole scenario.",
+        format!("Force, voltages, pressures and position over {}.", shown_words(run, end)),
     );
-    let mut figures = vec![overview(&whole, run, [0.0, end])];
+    let mut figures = vec![overview(&whole, run, span_of_events(run, end))];
     for (index, window) in enlarged(&run.windows, end) {
         let positions = if moves_load(window) { ", positions" } else { "" };
         let asked_for = if run.open_loop { "" } else { " with its reference" };
@@ -36,10 +34,24 @@ pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
             format!("Enlarged: {}", cause_words(window)),
             caption,
         );
-        figures.push(close_up(&words, run, window, around(window, end)));
+        figures.push(close_up(&words, run, window, span_of(run, window, end)));
     }
     figures.extend(overlaid(run, number, [0.0, end]));
     figures
+}
+
+/// What an overview shows: the whole scenario, or until what repeats has done so twice.
+pub(super) fn shown_words(run: &ScenarioRun, end_s: f64) -> String {
+    match span_of_events(run, end_s)[1] {
+        shown if shown < end_s => {
+            format!(
+                "the first {} s of {} s, after which it repeats",
+                significant(shown, 3),
+                significant(end_s, 3)
+            )
+        }
+        _ => "the whole scenario".to_string(),
+    }
 }
 
 /// Measurement and simulation, a panel for each signal.
@@ -57,24 +69,21 @@ fn overlaid(run: &ScenarioRun, number: usize, span_s: [f64; 2]) -> Option<Figure
         "What was measured on the rig, on what the machine of the project does.",
     );
     let legend = ["simulated", "measured"].map(String::from);
-    (!panels.is_empty()).then(|| drawn(run, panels, legend, span_s).draw(&words))
+    let events = instants(&run.windows, span_s);
+    (!panels.is_empty()).then(|| chart(panels, legend, &events, span_s).draw(&words))
 }
 
 /// Everything at a glance.
 fn overview(words: &Words, run: &ScenarioRun, span_s: [f64; 2]) -> Figure {
     let record = &run.record;
-    let mut panels = vec![measured(record, 190.0), voltages(record), pressures(record), positions(record)];
+    let mut panels = vec![measured(record, 190.0)];
+    panels.extend(prefiltered(record));
+    panels.extend([voltages(record), pressures(record), positions(record)]);
     panels.extend(joint(record));
     panels.extend(gas(record));
     panels.extend(from_outside(record));
     panels.extend(settings(record));
-    let reference = if run.open_loop { "" } else { "prefiltered reference, " };
-    let load = load_words(record);
-    let mut legend = ["force, command, p_A, piston".to_string(), format!("{reference}spool, p_B, {load}")];
-    if !record.external_force_n.is_empty() {
-        legend[0] = format!("{}, {}", legend[0], external_words(record));
-    }
-    drawn(run, panels, with_gas(legend, record), span_s).draw(words)
+    drawn(run, panels, span_s).draw(words)
 }
 
 /// The signals between command and force, in the order of Figure 6.17 of Ledezma (2019); with
@@ -83,16 +92,13 @@ pub(super) fn close_up(words: &Words, run: &ScenarioRun, window: &Window, span_s
     let record = &run.record;
     let forces = ["force_n", "hydraulic_force_n"].map(|name| over_time(record, record.signal(name)));
     let forces = panel("Forces F_e, F_H", record.motion.unit(DisplayUnit::KILONEWTON), 150.0, forces.into());
+    let forces = named(forces, ["measured force", "hydraulic force"]);
     let mut panels = vec![voltages(record), pressures(record), forces, measured(record, 150.0)];
-    let second = match run.open_loop {
-        false => "spool, p_B, hydraulic force, prefiltered reference",
-        true => "spool, p_B, hydraulic force",
-    };
-    let mut legend = ["command, p_A, force", second].map(String::from);
+    panels.extend(prefiltered(record));
+    panels.extend(error_panel(record).filter(|_| matches!(window.cause, Cause::ReferenceMotion { .. })));
     if moves_load(window) {
         panels.push(positions(record));
         panels.extend(joint(record));
-        legend = [format!("{}, piston", legend[0]), format!("{}, {}", legend[1], load_words(record))];
     }
     panels.extend(gas(record));
     if window.cause == Cause::SettingChange {
@@ -100,17 +106,60 @@ pub(super) fn close_up(words: &Words, run: &ScenarioRun, window: &Window, span_s
     }
     if matches!(window.cause, Cause::ExternalForce { .. }) {
         panels.extend(from_outside(record));
-        legend[0] = format!("{}, {}", legend[0], external_words(record));
     }
-    drawn(run, panels, with_gas(legend, record), span_s).draw(words)
+    drawn(run, panels, span_s).draw(words)
 }
 
-/// The measured force, its reference, and the command.
+/// Most that a prefiltered reference may leave the range of force and reference, as a part of that
+/// range, to be drawn in their panel.
+const LEAVES: f64 = 0.5;
+
+/// The measured force with its reference, before and after the prefilter; a prefiltered reference
+/// that would spoil the scale is left to a panel of its own.
 fn measured(record: &Record, height: f64) -> CurvePanel {
     let unit = record.motion.unit(DisplayUnit::KILONEWTON);
-    let series = [record.signal("force_n"), record.filtered_reference_n.clone()]
-        .map(|values| over_time(record, values));
-    behind(panel("Force F_e", unit, height, series.into()), unit, CurveStyle::Reference, asked_for(record))
+    let mut series = vec![over_time(record, record.signal("force_n"))];
+    let mut names = vec!["measured force"];
+    if fits(record) {
+        series.push(over_time(record, record.filtered_reference_n.clone()));
+        names.push("prefiltered reference");
+    }
+    let force = named(panel("Force F_e", unit, height, series), names);
+    let asked = asked_for(record);
+    let is_asked = asked.is_some();
+    let mut force = behind(force, unit, CurveStyle::Reference, asked);
+    force.named.extend(is_asked.then(|| ("reference".to_string(), CurveStyle::Reference)));
+    force
+}
+
+/// The prefiltered reference by itself, where it does not fit the scale of the force.
+fn prefiltered(record: &Record) -> Option<CurvePanel> {
+    let unit = record.motion.unit(DisplayUnit::KILONEWTON);
+    let series = over_time(record, record.filtered_reference_n.clone());
+    (!fits(record)).then(|| named(panel("F F_ref", unit, 90.0, vec![series]), ["prefiltered reference"]))
+}
+
+/// Whether the prefiltered reference can be drawn on the scale of force and reference.
+fn fits(record: &Record) -> bool {
+    let (least, most) =
+        extent(record.signal("force_n").into_iter().chain(record.reference_n.iter().copied()));
+    let (lowest, highest) = extent(record.filtered_reference_n.iter().copied());
+    let room = LEAVES * (most - least);
+    record.filtered_reference_n.is_empty() || (lowest >= least - room && highest <= most + room)
+}
+
+/// Reference less force, where the reference moves.
+pub(super) fn tracking_error(record: &Record) -> Vec<f64> {
+    let pairs = record.reference_n.iter().zip(record.signal("force_n"));
+    pairs.map(|(reference, force)| reference - force).collect()
+}
+
+fn error_panel(record: &Record) -> Option<CurvePanel> {
+    let error = tracking_error(record);
+    let unit = record.motion.unit(DisplayUnit::KILONEWTON);
+    (!error.is_empty()).then(|| {
+        named(panel("F_ref - F_e", unit, 90.0, vec![over_time(record, error)]), ["error"]).with_zero_line()
+    })
 }
 
 /// The reference; none in an open loop.
@@ -138,8 +187,14 @@ fn from_outside(record: &Record) -> Option<CurvePanel> {
     let series =
         (!record.external_force_n.is_empty()).then(|| over_time(record, record.external_force_n.clone()))?;
     Some(match turns(record) {
-        false => panel("Force F_x", record.motion.unit(DisplayUnit::KILONEWTON), 90.0, vec![series]),
-        true => panel("Torque τ_x", DisplayUnit::NEWTON_METRE, 90.0, vec![series]),
+        false => {
+            let force = panel("Force F_x", record.motion.unit(DisplayUnit::KILONEWTON), 90.0, vec![series]);
+            named(force, [external_words(record)])
+        }
+        true => named(
+            panel("Torque τ_x", DisplayUnit::NEWTON_METRE, 90.0, vec![series]),
+            [external_words(record)],
+        ),
     })
 }
 
@@ -149,7 +204,7 @@ fn settings(record: &Record) -> Option<CurvePanel> {
         return None;
     }
     let series = ["setting_a_ratio", "setting_b_ratio"].map(|name| over_time(record, record.signal(name)));
-    Some(panel("Settings s_A, s_B", DisplayUnit::ONE, 90.0, series.into()))
+    Some(named(panel("Settings s_A, s_B", DisplayUnit::ONE, 90.0, series.into()), ["s_A", "s_B"]))
 }
 
 /// Whether the load turns behind a linkage.
@@ -160,7 +215,7 @@ pub(crate) fn turns(record: &Record) -> bool {
 /// The angle of the joint behind a linkage, if there is one.
 fn joint(record: &Record) -> Option<CurvePanel> {
     let series = turns(record).then(|| over_time(record, record.signal("joint_angle_rad")))?;
-    Some(panel("Joint θ", DisplayUnit::DEGREE, 90.0, vec![series]))
+    Some(named(panel("Joint θ", DisplayUnit::DEGREE, 90.0, vec![series]), ["joint"]))
 }
 
 /// The pressures of gas behind necks and the temperatures of gas that exchanges heat, where there
@@ -178,46 +233,34 @@ fn gas(record: &Record) -> Vec<CurvePanel> {
     let there = panels.into_iter().filter(|(_, _, sides)| sides.iter().any(|side| !side.is_empty()));
     let drawn = there.map(|(quantity, unit, sides)| {
         // a side without such gas keeps its place among the colours: no point of it is drawn
-        panel(quantity, unit, 90.0, sides.map(|values| over_time(record, values)).into())
+        named(
+            panel(quantity, unit, 90.0, sides.map(|values| over_time(record, values)).into()),
+            ["at A", "at B"],
+        )
     });
     drawn.collect()
 }
 
-/// A legend with the gas of both sides, where it is drawn.
-fn with_gas(legend: [String; 2], record: &Record) -> [String; 2] {
-    let parts = &record.parts;
-    let mut sides = ["A", "B"].into_iter().zip(parts.gas_pressure).zip(parts.heated_gas);
-    legend.map(|words| {
-        let Some(((side, own), heated)) = sides.next() else { return words };
-        let gas = if own || heated { format!(", gas {side}") } else { String::new() };
-        let setting = if parts.adjustment { format!(", s_{side}") } else { String::new() };
-        format!("{words}{gas}{setting}")
-    })
-}
-
 fn voltages(record: &Record) -> CurvePanel {
     let series = [record.control_v.clone(), record.signal("spool_v")].map(|values| over_time(record, values));
-    panel("Voltage", DisplayUnit::VOLT, 110.0, series.into())
+    named(panel("Voltage", DisplayUnit::VOLT, 110.0, series.into()), ["command", "spool"])
 }
 
 fn pressures(record: &Record) -> CurvePanel {
     let series = ["pressure_a_pa", "pressure_b_pa"].map(|name| over_time(record, record.signal(name)));
-    panel("Pressure", DisplayUnit::BAR, 110.0, series.into())
+    named(panel("Pressure", DisplayUnit::BAR, 110.0, series.into()), ["p_A", "p_B"])
 }
 
 fn positions(record: &Record) -> CurvePanel {
     let series = ["position_m", "load_position_m"].map(|name| over_time(record, record.signal(name)));
-    panel(
-        if record.motion.is_rotary() { "Angle" } else { "Position" },
-        record.motion.unit(DisplayUnit::MILLIMETRE),
-        90.0,
-        series.into(),
-    )
+    let quantity = if record.motion.is_rotary() { "Angle" } else { "Position" };
+    let positions = panel(quantity, record.motion.unit(DisplayUnit::MILLIMETRE), 90.0, series.into());
+    named(positions, [if record.motion.is_rotary() { "shaft" } else { "piston" }, load_words(record)])
 }
 
 /// Panels of one run, with its events.
-fn drawn(run: &ScenarioRun, panels: Vec<CurvePanel>, legend: [String; 2], span_s: [f64; 2]) -> CurveChart {
-    chart(panels, legend, &instants(&run.windows, span_s), span_s)
+fn drawn(run: &ScenarioRun, panels: Vec<CurvePanel>, span_s: [f64; 2]) -> CurveChart {
+    chart(panels, [], &instants(&run.windows, span_s), span_s)
 }
 
 /// The events that have a figure of their own, with their indices among all.
@@ -251,11 +294,6 @@ pub(super) fn instants(windows: &[(Window, Metrics)], [start, end]: [f64; 2]) ->
     let seen = windows.iter().map(|(window, _)| window);
     let seen = seen.filter(|window| window.start_s >= start && window.start_s < end);
     seen.map(|window| (window.start_s, window.cause.label().to_string())).collect()
-}
-
-/// From shortly before an event to half a second later, within the run.
-pub(crate) fn around(window: &Window, end_s: f64) -> [f64; 2] {
-    [(window.start_s - BEFORE_S).max(0.0), (window.start_s + AFTER_S).min(end_s)]
 }
 
 /// Values of a signal at the times of its record.
@@ -338,7 +376,12 @@ pub(crate) fn laid_over(
     let windows = runs.first().map(|run| run.windows.as_slice()).unwrap_or_default();
     for (index, window) in enlarged(windows, end) {
         let words = words(format!("-event-{}", index + 1), format!("Enlarged: {}", cause_words(window)));
-        figures.push(side_by_side(&words, titles, runs, around(window, end)));
+        figures.push(side_by_side(
+            &words,
+            titles,
+            runs,
+            runs.first().map_or([0.0, end], |run| span_of(run, window, end)),
+        ));
     }
     figures
 }

@@ -2,8 +2,10 @@
 //! colour for each controller.
 
 use super::figures::{
-    AFTER_S, BEFORE_S, around, asked_for, close_up, enlarged, instants, load_pressure, moves_load, over_time,
+    asked_for, close_up, enlarged, instants, load_pressure, moves_load, over_time, shown_words,
+    tracking_error,
 };
+use super::span::{are_alike, span_of, span_of_events};
 use super::{Cause, Record, ScenarioRun, TrackingWish, Window, cause_words};
 use crate::figure::{CurveChart, CurvePanel, CurveRange, CurveStyle, DisplayUnit, Figure, Words};
 use crate::over_time::{Trace, behind, chart, has, panel, trace};
@@ -25,17 +27,24 @@ pub(crate) fn together(runs: &[NamedRun<'_>], number: usize, wish: Option<&Track
     let words = Words::new(
         format!("simulation-{number}"),
         format!("Simulated: {}", first.run.name),
-        format!("Force, command, load pressure and piston over the whole scenario, {}.", whose(runs)),
+        format!(
+            "Force, command, load pressure and piston over {}, {}.",
+            shown_words(first.run, end),
+            whose(runs)
+        ),
     );
-    let mut figures = vec![drawn(&words, runs, [0.0, end], ([190.0, 110.0], true), wish)];
+    let mut figures = vec![drawn(&words, runs, span_of_events(first.run, end), ([190.0, 110.0], true), wish)];
     for (index, window) in enlarged(&first.run.windows, end) {
+        if are_alike(longest(runs, window, end), span_of_events(first.run, end)) {
+            continue;
+        }
         let words = Words::new(
             format!("simulation-{number}-event-{}", index + 1),
             format!("Enlarged: {}", cause_words(window)),
             format!("What the event does to force, command and load pressure, {}.", whose(runs)),
         );
         let shown = ([190.0, 110.0], moves_load(window));
-        figures.push(drawn(&words, runs, around(window, end), shown, wish));
+        figures.push(drawn(&words, runs, longest(runs, window, end), shown, wish));
     }
     figures
 }
@@ -45,13 +54,14 @@ pub(crate) fn together(runs: &[NamedRun<'_>], number: usize, wish: Option<&Track
 pub(crate) fn at_a_glance(name: &str, runs: &[NamedRun<'_>], wish: Option<&TrackingWish>) -> Option<Figure> {
     let first = runs.first()?;
     let end = end_of(runs);
-    let starts = || first.run.windows.iter().map(|(window, _)| window.start_s);
-    let from = starts().fold(end, f64::min);
-    let until = starts().fold(0.0, f64::max) + AFTER_S;
-    let span = if from < end { [(from - BEFORE_S).max(0.0), until.min(end)] } else { [0.0, end] };
+    let spans = || first.run.windows.iter().map(|(window, _)| longest(runs, window, end));
+    let from = spans().map(|span| span[0]).fold(end, f64::min);
+    let until = spans().map(|span| span[1]).fold(0.0, f64::max);
+    let span = if from < until { [from, until] } else { [0.0, end] };
     let title = format!("Force over time: {}", first.run.name);
     let caption = format!("The nonlinear machine, {}{}.", whose(runs), of_wish(wish));
     let mut panels = forces_enlarged(runs, [220.0, 110.0], span, wish);
+    panels.extend(errors(runs, span));
     panels.push(commands(runs, 90.0));
     Some(with_events(runs, panels, span).draw(&Words::new(name, title, caption)))
 }
@@ -68,7 +78,7 @@ pub(crate) fn close_ups(named: NamedRun<'_>, number: usize) -> Vec<Figure> {
             format!("Inside the machine, {name} controller: {}, {}", run.name, cause_words(window)),
             "Voltages, pressures of both chambers, hydraulic and measured force, measured force.",
         );
-        close_up(&words, run, window, around(window, end))
+        close_up(&words, run, window, span_of(run, window, end))
     };
     events.map(figure).collect()
 }
@@ -105,6 +115,16 @@ fn end_of(runs: &[NamedRun<'_>]) -> f64 {
     runs.iter().filter_map(|named| named.run.record.times_s.last().copied()).fold(0.0, f64::max)
 }
 
+/// The time that shows an event under every controller.
+fn longest(runs: &[NamedRun<'_>], window: &Window, end_s: f64) -> [f64; 2] {
+    let spans = runs.iter().map(|named| match named.run.windows.iter().find(|(own, _)| own == window) {
+        Some((own, _)) => span_of(named.run, own, end_s),
+        None => [window.start_s, window.start_s],
+    });
+    let all = spans.fold([f64::INFINITY, 0.0], |all: [f64; 2], one| [all[0].min(one[0]), all[1].max(one[1])]);
+    [all[0].min(window.start_s), all[1]]
+}
+
 /// `under the designed and the given controller`.
 fn whose(runs: &[NamedRun<'_>]) -> String {
     let names: Vec<String> = runs.iter().map(|named| format!("the {}", named.name)).collect();
@@ -114,7 +134,7 @@ fn whose(runs: &[NamedRun<'_>]) -> String {
 fn of_wish(wish: Option<&TrackingWish>) -> String {
     let wished = wish.map(|wish| [wish.overshoot_words(), wish.settling_words()]);
     let words: Vec<String> = wished.into_iter().flatten().flatten().collect();
-    if words.is_empty() { String::new() } else { format!("; wished: {}", words.join(", ")) }
+    if words.is_empty() { String::new() } else { format!("; required: {}", words.join(", ")) }
 }
 
 fn drawn(
@@ -129,6 +149,7 @@ fn drawn(
         true => vec![forces(runs, tall, span_s, wish)],
         false => forces_enlarged(runs, [tall, low], span_s, wish),
     };
+    panels.extend(errors(runs, span_s));
     panels.push(commands(runs, low));
     panels.push(panel("p_A - p_B", DisplayUnit::BAR, low, each(runs, load_pressure)));
     if positions {
@@ -136,6 +157,20 @@ fn drawn(
         panels.push(panel("Piston", motion(runs).unit(DisplayUnit::MILLIMETRE), 90.0, piston));
     }
     with_events(runs, panels, span_s).draw(words)
+}
+
+/// Reference less force, where the reference moves.
+fn errors(runs: &[NamedRun<'_>], span_s: [f64; 2]) -> Option<CurvePanel> {
+    let unit = motion(runs).unit(DisplayUnit::KILONEWTON);
+    moves_reference(runs, span_s)
+        .then(|| panel("F_ref - F_e", unit, 90.0, each(runs, tracking_error)).with_zero_line())
+}
+
+/// Whether the reference begins to move within a span, other than by steps.
+fn moves_reference(runs: &[NamedRun<'_>], [start_s, end_s]: [f64; 2]) -> bool {
+    let windows = runs.iter().flat_map(|named| &named.run.windows);
+    let within = windows.filter(|(window, _)| (start_s..end_s).contains(&window.start_s));
+    within.into_iter().any(|(window, _)| matches!(window.cause, Cause::ReferenceMotion { .. }))
 }
 
 /// Panels with the name of each controller and the events.
@@ -183,7 +218,7 @@ fn forces_enlarged(
     wish: Option<&TrackingWish>,
 ) -> Vec<CurvePanel> {
     let whole = forces(runs, tall, span_s, wish);
-    let near = near_reference(runs, span_s).filter(|_| has(&whole, CurveStyle::Limit));
+    let near = near_reference(runs, span_s, wish).filter(|_| has(&whole, CurveStyle::Limit));
     let unit = motion(runs).unit(DisplayUnit::KILONEWTON);
     let enlarged = near.map(|ends| CurvePanel {
         title: unit.title("F_e enlarged"),
@@ -194,15 +229,16 @@ fn forces_enlarged(
     std::iter::once(whole).chain(enlarged).collect()
 }
 
-/// Range around the reference that is shown enlarged, as shares of the step; more if the force
-/// overshoots by more.
-const BELOW: f64 = 0.06;
-const ABOVE: f64 = 0.04;
+/// Range around the reference that is shown enlarged, in the band that is required or the overshoot
+/// that is allowed, whichever is wider; more above if the force overshoots by more.
+const BANDS: f64 = 2.0;
 const OVERSHOOTS: f64 = 1.2;
 
 /// The range around the reference after the only step that begins in a span; `None` if none or
 /// several do.
-fn near_reference(runs: &[NamedRun<'_>], span_s: [f64; 2]) -> Option<[f64; 2]> {
+fn near_reference(runs: &[NamedRun<'_>], span_s: [f64; 2], wish: Option<&TrackingWish>) -> Option<[f64; 2]> {
+    let wish = wish?;
+    let required = BANDS * 0.01 * wish.band_percent.max(wish.overshoot_percent.unwrap_or(0.0));
     let [start_s, end_s] = span_s;
     let seen = |window: &Window| (start_s..end_s).contains(&window.start_s);
     let first = runs.first()?.run;
@@ -213,8 +249,8 @@ fn near_reference(runs: &[NamedRun<'_>], span_s: [f64; 2]) -> Option<[f64; 2]> {
     let ((index, to_n, step_n), None) = (steps.next()?, steps.next()) else { return None };
     let metrics = runs.iter().filter_map(|named| named.run.windows.get(index));
     let overshoots = metrics.filter_map(|(_, metrics)| metrics.overshoot_percent.ok());
-    let above = overshoots.fold(ABOVE, |most, percent| most.max(0.01 * OVERSHOOTS * percent));
-    let ends = [to_n - BELOW * step_n, to_n + above * step_n];
+    let above = overshoots.fold(required, |most, percent| most.max(0.01 * OVERSHOOTS * percent));
+    let ends = [to_n - required * step_n, to_n + above * step_n];
     (above.is_finite() && above < 1.0).then(|| [ends[0].min(ends[1]), ends[0].max(ends[1])])
 }
 

@@ -1,9 +1,9 @@
 //! The nominal loops of both controllers among the bounds (thesis, Figure 6.14).
 
 use phea_dynamics::linear::LinearError;
-use phea_qft::bound::{Bound, Placement};
+use phea_qft::bound::Placement;
 
-use super::super::bounds::nominal_loop;
+use super::super::bounds::{nearest_bounds, nearest_words, nominal_loop};
 use crate::audit::frequency_number;
 use crate::design::{AuditedController, ProjectDesign};
 use crate::figure::{BoundGroup, Figure, FrequencySeries, NicholsChart, OpenLoopViolation, Words};
@@ -23,7 +23,9 @@ pub(super) fn figure(view: &ProjectDesign, found: &[DesignFrequency]) -> Result<
     if loops.is_empty() {
         return Ok(None);
     }
-    let bounds: Vec<Bound> = found.iter().map(|one| one.bounds.union.clone()).collect();
+    let sides = std::iter::once(&view.designed).chain(&view.published);
+    let problems: Vec<_> = sides.map(|side| &side.problem).collect();
+    let (bounds, left_out) = nearest_bounds(found, &problems);
     let chart = NicholsChart {
         loops,
         design_frequencies_rad_per_s: view.designed.problem.design_frequencies(),
@@ -36,7 +38,8 @@ pub(super) fn figure(view: &ProjectDesign, found: &[DesignFrequency]) -> Result<
         false => ("Nichols chart of both loops", "loops"),
     };
     let caption = format!(
-        "The nominal {whose} among the bounds of all specifications; crossed out where a bound forbids it."
+        "The nominal {whose} among the bounds of all specifications; crossed out where a bound forbids it.{}",
+        nearest_words(left_out)
     );
     Ok(Some(chart.draw(&Words::new("design_nichols", title, caption))))
 }
