@@ -167,7 +167,9 @@ impl JudgedAlternative {
         match view.design.status {
             _ if view.is_met() => Ok(true),
             DesignStatus::Infeasible(_) | DesignStatus::NotStabilised => Ok(false),
-            DesignStatus::Met if !view.tolerates_its_delay => Ok(false),
+            DesignStatus::Met if !view.tolerates_its_delay || view.designed.view.misses_in_time() => {
+                Ok(false)
+            }
             DesignStatus::Met | DesignStatus::NotConverged { .. } => {
                 Err(crate::design::status_sentence(view))
             }

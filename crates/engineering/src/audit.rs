@@ -3,6 +3,8 @@
 
 mod alone;
 mod dead_time;
+mod in_time;
+mod prefilter;
 mod proven;
 mod remark;
 mod stability;
@@ -14,6 +16,8 @@ pub use words::{evidence_key, evidence_sentence, finding_sentence, place_words};
 
 pub(crate) use alone::{caveat as caveat_of_rig, unexamined as unexamined_rig};
 pub use dead_time::LoopDeadTime;
+pub use in_time::{TimeFinding, TimeOutcome, Unexamined, WorstStep};
+pub use prefilter::PrefilterGain;
 pub use proven::{prove_audit, standing_word, try_to_prove, why_not_proven};
 pub use remark::remark_sentences;
 pub use stability::{stability_reason, stability_sentence};
@@ -25,7 +29,9 @@ pub use words::{
 use phea_dynamics::portable;
 use phea_qft::family::{Extent, Family};
 use phea_qft::proof::Proof;
-use phea_qft::verification::{Audit, AuditProblem, SpecificationFinding, TrackingJudgement, Verdict};
+use phea_qft::verification::{
+    Audit, AuditProblem, Evidence, SpecificationFinding, TrackingJudgement, Verdict,
+};
 
 use crate::caveat::Caveat;
 use crate::plant_names::PlantNames;
@@ -136,6 +142,10 @@ pub struct ProjectAudit {
     pub reached: Vec<Option<ReachedLimit>>,
     /// What the noise of a velocity that is fed forward does; `None` without one.
     pub velocity_noise: Option<VelocityNoise>,
+    /// The requirements in time of its specifications.
+    pub in_time: Vec<TimeFinding>,
+    /// The prefilter, where it amplifies.
+    pub amplifying_prefilter: Option<PrefilterGain>,
     /// What was proven about it, if a proof was requested.
     pub proof: Option<Proof>,
 }
@@ -213,6 +223,7 @@ impl ProjectAudit {
         if audit.verdict == Verdict::Met && caveats.iter().any(|caveat| caveat.unproven) {
             audit.verdict = Verdict::NotProven;
         }
+        let in_time = in_time::findings(problem, &audit);
         let velocity_noise = VelocityNoise::of(problem, audit.stability.verdict);
         ProjectAudit {
             reached: audit.specifications.iter().map(|finding| reached(problem, finding)).collect(),
@@ -230,8 +241,39 @@ impl ProjectAudit {
             dead_time: LoopDeadTime::of(problem),
             caveats,
             velocity_noise,
+            in_time,
+            amplifying_prefilter: PrefilterGain::amplifying(compensation),
             proof: None,
         }
+    }
+
+    /// The verdict on the specifications over frequency and on the requirements in time: a step
+    /// that misses one violates what was required.
+    pub fn verdict(&self) -> Verdict {
+        if self.misses_in_time() { Verdict::Violated } else { self.audit.verdict }
+    }
+
+    /// The evidence for that verdict: the steps of plants that were visited are a search.
+    pub fn evidence(&self) -> Evidence {
+        let own = self.audit.evidence;
+        let of_verdict = |finding: &TimeFinding| finding.requirement.follows && finding.verdict().is_some();
+        let searched = || self.in_time.iter().any(of_verdict);
+        match (self.audit.verdict, self.misses_in_time()) {
+            (Verdict::Violated, true) => own.max(Evidence::Search),
+            (_, true) => Evidence::Search,
+            (Verdict::Met, false) if searched() => own.min(Evidence::Search),
+            (_, false) => own,
+        }
+    }
+
+    /// The requirement in time of a specification, by its index.
+    pub fn in_time_of(&self, index: usize) -> Option<&TimeFinding> {
+        self.in_time.iter().find(|finding| finding.requirement.specification == index)
+    }
+
+    /// Whether a step misses a requirement in time that its limits follow from.
+    pub fn misses_in_time(&self) -> bool {
+        self.in_time.iter().any(TimeFinding::violates)
     }
 
     /// What a specification is called.

@@ -203,7 +203,7 @@ impl ProjectDesign {
 
     /// Whether the designed controller satisfies every specification.
     pub fn is_met(&self) -> bool {
-        self.designed.view.audit.verdict == Verdict::Met && self.tolerates_its_delay
+        self.designed.view.verdict() == Verdict::Met && self.tolerates_its_delay
     }
 }
 

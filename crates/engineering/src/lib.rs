@@ -29,6 +29,7 @@ pub mod friction;
 pub mod identify;
 pub mod line_test;
 pub mod linear_loop;
+pub mod linear_step;
 pub mod linearize;
 pub mod number_table;
 pub mod option;

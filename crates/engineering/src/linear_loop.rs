@@ -1,16 +1,18 @@
 //! The linear loop of a rig with its given controller and prefilter: margins and step response.
 
-pub mod of_responses;
-
 use phea_dynamics::controller::Controller;
 use phea_dynamics::frequency::{Margins, margins};
-use phea_dynamics::linear::{Discretization, LinearError, TimeDomain, TransferFunction};
+use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::time_response::{
-    Settling, StepBaseline, StepMetrics, TimeResponseError, step_metrics, step_response, uniform_times,
+    Interpolation, SampledSignal, Settling, StepBaseline, StepMetrics, TimeResponseError, forced_response,
+    sampled_loop_step, step_metrics, step_response, uniform_times,
 };
-use phea_dynamics::uncertain_plant::PlantCoefficients;
+use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
 use phea_hydraulics::linear::transfer_functions;
 use phea_qft::closed_loop::{Compensation, Member};
+use phea_qft::stability::{StabilityStatus, member_stability};
+
+use crate::linear_step::{StepResponse, linear_step};
 
 /// The closed loop and its properties.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,14 +68,15 @@ pub enum LoopError {
     Time(#[from] TimeResponseError),
 }
 
+const GROWS: &str = "the closed loop is unstable, its response grows without bound";
+const PREFILTER_UNSTABLE: &str = "the prefilter is unstable";
 /// Number of samples of a step response.
 const SAMPLES: usize = 2000;
 /// A pole that is this close to a zero, relative to its own magnitude, leaves a tail of about this
 /// part of the step.
 const SMALL_TAIL: f64 = 0.05;
 
-/// The loop of a plant as [`linear_loop`] closes it, with the rate that its controller feeds
-/// forward at its samples.
+/// The loop of a plant by its coefficients, with the rate that its controller feeds forward.
 ///
 /// # Errors
 /// Those of [`linear_loop`].
@@ -83,16 +86,10 @@ pub fn linear_loop_of(
     sensor: &TransferFunction,
     band_percent: f64,
 ) -> Result<LinearLoop, LoopError> {
-    let timing = controller.timing;
-    if timing.sample_time_s.is_none() || timing.rate_feed_forward == 0.0 || plant.rate.is_none() {
-        return linear_loop(&transfer_functions(plant)?.command, controller, sensor, band_percent);
+    match is_rational(controller, plant.dead_time_s, sensor) {
+        true => rational_loop(&transfer_functions(plant)?.command, controller, sensor, band_percent),
+        false => loop_of_member(plant.clone(), controller, sensor, band_percent),
     }
-    let around = Compensation::new(controller, sensor.clone())?;
-    let Member::Sampled { command, with_sensor, .. } = around.member(plant.clone())? else {
-        return Err(LinearError::DomainMismatch.into());
-    };
-    let prefilters = [around.prefilter().clone(), around.prefilter_of_step()?];
-    closed(&command, &with_sensor, around.feedback().clone(), prefilters, band_percent)
 }
 
 /// Closes the loop of plant P with a controller that sees the output through the sensor H.
@@ -109,53 +106,40 @@ pub fn linear_loop(
     sensor: &TransferFunction,
     band_percent: f64,
 ) -> Result<LinearLoop, LoopError> {
-    let (feedback, prefilter) =
-        (controller.feedback.transfer_function()?, controller.prefilter.transfer_function()?);
-    let delay_s = controller.timing.delay_s;
-    let (plant, with_sensor, feedback, prefilter, of_step) = match controller.timing.sample_time_s {
-        None => {
-            let late = plant.clone().with_dead_time(delay_s)?;
-            let with_sensor = late.series(sensor)?;
-            (late, with_sensor, feedback, prefilter.clone(), prefilter)
-        }
-        Some(sample_time_s) => {
-            let sampled = |function: TransferFunction| match function.domain() {
-                TimeDomain::Continuous => {
-                    function.discretized(sample_time_s, controller.timing.discretization)
-                }
-                TimeDomain::Discrete { .. } => Ok(function),
-            };
-            let held = |function: TransferFunction| {
-                function.discretized(sample_time_s, Discretization::ZeroOrderHold)
-            };
-            let late = plant.clone().with_dead_time(delay_s)?;
-            let with_sensor = held(late.series(sensor)?)?;
-            let [acts, of_step] = match controller.timing.continuous_prefilter {
-                true => [prefilter.clone(), held(prefilter)?],
-                false => [sampled(prefilter.clone())?, sampled(prefilter)?],
-            };
-            (held(late)?, with_sensor, sampled(feedback)?, acts, of_step)
-        }
+    if is_rational(controller, plant.dead_time_s(), sensor) {
+        return rational_loop(plant, controller, sensor, band_percent);
+    }
+    let command = RationalCoefficients {
+        numerator: plant.numerator().coefficients().to_vec(),
+        denominator: plant.denominator().coefficients().to_vec(),
     };
-    closed(&plant, &with_sensor, feedback, [prefilter, of_step], band_percent)
+    let dead_time_s = plant.dead_time_s();
+    let plant = PlantCoefficients { command, disturbance: None, dead_time_s, rate: None };
+    loop_of_member(plant, controller, sensor, band_percent)
 }
 
-/// The loop of P and P H with G, and with F itself and as a step passes through it.
-fn closed(
+/// Whether the closed loop has a finite number of poles in s: it neither samples nor is late.
+fn is_rational(controller: &Controller, dead_time_s: f64, sensor: &TransferFunction) -> bool {
+    let late = dead_time_s + controller.timing.delay_s + sensor.dead_time_s();
+    controller.timing.sample_time_s.is_none() && late == 0.0
+}
+
+/// The loop of P with G and F, all rational in s.
+fn rational_loop(
     plant: &TransferFunction,
-    with_sensor: &TransferFunction,
-    feedback: TransferFunction,
-    [prefilter, of_step]: [TransferFunction; 2],
+    controller: &Controller,
+    sensor: &TransferFunction,
     band_percent: f64,
 ) -> Result<LinearLoop, LoopError> {
+    let (feedback, prefilter) =
+        (controller.feedback.transfer_function()?, controller.prefilter.transfer_function()?);
+    let with_sensor = plant.series(sensor)?;
     let open_loop = with_sensor.series(&feedback)?;
     let stability = stability(&open_loop)?;
     let step = match () {
-        () if stability == LoopStability::Unstable => {
-            Err("the closed loop is unstable, its response grows without bound".to_string())
-        }
-        () if !prefilter.is_stable() => Err("the prefilter is unstable".to_string()),
-        () => step_view(plant, with_sensor, &feedback, &of_step, band_percent)
+        () if stability == LoopStability::Unstable => Err(GROWS.to_string()),
+        () if !prefilter.is_stable() => Err(PREFILTER_UNSTABLE.to_string()),
+        () => step_view(plant, &with_sensor, &feedback, &prefilter, band_percent)
             .map_err(|error| error.to_string()),
     };
     Ok(LinearLoop {
@@ -168,11 +152,95 @@ fn closed(
     })
 }
 
+/// Durations of a step that is not rational in s, s: the first in which it settles early.
+const DURATIONS_S: [f64; 4] = [0.5, 2.0, 10.0, 60.0];
+
+/// A loop that samples, or is late: its stability by the turns of its characteristic function, its
+/// step sample by sample, or by the method of steps.
+fn loop_of_member(
+    plant: PlantCoefficients<f64>,
+    controller: &Controller,
+    sensor: &TransferFunction,
+    band_percent: f64,
+) -> Result<LinearLoop, LoopError> {
+    let around = Compensation::new(controller, sensor.clone())?;
+    let member = around.member(plant)?;
+    let with_sensor = match &member {
+        Member::Continuous { plant, sensor, .. } => {
+            let command = transfer_functions(plant)?.command.with_dead_time(plant.dead_time_s)?;
+            command.series(sensor)?
+        }
+        Member::Sampled { with_sensor, .. } => with_sensor.clone(),
+        Member::Responding { .. } | Member::Measured { .. } => return Err(LinearError::NoPlant.into()),
+    };
+    let open_loop = with_sensor.series(around.feedback())?;
+    let stability = match member_stability(&member, &around).status {
+        StabilityStatus::Stable => LoopStability::Stable,
+        StabilityStatus::Unstable(_) => LoopStability::Unstable,
+        StabilityStatus::NotResolved(_) => {
+            LoopStability::Unknown("its characteristic function was not resolved".to_string())
+        }
+    };
+    let step = match stability {
+        LoopStability::Unstable => Err(GROWS.to_string()),
+        _ if !around.prefilter().is_stable() => Err(PREFILTER_UNSTABLE.to_string()),
+        _ => step_of_member(&member, &around, band_percent).map_err(|error| error.to_string()),
+    };
+    Ok(LinearLoop {
+        margins: margins(&open_loop),
+        controller: around.feedback().clone(),
+        prefilter: around.prefilter().clone(),
+        open_loop,
+        stability,
+        step,
+    })
+}
+
+fn step_of_member(member: &Member, around: &Compensation, band_percent: f64) -> Result<StepView, LoopError> {
+    let prefilter = around.prefilter_of_step()?;
+    let mut shown = None;
+    for duration_s in DURATIONS_S {
+        let StepResponse { times_s, values } = linear_step(member, around, duration_s, 2 * SAMPLES)?;
+        let metrics = step_metrics(&times_s, &values, StepBaseline::to_value(1.0), band_percent)?;
+        let settled = metrics.settling.time_s().is_some_and(|time_s| time_s < 0.5 * duration_s);
+        let filtered_reference = step_response(&prefilter, &times_s)?;
+        shown = Some(StepView {
+            command_v_per_n: command(member, around, [&times_s, &values, &filtered_reference])?,
+            response: values,
+            filtered_reference,
+            metrics,
+            times_s,
+        });
+        if settled {
+            break;
+        }
+    }
+    shown.ok_or(LoopError::Linear(LinearError::NoPlant))
+}
+
+/// ```text
+/// u = G (F r - H y)
+/// ```
+fn command(
+    member: &Member,
+    around: &Compensation,
+    [times_s, output, reference]: [&Vec<f64>; 3],
+) -> Result<Vec<f64>, LoopError> {
+    if let Member::Sampled { with_sensor, .. } = member {
+        let one = TransferFunction::gain_only(1.0).in_domain(with_sensor.domain())?;
+        let prefilter = around.prefilter_of_step()?;
+        let feedback = around.feedback();
+        let (_, values) = sampled_loop_step(&one, with_sensor, feedback, &prefilter, times_s.len())?;
+        return Ok(values);
+    }
+    let signal = |values: Vec<f64>| SampledSignal::new(times_s.clone(), values, Interpolation::Linear);
+    let measured = forced_response(around.sensor(), &signal(output.clone())?, times_s)?;
+    let error = reference.iter().zip(&measured).map(|(reference, own)| reference - own);
+    Ok(forced_response(around.feedback(), &signal(error.collect())?, times_s)?)
+}
+
 fn stability(open_loop: &TransferFunction) -> Result<LoopStability, LinearError> {
     let reason = |words: String| Ok(LoopStability::Unknown(words));
-    if open_loop.dead_time_s() > 0.0 && open_loop.domain() == TimeDomain::Continuous {
-        return reason("with dead time it has no finite number of poles".to_string());
-    }
     let unity = TransferFunction::gain_only(1.0).in_domain(open_loop.domain())?;
     match open_loop.feedback(&unity) {
         Ok(closed) if closed.is_stable() => Ok(LoopStability::Stable),
@@ -205,48 +273,30 @@ fn step_view(
         })
     };
     let brief_s = duration(&through.without_common_factors(SMALL_TAIL));
-    let brief = shown(instants(&[brief_s], plant.domain())?)?;
+    let brief = shown(instants(&[brief_s])?)?;
     let whole_s = duration(&through);
     if brief.metrics.settling.time_s().is_some() || whole_s <= brief_s {
         return Ok(brief);
     }
     // The small tail, too, may lead out of the band.
-    let whole = shown(instants(&[brief_s, whole_s], plant.domain())?)?;
+    let whole = shown(instants(&[brief_s, whole_s])?)?;
     Ok(if whole.metrics.settling.time_s().is_some() { whole } else { brief })
 }
 
-/// Times from 0 to the last of these ends: equally many up to each end from the one before, and in
-/// a sampled loop every sample.
-fn instants(ends_s: &[f64], domain: TimeDomain) -> Result<Vec<f64>, LoopError> {
-    let mut times_s = vec![0.0];
-    match domain {
-        TimeDomain::Continuous => {
-            let mut start_s = 0.0;
-            for end_s in ends_s {
-                let after = uniform_times(end_s - start_s, SAMPLES)?;
-                times_s.extend(after.iter().skip(1).map(|time_s| start_s + time_s));
-                start_s = *end_s;
-            }
-        }
-        TimeDomain::Discrete { sample_time_s } => {
-            let duration_s = ends_s.last().copied().unwrap_or(0.0);
-            let samples = (duration_s / sample_time_s).ceil().clamp(10.0, 100_000.0) as usize;
-            times_s.extend((1..samples).map(|sample| sample as f64 * sample_time_s));
-        }
+/// Times from 0 to the last of these ends: equally many up to each end from the one before.
+fn instants(ends_s: &[f64]) -> Result<Vec<f64>, LoopError> {
+    let (mut times_s, mut start_s) = (vec![0.0], 0.0);
+    for end_s in ends_s {
+        let after = uniform_times(end_s - start_s, SAMPLES)?;
+        times_s.extend(after.iter().skip(1).map(|time_s| start_s + time_s));
+        start_s = *end_s;
     }
     Ok(times_s)
 }
 
 /// Eight time constants of the slowest pole, between a tenth of a second and a minute.
 fn duration(of: &TransferFunction) -> f64 {
-    let rate = |pole: &num_complex::Complex64| match of.domain() {
-        TimeDomain::Continuous => -pole.re,
-        TimeDomain::Discrete { sample_time_s } => {
-            -phea_dynamics::portable::ln(phea_dynamics::portable::magnitude(*pole).max(1e-300))
-                / sample_time_s
-        }
-    };
-    let slowest = of.poles().iter().map(rate).fold(f64::INFINITY, f64::min);
+    let slowest = of.poles().iter().map(|pole| -pole.re).fold(f64::INFINITY, f64::min);
     if slowest > 0.0 { (8.0 / slowest).clamp(0.1, 60.0) } else { 1.0 }
 }
 

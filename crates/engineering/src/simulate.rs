@@ -68,7 +68,7 @@ pub(crate) use file_names::table_names;
 pub use files::{RunTable, files};
 pub use follower::Follower;
 pub use run::occurrences;
-pub use wish::{HeldWish, TrackingWish};
+pub use wish::{HeldWish, TimeRequirement, TrackingWish};
 
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::simulation::{Attention, EquilibriumError, ProfileError, SimulationError};

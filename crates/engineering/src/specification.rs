@@ -91,6 +91,8 @@ pub struct CheckedWish {
     pub key: &'static str,
     /// Wished and reached.
     pub check: WishCheck,
+    /// Whether the limit follows from the wish; otherwise it is stated, and only compared with it.
+    pub follows: bool,
 }
 
 impl CheckedWish {
@@ -163,7 +165,7 @@ pub fn wishes(project: &Project) -> Result<Vec<CheckedWish>, SpecificationError>
                     key,
                     reason,
                 })?;
-                checked.push(CheckedWish { number, key, check });
+                checked.push(CheckedWish { number, key, check, follows: wish.function.is_none() });
             }
         }
     }

@@ -12,9 +12,10 @@ mod run;
 mod steps;
 pub use judge::percent_words;
 
+pub use crate::linear_step::StepResponse;
 pub(crate) use rigs::waves_alone;
 pub use rigs::with_waves;
-pub use run::{Agreement, Leg, StepResponse, StepSize, TrialRun, TrialStep, agreement_word};
+pub use run::{Agreement, Leg, StepSize, TrialRun, TrialStep, agreement_word};
 
 use crate::audit::ProjectAudit;
 use crate::rig::RigError;

@@ -13,6 +13,8 @@ pub struct Campaign {
     pub distribution: Distribution,
     /// Name of the scenario that is driven; absent: the first.
     pub scenario: Option<String>,
+    /// Number of runs in a report; absent: a number that suffices for its quantiles.
+    pub runs: Option<u32>,
 }
 
 /// One varied number: around its declared value, or between two.
@@ -64,6 +66,8 @@ impl Campaign {
         let k = plain("distribution", "Default distribution of the parameters.");
         v.choice(k, &DISTRIBUTIONS, &mut self.distribution, false);
         v.text(plain("scenario", "Which scenario is driven; absent, the first."), &mut self.scenario, false);
+        let k = key("runs", &RATIO, "How many runs a report makes; absent: 500.").at_least(1.0);
+        v.optional_count(k, &mut self.runs);
         let k = plain("parameters", "What is varied, by its path.");
         v.dictionary(
             k,

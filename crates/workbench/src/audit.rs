@@ -3,6 +3,7 @@
 mod answer;
 mod certificate;
 mod document;
+pub(crate) mod in_time;
 
 pub use phea_engineering::audit::*;
 

@@ -370,7 +370,7 @@ fn verify_answer(
     }
     let mut files = audit::files(&view);
     files.extend(certificate_of(loaded, &view, CERTIFICATE_FILE));
-    let is_met = view.audit.verdict == Verdict::Met;
+    let is_met = view.verdict() == Verdict::Met;
     if !on_machine {
         let (document, body) = (audit::output(&view, None), audit::body(&view));
         return Ok(Unprinted { document, body, files, affirmative: is_met });

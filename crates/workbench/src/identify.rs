@@ -16,6 +16,6 @@ pub(crate) use document::{tell_coefficients, tell_signals};
 pub(crate) use figures::ValveFigures;
 pub use files::Read;
 pub(crate) use in_use::{in_use_above, tell_in_use};
-pub(crate) use numbers::tell as tell_numbers;
+pub(crate) use numbers::{is_valve_of_thesis, tell as tell_numbers};
 pub use region::FoundRegion;
 pub(crate) use region::file;

@@ -46,7 +46,9 @@ pub mod sizing;
 pub mod specification;
 pub mod trial;
 
-pub use phea_engineering::{caveat, family, linear_loop, option, plant_names, replaced, rig, robust, setup};
+pub use phea_engineering::{
+    caveat, family, linear_loop, linear_step, option, plant_names, replaced, rig, robust, setup,
+};
 pub use phea_figure as figure;
 pub use phea_project::{self as project, catalogue, source};
 pub use phea_quantity::{self as quantity, spelling};

@@ -1,6 +1,7 @@
 //! The report: all results for a rig, as one self-contained page.
 
 mod alternatives;
+mod assumptions;
 mod audit;
 mod bounds;
 mod campaign;
@@ -115,7 +116,6 @@ pub(crate) fn report_beside(
     let deployed = judged.as_ref().and_then(Judged::found).map(|view| view.deployed(project));
     let driven = driven::driven(source, setup, deployed.as_ref(), watch)?;
     let campaign = campaign::driven(source, loaded, watch)?;
-
     let mut facts = rig.as_ref().map(|rig| rig.facts.clone()).unwrap_or_default();
     let mut results: Facts = driven.iter().flat_map(MachineChapter::facts).collect();
     results.extend(campaign.as_ref().and_then(|campaign| campaign.fact.clone()));
@@ -125,6 +125,7 @@ pub(crate) fn report_beside(
         driven: driven.as_ref(),
         facts: &facts,
         results: &results,
+        campaign: campaign.as_ref().map(|campaign| campaign.steps.as_slice()).unwrap_or_default(),
         no_hose_fits: rig.as_ref().is_some_and(|rig| rig.no_hose_fits),
     };
     let charts = judged.as_ref().map(charts).transpose()?.unwrap_or_default();
@@ -261,7 +262,7 @@ fn rig_part(
     }
     chapters.extend(refused.map(sizing::refused));
     let appendix = vec![
-        stiffness::chapter(rig, &linearization),
+        stiffness::chapter(actuator, rig, &linearization),
         Chapter::of("derived", "Derived quantities", derived::document(&derived)),
         models::chapter(setup, &linearization)?,
         impedance::chapter(setup, &linearization)?,
@@ -283,7 +284,7 @@ fn audit_words(view: &ProjectAudit) -> String {
         Verdict::Violated => "unstable",
         Verdict::NotProven => "not proven stable",
     };
-    format!("{}: {stable}, {met} of {} specifications met", verdict_words(view.audit.verdict), findings.len())
+    format!("{}: {stable}, {met} of {} specifications met", verdict_words(view.verdict()), findings.len())
 }
 
 impl Report {

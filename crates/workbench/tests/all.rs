@@ -82,6 +82,7 @@ mod specification;
 mod sweep;
 mod telescopic;
 mod textbook_rigs;
+mod time_requirement;
 mod transmission;
 mod trial;
 mod trusted_data;

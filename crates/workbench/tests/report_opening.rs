@@ -166,7 +166,7 @@ fn curves(report: &Report) {
             assert!(drawn.contains(words), "{name}: {words}");
         }
     }
-    assert!(drawing("opening_force").contains("wished in time"));
+    assert!(drawing("opening_force").contains("required in time"));
     assert!(drawing("simulation-2").contains(">designed<"));
     for name in ["simulation-1-given-event-1", "simulation-1-designed-event-2", "simulation-2-given-event-7"]
     {

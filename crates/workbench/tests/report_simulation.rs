@@ -122,3 +122,50 @@ fn a_campaign_has_its_chapter() {
     assert_eq!((from, to), (56.0, 84.0));
     assert!(pressure[4..].iter().all(|cell| (from..=to).contains(&number(cell))), "{pressure:?}");
 }
+
+/// A sine is drawn for two of its cycles, whatever the scenario lasts; other references as long as
+/// they move.
+#[test]
+fn a_sine_is_shown_for_two_cycles() {
+    let text = without(HOSE, "[[specification]]", "[controller] ");
+    let (before, _) = text.split_once("[design] ").unwrap();
+    for (frequency, cycles) in
+        [("2 Hz", "the first 1.00 s of 4.00 s"), ("4 Hz", "the first 0.500 s of 4.00 s")]
+    {
+        let scenario = format!(
+            "[[scenario]]\nname = \"sine\"\nduration = \"4 s\"\n\
+             reference = {{ kind = \"sine\", start = \"0 s\", amplitude = \"1 kN\", frequency = \"{frequency}\" }}\n"
+        );
+        let report = reported(&format!("{before}{scenario}"), &[]);
+        let chapter = chapter(&report, "simulation");
+        assert!(chapter.contains(cycles), "{frequency}");
+        let event = report.figures.iter().find(|figure| figure.name == "simulation-1-event-1").unwrap();
+        assert!(event.to_svg_standalone().contains(">error<"));
+    }
+    let ramp = "[[scenario]]\nname = \"ramp\"\nduration = \"4 s\"\n\
+        reference = { kind = \"ramp\", start = \"0 s\", duration = \"1 s\", force = \"1 kN\" }\n";
+    let report = reported(&format!("{before}{ramp}"), &[]);
+    assert!(chapter(&report, "simulation").contains("over the whole scenario"));
+}
+
+/// The project states how many runs its report makes.
+#[test]
+fn the_number_of_runs_is_that_of_the_project() {
+    for runs in [12, 20] {
+        let settings = ["scenario.0.duration=2.5 s".to_string(), format!("campaign.runs={runs}")];
+        let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
+        let report = reported(CAMPAIGN, &settings);
+        assert!(chapter(&report, "campaign").contains(&format!("{runs} runs of the scenario")), "{runs}");
+    }
+}
+
+/// The assumptions speak of what the rig has: no hose, no words on hoses; a supply that stays.
+#[test]
+fn assumptions_are_those_of_the_rig() {
+    let hose = reported(&without(HOSE, "[[specification]]", "[controller] "), &[]);
+    let volumes = reported(CAMPAIGN, &["scenario.0.duration=2.5 s", "campaign.runs=8"]);
+    let [hose, volumes] = [&hose, &volumes].map(|report| chapter(report, "provenance"));
+    assert!(hose.contains("wall of a hose") && !volumes.contains("wall of a hose"));
+    assert!(hose.contains("no waves travel in it"));
+    assert!(!volumes.contains("no waves travel in it") && volumes.contains("by its viscous part alone"));
+}

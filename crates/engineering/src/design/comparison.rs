@@ -10,7 +10,7 @@ use crate::quantity::significant;
 /// Name and value of everything that a controller is compared by: verdicts first, then size, then
 /// margins. The same names for every controller of a project.
 pub fn compared(side: &AuditedController) -> Vec<(String, String)> {
-    let mut rows = vec![("verdict".to_string(), verdict_words(side.view.audit.verdict).to_string())];
+    let mut rows = vec![("verdict".to_string(), verdict_words(side.view.verdict()).to_string())];
     rows.extend(side.view.audit.specifications.iter().enumerate().map(|(index, finding)| {
         let margin = finding.worst.as_ref().map_or("-".to_string(), |worst| margin_words(worst.margin_db));
         (format!("margin of {}", side.view.numbered(index)), margin)

@@ -13,7 +13,8 @@ use crate::quantity::significant;
 pub fn status_key(view: &ProjectDesign) -> &'static str {
     match view.design.status {
         _ if view.stopped => "stopped",
-        DesignStatus::Met if view.designed.view.audit.verdict == Verdict::NotProven => "not_proven",
+        DesignStatus::Met if view.designed.view.verdict() == Verdict::NotProven => "not_proven",
+        DesignStatus::Met if view.designed.view.misses_in_time() => "missed_in_time",
         DesignStatus::Met => "met",
         DesignStatus::Infeasible(_) => "infeasible",
         DesignStatus::NotConverged { .. } => "not_converged",
@@ -29,8 +30,12 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
         return format!("stopped: this is the best controller found so far, and it {verdict}");
     }
     match &view.design.status {
-        DesignStatus::Met if view.designed.view.audit.verdict == Verdict::NotProven => {
+        DesignStatus::Met if view.designed.view.verdict() == Verdict::NotProven => {
             "not proven: the controller satisfies every specification over the family, which does not include everything that is declared"
+                .to_string()
+        }
+        DesignStatus::Met if view.designed.view.misses_in_time() => {
+            "not met: the controller satisfies every specification over frequency, and its steps miss what is required in time"
                 .to_string()
         }
         DesignStatus::Met => "met: the controller satisfies every specification".to_string(),

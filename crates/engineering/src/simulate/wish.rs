@@ -18,6 +18,20 @@ pub struct TrackingWish {
     pub settling_time_s: Option<f64>,
     /// The band of the settling time, percent of the step.
     pub band_percent: f64,
+    /// The settling time of the lower limit, or of the upper one where only that states one, s.
+    pub horizon_s: f64,
+}
+
+/// A requirement in time of a specification.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeRequirement {
+    /// Index of the specification.
+    pub specification: usize,
+    /// What is required of every step.
+    pub wish: TrackingWish,
+    /// Whether the limits follow from it: then it is part of the verdict. Stated limits are only
+    /// compared with it.
+    pub follows: bool,
 }
 
 /// A wish compared with a step.
@@ -32,16 +46,24 @@ pub struct HeldWish {
 impl TrackingWish {
     /// The wish of these limits; `None` if there is none.
     pub fn of(wishes: &[CheckedWish]) -> Option<TrackingWish> {
-        let number = wishes.first()?.number;
+        TrackingWish::of_specification(wishes, wishes.first()?.number)
+    }
+
+    /// The wish of the limits of one specification, by its number from 1; `None` if there is none.
+    pub fn of_specification<'a>(
+        wishes: impl IntoIterator<Item = &'a CheckedWish> + Clone,
+        number: usize,
+    ) -> Option<TrackingWish> {
         let side = |key: &str| {
             let of_side = |wish: &&CheckedWish| wish.number == number && wish.key == key;
-            wishes.iter().find(of_side).map(|wish| wish.check.wished)
+            wishes.clone().into_iter().find(of_side).map(|wish| wish.check.wished)
         };
         let (upper, lower) = (side("upper"), side("lower"));
         Some(TrackingWish {
             overshoot_percent: upper.map(|wished| wished.overshoot_percent),
             settling_time_s: lower.map(|wished| wished.settling_time_s),
             band_percent: lower.or(upper)?.settling_band_percent,
+            horizon_s: lower.or(upper)?.settling_time_s,
         })
     }
 

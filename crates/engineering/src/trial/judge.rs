@@ -7,12 +7,12 @@ use phea_dynamics::portable::exp;
 use phea_qft::specification::ClosedLoop;
 use phea_qft::verification::Verdict;
 
-use super::run::{Agreement, Leg, StepSize, TrialStep};
+use super::run::{Agreement, BAND_PERCENT, Leg, StepSize, TrialStep};
 use super::steps::Steps;
 use crate::audit::ProjectAudit;
 use crate::quantity::{DisplayUnit, FORCE, significant};
 use crate::robust::RobustProblem;
-use crate::simulate::{DIVERGED, ScenarioRun, SimulateError};
+use crate::simulate::{DIVERGED, ScenarioRun, SimulateError, TimeRequirement};
 
 /// Motion of a force that counts as settled, as a share of the step.
 const STILL: f64 = 0.01;
@@ -124,10 +124,25 @@ pub(super) fn judge(
         let [own, predicted] = [own, predicted].map(|time_s| DisplayUnit::MILLISECOND.text(time_s, 3));
         return (Agreement::Differs, format!("it settles in {own}, where the linear loop takes {predicted}"));
     }
+    if let Some(missed) = missed_in_time(&whole, linear, problem) {
+        return (Agreement::Differs, missed);
+    }
     match met(driven.run).first() {
         Some(kind) => (Agreement::Differs, format!("{told}, and meets {}", kind.replace('_', " "))),
         None => (Agreement::Agrees, told),
     }
+}
+
+/// The settling time that is required, where the linear loop satisfies it and the machine does not.
+fn missed_in_time(machine: &TrialStep, linear: Option<TrialStep>, problem: &RobustProblem) -> Option<String> {
+    let of_verdict =
+        |required: &&TimeRequirement| required.follows && required.wish.band_percent == BAND_PERCENT;
+    let most = problem.in_time.iter().find(of_verdict)?.wish.settling_time_s?;
+    let own = machine.settling_time_s.filter(|time_s| *time_s > most)?;
+    let predicted = linear?.settling_time_s.filter(|time_s| *time_s <= most)?;
+    let [own, predicted, most] =
+        [own, predicted, most].map(|time_s| DisplayUnit::MILLISECOND.text(time_s, 3));
+    Some(format!("it settles in {own}, where {most} is required and the linear loop takes {predicted}"))
 }
 
 fn unsettled(driven: &Driven<'_>) -> String {

@@ -6,6 +6,7 @@ use super::rigs::Tried;
 use super::steps::{CommandLimits, Steps};
 use super::{STAGE, TrialError};
 use crate::audit::ProjectAudit;
+use crate::linear_step::StepResponse;
 use crate::plant_names::NamedPlant;
 use crate::project::{LineMotion, Project};
 use crate::quantity::significant;
@@ -33,15 +34,6 @@ pub struct TrialStep {
     pub overshoot_percent: Option<f64>,
     /// s; `None` where it does not settle within the run.
     pub settling_time_s: Option<f64>,
-}
-
-/// A step response from the step on: share of the step over time.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct StepResponse {
-    /// s.
-    pub times_s: Vec<f64>,
-    /// 0 before, 1 at the new reference.
-    pub values: Vec<f64>,
 }
 
 /// The size of the steps through which a machine is driven.
@@ -132,8 +124,7 @@ pub(super) fn runs(
     watch: Watch<'_>,
 ) -> Result<Option<Vec<TrialRun>>, TrialError> {
     let setup = Setup::new(&tried.project)?;
-    let machine =
-        TriedMachine { source, tried, setup: &setup, linear: LinearStep::of(tried, &setup, problem)? };
+    let machine = TriedMachine { source, tried, setup: &setup, linear: LinearStep::of(tried, problem)? };
     let rig = setup.rig()?;
     let tenth = Steps::tenth(rig, machine.linear.hold_s());
     let judged =
@@ -263,8 +254,8 @@ struct LinearStep {
 }
 
 impl LinearStep {
-    fn of(tried: &Tried, setup: &Setup<'_>, problem: &RobustProblem) -> Result<LinearStep, TrialError> {
-        Ok(match predicted(tried, setup, problem)? {
+    fn of(tried: &Tried, problem: &RobustProblem) -> Result<LinearStep, TrialError> {
+        Ok(match predicted(tried, problem)? {
             Prediction::Step(metrics, response) => {
                 let overshoot_percent = Some(metrics.overshoot_percent);
                 let settling_time_s = metrics.settling.time_s();

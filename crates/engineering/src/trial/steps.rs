@@ -6,7 +6,8 @@
 
 use phea_dynamics::time_response::{StepBaseline, step_metrics};
 
-use super::run::{BAND_PERCENT, Leg, StepResponse, TrialStep};
+use super::run::{BAND_PERCENT, Leg, TrialStep};
+use crate::linear_step::StepResponse;
 use crate::project::{Project, Scenario, Signal};
 use crate::rig::Rig;
 use crate::simulate::ScenarioRun;

@@ -34,7 +34,7 @@ fn case(one: &JudgedCase) -> Object {
 fn row(one: &JudgedAlternative) -> Object {
     let failed = one.design.as_ref().err().map_or("", String::as_str);
     let view = one.design.as_ref().ok();
-    let verdict = view.map(|view| verdict_key(view.designed.view.audit.verdict));
+    let verdict = view.map(|view| verdict_key(view.designed.view.verdict()));
     // the laws of a design that was audited are transfer functions
     let design = view.and_then(|view| design::body(view).ok());
     let machine = view.and_then(|view| view.trial.as_ref()).map(trial::body);

@@ -1,7 +1,8 @@
 use phea_qft::proof::{Certificate, Proof, Standing};
-use phea_qft::verification::{SpecificationFinding, StabilityFinding, Verdict, WorstCase};
+use phea_qft::verification::{Evidence, SpecificationFinding, StabilityFinding, Verdict, WorstCase};
 
-use super::{ProjectAudit, ReachedLimit, VelocityNoise};
+use super::in_time::unexamined_words;
+use super::{PrefilterGain, ProjectAudit, ReachedLimit, TimeFinding, TimeOutcome, VelocityNoise, WorstStep};
 use super::{evidence_key, remark_sentences, stability_reason, verdict_key, why_not_proven};
 use crate::answer::{Csv, Object, OutputFile, envelope};
 use crate::plant_names::PlantNames;
@@ -39,8 +40,8 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
         .with("delay_s", view.delay_s);
     let no_margin = "no margin: not every plant is known to be stable";
     Object::new()
-        .with("verdict", verdict_key(audit.verdict))
-        .with("evidence", evidence_key(audit.evidence))
+        .with("verdict", verdict_key(view.verdict()))
+        .with("evidence", evidence_key(view.evidence()))
         .with("tolerance_db", audit.tolerance_db)
         .and(stable(stability))
         .with("stability", of_stability)
@@ -51,10 +52,20 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
         .with("parameters", names.headings())
         .with("timing", timing)
         .maybe("velocity_noise", view.velocity_noise.as_ref().map(|noise| velocity_noise(noise, names)))
+        .maybe("amplifying_prefilter", view.amplifying_prefilter.map(amplifying))
         .each("specifications", audit.specifications.iter().enumerate(), |(index, finding)| {
             specification(view, index, finding)
         })
         .each("warnings", &view.caveats, |caveat| caveat.sentence.as_str())
+}
+
+/// The prefilter, where it amplifies.
+fn amplifying(gain: PrefilterGain) -> Object {
+    Object::new()
+        .with("gain_at_zero", gain.at_zero)
+        .with("largest_gain", gain.largest)
+        .with("rise_db", gain.rise_db())
+        .with("frequency_rad_per_s", gain.frequency_rad_per_s)
 }
 
 /// The noise of the velocity that is fed forward, with its effects.
@@ -103,6 +114,7 @@ fn specification(view: &ProjectAudit, index: usize, finding: &SpecificationFindi
         )
         .maybe("interior", finding.interior.as_ref().map(|worst| case(names, worst)))
         .and(specification_proof(view, index).unwrap_or_default())
+        .maybe("in_time", view.in_time_of(index).map(|finding| in_time(names, finding)))
         .each("violations", &finding.violations, |band| {
             Object::new().with("band_rad_per_s", band.band_rad_per_s).and(case(names, &band.worst))
         })
@@ -116,6 +128,35 @@ fn case(names: &PlantNames, worst: &WorstCase) -> Object {
         .with("margin_db", worst.margin_db)
         .with("plant", names.named(&worst.plant))
         .maybe("other_plant", worst.other.as_ref().map(|other| names.named(other)))
+}
+
+/// The requirement in time that the limits follow from, and the worst steps.
+fn in_time(names: &PlantNames, finding: &TimeFinding) -> Object {
+    let wish = &finding.requirement.wish;
+    let required = Object::new()
+        .maybe("overshoot_percent", wish.overshoot_percent)
+        .maybe("settling_time_s", wish.settling_time_s)
+        .with("settling_band_percent", wish.band_percent);
+    let (searched, reason) = match &finding.outcome {
+        TimeOutcome::Searched { plants, overshoot, settling } => {
+            (Some((*plants, overshoot, settling)), String::new())
+        }
+        TimeOutcome::NotExamined(why) => (None, unexamined_words(why)),
+    };
+    let object = Object::new()
+        .known("verdict", finding.verdict().map(verdict_key), &reason)
+        .with("part_of_verdict", finding.requirement.follows)
+        .with("required", required);
+    let Some((plants, overshoot, settling)) = searched else { return object };
+    let of = |worst: &Option<WorstStep>| worst.clone();
+    let (overshoot, settling) = (of(overshoot), of(settling));
+    object
+        .with("evidence", evidence_key(Evidence::Search))
+        .with("plants", plants)
+        .maybe("worst_overshoot_percent", overshoot.as_ref().map(|worst| worst.value))
+        .maybe("overshoot_plant", overshoot.map(|worst| names.named(&worst.plant)))
+        .maybe("worst_settling_time_s", settling.as_ref().map(|worst| worst.value))
+        .maybe("settling_plant", settling.map(|worst| names.named(&worst.plant)))
 }
 
 /// Whether a claim is proven: false where it is refuted, `null` where it is neither.

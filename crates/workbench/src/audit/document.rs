@@ -4,7 +4,7 @@ use phea_dynamics::portable;
 use phea_qft::proof::{Proof, Standing};
 use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
-use super::ProjectAudit;
+use super::{ProjectAudit, in_time};
 use super::{
     closed_loop_symbol, evidence_sentence, finding_sentence, place_words, remark_sentences,
     stability_sentence, standing_word, verdict_words, why_not_proven, worst_at_design,
@@ -28,7 +28,7 @@ pub fn output(view: &ProjectAudit, tried: Option<&Trial>) -> Document {
 
 /// An audit: the verdict first, then the figures, then its basis.
 pub(crate) fn document(view: &ProjectAudit, figures: Vec<Figure>) -> Document {
-    let verdict = view.audit.verdict;
+    let verdict = view.verdict();
     let mut out = Document::default();
     out.verdict(verdict.into(), format!("Verdict: {}", verdict_words(verdict)), summary(view));
     out.section("Specifications", specifications(view));
@@ -53,6 +53,13 @@ pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
         let reached = view.reached.get(index).and_then(Option::as_ref);
         finding_sentence(&view.numbered(index), finding, reached, stable)
     }));
+    sentences.extend(
+        view.in_time
+            .iter()
+            .filter(|finding| finding.requirement.follows)
+            .map(|finding| in_time::sentence(view, finding)),
+    );
+    sentences.extend(view.amplifying_prefilter.as_ref().map(in_time::prefilter_sentence));
     sentences
 }
 

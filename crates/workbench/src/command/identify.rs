@@ -52,6 +52,8 @@ pub fn identify_watched(
         bootstrap: asked.bootstrap,
     };
     let found = identify(recordings, &known, search, watch)?;
+    let actuator = loaded.and_then(|loaded| loaded.project.actuator.as_ref());
+    let of_thesis = actuator.is_some_and(identify::is_valve_of_thesis);
     let rig = loaded.filter(|loaded| loaded.project.actuator.is_some());
     let region = rig.map(|rig| joint_region(&found, &rig.project, SMALLEST_EFFECT));
     let mut written = identify::files(&found);
@@ -60,7 +62,7 @@ pub fn identify_watched(
         written.extend(picture_files(&ValveFigures::of(&found).all()));
     }
     Ok(Answer {
-        text: identify::document(&found, &read, region.as_ref()).text(),
+        text: identify::document(&found, of_thesis, &read, region.as_ref()).text(),
         json: identify::json(loaded, &found, &read, region.as_ref()),
         files: written,
         affirmative: found.has_converged() && found.untold.is_empty(),

@@ -45,7 +45,7 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
     out.heading("Controller");
     out.append(laws(&view.designed)?);
     out.append(side_by_side(view));
-    let caution = match view.designed.view.audit.verdict {
+    let caution = match view.designed.view.verdict() {
         _ if view.is_met() => "",
         Verdict::NotProven => ", though it is not proven",
         _ => ", though it does not satisfy every specification",
@@ -70,7 +70,7 @@ pub(crate) fn status(view: &ProjectDesign) -> Document {
     sentences.extend(summary(&view.designed.view));
     sentences.extend(view.rounding.iter().flat_map(Rounding::sentences));
     let mut out = Document::default();
-    let mark = view.designed.view.audit.verdict.into();
+    let mark = view.designed.view.verdict().into();
     out.verdict(mark, format!("Design: {}", status_sentence(view)), sentences);
     out
 }

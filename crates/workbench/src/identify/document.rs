@@ -12,10 +12,15 @@ use crate::quantity::DisplayUnit;
 
 /// What the leakage is, the coefficients with their intervals, what the files hold, how well the
 /// signals are explained, and what the data do not determine.
-pub(crate) fn document(found: &Identification, read: &Read, region: Option<&FoundRegion>) -> Document {
+pub(crate) fn document(
+    found: &Identification,
+    of_thesis: bool,
+    read: &Read,
+    region: Option<&FoundRegion>,
+) -> Document {
     let mut out = Document::default();
     tell_coefficients(found, &mut out);
-    numbers::tell(found, &mut out);
+    numbers::tell(found, of_thesis, &mut out);
     read.tell(&mut out);
     tell_signals(found, &mut out);
     if let Some(region) = region {

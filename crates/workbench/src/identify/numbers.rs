@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::{COEFFICIENT_NAMES, CurveReading, Identification, NullMethod, NullReading, SimpleCalculations};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
+use crate::project::DeclaredActuator;
 
 #[derive(Serialize)]
 pub(super) struct SimpleBody {
@@ -72,30 +73,40 @@ struct NumberLine {
     thesis: Option<&'static str>,
 }
 
-/// The numbers with their equations, and those that the thesis prints of the valve of its rig.
-pub(crate) fn tell(found: &Identification, out: &mut Document) {
-    let headings = ["number", "read", "95 % from", "to", "unit", "by", "Ledezma (2019)"];
+/// Whether the valve is the one whose numbers the thesis prints.
+pub(crate) fn is_valve_of_thesis(actuator: &DeclaredActuator) -> bool {
+    actuator.valve.model.as_ref().is_some_and(|model| model.starts_with(VALVE_OF_THESIS))
+}
+
+const VALVE_OF_THESIS: &str = "moog_760_c263a";
+
+/// The numbers with their equations, and those that the thesis prints of the valve of its rig if
+/// this is that one.
+pub(crate) fn tell(found: &Identification, of_thesis: bool, out: &mut Document) {
+    let mut headings = vec!["number", "read", "95 % from", "to", "unit", "by"];
+    headings.extend(of_thesis.then_some("Ledezma (2019)"));
     let rows = lines(&found.simple).into_iter().filter_map(|(line, reading)| {
         let reading = reading?;
         let number = |value: f64| Cell::from(significant(value, 4));
         let ends = reading.interval.map(|ends| ends.map(number));
         let [low, high] = ends.unwrap_or([Cell::Missing, Cell::Missing]);
-        Some([
+        let mut cells = vec![
             Cell::from(line.name),
             number(reading.value),
             low,
             high,
             Cell::Unit(line.unit),
             Cell::Equation(line.equation.to_string()),
-            line.thesis.map_or(Cell::Missing, Cell::from),
-        ])
+        ];
+        cells.extend(of_thesis.then(|| line.thesis.map_or(Cell::Missing, Cell::from)));
+        Some(cells)
     });
     let table = Table::new(headings).with(rows);
     if table.is_empty() {
         return;
     }
-    out.section("Numbers of section 5.2", table);
-    out.sentences(["The last column is what the thesis prints of the valve of its rig, a Moog 760 C263-A at 70 bar. Equation 4.12 is corrected: each of two edges takes half the drop. The peak that it states as 1.67 % is of the measured 88 % of the rated flow. The data sheet of that valve allows a tare flow of 42.6 to 65.0 % of the leakage at null.".to_string()]);
+    out.section(if of_thesis { "Numbers of section 5.2" } else { "Numbers read by hand" }, table);
+    out.sentences(of_thesis.then(|| "The last column is what the thesis prints of the valve of its rig, a Moog 760 C263-A at 70 bar. Equation 4.12 is corrected: each of two edges takes half the drop. The peak that it states as 1.67 % is of the measured 88 % of the rated flow. The data sheet of that valve allows a tare flow of 42.6 to 65.0 % of the leakage at null.".to_string()));
     out.sentences(null_offset(found));
 }
 

@@ -6,7 +6,7 @@ use phea_dynamics::watch::{Stopped, Watch};
 use super::chapter::Chapter;
 use crate::answer::significant;
 use crate::campaign::{
-    CampaignError, METRIC_NAMES, Plan, QUANTILES, RequestedRuns, Shard, Spread, Summary, VariedRange,
+    CampaignError, METRIC_NAMES, Plan, QUANTILES, RequestedRuns, Row, Shard, Spread, Summary, VariedRange,
     WorstRun, campaign, counted, lumps, metrics, pictures,
 };
 use crate::document::{Cell, Document, StatusMark, Table};
@@ -14,12 +14,16 @@ use crate::error::CommandError;
 use crate::figure::Figure;
 use crate::grouped::grouped;
 use crate::project::{Distribution, Loaded};
-use crate::simulate::{Window, cause_words, metric_of};
+use crate::simulate::{Cause, Window, cause_words, metric_of};
 use crate::source::Source;
 
-/// Number of runs of the report's campaign, and their seed.
+/// Number of runs where the project states none, and their seed.
 const RUNS: u64 = 500;
 const SEED: u32 = 1;
+/// Runs from which the work of all is estimated.
+const PILOT_RUNS: u64 = 8;
+/// Steps of the integration that all runs together may take: a minute or two.
+const BUDGET_STEPS: u64 = 10_000_000;
 
 /// Runs whose numbers are printed.
 const WORST: usize = 4;
@@ -31,6 +35,19 @@ const DIGITS: usize = 3;
 pub(super) struct CampaignChapter {
     pub(super) chapter: Chapter,
     pub(super) fact: Option<(&'static str, String)>,
+    /// Every step of the reference in a run that was completed.
+    pub(super) steps: Vec<CampaignStep>,
+}
+
+/// A step of the reference in a run.
+pub(super) struct CampaignStep {
+    pub(super) run: u64,
+    /// Percent of the step.
+    pub(super) overshoot_percent: Option<f64>,
+    /// s; infinite where it does not settle.
+    pub(super) settling_time_s: f64,
+    /// The band of the settling time, percent of the step.
+    pub(super) band_percent: f64,
 }
 
 /// The campaign of a report; `None` for a project without `[campaign]`.
@@ -46,27 +63,62 @@ pub(super) fn driven(
         return Ok(None);
     }
     let (anchor, title) = ("campaign", "Campaign: the machine with drawn numbers");
-    let wanted = RequestedRuns { runs: RUNS, shard: Shard::default(), effort: Default::default() };
+    let asked = loaded.project.campaign.as_ref().and_then(|campaign| campaign.runs).map_or(RUNS, u64::from);
     let mut told = || -> Result<_, CampaignError> {
         let plan = Plan::new(source, loaded, SEED)?;
-        let rows = campaign(&plan, wanted, None, watch)?;
+        let of = |runs: u64| RequestedRuns { runs, shard: Shard::default(), effort: Default::default() };
+        let pilot = campaign(&plan, of(asked.min(PILOT_RUNS)), None, watch)?;
+        let runs = within_budget(asked, &pilot);
+        let rows = campaign(&plan, of(runs), None, watch)?;
         let summary = Summary::of(&plan, &rows);
         let figures = pictures(&plan, &summary)?;
-        Ok((plan, rows.len() as u64, summary, figures))
+        let steps = steps(loaded, &plan, &rows);
+        let missing = (rows.len() as u64) < runs;
+        Ok((plan, (runs, missing), (summary, steps), figures))
     };
-    let (document, fact) = match told() {
+    let (document, fact, steps) = match told() {
         Err(error) => {
             let mut out = Document::default();
             out.verdict(StatusMark::Bad, format!("Not simulated: {error}"), vec![]);
-            (out, None)
+            (out, None, vec![])
         }
-        Ok((_, count, _, _)) if count < RUNS => return Err(Stopped.into()),
-        Ok((plan, _, summary, figures)) => {
-            let words = words(&plan, &summary);
-            (document(&plan, &summary, figures), Some(("Campaign", words)))
+        Ok((_, (_, true), _, _)) => return Err(Stopped.into()),
+        Ok((plan, (runs, _), (summary, steps), figures)) => {
+            let words = words(runs, &plan, &summary);
+            (document([runs, asked], &plan, &summary, figures), Some(("Campaign", words)), steps)
         }
     };
-    Ok(Some(CampaignChapter { chapter: Chapter::of(anchor, title, document), fact }))
+    Ok(Some(CampaignChapter { chapter: Chapter::of(anchor, title, document), fact, steps }))
+}
+
+/// As many of the runs as the budget allows, judged by the steps of the first of them.
+fn within_budget(asked: u64, pilot: &[Row]) -> u64 {
+    let steps: u64 = pilot.iter().filter_map(Row::ran).map(|ran| ran.steps).sum();
+    let count = pilot.len() as u64;
+    match (count * BUDGET_STEPS).checked_div(steps) {
+        Some(most) => asked.min(most.max(count)),
+        None => asked,
+    }
+}
+
+/// Overshoot and settling of every step of the reference, run by run.
+fn steps(loaded: &Loaded, plan: &Plan, rows: &[Row]) -> Vec<CampaignStep> {
+    let scenario = loaded.project.scenarios.iter().find(|one| one.name == plan.scenario());
+    let band_percent = scenario.map_or(f64::NAN, |one| one.settling_band_percent);
+    let place = |name: &str| METRIC_NAMES.iter().position(|known| *known == name).unwrap_or_default();
+    let [overshoot, settling] = ["overshoot_percent", "settling_time_s"].map(place);
+    let completed = rows.iter().filter_map(|row| Some((row.run, row.ran()?)));
+    completed
+        .filter(|(_, ran)| ran.ended_s.is_none())
+        .flat_map(|(run, ran)| ran.metrics.iter().zip(plan.windows()).map(move |own| (run, own)))
+        .filter(|(_, (_, window))| matches!(window.cause, Cause::ReferenceStep { .. }))
+        .map(|(run, (numbers, _))| CampaignStep {
+            run,
+            overshoot_percent: numbers[overshoot],
+            settling_time_s: numbers[settling].unwrap_or(f64::INFINITY),
+            band_percent,
+        })
+        .collect()
 }
 
 /// Metrics of an event that a reader wants first, the best of those that it has.
@@ -76,8 +128,8 @@ const TOLD_FIRST: [&str; 4] =
 const TOLD_EVENTS: usize = 2;
 
 /// How many were completed, and the range of most of them in the first events.
-fn words(plan: &Plan, summary: &Summary) -> String {
-    let mut told = vec![format!("{} of {RUNS} runs completed", summary.statuses[0])];
+fn words(runs: u64, plan: &Plan, summary: &Summary) -> String {
+    let mut told = vec![format!("{} of {runs} runs completed", summary.statuses[0])];
     let windows = plan.windows().iter().zip(&summary.metrics);
     let of_window = |(window, spreads): (&Window, &[Option<Spread>; METRIC_NAMES.len()])| {
         let place = |name: &&str| METRIC_NAMES.iter().position(|known| known == name);
@@ -91,11 +143,12 @@ fn words(plan: &Plan, summary: &Summary) -> String {
     format!("{} ({least}th to {most}th percentile)", told.join("; "))
 }
 
-fn document(plan: &Plan, summary: &Summary, figures: Vec<Figure>) -> Document {
+fn document([runs, asked]: [u64; 2], plan: &Plan, summary: &Summary, figures: Vec<Figure>) -> Document {
     let completed = summary.statuses[0];
     let (scenario, seed) = (plan.scenario(), plan.seed());
     let mut out = Document::default();
-    out.explanation(format!("{RUNS} runs of the scenario `{scenario}`, seed {seed}, with the numbers below drawn anew for each, independently of each other: {completed} were completed."));
+    out.explanation(format!("{runs} runs of the scenario `{scenario}`, seed {seed}, with the numbers below drawn anew for each, independently of each other: {completed} were completed."));
+    out.explanations((runs < asked).then(|| format!("{asked} runs were asked for: these are as many as a report makes within its budget of {BUDGET_STEPS} steps of the integration. `phea campaign PROJECT.toml --seed {seed} --runs {asked}` makes all of them.")));
     let refused = summary.refused.first().map(|(run, reason)| {
         format!("{} draws do not give a machine, the first is run {run}: {reason}.", summary.refused.len())
     });

@@ -93,9 +93,10 @@ impl Designed {
         };
         let order = format!("order {}{prefilter}", side.figures.order);
         match &found.view.design.status {
-            DesignStatus::Met if side.view.audit.verdict == Verdict::NotProven => {
+            DesignStatus::Met if side.view.verdict() == Verdict::NotProven => {
                 format!("not proven: {order}")
             }
+            DesignStatus::Met if side.view.misses_in_time() => format!("missed in time: {order}"),
             DesignStatus::Met => format!("met: {order}"),
             DesignStatus::Infeasible(relaxation) => {
                 format!("infeasible by {} dB: {order}", significant(relaxation.relaxation_db, 3))

@@ -3,8 +3,10 @@
 
 mod next;
 mod side;
+mod steps;
 mod verdicts;
 
+use super::campaign::CampaignStep;
 use super::chapter::Chapter;
 use super::driven::{DESIGNED, GIVEN, MachineChapter};
 use super::judged::Judged;
@@ -29,6 +31,8 @@ pub(super) struct Contents<'a> {
     pub(super) facts: &'a Facts,
     /// Facts on simulations and campaigns, shown as wider cards.
     pub(super) results: &'a Facts,
+    /// The steps of the reference in the campaign, under the given controller.
+    pub(super) campaign: &'a [CampaignStep],
     /// Whether a hose was required and none fits.
     pub(super) no_hose_fits: bool,
 }
@@ -84,7 +88,7 @@ impl Decided {
 
 /// The page as the first chapter, and its content for programs.
 pub(super) fn opening(contents: &Contents<'_>, nichols: Option<Figure>) -> (Chapter, Decision) {
-    let sides = sides(contents.judged, contents.driven);
+    let sides = sides(contents.judged, contents.driven, contents.campaign);
     let next = next_steps(contents, &sides);
     let mut figures: Vec<Figure> = contents.driven.and_then(over_time).into_iter().collect();
     figures.extend(nichols);
@@ -126,7 +130,7 @@ fn decided(contents: &Contents<'_>, side: &Side<'_>) -> Decided {
     let findings = side.view.map(|view| view.audit.specifications.as_slice()).unwrap_or_default();
     let wish = contents.driven.and_then(|driven| driven.wish.as_ref());
     Decided {
-        verdict: side.view.map(|view| verdict_key(view.audit.verdict)),
+        verdict: side.view.map(|view| verdict_key(view.verdict())),
         specifications: findings.iter().map(|finding| verdict_key(finding.verdict)).collect(),
         proven: side.is_proven(),
         machine: side.trial.map(|trial| agreement_word(trial.agreement())),

@@ -1,8 +1,8 @@
 //! The chapter on proofs: for both controllers, with the assumptions of the model.
 
+use super::assumptions::assumptions;
 use super::chapter::Chapter;
 use super::judged::Judged;
-use super::provenance::assumptions;
 use crate::audit::{CERTIFICATE_FILE, ProjectAudit, proven};
 use crate::design::DESIGNED_CERTIFICATE;
 use crate::document::Document;

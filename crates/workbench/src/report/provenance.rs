@@ -1,9 +1,10 @@
 //! The chapter on provenance: where each number comes from, what was assumed, what was not proven.
 
+use super::assumptions::assumptions;
 use super::chapter::Chapter;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::identify::tell_in_use;
-use crate::project::{Load, Loaded, Origin, Project};
+use crate::project::{Loaded, Origin, Project};
 
 pub(super) fn chapter(loaded: &Loaded) -> Chapter {
     let catalogue = loaded.provenance.iter().filter_map(|entry| match &entry.origin {
@@ -60,41 +61,4 @@ fn not_proven(project: &Project) -> String {
         }
         (false, false) => "No controller was given, and none was judged.".to_string(),
     }
-}
-
-/// The assumptions of the models.
-pub(super) fn assumptions(project: &Project) -> Vec<String> {
-    if project.actuator.is_none() {
-        return vec![
-            "The plant is what the project states: a transfer function in its whole box, or measured responses."
-                .to_string(),
-        ];
-    }
-    let mut assumptions = vec![
-        "Pressures are gauge; the tank is at the declared pressure; the supply pressure is constant in every linear model, except in the plant of a limited pump.".to_string(),
-        "Volumetric expansion and wall modulus of a hose are taken at the supply pressure; between the catalogue's point and another pressure the expansion follows the catalogue's slope; a supply beyond the point causes a warning.".to_string(),
-        "The hose wall has its dynamic modulus at every frequency; at rest it is softer by the stiffening ratio.".to_string(),
-        "Friction enters the linear models by its viscous part alone.".to_string(),
-        match project.actuator.as_ref().map(|actuator| &actuator.load) {
-            Some(Load::Prescribed) => "The load moves as prescribed; the force sensor's stiffness includes what it stands on.".to_string(),
-            _ => "The load is the declared one; the force sensor's stiffness includes what it stands on.".to_string(),
-        },
-        "A settling time of four time constants is the 2 % rule (1 % takes 4.6).".to_string(),
-    ];
-    let air = project.actuator.as_ref().and_then(|actuator| actuator.fluid.entrained_air);
-    if air.is_none_or(|fraction| fraction == 0.0) {
-        assumptions.push("The oil carries no free air.".to_string());
-    }
-    assumptions.extend(velocity(project).map(str::to_string));
-    assumptions
-}
-
-/// How the velocity of the load is known, where it is fed forward.
-fn velocity(project: &Project) -> Option<&'static str> {
-    let fed = project.controller.as_ref()?.load_velocity_feed_forward?;
-    let sensor = project.actuator.as_ref()?.velocity_sensor.as_ref();
-    (fed.gain != Some(0.0)).then_some(match sensor {
-        None => "The load velocity that is fed forward is known exactly and at once.",
-        Some(_) => "The load velocity that is fed forward is what its sensor shows, whose filter and delay are known exactly.",
-    })
 }

@@ -8,9 +8,9 @@ use crate::document::{Cell, Document, StatusMark, Table};
 use crate::figure::Figure;
 use crate::project::{Project, Scenario};
 use crate::simulate::{
-    HeldWish, METRICS, Metrics, NamedRun, ScenarioRun, TrackingWish, Window, adjustment_sentence,
-    cause_words, cells_of, close_ups, coarse_sentence, gas_sentence, headline, measured, measured_together,
-    metrics_row, occurrence_sentences, pictures, published, published_row, together, turns, windows,
+    METRICS, Metrics, NamedRun, TrackingWish, Window, adjustment_sentence, cause_words, cells_of, close_ups,
+    coarse_sentence, gas_sentence, headline, measured, measured_together, metrics_row, occurrence_sentences,
+    pictures, published, published_row, together, turns, windows,
 };
 
 /// The chapter.
@@ -160,16 +160,4 @@ fn wished(wish: &TrackingWish) -> Option<String> {
 pub(super) fn told<'a>(windows: impl Iterator<Item = &'a (Window, Metrics)>) -> Vec<usize> {
     let cells: Vec<_> = windows.map(|(_, metrics)| cells_of(metrics)).collect();
     (0..METRICS.len()).filter(|place| cells.iter().any(|cells| cells[*place] != Cell::Missing)).collect()
-}
-
-/// The worst of all steps of some runs compared with a wish; `None` if there is none to judge.
-pub(super) fn worst(
-    runs: &[ScenarioRun],
-    reached: impl Fn(&Metrics) -> Option<(f64, HeldWish)>,
-) -> Option<(HeldWish, usize)> {
-    let windows = runs.iter().flat_map(|run| &run.windows);
-    let held: Vec<(f64, HeldWish)> = windows.filter_map(|(_, metrics)| reached(metrics)).collect();
-    let count = held.len();
-    let worst = held.into_iter().max_by(|one, other| one.0.total_cmp(&other.0))?;
-    Some((worst.1, count))
 }

@@ -6,24 +6,39 @@ use phea_hydraulics::stiffness::StiffnessModel;
 use super::chapter::Chapter;
 use crate::document::Document;
 use crate::figure::{Figure, StiffnessCurve, StiffnessDiagram, StiffnessOver, Words};
+use crate::identify::is_valve_of_thesis;
 use crate::linearize::{
     Linearization, StiffnessOverForce, stiffness_at, stiffness_at_setting, stiffness_at_settings,
     stiffness_over_force, stiffness_sentence,
 };
+use crate::project::DeclaredActuator;
 use crate::rig::Rig;
 use crate::sizing::model_name;
 
 /// Positions of a curve over the stroke.
 const POSITIONS: u32 = 120;
 
-pub(super) fn chapter(rig: &Rig, linearization: &Linearization) -> Chapter {
+pub(super) fn chapter(actuator: &DeclaredActuator, rig: &Rig, linearization: &Linearization) -> Chapter {
     let declared = model_name(rig.actuator.components().stiffness_model);
     let mut out = Document::default();
     out.explanation(stiffness_sentence(linearization));
-    out.explanation(format!("This project declares `{declared}`. The thesis' tables are made with `uniform`; a steel chamber does not become softer because a hose is screwed to it, and a hose swells as its data sheet states, so a rig will behave as in `by_volume`."));
+    out.explanation(format!("This project declares `{declared}`. {}", models_sentence(actuator)));
     out.figures(rig.actuator.components().cylinder.stroke.length().map(|stroke| figure(rig, stroke)));
     out.figures(stiffness_over_force(rig).map(|found| over_force(rig, found)));
     Chapter::of("stiffness", "Stiffness over the stroke", out)
+}
+
+/// How both models differ, for lines as the rig has them.
+fn models_sentence(actuator: &DeclaredActuator) -> String {
+    let has_hose = [&actuator.line.a, &actuator.line.b].iter().any(|line| line.hose().is_some());
+    let mut told = "`uniform` takes the effective bulk modulus of a line for the oil of its chamber too, `by_volume` takes each by itself".to_string();
+    if has_hose {
+        told.push_str(": a steel chamber does not become softer because a hose is screwed to it, and a hose swells as its data sheet states, so a rig behaves as in `by_volume`");
+    }
+    if is_valve_of_thesis(actuator) {
+        told.push_str(". The tables of Ledezma (2019) are made with `uniform`");
+    }
+    format!("{told}.")
 }
 
 fn figure(rig: &Rig, stroke: f64) -> Figure {

@@ -5,9 +5,9 @@ use crate::document::Document;
 use crate::error::CommandError;
 use crate::identify::{
     Identification, IdentifyError, Known, Read, RecordedFiles, Search, ValveFigures, identify,
-    recorded_files, recordings, tell_coefficients, tell_numbers, tell_signals,
+    is_valve_of_thesis, recorded_files, recordings, tell_coefficients, tell_numbers, tell_signals,
 };
-use crate::project::Loaded;
+use crate::project::{Loaded, Project};
 use crate::source::Source;
 use phea_dynamics::watch::Watch;
 
@@ -29,22 +29,23 @@ pub(super) fn chapter(
     Ok(Some(Chapter::of(
         "test_bench",
         "From the test bench to the model",
-        document(&found, &Read { contents, warnings }),
+        document(&found, project, &Read { contents, warnings }),
     )))
 }
 
 /// A function for each section, in the order of the thesis.
-fn document(found: &Identification, read: &Read) -> Document {
+fn document(found: &Identification, project: &Project, read: &Read) -> Document {
+    let of_thesis = project.actuator.as_ref().is_some_and(is_valve_of_thesis);
     let ValveFigures { circuits, series, curves, comparison, residuals } = ValveFigures::of(found);
     let mut out = Document::default();
-    out.explanation("The coefficients of the servovalve follow from slow tests after ISO 10770-1: the command goes through its range in minutes, so that nothing but the valve's own memory lags. Chapter 5 of the thesis measures and fits the valve of its rig in this way; this chapter does the same with the recordings that the project declares.");
+    out.explanation("The coefficients of the servovalve follow from slow tests after ISO 10770-1: the command goes through its range in minutes, so that nothing but the valve's own memory lags (the method of Ledezma, 2019, chapter 5).");
     out.figures(circuits);
     read.tell(&mut out);
     out.figures_below("What was recorded", series);
-    tell_numbers(found, &mut out);
+    tell_numbers(found, of_thesis, &mut out);
     out.figures(curves);
     tell_coefficients(found, &mut out);
-    out.explanation(simple_against_identified(found));
+    out.explanation(simple_against_identified(found, of_thesis));
     tell_signals(found, &mut out);
     out.figures_below("Test against model", comparison);
     out.figures(residuals);
@@ -52,7 +53,7 @@ fn document(found: &Identification, read: &Read) -> Document {
 }
 
 /// Table 5.1 has both columns, and says in words that one does not reproduce the tests.
-fn simple_against_identified(found: &Identification) -> String {
+fn simple_against_identified(found: &Identification, of_thesis: bool) -> String {
     let squares = |coefficients| -> f64 {
         let shares = found.signals.iter().map(|one| found.residual_rms_of(one, coefficients) / one.range);
         let count = found.signals.len().max(1) as f64;
@@ -60,8 +61,13 @@ fn simple_against_identified(found: &Identification) -> String {
     };
     let percent = |share: f64| crate::answer::significant(100.0 * share, 3);
     format!(
-        "With the coefficients by hand, the model differs from the recordings by {} % of the range of each signal (root mean square); with the identified ones by {} %. Table 5.1 of the thesis compares the same two columns: equal edges by hand, unequal ones by optimisation.",
+        "With the coefficients by hand, the model differs from the recordings by {} % of the range of each signal (root mean square); with the identified ones by {} %.{}",
         percent(squares(&found.first_guess)),
-        percent(squares(&found.coefficients))
+        percent(squares(&found.coefficients)),
+        if of_thesis {
+            " Table 5.1 of the thesis compares the same two columns: equal edges by hand, unequal ones by optimisation."
+        } else {
+            ""
+        }
     )
 }

@@ -15,7 +15,7 @@ pub(crate) fn document(sizing: &Sizing, figures: Vec<Figure>) -> Document {
     out.heading("Procedure (letters as in the flowchart of Ledezma 2019, section 6.3.2)");
     out.sentences(sizing.decisions.iter().map(|decision| format!("({}) {}", decision.step, decision.text)));
     let headings = ["", "hose", "compliance", "branch", "length", "K_H over the stroke", "K_p", "tau"];
-    out.section("Candidates", Table::new(headings).with(sizing.candidates.iter().map(candidate_cells)));
+    out.section("Candidates", Table::new(headings).with(distinct(&sizing.candidates)));
     for group in alike(&sizing.candidates) {
         findings(&mut out, &group);
     }
@@ -157,9 +157,10 @@ fn findings(out: &mut Document, group: &[&Candidate]) {
         (false, true) => "not accepted, since a number is missing",
         (false, false) => "rejected",
     };
-    let name =
-        |one: &&Candidate| format!("{} {}", model_name(one.branch.model), branch_name(one.branch.by_gain));
-    let names: Vec<String> = group.iter().map(name).collect();
+    let of = |one: &&Candidate| (model_name(one.branch.model), branch_name(one.branch.by_gain));
+    let by_model = grouped(group.iter().map(of));
+    let names: Vec<String> =
+        by_model.into_iter().map(|(model, branches)| format!("{model} {}", branches.join(" and "))).collect();
     out.heading(format!("{} ({}): {verdict}", first.option.name, names.join(", ")));
     out.marked(first.findings.iter().map(|finding| match finding.severity {
         Consequence::Rejects => (Some(StatusMark::Bad), format!("rejects: {}", finding.text)),
@@ -168,7 +169,29 @@ fn findings(out: &mut Document, group: &[&Candidate]) {
     }));
 }
 
-fn candidate_cells(candidate: &Candidate) -> [Cell; 8] {
+/// A row for each candidate; branches that lead to the same numbers share one.
+fn distinct(candidates: &[Candidate]) -> Vec<Vec<Cell>> {
+    let mut rows: Vec<(Vec<Cell>, Vec<&'static str>)> = Vec::new();
+    for candidate in candidates {
+        let branch = branch_name(candidate.branch.by_gain);
+        let cells = candidate_cells(candidate).to_vec();
+        match rows.iter_mut().find(|(known, _)| *known == cells) {
+            Some((_, branches)) => branches.push(branch),
+            None => rows.push((cells, vec![branch])),
+        }
+    }
+    let named = rows.into_iter().map(|(mut cells, branches)| {
+        cells.insert(BRANCH, Cell::Code(branches.join(", ")));
+        cells
+    });
+    named.collect()
+}
+
+/// Place of the branch in a row.
+const BRANCH: usize = 3;
+
+/// A candidate without its branch.
+fn candidate_cells(candidate: &Candidate) -> [Cell; 7] {
     let branch = &candidate.branch;
     let stiffness = &branch.stiffness;
     let accepted = candidate.accepted();
@@ -183,7 +206,6 @@ fn candidate_cells(candidate: &Candidate) -> [Cell; 8] {
         .marked(accepted),
         Cell::Code(candidate.option.name.clone()),
         Cell::Code(model_name(branch.model).to_string()),
-        Cell::Code(branch_name(branch.by_gain).to_string()),
         match branch.is_alike() {
             true => format!("{} m", significant(candidate.length_m(), 4)).into(),
             false => branch.lengths_m.map(|length| format!("{} m", significant(length, 4))).join(", ").into(),

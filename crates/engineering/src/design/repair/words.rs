@@ -35,7 +35,7 @@ fn whole(view: Option<&ProjectAudit>) -> String {
     let every = "with `line.model = \"transmission_line\"` waves are in every plant of the family";
     let told = match view {
         None => return format!("the plant of the rig itself was added: {every}"),
-        Some(view) if view.audit.verdict == Verdict::Met => {
+        Some(view) if view.verdict() == Verdict::Met => {
             "the controller satisfies every specification with those too".to_string()
         }
         Some(view) if view.audit.stability.verdict != Verdict::Met => {

@@ -15,6 +15,9 @@ pub(super) fn sentence(sampled: &AuditedController, continuous: &AuditedControll
     let most = changes.min_by(|one, other| (one.2 - one.1).total_cmp(&(other.2 - other.1)));
     let all = "The last column is the design for the continuous loop without delay, sampled and delayed as this loop is.";
     match (continuous.view.audit.verdict, most) {
+        (Verdict::Met, _) if continuous.view.misses_in_time() => {
+            format!("{all} It satisfies the limits here too, and misses what is required in time.")
+        }
         (Verdict::Met, _) => format!("{all} It holds here too."),
         (_, Some((name, here, there))) => format!(
             "{all} It does not hold here: its margin of {name} is {}, where the design that takes samples and delay into account has {}.",

@@ -8,8 +8,9 @@ use phea_qft::verification::Verdict;
 
 use super::Contents;
 use super::side::Side;
+use super::steps::{StepProperty, steps};
 use crate::answer::significant;
-use crate::audit::{ProjectAudit, frequency_words};
+use crate::audit::{ProjectAudit, frequency_words, in_time};
 use crate::caveat::caveats;
 use crate::design::{DESIGNED_PROJECT, ProjectDesign};
 use crate::project::Project;
@@ -87,18 +88,21 @@ fn contradicted(side: &Side<'_>) -> bool {
 }
 
 fn is_violated(view: &ProjectAudit) -> bool {
-    view.audit.verdict == Verdict::Violated
+    view.verdict() == Verdict::Violated
 }
 
 /// `the given controller violates 1 robust stability by 19.2 dB at 1304 rad/s, and 2 more
 /// specifications`
 fn given_words(view: &ProjectAudit) -> String {
-    match view.audit.verdict {
+    match view.verdict() {
         Verdict::Met => return "the given controller satisfies every specification".to_string(),
         Verdict::NotProven => {
             return "the given controller is not proven to satisfy the specifications".to_string();
         }
         Verdict::Violated => {}
+    }
+    if view.misses_in_time() && view.audit.verdict == Verdict::Met {
+        return format!("the given controller misses what is required in time, {}", missed_words(view));
     }
     if view.audit.stability.verdict == Verdict::Violated {
         let plant = plant_words(view, &view.audit.stability.plant);
@@ -127,6 +131,13 @@ fn given_words(view: &ProjectAudit) -> String {
     )
 }
 
+/// `1.08 s where 0.8 s is required`
+fn missed_words(view: &ProjectAudit) -> String {
+    let missed: Vec<String> =
+        view.in_time.iter().filter(|finding| finding.violates()).flat_map(in_time::missed).collect();
+    missed.join(" and ")
+}
+
 /// The plant, if a few words suffice; otherwise where it is listed.
 fn plant_words(view: &ProjectAudit, plant: &phea_qft::verification::PlantPoint) -> String {
     match view.names.headings().len() {
@@ -144,8 +155,12 @@ fn designed_words(view: &ProjectDesign, given_is_met: bool) -> String {
         DesignStatus::Met if given_is_met => {
             format!("keep it, or take the designed one of `{DESIGNED_PROJECT}` where its numbers are better")
         }
-        DesignStatus::Met if view.designed.view.audit.verdict == Verdict::NotProven => format!(
+        DesignStatus::Met if view.designed.view.verdict() == Verdict::NotProven => format!(
             "the designed one of `{DESIGNED_PROJECT}` satisfies every specification over the family, but effects that are not included leave the verdict open"
+        ),
+        DesignStatus::Met if view.designed.view.misses_in_time() => format!(
+            "do not use the designed one of `{DESIGNED_PROJECT}` unchanged: it satisfies every specification over frequency and misses what is required in time, {}; tighten the limits that the requirement follows from, or extend their `frequencies` to where the loop still acts",
+            missed_words(&view.designed.view)
         ),
         DesignStatus::Met => {
             format!("use the designed one (`{DESIGNED_PROJECT}`), which satisfies every specification")
@@ -218,18 +233,19 @@ fn machine_words(side: &Side<'_>, run: &TrialRun) -> String {
 /// A step of the machine that misses the wish, and the response of the tracking limits themselves.
 fn wishes(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
     let wish: &TrackingWish = contents.driven?.wish.as_ref()?;
-    let missed = |held: Option<(crate::simulate::HeldWish, usize)>| {
-        held.filter(|(held, _)| held.kept == Some(false)).map(|(held, _)| held.words)
+    let missed = |property| {
+        let all = steps(side, wish, property).filter(|all| !all.are_kept())?;
+        Some(all.worst_words())
     };
-    let overshoot = missed(side.overshoot(wish)).map(|words| format!("overshoots by {words}"));
-    let settling = missed(side.settling(wish)).map(|words| match words.as_str() {
+    let overshoot = missed(StepProperty::Overshoot).map(|words| format!("overshoots by {words}"));
+    let settling = missed(StepProperty::Settling).map(|words| match words.as_str() {
         "not settled" => "does not settle".to_string(),
         words => format!("takes {words} to settle"),
     });
     let told: Vec<String> = overshoot.into_iter().chain(settling).collect();
     (!told.is_empty()).then(|| {
         format!(
-            "Tighten the limits of tracking if the wish in time must be met exactly: on the machine a step under the {} controller {}.",
+            "Tighten the limits of tracking if what is required in time must be met exactly: at worst a step under the {} controller {}.",
             side.name,
             told.join(" and ")
         )

@@ -3,12 +3,13 @@
 use phea_qft::proof::{Proof, Standing};
 use phea_qft::verification::Verdict;
 
+use super::steps::{StepProperty, steps};
 use crate::audit::ProjectAudit;
 use crate::design::LoopFigures;
+use crate::report::campaign::CampaignStep;
 use crate::report::driven::{DESIGNED, GIVEN, MachineChapter};
 use crate::report::judged::Judged;
-use crate::report::simulation::worst;
-use crate::simulate::{HeldWish, Metrics, ScenarioRun, TrackingWish};
+use crate::simulate::{ScenarioRun, TrackingWish};
 use crate::trial::Trial;
 
 /// A controller.
@@ -21,18 +22,25 @@ pub(super) struct Side<'a> {
     pub(super) trial: Option<&'a Trial>,
     /// The scenarios.
     pub(super) runs: Option<&'a [ScenarioRun]>,
+    /// The steps of the reference in the campaign.
+    pub(super) campaign: &'a [CampaignStep],
     /// The comparison of the controllers, if both are known.
     pub(super) figures: Option<LoopFigures>,
 }
 
 /// Given and designed controller, as far as they are known.
-pub(super) fn sides<'a>(judged: Option<&'a Judged>, driven: Option<&'a MachineChapter>) -> Vec<Side<'a>> {
+pub(super) fn sides<'a>(
+    judged: Option<&'a Judged>,
+    driven: Option<&'a MachineChapter>,
+    campaign: &'a [CampaignStep],
+) -> Vec<Side<'a>> {
     let found = judged.and_then(Judged::found);
     let given = Side {
         name: GIVEN,
         view: judged.and_then(|judged| judged.given.as_ref()),
         trial: judged.and_then(|judged| judged.given_trial.as_ref()),
         runs: driven.and_then(|driven| driven.runs_of(GIVEN)),
+        campaign,
         figures: found.and_then(|view| view.published.as_ref()).map(|side| side.figures),
     };
     let designed = Side {
@@ -40,6 +48,7 @@ pub(super) fn sides<'a>(judged: Option<&'a Judged>, driven: Option<&'a MachineCh
         view: found.map(|view| &view.designed.view),
         trial: found.and_then(|view| view.trial.as_ref()),
         runs: driven.and_then(|driven| driven.runs_of(DESIGNED)),
+        campaign: &[],
         figures: found.map(|view| view.designed.figures),
     };
     [given, designed].into_iter().filter(|side| side.view.is_some() || side.runs.is_some()).collect()
@@ -55,34 +64,22 @@ impl Side<'_> {
     /// frequency; `None` where no proof was attempted.
     pub(super) fn is_proven(&self) -> Option<bool> {
         let proof = self.proof()?;
+        // steps in time are searched for, and no part of a proof
+        let searched = self.view?.in_time.iter().any(|finding| finding.requirement.follows);
         let each = proof.specifications.iter().map(|own| &own.standing);
-        Some(std::iter::once(&proof.stability).chain(each).all(|one| *one == Standing::Proven))
+        Some(std::iter::once(&proof.stability).chain(each).all(|one| !searched && *one == Standing::Proven))
     }
 
     /// Whether every specification is met.
     pub(super) fn is_met(&self) -> bool {
-        self.view.is_some_and(|view| view.audit.verdict == Verdict::Met)
-    }
-
-    /// The step that overshoots most, and of how many; `None` if there is no wish or no run.
-    pub(super) fn overshoot(&self, wish: &TrackingWish) -> Option<(HeldWish, usize)> {
-        let reached = |metrics: &Metrics| Some((metrics.overshoot_percent.ok()?, wish.overshoot(metrics)?));
-        worst(self.runs?, reached)
-    }
-
-    /// The step that settles last, likewise.
-    pub(super) fn settling(&self, wish: &TrackingWish) -> Option<(HeldWish, usize)> {
-        let reached = |metrics: &Metrics| {
-            let held = wish.settling(metrics)?;
-            Some((metrics.settling_time_s.unwrap_or(f64::INFINITY), held))
-        };
-        worst(self.runs?, reached)
+        self.view.is_some_and(|view| view.verdict() == Verdict::Met)
     }
 
     /// Whether all steps meet the wish; `None` if none can be judged.
     pub(super) fn keeps(&self, wish: &TrackingWish) -> Option<bool> {
-        let held = [self.overshoot(wish), self.settling(wish)].into_iter().flatten();
-        held.filter_map(|(held, _)| held.kept).reduce(|one, other| one && other)
+        let properties = [StepProperty::Overshoot, StepProperty::Settling];
+        let all = properties.into_iter().filter_map(|property| steps(self, wish, property));
+        all.map(|steps| steps.are_kept()).reduce(|one, other| one && other)
     }
 
     /// Seconds of delay that its family still tolerates.

@@ -5,12 +5,13 @@ use phea_qft::verification::{SpecificationFinding, Verdict};
 
 use super::Contents;
 use super::side::Side;
+use super::steps::{AllSteps, StepProperty, steps};
 use crate::answer::significant;
 use crate::audit::frequency_words;
 use crate::document::{Cell, StatusMark, Table};
 use crate::quantity::DisplayUnit;
 use crate::report::specifications::demand;
-use crate::simulate::{HeldWish, ScenarioRun};
+use crate::simulate::ScenarioRun;
 use crate::trial;
 
 type Rows = Vec<Vec<Cell>>;
@@ -46,7 +47,9 @@ fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
     let Some(judged) = contents.judged else { return vec![] };
     let mut rows = Vec::new();
     rows.extend(row(Cell::from("every specification, at every frequency").strong(), sides, |side| {
-        let verdict = Cell::verdict(side.view?.audit.verdict);
+        let view = side.view?;
+        let missed = if view.misses_in_time() { ", in time" } else { "" };
+        let verdict = Cell::verdict(view.verdict()).then(missed);
         Some(verdict.then(proven(side.is_proven().unwrap_or(false))).strong())
     }));
     rows.extend(row("every plant stable", sides, |side| {
@@ -104,32 +107,25 @@ fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
     }));
     rows.extend(row("every scenario driven to its end", sides, |side| Some(driven(side.runs?))));
     let Some(wish) = contents.driven.and_then(|driven| driven.wish.as_ref()) else { return rows };
-    if let Some(words) = wish.overshoot_words() {
-        let steps = sides.iter().find_map(|side| Some(side.overshoot(wish)?.1));
-        rows.extend(row(wished(&words, steps), sides, |side| Some(held(side.overshoot(wish)?.0))));
-    }
-    if let Some(words) = wish.settling_words() {
-        let steps = sides.iter().find_map(|side| Some(side.settling(wish)?.1));
-        rows.extend(row(wished(&words, steps), sides, |side| Some(held(side.settling(wish)?.0))));
+    let required =
+        [(StepProperty::Overshoot, wish.overshoot_words()), (StepProperty::Settling, wish.settling_words())];
+    for (property, words) in required {
+        let Some(words) = words else { continue };
+        let all: Vec<Option<AllSteps>> = sides.iter().map(|side| steps(side, wish, property)).collect();
+        let counted = all.iter().flatten().next().map(AllSteps::counted).unwrap_or_default();
+        let cells: Vec<Cell> = all.iter().map(|all| Cell::from(all.as_ref().map(held))).collect();
+        if all.iter().any(Option::is_some) {
+            let name = Cell::from(format!("required of {counted}: {words}"));
+            rows.push(std::iter::once(name).chain(cells).collect());
+        }
     }
     rows
 }
 
-/// The wish, and the number of steps of which the worst is shown.
-fn wished(words: &str, steps: Option<usize>) -> Cell {
-    let steps =
-        steps.filter(|steps| *steps > 1).map_or("the step".to_string(), |steps| format!("all {steps} steps"));
-    Cell::from(format!("required of {steps}: {words}"))
-}
-
-fn held(held: HeldWish) -> Cell {
-    match held.kept {
-        Some(kept) => {
-            let word = if kept { "kept" } else { "missed" };
-            Cell::from(word).marked(kept).then(Cell::from(format!(": {} at worst", held.words)))
-        }
-        None => Cell::from(format!("{}, which is not the band of the wish", held.words)),
-    }
+fn held(all: &AllSteps) -> Cell {
+    let kept = all.are_kept();
+    let word = if kept { "satisfied" } else { "missed" };
+    Cell::from(word).marked(kept).then(Cell::from(format!(": {}", all.words())))
 }
 
 fn driven(runs: &[ScenarioRun]) -> Cell {

@@ -22,7 +22,7 @@ const HALVINGS: u32 = 20;
 ///
 /// # Errors
 /// [`LinearError`] where the prefilter cannot be sampled.
-pub fn real_parts(
+pub(super) fn real_parts(
     plant: &Arc<dyn RespondingPlant>,
     compensation: &Compensation,
 ) -> Result<Vec<(f64, f64)>, LinearError> {

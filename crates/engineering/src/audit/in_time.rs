@@ -1,0 +1,231 @@
+//! Requirements in time that limits of tracking follow from, or are stated with, compared with the
+//! steps of the linear loop. A limit on magnitudes does not bound a response in time, so a loop
+//! within the limits may still miss the requirement.
+
+use phea_dynamics::time_response::{StepBaseline, TimeResponseError, step_metrics};
+use phea_qft::closed_loop::Member;
+use phea_qft::family::{Extent, Family, UncertainFamily};
+use phea_qft::verification::{Audit, PlantPoint, SpecificationFinding, Verdict};
+
+use crate::linear_step::linear_step;
+use crate::robust::RobustProblem;
+use crate::simulate::{TimeRequirement, TrackingWish};
+
+/// What the steps of the plants that were visited do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimeFinding {
+    /// What is required.
+    pub requirement: TimeRequirement,
+    /// The result.
+    pub outcome: TimeOutcome,
+}
+
+/// The result for a requirement in time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TimeOutcome {
+    /// The steps of plants were computed: evidence of a search.
+    Searched {
+        /// How many.
+        plants: usize,
+        /// The most overshoot, percent of the step; `None` where none is required.
+        overshoot: Option<WorstStep>,
+        /// The longest settling time, s, infinite where a step does not settle within the time
+        /// that was computed; likewise.
+        settling: Option<WorstStep>,
+    },
+    /// No step was computed.
+    NotExamined(Unexamined),
+}
+
+/// Why no step was computed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Unexamined {
+    /// Without a prefilter the spread of the family is judged, and no response.
+    NoPrefilter,
+    /// Measured plants are not known beyond their frequencies.
+    Measured,
+    /// Not every plant is known to be stable.
+    NotStable,
+    /// A step cannot be computed.
+    Step(TimeResponseError),
+}
+
+/// A property of the worst step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WorstStep {
+    /// Percent or s.
+    pub value: f64,
+    /// Whether the requirement is satisfied.
+    pub is_satisfied: bool,
+    /// The plant.
+    pub plant: PlantPoint,
+}
+
+/// Deviation that counts as none, percent of the step: the accuracy of a computed response.
+const ACCURACY_PERCENT: f64 = 0.01;
+/// The same for a plant without polynomials.
+const ACCURACY_OF_RESPONSE_PERCENT: f64 = 0.1;
+/// Duration of a step, in settling times that are required, and the points of a continuous one.
+const SETTLING_TIMES: f64 = 10.0;
+const POINTS: usize = 2000;
+/// Most members of a family whose steps are computed; of plants without polynomials, whose steps
+/// cost a hundred times as much.
+const MEMBERS: usize = 150;
+const MEMBERS_OF_RESPONSES: usize = 12;
+/// First step of the search between the members, as a share of the box; it is halved this often.
+const FIRST_SHARE: f64 = 0.25;
+const HALVINGS: usize = 3;
+
+impl TimeFinding {
+    /// Whether a step misses what is part of the verdict.
+    pub fn violates(&self) -> bool {
+        self.requirement.follows && self.verdict() == Some(Verdict::Violated)
+    }
+
+    /// The verdict on the steps alone; `None` where no step was computed.
+    pub fn verdict(&self) -> Option<Verdict> {
+        let TimeOutcome::Searched { overshoot, settling, .. } = &self.outcome else { return None };
+        let satisfied = overshoot.iter().chain(settling).all(|worst| worst.is_satisfied);
+        Some(if satisfied { Verdict::Met } else { Verdict::Violated })
+    }
+}
+
+/// The findings for every requirement in time of a problem, after its audit.
+pub(super) fn findings(problem: &RobustProblem, audit: &Audit) -> Vec<TimeFinding> {
+    let of = |requirement: &TimeRequirement| TimeFinding {
+        requirement: *requirement,
+        outcome: outcome(problem, audit, requirement).unwrap_or_else(TimeOutcome::NotExamined),
+    };
+    problem.in_time.iter().map(of).collect()
+}
+
+fn outcome(
+    problem: &RobustProblem,
+    audit: &Audit,
+    requirement: &TimeRequirement,
+) -> Result<TimeOutcome, Unexamined> {
+    let Family::Uncertain(family) = &problem.family else { return Err(Unexamined::Measured) };
+    if !problem.has_prefilter {
+        return Err(Unexamined::NoPrefilter);
+    }
+    if audit.stability.verdict != Verdict::Met {
+        return Err(Unexamined::NotStable);
+    }
+    let mut search = StepSearch { problem, family, wish: requirement.wish, plants: 0, worst: [None, None] };
+    for values in visited(family, audit) {
+        search.visit(&values).map_err(Unexamined::Step)?;
+    }
+    if family.extent() == Extent::Box && family.plant().is_rational() {
+        search.between().map_err(Unexamined::Step)?;
+    }
+    let StepSearch { plants, worst: [overshoot, settling], .. } = search;
+    Ok(TimeOutcome::Searched { plants, overshoot, settling })
+}
+
+/// The nominal plant, members spread over the family, and the plants that the audit found worst.
+fn visited(family: &UncertainFamily, audit: &Audit) -> Vec<Vec<f64>> {
+    let most = if family.plant().is_rational() { MEMBERS } else { MEMBERS_OF_RESPONSES };
+    let members = family.members();
+    let spread = members.iter().step_by(members.len().div_ceil(most).max(1)).chain(members.last());
+    let mut found: Vec<Vec<f64>> = std::iter::once(family.plant().nominal()).chain(spread.cloned()).collect();
+    for plant in audit.specifications.iter().flat_map(worst_plants) {
+        if let PlantPoint::Parameters(values) = plant {
+            found.push(values.clone());
+        }
+    }
+    let mut distinct: Vec<Vec<f64>> = Vec::new();
+    for values in found {
+        if !distinct.contains(&values) {
+            distinct.push(values);
+        }
+    }
+    distinct
+}
+
+fn worst_plants(finding: &SpecificationFinding) -> impl Iterator<Item = &PlantPoint> {
+    let cases = finding.worst.iter().chain(&finding.interior);
+    cases.flat_map(|case| std::iter::once(&case.plant).chain(&case.other))
+}
+
+/// Steps of plants, and the worst of each property so far: overshoot, settling time.
+struct StepSearch<'a> {
+    problem: &'a RobustProblem,
+    family: &'a UncertainFamily,
+    wish: TrackingWish,
+    plants: usize,
+    worst: [Option<WorstStep>; 2],
+}
+
+impl StepSearch<'_> {
+    /// Overshoot in percent and settling time in s of the step of a plant.
+    fn step(&self, values: &[f64]) -> Result<[f64; 2], TimeResponseError> {
+        let compensation = &self.problem.compensation;
+        let member = compensation.member_of(self.family.plant(), values)?;
+        let duration_s = SETTLING_TIMES * self.wish.horizon_s;
+        let response = linear_step(&member, compensation, duration_s, POINTS)?;
+        let band = self.wish.band_percent + accuracy(&member);
+        let metrics = step_metrics(&response.times_s, &response.values, StepBaseline::unit(), band)?;
+        Ok([metrics.overshoot_percent, metrics.settling.time_s().unwrap_or(f64::INFINITY)])
+    }
+
+    /// Whether the plant is the worst so far, of each property.
+    fn visit(&mut self, values: &[f64]) -> Result<[bool; 2], TimeResponseError> {
+        let found = self.step(values)?;
+        self.plants += 1;
+        let room =
+            if self.family.plant().is_rational() { ACCURACY_PERCENT } else { ACCURACY_OF_RESPONSE_PERCENT };
+        let most = [self.wish.overshoot_percent.map(|most| most + room), self.wish.settling_time_s];
+        let mut is_worst = [false; 2];
+        for (index, (value, most)) in found.into_iter().zip(most).enumerate() {
+            let Some(most) = most else { continue };
+            let known = self.worst[index].as_ref().map_or(f64::NEG_INFINITY, |worst| worst.value);
+            if value > known {
+                let plant = PlantPoint::Parameters(values.to_vec());
+                self.worst[index] = Some(WorstStep { value, is_satisfied: value <= most, plant });
+                is_worst[index] = true;
+            }
+        }
+        Ok(is_worst)
+    }
+
+    /// Follows each property from its worst plant along the coordinates of the box, as long as it
+    /// becomes worse.
+    fn between(&mut self) -> Result<(), TimeResponseError> {
+        for index in 0..self.worst.len() {
+            let mut share = FIRST_SHARE;
+            for _ in 0..HALVINGS {
+                self.around(index, share)?;
+                share *= 0.5;
+            }
+        }
+        Ok(())
+    }
+
+    fn around(&mut self, index: usize, share: f64) -> Result<(), TimeResponseError> {
+        for coordinate in 0..self.family.coordinates().len() {
+            for step in [share, -share] {
+                let Some(PlantPoint::Parameters(values)) =
+                    self.worst[index].as_ref().map(|worst| &worst.plant)
+                else {
+                    return Ok(());
+                };
+                let mut shares = self.family.shares(values);
+                let Some(own) = shares.get_mut(coordinate) else { continue };
+                let moved = (*own + step).clamp(0.0, 1.0);
+                if moved == *own {
+                    continue;
+                }
+                *own = moved;
+                self.visit(&self.family.values(&shares))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn accuracy(member: &Member) -> f64 {
+    match member {
+        Member::Responding { .. } => ACCURACY_OF_RESPONSE_PERCENT,
+        _ => ACCURACY_PERCENT,
+    }
+}

@@ -1,0 +1,97 @@
+//! The assumptions of the models of a rig, each only where the project has what it speaks of.
+
+use phea_hydraulics::stiffness::StiffnessModel;
+
+use crate::project::{DeclaredActuator, DeclaredLine, FrictionLaw, LineMotion, Load, Project, SupplyModel};
+
+/// The assumptions of the models.
+pub(super) fn assumptions(project: &Project) -> Vec<String> {
+    let Some(actuator) = &project.actuator else {
+        return vec![
+            "The plant is what the project states: a transfer function in its whole box, or measured responses."
+                .to_string(),
+        ];
+    };
+    let mut told: Vec<&str> = vec![supply(actuator)];
+    told.extend(lines(actuator));
+    told.extend(friction(actuator));
+    told.push(match actuator.load {
+        Load::Prescribed => {
+            "The load moves as prescribed; the force sensor's stiffness includes what it is mounted on."
+        }
+        _ => "The load is the declared one; the force sensor's stiffness includes what it is mounted on.",
+    });
+    if project.sizing.is_some() {
+        told.push("The sizing takes a response of first order; its settling time to 2 % is four time constants, to 1 % 4.6.");
+    }
+    if actuator.fluid.entrained_air.is_none_or(|fraction| fraction == 0.0) {
+        told.push("The oil carries no free air.");
+    }
+    told.extend(velocity(project));
+    told.into_iter().map(str::to_string).collect()
+}
+
+fn supply(actuator: &DeclaredActuator) -> &'static str {
+    match actuator.supply.model {
+        SupplyModel::Constant { .. } => {
+            "Pressures are gauge; tank and supply stay at the declared pressures, whatever the valve takes."
+        }
+        SupplyModel::PumpLimited(_) => {
+            "Pressures are gauge; the tank stays at the declared pressure; the supply pressure falls with the demand in the machine and in the plant of the loop, and is constant in the other linear models."
+        }
+    }
+}
+
+/// What the models take of the lines that the rig has.
+fn lines(actuator: &DeclaredActuator) -> Vec<&'static str> {
+    let sides = || [&actuator.line.a, &actuator.line.b].into_iter();
+    let any = |has: &dyn Fn(&DeclaredLine) -> bool| sides().any(has);
+    let creeps = |line: &DeclaredLine| match line.motion {
+        LineMotion::Creeping { .. } => true,
+        LineMotion::Segments(segments) => segments.relaxation_time.is_some(),
+        LineMotion::Lumped | LineMotion::TransmissionLine { .. } | LineMotion::TwoWave { .. } => false,
+    };
+    let stiffens = |line: &DeclaredLine| {
+        line.hose().is_some() && line.dynamic_stiffening.as_ref().is_some_and(|ratio| ratio.nominal != 1.0)
+    };
+    let is_lumped =
+        |line: &DeclaredLine| matches!(line.motion, LineMotion::Lumped | LineMotion::Creeping { .. });
+    let mut told = Vec::new();
+    if any(&|line| line.hose().is_some()) {
+        told.push("Volumetric expansion and wall modulus of a hose are taken at the supply pressure; between the stated point and another pressure the expansion follows the slope of the catalogue, and a supply beyond the point causes a warning.");
+    }
+    if any(&|line| stiffens(line) && creeps(line)) {
+        told.push("The wall of a hose creeps: it has its dynamic modulus for fast motions, its static one at rest, and passes from one to the other with the declared relaxation time.");
+    }
+    if any(&|line| stiffens(line) && !creeps(line)) {
+        told.push("The wall of a hose has its dynamic modulus at every frequency; at rest it is softer by the stiffening ratio.");
+    }
+    if any(&|line| line.length().is_some() && is_lumped(line)) {
+        told.push("A line has one pressure over its length: no waves travel in it.");
+    }
+    if sides().any(|line| line.length().is_some()) {
+        told.push(match actuator.line.compliance {
+            StiffnessModel::Uniform => {
+                "The effective bulk modulus of a line applies to its chamber too (`uniform`)."
+            }
+            StiffnessModel::ByVolume => "Chamber and line each have the modulus of their own (`by_volume`).",
+        });
+    }
+    told
+}
+
+fn friction(actuator: &DeclaredActuator) -> Option<&'static str> {
+    let law = &actuator.friction()?.law;
+    (*law != FrictionLaw::Viscous)
+        .then_some("Friction enters the linear models by its viscous part alone; the machine has all of it.")
+}
+
+/// How the velocity of the load is known, where it is fed forward.
+fn velocity(project: &Project) -> Option<&'static str> {
+    let fed = project.controller.as_ref()?.load_velocity_feed_forward?;
+    let sensor = project.actuator.as_ref()?.velocity_sensor.as_ref();
+    (fed.gain != Some(0.0)).then_some(match sensor {
+        None => "The load velocity that is fed forward is known exactly and at once.",
+        Some(_) => "The load velocity that is fed forward is what its sensor shows, whose filter and delay are known exactly.",
+    })
+}

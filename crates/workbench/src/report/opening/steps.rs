@@ -1,0 +1,197 @@
+//! Every step of the reference that the report has of one controller, compared with what is
+//! required in time: the scenarios, the machines of the trial, the linear steps over the family,
+//! and the runs of the campaign.
+
+use phea_dynamics::time_response::{StepBaseline, step_metrics};
+
+use super::side::Side;
+use crate::answer::significant;
+use crate::audit::{TimeOutcome, WorstStep};
+use crate::simulate::{Metrics, NOT_SETTLED, TrackingWish, cause_words};
+use crate::trial::TrialRun;
+
+/// Which property of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum StepProperty {
+    /// Percent of the step.
+    Overshoot,
+    /// s; infinite where it does not settle.
+    Settling,
+}
+
+/// Where steps come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum StepOrigin {
+    Scenario,
+    Machine,
+    Family,
+    Campaign,
+}
+
+/// The property of one step.
+struct OneStep {
+    origin: StepOrigin,
+    value: f64,
+    place: String,
+}
+
+/// A property of all steps.
+pub(super) struct AllSteps {
+    property: StepProperty,
+    most: f64,
+    steps: Vec<OneStep>,
+    /// Plants of the family whose linear steps were computed; the worst one is among the steps.
+    plants: usize,
+}
+
+/// Tolerance relative to what is required: printed numbers have three digits.
+const ROUNDED: f64 = 1e-6;
+/// Deviation of a linear step that counts as none, percent.
+const ACCURACY_PERCENT: f64 = 0.01;
+
+/// All steps of a controller; `None` where the property is not required or no step has it.
+pub(super) fn steps(side: &Side<'_>, wish: &TrackingWish, property: StepProperty) -> Option<AllSteps> {
+    let most = match property {
+        StepProperty::Overshoot => wish.overshoot_percent?,
+        StepProperty::Settling => wish.settling_time_s?,
+    };
+    let mut steps: Vec<OneStep> = Vec::new();
+    for run in side.runs.into_iter().flatten() {
+        let of = |(window, metrics)| {
+            let value = of_window(metrics, wish, property)?;
+            let place = format!("{}, {}", run.name, cause_words(window));
+            Some(OneStep { origin: StepOrigin::Scenario, value, place })
+        };
+        steps.extend(run.windows.iter().map(|(window, metrics)| (window, metrics)).filter_map(of));
+    }
+    steps.extend(side.trial.iter().flat_map(|trial| &trial.runs).filter_map(|run| {
+        let value = of_machine(run, wish, property)?;
+        Some(OneStep { origin: StepOrigin::Machine, value, place: run.what.clone() })
+    }));
+    let (linear, plants) = of_family(side, property);
+    steps.extend(linear);
+    steps.extend(side.campaign.iter().filter_map(|step| {
+        let value = match property {
+            StepProperty::Overshoot => step.overshoot_percent?,
+            StepProperty::Settling if step.band_percent == wish.band_percent => step.settling_time_s,
+            StepProperty::Settling => return None,
+        };
+        Some(OneStep { origin: StepOrigin::Campaign, value, place: format!("campaign, run {}", step.run) })
+    }));
+    (!steps.is_empty()).then_some(AllSteps { property, most, steps, plants })
+}
+
+fn of_window(metrics: &Metrics, wish: &TrackingWish, property: StepProperty) -> Option<f64> {
+    let overshoot = metrics.overshoot_percent.ok()?;
+    match property {
+        StepProperty::Overshoot => Some(overshoot),
+        StepProperty::Settling if metrics.settling_band_percent != wish.band_percent => None,
+        StepProperty::Settling => match metrics.settling_time_s {
+            Ok(time_s) => Some(time_s),
+            Err(NOT_SETTLED) => Some(f64::INFINITY),
+            Err(_) => None,
+        },
+    }
+}
+
+fn of_machine(run: &TrialRun, wish: &TrackingWish, property: StepProperty) -> Option<f64> {
+    let response = &run.machine_response;
+    let metrics =
+        step_metrics(&response.times_s, &response.values, StepBaseline::unit(), wish.band_percent).ok()?;
+    Some(match property {
+        // of the solution itself, where it is known
+        StepProperty::Overshoot => {
+            let known = run.machine.as_ref().and_then(|step| step.overshoot_percent);
+            known.unwrap_or(metrics.overshoot_percent)
+        }
+        StepProperty::Settling => metrics.settling.time_s().unwrap_or(f64::INFINITY),
+    })
+}
+
+/// The worst linear step of the family, and of how many.
+fn of_family(side: &Side<'_>, property: StepProperty) -> (Option<OneStep>, usize) {
+    let Some(view) = side.view else { return (None, 0) };
+    let Some(TimeOutcome::Searched { plants, overshoot, settling }) =
+        view.in_time.first().map(|finding| &finding.outcome)
+    else {
+        return (None, 0);
+    };
+    let worst = if property == StepProperty::Overshoot { overshoot } else { settling };
+    let one = |worst: &WorstStep| {
+        let plant = match view.names.headings().len() {
+            0 => String::new(),
+            1 | 2 => format!(", {}", view.names.text(&worst.plant)),
+            _ => String::new(),
+        };
+        OneStep { origin: StepOrigin::Family, value: worst.value, place: format!("linear loop{plant}") }
+    };
+    (worst.as_ref().map(one), *plants)
+}
+
+impl AllSteps {
+    fn is_above(&self, step: &OneStep) -> bool {
+        let accuracy = match (step.origin, self.property) {
+            (StepOrigin::Family, StepProperty::Overshoot) => ACCURACY_PERCENT,
+            _ => ROUNDED * self.most.max(1.0),
+        };
+        step.value > self.most + accuracy
+    }
+
+    /// Whether all satisfy what is required.
+    pub(super) fn are_kept(&self) -> bool {
+        !self.steps.iter().any(|step| self.is_above(step))
+    }
+
+    /// The worst value of all, with its unit.
+    pub(super) fn worst_words(&self) -> String {
+        let Some(worst) = self.worst() else { return String::new() };
+        self.value_words(worst.value)
+    }
+
+    fn value_words(&self, value: f64) -> String {
+        match self.property {
+            StepProperty::Overshoot if value < 0.01 => "no overshoot".to_string(),
+            StepProperty::Overshoot => format!("{} %", significant(value, 3)),
+            StepProperty::Settling if value == f64::INFINITY => "not settled".to_string(),
+            StepProperty::Settling => format!("{} s", significant(value, 3)),
+        }
+    }
+
+    fn worst(&self) -> Option<&OneStep> {
+        self.steps.iter().max_by(|one, other| one.value.total_cmp(&other.value))
+    }
+
+    /// The worst value with its place, and how many of which steps are above.
+    pub(super) fn words(&self) -> String {
+        let Some(worst) = self.worst() else { return String::new() };
+        let value = self.value_words(worst.value);
+        let mut told = vec![format!("{value} at worst ({})", worst.place)];
+        let counts = [
+            (StepOrigin::Scenario, "scenario steps"),
+            (StepOrigin::Machine, "tested machines"),
+            (StepOrigin::Campaign, "campaign runs"),
+        ];
+        for (origin, what) in counts {
+            let own = || self.steps.iter().filter(|step| step.origin == origin);
+            let (count, above) = (own().count(), own().filter(|step| self.is_above(step)).count());
+            if above > 0 && count > 1 {
+                let percent = significant(100.0 * above as f64 / count as f64, 2);
+                told.push(match origin {
+                    StepOrigin::Campaign => format!("missed by {percent} % of {count} {what}"),
+                    _ => format!("missed by {above} of {count} {what}"),
+                });
+            }
+        }
+        told.join("; ")
+    }
+
+    /// How many steps are counted.
+    pub(super) fn counted(&self) -> String {
+        // the worst of the family stands for all of its plants
+        let of_family = self.plants.saturating_sub(1);
+        match self.steps.len() + of_family {
+            1 => "the step".to_string(),
+            count => format!("all {count} steps"),
+        }
+    }
+}
