@@ -293,8 +293,8 @@ const LONG_ROBUST_TESTS: [&str; 8] =
     ["test", "--release", "-p", "phea-qft", "--test", "all", "--", "--ignored"];
 
 /// Four hundred valves, lines and frictions, identified from recordings of one each: how often the
-/// intervals cover the truth; three hundred operating regions; and the alternatives of the book under each of its loads, and over
-/// the length of its hose.
+/// intervals cover the truth; three hundred operating regions; and the alternatives of the book
+/// under each of its loads, and over the length of its hose.
 const IDENTIFIED_VALVES: [&str; 13] = [
     "test",
     "--release",

@@ -166,8 +166,8 @@ impl Rig {
         LinearParameters { sensor_stiffness: self.beyond_piston(parameters.sensor_stiffness), ..*parameters }
     }
 
-    /// The linearised two-pressure model with what leaks from chamber to chamber, with the stiffness
-    /// of a series element in series with the force sensor, and with the load held still.
+    /// The linearised two-pressure model with what leaks from chamber to chamber, with the
+    /// stiffness of a series element in series with the force sensor, and with the load held still.
     pub(crate) fn two_pressure_held(&self) -> LinearPlant {
         let sensor_stiffness = self.beyond_piston(self.two_pressure.sensor_stiffness);
         let parameters = TwoPressureLinearParameters { sensor_stiffness, ..self.two_pressure };

@@ -267,8 +267,8 @@ pub struct RunOutput<'a> {
     pub table: Option<(&'a dyn Destination, TableFormat)>,
     /// Whether each has its accounts of oil and energy, which cost about as much as its solution.
     pub ledger: bool,
-    /// How closely steps are followed: as a whole, or as a campaign does, whose runs under a sampled
-    /// controller go from sample to sample by known matrices.
+    /// How closely steps are followed: as a whole, or as a campaign does, whose runs under a
+    /// sampled controller go from sample to sample by known matrices.
     pub attention: Attention,
 }
 
@@ -317,7 +317,8 @@ impl PreparedRun<'_> {
 }
 
 /// The same, with the output that is asked for: samples cost more than the solution of the
-/// equations. A run whose errors may be visible is [`repeated`]; its table is that of the last pass.
+/// equations. A run whose errors may be visible is [`repeated`]; its table is that of the last
+/// pass.
 ///
 /// # Errors
 /// As [`simulate_project`], and [`SimulateError::Write`].

@@ -52,8 +52,8 @@ const MAXIMUM_EXPONENT: i32 = 16;
 ///
 /// The decimal number and the factors of its units are multiplied exactly and rounded once (π and
 /// square roots are rounded on their own). `Hz` counts cycles: where an angular frequency is
-/// expected, `"175 Hz"` is 2π·175 rad/s. Of a percentage the value is the number of percent: `"2 %"`
-/// and `"2"` are 2. `inf` is read as infinity; whether a key accepts it is the key's business.
+/// expected, `"175 Hz"` is 2π·175 rad/s. Of a percentage the value is the number of percent: `"2
+/// %"` and `"2"` are 2. `inf` is read as infinity; whether a key accepts it is the key's business.
 ///
 /// # Errors
 /// [`QuantityError`] for text that is not a quantity, an unknown unit, another dimension, a missing

@@ -1,5 +1,5 @@
-//! Fluid with entrained air, or gas, makes the plant depend on the pressures of its chambers: over a
-//! range of supply pressures its stability is decided all the same.
+//! Fluid with entrained air, or gas, makes the plant depend on the pressures of its chambers: over
+//! a range of supply pressures its stability is decided all the same.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 

@@ -260,7 +260,8 @@ fn errors_of_the_computed_rig_have_a_place() {
     let design = Request::Design { seed: None, stages: false, repair: true };
     let found = places(&tracking, &[], &design);
     assert_eq!(found[0].line, line_of(&tracking, "lower = { numerator = \"10\""), "{found:?}");
-    // ORIGIN: analytic, 10/|50i + 10| = 0.196 and 2/|50i + 2| = 0.04, most apart at the highest frequency
+    // ORIGIN: analytic, 10/|50i + 10| = 0.196 and 2/|50i + 2| = 0.04, most apart at the highest
+    // frequency
     assert!(found[0].message.contains("50.00 rad/s") && found[0].message.contains("0.196"), "{found:?}");
     let point =
         format!("{}\n[operating_point]\nload_force = \"400 kN\"\n", without(ask::HOSE, "operating_point"));

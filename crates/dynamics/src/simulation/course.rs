@@ -211,8 +211,8 @@ const VISIBLE: f64 = 1e-3;
 /// factor = exp(integral of Re(lambda) over the time from its begin to its end)
 /// ```
 ///
-/// lambda is the least stable of the fast eigenvalues of the Jacobian along the trajectory, or of the
-/// slower ones with the delays in the loop, or from sample to sample that of the loop with its
+/// lambda is the least stable of the fast eigenvalues of the Jacobian along the trajectory, or of
+/// the slower ones with the delays in the loop, or from sample to sample that of the loop with its
 /// controller ([`super::Frozen`]), as far as these are known between the steps at which they are
 /// computed. The factor shows where errors of the solver may have been amplified; it is not the
 /// ratio of two amplitudes.

@@ -36,8 +36,8 @@ pub struct Frozen {
 /// The least stable mode of a frozen loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrozenMode {
-    /// Real part of its eigenvalue in 1/s; from sample to sample the logarithm of its magnitude over
-    /// the sample time.
+    /// Real part of its eigenvalue in 1/s; from sample to sample the logarithm of its magnitude
+    /// over the sample time.
     pub growth_per_s: f64,
     /// Magnitude of its eigenvalue in rad/s; from sample to sample its angle over the sample time.
     pub frequency_rad_per_s: f64,

@@ -137,8 +137,8 @@ struct Batch<'a> {
 }
 
 impl Batch<'_> {
-    /// A run after its first pass, repeated alone where its errors may be visible; `None` where it was
-    /// stopped.
+    /// A run after its first pass, repeated alone where its errors may be visible; `None` where it
+    /// was stopped.
     fn repeated<'a>(
         &self,
         prepared: &'a Prepared,

@@ -1,5 +1,5 @@
-//! Both sides of null as a coordinate of the family, where a spool at null opens other edges on each
-//! side.
+//! Both sides of null as a coordinate of the family, where a spool at null opens other edges on
+//! each side.
 //!
 //! ```text
 //! K_qU = (1 + n)/2 K_qU(0+) + (1 - n)/2 K_qU(0-),      n from -1 to 1

@@ -1,4 +1,5 @@
-//! Numbers of a file that no rig of this size has: nearly always another unit than the heading says.
+//! Numbers of a file that no rig of this size has: nearly always another unit than the heading
+//! says.
 
 use crate::project::{DeclaredActuator, Findings, Project, RawFinding};
 use crate::quantity::{Dimension, FORCE, LENGTH, PRESSURE, TORQUE, UnitScale, VOLTAGE, display};

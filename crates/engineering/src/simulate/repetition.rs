@@ -1,4 +1,5 @@
-//! A run whose errors may be visible, made again at a tenth of the tolerance until its metrics agree.
+//! A run whose errors may be visible, made again at a tenth of the tolerance until its metrics
+//! agree.
 
 use phea_dynamics::portable;
 use phea_dynamics::simulation::{Amplification, Status, StepCounts};
@@ -75,8 +76,8 @@ pub struct PassSpread {
     pub name: &'static str,
     /// In the earlier pass and in the later.
     pub values: [Measured; 2],
-    /// The difference over the metric; over the step for an overshoot, over the largest deviation of
-    /// the window for a steady-state error. Infinite where one pass has no such number.
+    /// The difference over the metric; over the step for an overshoot, over the largest deviation
+    /// of the window for a steady-state error. Infinite where one pass has no such number.
     pub part: f64,
 }
 
@@ -121,9 +122,10 @@ impl Repetition {
     }
 }
 
-/// The result that is reported, after the first pass at a tolerance: where its errors may be visible,
-/// that of the last complete pass, each at a tenth of the tolerance of the one before, until two
-/// agree. Where even rounding may be visible, a pass from a start moved by rounding follows.
+/// The result that is reported, after the first pass at a tolerance: where its errors may be
+/// visible, that of the last complete pass, each at a tenth of the tolerance of the one before,
+/// until two agree. Where even rounding may be visible, a pass from a start moved by rounding
+/// follows.
 ///
 /// # Errors
 /// That of a pass.

@@ -355,8 +355,8 @@ fn looks_per_row(scenario: &Scenario) -> usize {
 /// of a machine.
 pub const COMMAND_LIMIT: &str = "command_limit";
 
-/// What a campaign calls a run whose errors may be visible though it was repeated, with the names of
-/// what a machine reports.
+/// What a campaign calls a run whose errors may be visible though it was repeated, with the names
+/// of what a machine reports.
 pub const ERRORS_AMPLIFIED: &str = "errors_amplified";
 
 /// What a campaign calls a run that was repeated until its metrics agreed.

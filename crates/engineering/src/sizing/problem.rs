@@ -25,8 +25,8 @@ pub struct SizingProblem {
     pub sensor_alone: f64,
     /// The load in series with it.
     pub load: SizedLoad,
-    /// K_qU of a spool at null that retracts the piston and of one that extends it, m3/(s V); `None`
-    /// where they are equal or K_qU is stated.
+    /// K_qU of a spool at null that retracts the piston and of one that extends it, m3/(s V);
+    /// `None` where they are equal or K_qU is stated.
     pub null_flow_gains: Option<[f64; 2]>,
     /// Bulk modulus of the fluid beta_0, Pa.
     pub fluid_modulus: f64,

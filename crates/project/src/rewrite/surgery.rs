@@ -1,5 +1,5 @@
-//! Removes keys of one table of a text and puts lines in their place. Comments on what is removed go
-//! with it: they would describe what takes its place.
+//! Removes keys of one table of a text and puts lines in their place. Comments on what is removed
+//! go with it: they would describe what takes its place.
 
 use super::statement::{Statement, StatementContent, entries, statements};
 

@@ -6,8 +6,8 @@ use crate::simulation::growth::Amplifying;
 
 /// Steps between two evaluations while something grows.
 const GROWING: u64 = 32;
-/// Steps between two evaluations without growth: each interval is four times the one before, from the
-/// first up to the last.
+/// Steps between two evaluations without growth: each interval is four times the one before, from
+/// the first up to the last.
 const CALM: [u64; 2] = [64, 4096];
 
 /// Growth between two evaluations, as a logarithm.
