@@ -138,6 +138,15 @@ pub struct PortView {
     pub final_force_n: Option<f64>,
 }
 
+/// G H of a continuous controller, through which the load motion acts; G of another.
+fn in_series_with(
+    controller: &Controller,
+    sensor: &TransferFunction,
+) -> Result<TransferFunction, LinearError> {
+    let feedback = controller.feedback.transfer_function()?;
+    if is_continuous(&feedback) { feedback.series(sensor) } else { Ok(feedback) }
+}
+
 /// Linearises a rig; `controller` is the given one, if there is one, which sees the force through
 /// the sensor H.
 ///
@@ -148,12 +157,7 @@ pub fn linearize(
     controller: Option<&Controller>,
     sensor: &TransferFunction,
 ) -> Result<Linearization, LinearError> {
-    let feedback = controller.map(|given| given.feedback.transfer_function()).transpose()?;
-    // The load motion acts through G H.
-    let feedback = match feedback {
-        Some(function) if is_continuous(&function) => Some(function.series(sensor)?),
-        other => other,
-    };
+    let feedback = controller.map(|given| in_series_with(given, sensor)).transpose()?;
     let plant = transfer_functions(&rig.plant.coefficients())?;
     let leaking = rig.leaking();
     let full = linear_model(&leaking)?;

@@ -241,8 +241,8 @@ impl Rig {
         let (internal_leakage, dynamic_feedback) = components.cross_admittance(pressures);
         let load = load_at(&declared.load, &numbers, components, &point);
         let yielding = supply.and_then(|found| yielding_supply(declared, &numbers, &balance, &found, side));
-        let unseen = yielding.is_none_or(|supply| are_equal([supply.edges]));
-        let equal = are_equal(sides(&two_pressure)) && unseen && !has_gas_states(declared);
+        let unseen = yielding.is_none_or(|supply| are_equal([supply.edges])) && !has_gas_states(declared);
+        let equal = are_equal(sides(&two_pressure)) && unseen;
         let one_pressure = states_one_pressure(&parameters, &[]) || equal;
         let pushed = load.map_or(LinearLoad::Prescribed, |load| load.linear());
         let series = LinearSeries::of_components(components, point.hydraulic_force);
@@ -250,9 +250,7 @@ impl Rig {
         let area_stiffness = components.cylinder.area_stiffness(point.position, pressures);
         let plant = LinearPlant { dynamic_feedback, series, area_stiffness, ..plant };
         let plant = match yielding {
-            Some(supply) if !(one_pressure && unseen) || has_gas_states(declared) => {
-                with_supply(plant, supply, &two_pressure)
-            }
+            Some(supply) if !(one_pressure && unseen) => with_supply(plant, supply, &two_pressure),
             _ => plant,
         };
         let plant = with_gas(plant, components, &two_pressure, pressures);

@@ -113,7 +113,7 @@ pub(super) fn read_bytes(
     if let Some(table) = own.and_then(|own| own.set_of(&root)) {
         setting::apply_table(&mut root, &table, &mut findings);
     }
-    let mut reader = Reader::new(&root, project_text, &catalogue, &mut findings);
+    let mut reader = Reader::new(&root, project_text, &catalogue, &mut findings).knowing(keys);
     let folder = path.rfind(['/', '\\']).map_or(String::new(), |last| path[..=last].to_string());
     let project = Project { folder, ..project(&mut reader, &root) };
     if let Some(late) = late {

@@ -8,7 +8,6 @@ use std::collections::BTreeMap;
 
 use super::key::{Key, Motions};
 use super::listing::KeyEntry;
-use super::read::keys;
 use super::text::{Findings, Place, RawFinding};
 use super::tree::{Entry, TreeNode, Value};
 use super::{Origin, Provenance};
@@ -46,6 +45,8 @@ pub(crate) struct Reader<'a> {
     pub(crate) item_places: BTreeMap<String, Place>,
     pub(crate) provenance: Vec<Provenance>,
     pub(crate) catalogue_files: Vec<String>,
+    /// The keys of all tables.
+    all_keys: fn() -> Vec<KeyEntry>,
 }
 
 /// A table being read.
@@ -113,9 +114,15 @@ impl<'a> Reader<'a> {
             refused: Vec::new(),
             provenance: Vec::new(),
             catalogue_files: Vec::new(),
+            all_keys: Vec::new,
         };
         reader.open(String::new(), root.place, vec![Layer { node: root, hidden: Vec::new(), entry: None }]);
         reader
+    }
+
+    /// Names the table of a key that stands in the wrong one, by the keys of all tables.
+    pub(crate) fn knowing(self, all_keys: fn() -> Vec<KeyEntry>) -> Self {
+        Reader { all_keys, ..self }
     }
 
     /// How the rig moves whose keys are read.
@@ -150,7 +157,7 @@ impl<'a> Reader<'a> {
         let asked = frame.asked.clone();
         let mut unknown = own.node.entries().iter().filter(|entry| !asked.contains(&entry.key.as_str()));
         if let Some(first) = unknown.next() {
-            let known = keys();
+            let known = (self.all_keys)();
             for entry in std::iter::once(first).chain(unknown) {
                 self.findings.push(unknown_key(entry, &known, &mut frame));
             }

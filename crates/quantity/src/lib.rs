@@ -6,6 +6,7 @@
 mod celsius;
 mod dimension;
 mod display_unit;
+mod error;
 mod exact;
 mod motion;
 mod parse;
@@ -21,8 +22,9 @@ mod unit;
 pub use celsius::ZERO_CELSIUS;
 pub use dimension::*;
 pub use display_unit::DisplayUnit;
+pub use error::QuantityError;
 pub use motion::{MotionKind, Vocabulary};
-pub use parse::{QuantityError, parse};
+pub use parse::parse;
 pub use pattern::{any_quantity_pattern, compound_unit_pattern, single_unit_pattern};
 pub use price::{Currency, Price, PricedBy, parse_price, price_pattern, print_price};
 pub use print::print_bare;

@@ -11,35 +11,11 @@ use std::f64::consts::{LN_10, TAU};
 use std::ops::Range;
 
 use super::dimension::{CURRENT, DIMENSIONS, Dimension, Exponents, GAIN, PERCENT, VOLTAGE};
+use super::error::QuantityError;
 use super::exact::Whole;
 use super::separators::refuse_thousands;
 use super::unit::{self, Unit};
 use crate::spelling::nearest;
-
-/// The error of a quantity, and where it is in its text.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{message}")]
-pub struct QuantityError {
-    /// What is wrong, in one sentence.
-    pub message: String,
-    /// Where, in bytes of the text.
-    pub range: Range<usize>,
-    /// What was expected there.
-    pub expected: Option<String>,
-    /// The nearest valid spelling, or what to do.
-    pub help: Option<String>,
-}
-
-impl QuantityError {
-    fn new(message: impl Into<String>, range: Range<usize>) -> Self {
-        QuantityError { message: message.into(), range, expected: None, help: None }
-    }
-
-    fn help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
-        self
-    }
-}
 
 /// Longest text read as a quantity, in bytes.
 const MAXIMUM_LENGTH: usize = 120;

@@ -1,7 +1,8 @@
 //! Prices in text: `"180 EUR"` for a piece, `"40 EUR/m"` for a length.
 
 use super::dimension::LENGTH;
-use super::parse::{DecimalNumber, QuantityError, parse};
+use super::error::QuantityError;
+use super::parse::{DecimalNumber, parse};
 use super::pattern::{UNSIGNED, length_units};
 use super::print::print_bare;
 use super::separators::refuse_thousands;

@@ -1,7 +1,8 @@
 //! A unit that many numbers are read in.
 
 use super::dimension::Dimension;
-use super::parse::{DecimalNumber, QuantityError, UnitProduct, decibels, unit_of};
+use super::error::QuantityError;
+use super::parse::{DecimalNumber, UnitProduct, decibels, unit_of};
 
 /// A unit, ready to read a column of numbers: each as [`crate::parse`] reads it with the unit
 /// behind it, to the last bit, but without reading the unit again. A number may end in its point

@@ -1,6 +1,6 @@
 //! Numbers as people write them who set off thousands, or the decimals with a comma.
 
-use super::parse::QuantityError;
+use super::error::QuantityError;
 
 /// Signs that stand between digits.
 const SIGNS: [char; 8] = ['.', ',', '\'', '\u{2019}', '_', ' ', '\u{a0}', '\u{202f}'];

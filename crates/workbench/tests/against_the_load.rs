@@ -193,8 +193,7 @@ fn sizing_has_the_specimen_in_series() {
         assert_eq!(found["load"], "in_series");
         near(number(&found, "load_stiffness_n_per_m"), stiffness, 1e-12);
         for index in 0..2 {
-            // ORIGIN: examples/ybitu/hose.toml, [sizing]: time_constant = 50 ms, flow_gain =
-            // 5.62e-5
+            // ORIGIN: analytic, A/(tau k K_qU) with tau and K_qU of the example's [sizing]
             let more = area / (0.05 * stiffness * 5.62e-5);
             let [with, without] = [&found, &own].map(|size| row(size, index, "proportional_gain_v_per_n"));
             near(with, without + more, 1e-9);

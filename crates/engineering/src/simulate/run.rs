@@ -8,7 +8,7 @@ use phea_dynamics::simulation::{
     StepCounts, Task,
 };
 use phea_hydraulics::machine::INDICATORS;
-use phea_machine::{Control, ControllerSamples, Digital, DigitalMemory, Watcher};
+use phea_machine::{Control, ControllerSamples, Digital, DigitalMemory, Waking, Watcher};
 
 use super::adjusted::AdjustmentWork;
 use super::bench::ControlledMachine;
@@ -233,19 +233,9 @@ pub(super) fn run<'t>(
     let looking = looking.following(output.attention, looks);
     let looking = if output.samples { looking.keeping(looks + 2.0) } else { looking };
     let mut looking = if output.ledger { looking.accounting() } else { looking };
-    let sampler = match &bench.control {
-        Control::Continuous(_) | Control::Open(_) => None,
-        Control::Sampled(sampled) => {
-            let digital = Digital::new(sampled, &course.waking, &samples).remembered_in(&memory);
-            Some(Box::new(digital) as Box<dyn Sampler + '_>)
-        }
-    };
+    let sampler = sampler(&bench.control, &course.waking, &samples, &memory);
     let observer: Watcher<'_> = Box::new(&mut looking);
-    let mut start = course.start.clone();
-    if plan.moved {
-        repetition::moved(&mut start, &bench.control.scales());
-    }
-    let task = Task { start, course: &drive, sampler, observer };
+    let task = Task { start: start(bench, course, plan), course: &drive, sampler, observer };
     let settings = SimulationSettings { tolerance: plan.tolerance, ..bench.settings };
     let named = |error| SimulateError::Simulation { name: scenario.name.clone(), error };
     let outcome = bench.control.drive(task, &settings, &mut watch).map_err(named)?;
@@ -285,6 +275,30 @@ pub(super) fn run<'t>(
         check: None,
     };
     Ok(RunPass { run, table: seen.table, force_n: seen.force_n, amplification })
+}
+
+/// The start of a pass: that of the scenario, or moved by roundings.
+fn start(bench: &ControlledMachine, course: &PreparedScenario, plan: PassPlan) -> Vec<f64> {
+    let mut start = course.start.clone();
+    if plan.moved {
+        repetition::moved(&mut start, &bench.control.scales());
+    }
+    start
+}
+
+/// The samples of a sampled controller, which leaves its memory behind.
+fn sampler<'a>(
+    control: &'a Control,
+    waking: &'a Waking,
+    samples: &'a RefCell<ControllerSamples>,
+    memory: &'a RefCell<DigitalMemory>,
+) -> Option<Box<dyn Sampler + 'a>> {
+    match control {
+        Control::Continuous(_) | Control::Open(_) => None,
+        Control::Sampled(sampled) => {
+            Some(Box::new(Digital::new(sampled, waking, samples).remembered_in(memory)))
+        }
+    }
 }
 
 /// Inputs of the loop, then those of its machine.

@@ -1,4 +1,5 @@
 use phea_dynamics::portable::ln;
+use phea_hydraulics::actuator::Components;
 use phea_hydraulics::force_sensor::in_series;
 use phea_hydraulics::linear::LinearParameters;
 
@@ -62,15 +63,7 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
     let wish = project.sizing.as_ref().ok_or(SizingError::Absent)?;
     let actuator = project.actuator.as_ref().ok_or(SizingError::NoHose)?;
     let components = rig.actuator.components();
-    if components.accumulators.iter().any(Option::is_some) {
-        return Err(SizingError::Accumulator);
-    }
-    if components.cross_port.is_some_and(|port| port.capacity.is_some()) {
-        return Err(SizingError::Capacity);
-    }
-    if components.cylinder.stroke.telescope().is_some() {
-        return Err(SizingError::Stages);
-    }
+    refuse_what_no_hose_is_sized_for(components)?;
     let (time_constant, time_constant_origin) = time_constant(wish.speed);
     let (maximum_flow, maximum_flow_origin) = maximum_flow(actuator)?;
     let hoses = hoses(actuator, catalogue);
@@ -122,6 +115,20 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
         other_means: other_means(wish, actuator, rig),
         market_bores: DASH_SIZES.iter().map(|(name, bore)| (name.to_string(), *bore)).collect(),
     })
+}
+
+/// Parts beside which the procedure's model does not hold.
+fn refuse_what_no_hose_is_sized_for(components: &Components) -> Result<(), SizingError> {
+    if components.accumulators.iter().any(Option::is_some) {
+        return Err(SizingError::Accumulator);
+    }
+    if components.cross_port.is_some_and(|port| port.capacity.is_some()) {
+        return Err(SizingError::Capacity);
+    }
+    match components.cylinder.stroke.telescope() {
+        Some(_) => Err(SizingError::Stages),
+        None => Ok(()),
+    }
 }
 
 /// What the specimen is to a hose that is sized: the wall that is sized for is touched.

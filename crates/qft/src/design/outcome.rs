@@ -14,7 +14,7 @@ use crate::loop_shaping::Samples;
 pub struct DesignOutcome {
     /// The best design; `None` where no controller was found.
     pub design: Option<Design>,
-    /// What no controller can achieve, and what will be hard; see [`diagnose`].
+    /// What no controller can achieve, and what will be hard; see [`diagnose`](super::diagnose).
     pub findings: Vec<Finding>,
     /// Whether the watch stopped it: then the design is the best so far.
     pub stopped: bool,
@@ -28,7 +28,7 @@ impl DesignOutcome {
     /// design that has not converged.
     ///
     /// # Errors
-    /// Those of [`design`].
+    /// Those of [`design`](super::design).
     pub fn conclude(&mut self) -> Result<(), LoopDesignError> {
         let at_hand = self.at_hand.take().filter(|attempt| !attempt.x().is_empty());
         if let (None, Some(mut attempt)) = (&self.design, at_hand) {

@@ -16,11 +16,11 @@ struct ResponsesBody<'a> {
 
 #[derive(Serialize)]
 struct RecordedResponses<'a> {
-    members: Vec<RecordedResponse<'a>>,
+    members: Vec<AnsweredResponse<'a>>,
 }
 
 #[derive(Serialize)]
-struct RecordedResponse<'a> {
+struct AnsweredResponse<'a> {
     file: &'a str,
     input: &'static str,
     output: &'static str,
@@ -75,7 +75,7 @@ pub fn json(loaded: Option<&Loaded>, found: &[Compared]) -> String {
     serde_json::to_string_pretty(&body).unwrap_or_default()
 }
 
-fn member(compared: &Compared) -> RecordedResponse<'_> {
+fn member(compared: &Compared) -> AnsweredResponse<'_> {
     let found = &compared.member;
     let (method, block_s, blocks, independent) = match found.method {
         Averaging::Periods { period, count } => ("periods", period, count, count as f64),
@@ -96,7 +96,7 @@ fn member(compared: &Compared) -> RecordedResponse<'_> {
         confidence_95: Number(point.radius),
     };
     let rows_left_out: Vec<LeftOutAt> = incoherent.map(left_out).collect();
-    RecordedResponse {
+    AnsweredResponse {
         file: &found.file,
         input: found.signals[0],
         output: found.signals[1],

@@ -7,7 +7,8 @@ use super::metrics::metrics_row;
 use super::repetition;
 use super::state_names;
 use super::{
-    AccountSum, Cause, Exceeded, Metrics, RunLedger, ScenarioComparison, ScenarioRun, StoppedRun, Window,
+    AccountSum, Cause, Exceeded, Metrics, Overlay, RunLedger, ScenarioComparison, ScenarioRun, StoppedRun,
+    Window,
 };
 use crate::answer::{Object, body_in_use};
 use crate::project::Loaded;
@@ -103,16 +104,7 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
                 .with("begins", occurrence.begins)
         })
         .told("outside_model_s", run.outside_model_s.ok_or("its equations hold throughout"))
-        .each("measured", &run.measured, |overlay| {
-            Object::new()
-                .with("file", overlay.file.as_str())
-                .with("column", overlay.column.as_str())
-                .with("signal", overlay.signal)
-                .with("rows", overlay.times_s.len())
-                .with("rows_outside", overlay.rows_outside)
-                .told("rmse", overlay.rmse)
-                .told("nrmse", overlay.nrmse)
-        })
+        .each("measured", &run.measured, overlay)
         .told("errors_amplified", amplified.ok_or(NOT_AMPLIFIED))
         .told("repetition", repetition.ok_or("one pass was enough"))
         .told("check", run.check.as_ref().map(check::row).ok_or("it was not checked"))
@@ -125,6 +117,18 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
         .and(adjustment(run))
         .told("ledgers", run.ledger.as_ref().map(ledger).map_err(|reason| *reason))
         .each("exceeded", &run.exceeded, exceeded)
+}
+
+/// A measured signal over the simulated one.
+fn overlay(overlay: &Overlay) -> Object {
+    Object::new()
+        .with("file", overlay.file.as_str())
+        .with("column", overlay.column.as_str())
+        .with("signal", overlay.signal)
+        .with("rows", overlay.times_s.len())
+        .with("rows_outside", overlay.rows_outside)
+        .told("rmse", overlay.rmse)
+        .told("nrmse", overlay.nrmse)
 }
 
 /// A limit of the rig that a run exceeds.

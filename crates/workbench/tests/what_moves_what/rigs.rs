@@ -38,6 +38,15 @@ const SHOWN: &str = "velocity_sensor={ gain_error = \"2 %\", delay = \"1 ms\", f
 /// A virtual impedance.
 const IMPEDANCE: &str = "controller.impedance={ stiffness = \"100 kN/m\", damping = \"2 kN.s/m\", mass = \"20 kg\", filter_time = \"2 ms\" }";
 
+/// The same loop by zeros, poles and gain.
+fn factored(hose: &str) -> String {
+    hose.replace(
+        "numerator = \"0.001*s + 0.008\"\ndenominator = \"s\"",
+        "gain = 0.001\nzeros = [-8]\npoles = [0]",
+    )
+    .replace("numerator = \"910\"\ndenominator = \"s^2 + 83*s + 910\"", "gain = 910\npoles = [-12.9, -70.1]")
+}
+
 /// Rigs that together have every key: examples, the projects of other tests, and the same with
 /// other words.
 pub(super) fn rigs() -> Vec<(String, Vec<&'static str>)> {
@@ -46,15 +55,7 @@ pub(super) fn rigs() -> Vec<(String, Vec<&'static str>)> {
     let two_wave = ["line.model=two_wave", "line.wall={ mass_per_length = 0.21, axial_compliance = 1e-5 }"];
     let wall_of_two =
         ["line.wall.coupling_compliance=-1e-5", "line.wall.pressure_compliance=3e-9", "line.end_share=0.02"];
-    let factored = hose()
-        .replace(
-            "numerator = \"0.001*s + 0.008\"\ndenominator = \"s\"",
-            "gain = 0.001\nzeros = [-8]\npoles = [0]",
-        )
-        .replace(
-            "numerator = \"910\"\ndenominator = \"s^2 + 83*s + 910\"",
-            "gain = 910\npoles = [-12.9, -70.1]",
-        );
+    let factored = factored(&hose());
     let sampled = [
         "controller.sample_time=1 ms",
         "controller.delay=0.5 ms",
