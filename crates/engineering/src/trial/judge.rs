@@ -135,8 +135,9 @@ pub(super) fn judge(
 
 /// The settling time that is required, where the linear loop satisfies it and the machine does not.
 fn missed_in_time(machine: &TrialStep, linear: Option<TrialStep>, problem: &RobustProblem) -> Option<String> {
-    let of_verdict =
-        |required: &&TimeRequirement| required.follows && required.wish.band_percent == BAND_PERCENT;
+    let of_verdict = |required: &&TimeRequirement| {
+        required.follows && required.wish.band_percent.total_cmp(&BAND_PERCENT).is_eq()
+    };
     let most = problem.in_time.iter().find(of_verdict)?.wish.settling_time_s?;
     let own = machine.settling_time_s.filter(|time_s| *time_s > most)?;
     let predicted = linear?.settling_time_s.filter(|time_s| *time_s <= most)?;
