@@ -297,12 +297,12 @@ fn discs_and_tolerance_decide_the_verdict() {
     };
     let met = verified("", &csv(0.05), "");
     assert_eq!(json(&met)["verdict"], "met", "{}", met.text);
-    let open = verified("", &csv(0.35), "");
+    let open = verified("", &csv(0.5), "");
     assert_eq!(json(&open)["verdict"], "not_proven", "{}", open.text);
     assert!(open.text.contains("leaves it open"), "{}", open.text);
     let worst = json(&open)["specifications"][0]["worst_margin_db"].as_f64().unwrap();
     let tolerance = format!("[verification]\ntolerance = \"{} dB\"\n", -worst + 0.01);
-    let tolerated = verified("", &csv(0.35), &tolerance);
+    let tolerated = verified("", &csv(0.5), &tolerance);
     assert_eq!(json(&tolerated)["verdict"], "met", "{}", tolerated.text);
     let told = json(&tolerated)["tolerance_db"].as_f64().unwrap();
     assert!((told - (0.01 - worst)).abs() < 1e-9, "{told}");

@@ -131,7 +131,8 @@ fn of_the_motion(line: &str, settings: &[String]) -> Metrics {
     let run = simulate_project(&Memory::default(), &Setup::new(&project).unwrap(), &mut |_| true)
         .unwrap()
         .remove(0);
-    assert_eq!(run.stopped(), None, "{line} {settings:?}");
+    // a loop that the fed gain makes swing for good has its numbers too
+    assert!(run.stopped().is_none_or(|stopped| stopped.word == "diverged"), "{line} {settings:?}");
     let (_, metrics) = run.windows.into_iter().find(|(window, _)| window.cause == Cause::LoadMotion).unwrap();
     metrics
 }

@@ -219,7 +219,7 @@ fn figures_have_the_gas_that_is_there() {
         String::from_utf8(figure.bytes.clone()).unwrap()
     };
     let (with, without) = (drawn(HEAT), drawn(GAS));
-    for part in ["gas A", "gas B"] {
+    for part in ["at A", "at B"] {
         assert!(with.contains(part) && !without.contains(part), "{part}");
     }
 }

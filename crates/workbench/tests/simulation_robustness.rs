@@ -129,7 +129,7 @@ fn hoses_without_length() {
     for (text, setting, words) in [
         (HOSE, "line.length=0 m", "`length` must be above 0 m"),
         (HOSE, "line.length=-1 m", "`length` must be above 0 m"),
-        (BENCHMARK, "line.volume=0 L", "`volume` must be above 0 mL"),
+        (BENCHMARK, "line.volume=0 L", "without the volume of a line a chamber is empty"),
     ] {
         let refusal = refused(text, &[setting]);
         assert!(refusal.contains(words), "{refusal}");

@@ -111,13 +111,13 @@ fn a_feed_forward_is_told_to_be_left_out() {
             let said = answer(text, &settings, &[], &request);
             let object: Value = serde_json::from_str(&said.json).unwrap();
             let warnings = object["warnings"].as_array().unwrap();
+            let of_it = warnings.iter().filter(|warning| warning.as_str().unwrap().contains(words));
             assert_eq!(
-                (said.text.contains(words), warnings.len()),
+                (said.text.contains(words), of_it.count()),
                 (told, usize::from(told)),
                 "{}",
                 request.name()
             );
-            assert!(warnings.iter().all(|warning| warning.as_str().unwrap().contains(words)));
         }
     }
 }

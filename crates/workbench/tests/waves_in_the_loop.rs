@@ -65,7 +65,7 @@ fn the_step_that_is_predicted_is_the_machines() {
         &["line.model=segments", "line.segments=8", "line.relaxation_time=1 ms"],
     );
     let first = &object["machine"]["runs"][0];
-    let both = |key: &str| ["linear", "machine"].map(|of| first[of][key].as_f64().unwrap());
+    let both = |key: &str| [&first["linear"], &first["steps"][0]].map(|of| of[key].as_f64().unwrap());
     let [overshoot, settling] = [both("overshoot_percent"), both("settling_time_s")];
     assert!(
         (overshoot[0] - overshoot[1]).abs() < 1.0 && (settling[1] / settling[0] - 1.0).abs() < 0.1,
@@ -112,7 +112,9 @@ fn one_rig_with_waves_is_designed_for() {
     );
     assert_eq!(object["status"], Value::from("met"));
     assert_eq!(object["verification"]["verdict"], Value::from("met"));
-    assert_eq!(object["machine"]["verdict"], Value::from("agrees"), "{}", object["machine"]);
+    // a step six times as large settles more slowly than the linear loop, and is told as that
+    assert_ne!(object["machine"]["verdict"], Value::from("contradicts"), "{}", object["machine"]);
+    assert_eq!(object["machine"]["runs"][0]["agreement"], Value::from("agrees"), "{}", object["machine"]);
 }
 
 /// A family with lines in motion names its plants by their parameters, as every other family does.

@@ -435,7 +435,8 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         let mut events = passage.events;
         sort_by_number(&mut events, |event| event.time_s);
         let end = self.state.iter().map(|state| state.lane(lane)).collect();
-        let all = [self.watches[lane].amplification(), self.frozen[lane].amplification()];
+        let all =
+            [self.watches[lane].amplification(), self.frozen[lane].amplification_at_end(passage.time_s)];
         let amplification = Amplification::larger(all);
         Some((Outcome { status, events, work: passage.work, end, amplification }, observer))
     }

@@ -155,12 +155,14 @@ fn whole_steps(record: &SampledPair, stated: f64) -> Result<usize, String> {
     // half a step off at the end of the record leaks as much as one off in a period
     let periods = record.input.len() as f64 / steps.max(1.0);
     if (exact - steps).abs() * periods > 0.5 || steps < 4.0 {
+        // to a nanosecond: the step is a mean of rounded stamps
+        let seconds = |rows: f64| (rows * record.time_step * 1e9).round() / 1e9;
         return Err(format!(
             "{}: a period of {stated} s is {exact:.4} rows of {} s; a period of whole rows has no leakage: {} s or {} s",
             record.file,
-            record.time_step,
-            exact.floor() * record.time_step,
-            exact.ceil() * record.time_step
+            seconds(1.0),
+            seconds(exact.floor()),
+            seconds(exact.ceil())
         ));
     }
     Ok(steps as usize)

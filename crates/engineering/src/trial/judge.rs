@@ -22,6 +22,8 @@ const SETTLING_RATIO: f64 = 2.0;
 /// small step.
 const OVERSHOOT_ROOM_PERCENT: f64 = 5.0;
 
+const NEITHER_SETTLES: &str = "neither the linear loop nor the machine settles";
+
 /// A run of a machine, its steps, and what is known of the linear loop.
 pub(super) struct Driven<'a> {
     pub(super) run: &'a ScenarioRun,
@@ -85,6 +87,9 @@ pub(super) fn judge(
     let promised = view.audit.verdict != Verdict::Violated;
     let broken = if promised { Agreement::Contradicts } else { Agreement::Differs };
     if let Some(stopped) = driven.run.stopped() {
+        if driven.grows && driven.run.divergence.is_some() {
+            return (Agreement::Agrees, NEITHER_SETTLES.to_string());
+        }
         let time = DisplayUnit::MILLISECOND.text(stopped.time_s, 3);
         let words = match stopped.word {
             DIVERGED => format!("the machine diverges from {time} on"),
@@ -97,7 +102,7 @@ pub(super) fn judge(
         let settles = !driven.grows && linear.is_none_or(|step| step.settling_time_s.is_some());
         return match settles {
             true => (broken, unsettled(driven)),
-            false => (Agreement::Agrees, "neither the linear loop nor the machine settles".to_string()),
+            false => (Agreement::Agrees, NEITHER_SETTLES.to_string()),
         };
     }
     let overshoot = whole.overshoot_percent.unwrap_or(0.0);

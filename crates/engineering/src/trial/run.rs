@@ -145,7 +145,7 @@ pub(super) fn runs(
         let Some(outcome) = machine.driven(&steps, &mut part(watch, STAGE, [from, 1.0]))? else {
             return Ok(None);
         };
-        if outcome.as_ref().is_ok_and(|driven| !is_limited(driven)) {
+        if outcome.as_ref().is_ok_and(|driven| !is_limited(driven) && !steps.stalls(driven)) {
             runs.push(judged(StepSize::Largest, &steps, &outcome));
             break;
         }

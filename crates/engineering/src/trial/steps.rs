@@ -22,6 +22,8 @@ const BEFORE_S: f64 = 0.05;
 const ROWS: f64 = 2000.0;
 /// Share of a step, at its end, over which the remaining oscillation is measured.
 const LATE_SHARE: f64 = 0.2;
+/// Motion of a force that stands still, as a share of the step.
+const STANDS_STILL: f64 = 1e-3;
 /// Share of the estimated largest step that is driven first: the machine is not linear.
 const ESTIMATE_SHARE: f64 = 0.95;
 
@@ -130,6 +132,16 @@ impl Steps {
             .map(|(time_s, force)| (time_s - begins_s, (force - from) / (to - from)));
         let (times_s, values) = during.unzip();
         StepResponse { times_s, values }
+    }
+
+    /// Whether the force stands still away from its reference: the supply cannot produce it there.
+    pub(super) fn stalls(&self, driven: &ScenarioRun) -> bool {
+        let unsettled = |leg: &Leg| self.step(driven, *leg).settling_time_s.is_none();
+        let stands = |leg: Leg| {
+            let range = self.remains(driven, leg);
+            range.is_some_and(|[low, high]| high - low < STANDS_STILL * self.size())
+        };
+        Leg::ALL.into_iter().filter(unsettled).any(stands)
     }
 
     /// The range of the controlled force at the end of a step, N; `None` if the run ended before.

@@ -21,7 +21,8 @@ fn valve_on_chamber(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
         ["a", "b"].into_iter().zip([&actuator.line.a, &actuator.line.b].into_iter().zip(dead))
     {
         let Component::Volume(volume) = &line.component else { continue };
-        if volume.volume > 0.0 || dead > 0.0 {
+        let is_empty = volume.volume <= 0.0 && dead <= 0.0;
+        if !is_empty {
             continue;
         }
         let own = format!("line.{side}.volume");
@@ -38,7 +39,8 @@ fn valve_on_chamber(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
 /// Edges that are shut at null leave the pressures of the chambers open.
 fn shut_valve(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     let ValveCoefficients::Edges { edges, .. } = &actuator.valve.leakage else { return };
-    if edges.in_order().iter().all(|edge| *edge > 0.0) {
+    let is_shut = edges.in_order().iter().any(|edge| *edge <= 0.0);
+    if !is_shut {
         return;
     }
     let message =

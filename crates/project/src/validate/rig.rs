@@ -47,7 +47,8 @@ fn is_reached(
     check: &mut Check<'_, '_>,
 ) -> bool {
     let working = gas.working_precharge(ATMOSPHERE);
-    if supply.pressure <= 0.0 || working < supply.pressure {
+    let beyond = supply.pressure > 0.0 && working >= supply.pressure;
+    if !beyond {
         return true;
     }
     let [precharge, pressure] =

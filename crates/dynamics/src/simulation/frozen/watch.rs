@@ -26,6 +26,8 @@ pub struct FrozenWatch {
     due: u64,
     interval: u64,
     before: Option<(f64, f64)>,
+    /// Growth and frequency of a mode that grew at the last two evaluations, in 1/s and rad/s.
+    grows_on: Option<[f64; 2]>,
     growing: Amplifying,
 }
 
@@ -66,9 +68,20 @@ impl FrozenWatch {
         let (before_s, before) = self.before.replace((time_s, growth)).unwrap_or((time_s, growth));
         let both = if before * growth > 0.0 { 0.5 * (before + growth) } else { 0.0 };
         self.growing.add(time_s, both * (time_s - before_s), frequency_rad_per_s);
+        self.grows_on = (before > 0.0 && growth > 0.0).then_some([growth, frequency_rad_per_s]);
         let [least, most] = CALM;
         self.interval = if growth > 0.0 { 0 } else { (4 * self.interval).clamp(least, most) };
         self.due = self.steps + self.interval.max(GROWING);
+    }
+
+    /// What has grown most by the end of a run, in s: a mode that grew at the last two evaluations
+    /// goes on to it.
+    pub(in crate::simulation) fn amplification_at_end(&self, end_s: f64) -> Option<Amplification> {
+        let mut growing = self.growing.clone();
+        if let (Some([growth, frequency_rad_per_s]), Some((before_s, _))) = (self.grows_on, self.before) {
+            growing.add(end_s, growth * (end_s - before_s), frequency_rad_per_s);
+        }
+        growing.largest()
     }
 
     /// What has grown most.
