@@ -77,7 +77,7 @@ impl FrozenWatch {
     /// What has grown most by the end of a run, in s: a mode that grew at the last two evaluations
     /// goes on to it.
     pub(in crate::simulation) fn amplification_at_end(&self, end_s: f64) -> Option<Amplification> {
-        let mut growing = self.growing.clone();
+        let mut growing = self.growing;
         if let (Some([growth, frequency_rad_per_s]), Some((before_s, _))) = (self.grows_on, self.before) {
             growing.add(end_s, growth * (end_s - before_s), frequency_rad_per_s);
         }
