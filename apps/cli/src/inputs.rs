@@ -21,7 +21,7 @@ struct KeptFile {
 }
 
 impl Inputs {
-    /// Those of these paths that are regular files.
+    /// The regular files among these paths.
     pub(crate) fn of(paths: impl IntoIterator<Item = String>) -> Inputs {
         Inputs(paths.into_iter().filter_map(KeptFile::of).collect())
     }
@@ -105,7 +105,7 @@ fn resolved(path: &Path) -> PathBuf {
     place
 }
 
-/// Whether two paths without links are of one folder and, but for the case of letters, of one name.
+/// True for two paths without links in one folder whose names differ at most in case.
 fn is_one_place(one: &Path, other: &Path) -> bool {
     let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().to_lowercase());
     one.parent() == other.parent() && name(one) == name(other)
@@ -117,7 +117,7 @@ fn is_one_file(one: &Metadata, other: &Metadata) -> bool {
     (one.dev(), one.ino()) == (other.dev(), other.ino())
 }
 
-/// Where the system gives files no number, other names of a file are not known.
+/// Systems that give files no number: other names of a file are not known.
 #[cfg(not(unix))]
 fn is_one_file(_one: &Metadata, _other: &Metadata) -> bool {
     false

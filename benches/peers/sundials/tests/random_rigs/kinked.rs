@@ -13,7 +13,7 @@ use crate::rig::{Chance, Refusal, Rig};
 
 const DURATION_S: f64 = 0.5;
 
-/// What a rig of this number has.
+/// The parts of the rig with this number.
 const KINDS: [&str; 4] = ["end stops", "wall", "stages", "stick-slip"];
 
 /// The rig of this number: of each kind every fourth.

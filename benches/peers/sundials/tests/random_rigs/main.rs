@@ -101,7 +101,7 @@ struct Asked {
     count: u64,
     /// One rig alone.
     only: Option<u64>,
-    /// Whether families are named: then all of the count is run of each.
+    /// True if families are named: then each is run with the whole count.
     named: bool,
     manner: Manner,
     /// Whether all that is known of each rig is told.
@@ -162,7 +162,7 @@ fn passes(family: Family, asked: &Asked, program: &Path) -> bool {
     tally.passes()
 }
 
-/// What becomes of all these rigs, in their order, so many at once.
+/// The results of all these rigs, in their order, so many at once.
 fn of_all<T: Send>(
     numbers: std::ops::Range<u64>,
     at_once: u64,
