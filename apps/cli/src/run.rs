@@ -63,6 +63,7 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
                 figures: common.out.is_some() && !no_figures,
                 frequency_response: frequency_response.then_some(options),
                 check,
+                ledgers: common.json,
             });
             on_project(&common, &request, None)
         }

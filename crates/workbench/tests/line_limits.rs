@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use phea_workbench::campaign::{Effort, RequestedRuns, Shard};
-use phea_workbench::command::{CampaignRequest, CampaignRuns, Request};
+use phea_workbench::command::{CampaignRequest, CampaignRuns, Request, SimulateRequest};
 use serde_json::Value;
 
 use super::ask::{HOSE, json};
@@ -13,7 +13,12 @@ use super::ask::{HOSE, json};
 const HAMMER: &str = include_str!("projects/hammer.toml");
 
 fn run(settings: &[&str]) -> Value {
-    json(HAMMER, settings, &[], &Request::Simulate(Default::default()))["scenarios"][0].clone()
+    scenario(HAMMER, settings, false)
+}
+
+fn scenario(text: &str, settings: &[&str], ledgers: bool) -> Value {
+    let request = Request::Simulate(SimulateRequest { ledgers, ..SimulateRequest::default() });
+    json(text, settings, &[], &request)["scenarios"][0].clone()
 }
 
 fn exceeded<'a>(run: &'a Value, what: &str, place: &str) -> Option<&'a Value> {
@@ -120,11 +125,7 @@ fn a_campaign_lists_limits_of_lines() {
 /// through; energy that is lost is positive.
 #[test]
 fn accounts_of_oil_and_energy_close() {
-    let runs = [
-        json(HOSE, &[], &[], &Request::Simulate(Default::default()))["scenarios"][0].clone(),
-        run(&[SEGMENTS]),
-    ];
-    for run in runs {
+    for run in [scenario(HOSE, &[], true), scenario(HAMMER, &[SEGMENTS], true)] {
         for account in ["oil_m3", "energy_j"] {
             let rows = run["ledgers"][account].as_array().unwrap();
             assert!(rows.len() >= 3 && rows.last().unwrap()["part"] == "rig");
@@ -142,6 +143,7 @@ fn accounts_of_oil_and_energy_close() {
             }
         }
     }
-    let waves = run(&[WAVES]);
-    assert!(waves["ledgers"].is_null() && waves["ledgers_reason"].is_string());
+    for without in [scenario(HAMMER, &[WAVES], true), run(&[SEGMENTS])] {
+        assert!(without["ledgers"].is_null() && without["ledgers_reason"].is_string());
+    }
 }

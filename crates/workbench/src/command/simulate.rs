@@ -26,6 +26,9 @@ pub struct SimulateRequest {
     /// Whether each scenario is run a second time at a tenth of the tolerance, with a report of the
     /// difference.
     pub check: bool,
+    /// Whether each run has its accounts of oil and energy, which cost as much as its solution;
+    /// without them an answer says that they were not requested.
+    pub ledgers: bool,
 }
 
 /// Options of a frequency response, as written.
@@ -87,7 +90,7 @@ pub(super) fn simulate_answer(
         simulate_into(
             source,
             &setup,
-            RunOutput { ledger: true, ..RunOutput::new(asked.figures, table) },
+            RunOutput { ledger: asked.ledgers, ..RunOutput::new(asked.figures, table) },
             watch,
         )?
     };
