@@ -101,3 +101,22 @@ fn what_is_in_the_way_and_what_cannot_be_is_said_plainly() {
         assert!(complaint(&output).contains(words), "{}", complaint(&output));
     }
 }
+
+/// Refused for what the project lacks, a campaign leaves neither an empty table nor a lock, and a
+/// table of another kind stays as it was.
+#[test]
+fn a_refused_campaign_leaves_no_table() {
+    let folder = folder("campaign_refused");
+    let without = PROJECT.replace("campaign.toml", "closed_loop.toml");
+    let refused = || {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_phea"));
+        command.current_dir(&folder).args(["campaign", &without, "--runs", "2", "--out", "out"]);
+        command.output().expect("phea starts")
+    };
+    let path = folder.join("out/runs.csv");
+    assert_eq!(refused().status.code(), Some(2));
+    assert!(!path.exists(), "an empty table");
+    fs::write(&path, "").expect("an empty table of one's own");
+    assert_eq!(refused().status.code(), Some(2));
+    assert!(path.exists(), "it was there before");
+}

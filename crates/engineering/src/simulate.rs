@@ -270,12 +270,14 @@ pub struct RunOutput<'a> {
     /// How closely steps are followed: as a whole, or as a campaign does, whose runs under a
     /// sampled controller go from sample to sample by known matrices.
     pub attention: Attention,
+    /// Whether a run whose errors may be visible is [`repeated`].
+    pub repeats: bool,
 }
 
 impl<'a> RunOutput<'a> {
     /// Samples, and a table where a destination is given.
     pub fn new(samples: bool, table: Option<(&'a dyn Destination, TableFormat)>) -> RunOutput<'a> {
-        RunOutput { samples, table, ledger: false, attention: Attention::Everything }
+        RunOutput { samples, table, ledger: false, attention: Attention::Everything, repeats: true }
     }
 }
 
@@ -344,7 +346,13 @@ pub fn simulate_into(
         };
         let first = pass(PassPlan { tolerance, moved: false })?;
         let errors_amplified = first.run.errors_amplified;
-        let (last, _, repetition) = repeated((tolerance, first), RunPass::result, pass)?;
+        let (last, repetition) = match output.repeats {
+            true => {
+                let (last, _, repetition) = repeated((tolerance, first), RunPass::result, pass)?;
+                (last, repetition)
+            }
+            false => (first, None),
+        };
         if let Some(table) = last.table {
             table.finish().map_err(SimulateError::Write)?;
         }

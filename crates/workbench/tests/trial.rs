@@ -98,6 +98,14 @@ fn declared_waves_are_the_rig() {
     let first = &object["machine"]["runs"][0];
     assert_eq!((&first["agrees"], &first["linear"]), (&Value::from(true), &Value::Null));
     assert_eq!(first["reason"], "neither the linear loop nor the machine settles");
+    // the first step of each machine decides: no other follows, and none that is larger
+    let runs = object["machine"]["runs"].as_array().unwrap();
+    for run in runs {
+        assert_eq!(
+            (run["steps"].as_array().unwrap().len(), &run["step"]),
+            (1, &"tenth_of_supply_force".into())
+        );
+    }
 }
 
 /// A load that yields is in both; the leakage as well.

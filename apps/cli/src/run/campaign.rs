@@ -72,7 +72,10 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
     let into = (ledger, destination);
     let answer = command::campaign_watched(&FileSystem, &loaded, catalogues, asked, into, &mut watch);
     line.clear();
-    let answer = answer.map_err(|error| refused(&loaded, &request, &error))?;
+    let answer = answer.map_err(|error| {
+        table.iter().for_each(LockedTable::leave_no_trace);
+        refused(&loaded, &request, &error)
+    })?;
     // the table stays locked until all other files are written
     let mut written: Vec<PathBuf> = table.iter().map(|table| table.path.clone()).collect();
     written.extend(tables.map(Folder::into_begun).unwrap_or_default());
@@ -88,6 +91,8 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
 struct LockedTable {
     path: PathBuf,
     file: File,
+    /// Whether there was none before.
+    is_new: bool,
     /// When all of it was last flushed to the disk.
     kept: Instant,
 }
@@ -97,6 +102,7 @@ impl LockedTable {
         if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
             fs::create_dir_all(folder).map_err(|error| unwritten(folder, &error))?;
         }
+        let is_new = !path.exists();
         let mut options = OpenOptions::new();
         options.create(true).read(true).write(true).truncate(false);
         let file = options.open(path).map_err(|error| unwritten(path, &error))?;
@@ -109,11 +115,18 @@ impl LockedTable {
                 format!("cannot lock {}: {error}; choose a folder on another disk", path.display())
             }
         })?;
-        Ok(LockedTable { path: path.to_path_buf(), file, kept: Instant::now() })
+        Ok(LockedTable { path: path.to_path_buf(), file, is_new, kept: Instant::now() })
     }
 
     fn explain(&self, error: &std::io::Error) -> String {
         unwritten(&self.path, error)
+    }
+
+    /// Removes a table that this command created and to which it has written nothing.
+    fn leave_no_trace(&self) {
+        if self.is_new && self.file.metadata().is_ok_and(|found| found.len() == 0) {
+            let _ = fs::remove_file(&self.path);
+        }
     }
 
     /// The file, next to the table, with rows that wait for an earlier one.

@@ -12,7 +12,7 @@ use crate::project::{LineMotion, Project};
 use crate::quantity::significant;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
-use crate::simulate::{ScenarioRun, SimulateError, simulate_project};
+use crate::simulate::{RunOutput, ScenarioRun, SimulateError, simulate_into};
 use crate::source::Source;
 use phea_dynamics::watch::{Watch, part};
 
@@ -79,7 +79,8 @@ pub struct TrialRun {
     /// The greatest overshoot and the longest settling time of the machine's steps; `None` if it
     /// did not start.
     pub machine: Option<TrialStep>,
-    /// The same of each step; empty if it did not start.
+    /// The same of each step that was driven: the first alone where that decides; empty if it did
+    /// not start.
     pub legs: Vec<(Leg, TrialStep)>,
     /// The worst of its steps.
     pub worst: Leg,
@@ -129,10 +130,10 @@ pub(super) fn runs(
     let tenth = Steps::tenth(rig, machine.linear.hold_s());
     let judged =
         |size, steps: &Steps, outcome: &TrialOutcome| machine.judged((size, steps), outcome, (problem, view));
-    let Some(first) = machine.driven(&tenth, &mut part(watch, STAGE, [0.0, 0.3]))? else { return Ok(None) };
+    let Some(first) = machine.driven(&tenth, &mut part(watch, STAGE, [0.0, 0.3])) else { return Ok(None) };
     let mut runs = vec![judged(StepSize::Tenth, &tenth, &first)];
     let Ok(driven) = &first else { return Ok(Some(runs)) };
-    if driven.stopped().is_some() {
+    if machine.is_decided(&tenth, driven) {
         return Ok(Some(runs));
     }
     let mut steps = tenth.enlarged(rig, CommandLimits::of(setup.project, rig), driven);
@@ -142,7 +143,7 @@ pub(super) fn runs(
             break;
         }
         let from = 0.3 + 0.7 * reduction as f64 / REDUCTIONS as f64;
-        let Some(outcome) = machine.driven(&steps, &mut part(watch, STAGE, [from, 1.0]))? else {
+        let Some(outcome) = machine.driven(&steps, &mut part(watch, STAGE, [from, 1.0])) else {
             return Ok(None);
         };
         if outcome.as_ref().is_ok_and(|driven| !is_limited(driven) && !steps.stalls(driven)) {
@@ -171,13 +172,36 @@ struct TriedMachine<'a> {
 }
 
 impl TriedMachine<'_> {
-    /// Drives it; `None` where the watcher stops it.
-    fn driven(&self, steps: &Steps, watch: Watch<'_>) -> Result<Option<TrialOutcome>, TrialError> {
-        let project = steps.project(&self.tried.project);
-        Ok(match simulate_project(self.source, &self.setup.asked(&project), watch) {
+    /// Drives it; `None` where the watcher stops it. The first step alone comes first: where it
+    /// decides, the others and the repetition at smaller tolerances would take most of the time.
+    fn driven(&self, steps: &Steps, watch: Watch<'_>) -> Option<TrialOutcome> {
+        let once = RunOutput { repeats: false, ..RunOutput::new(true, None) };
+        let first = self.driven_up_to((steps, Leg::There), once, &mut part(watch, STAGE, [0.0, 0.3]));
+        if !matches!(&first, Some(Ok(driven)) if !self.is_decided(steps, driven)) {
+            return first;
+        }
+        let whole = RunOutput::new(true, None);
+        self.driven_up_to((steps, Leg::Again), whole, &mut part(watch, STAGE, [0.3, 1.0]))
+    }
+
+    fn driven_up_to(
+        &self,
+        (steps, last): (&Steps, Leg),
+        output: RunOutput<'_>,
+        watch: Watch<'_>,
+    ) -> Option<TrialOutcome> {
+        let project = steps.project(&self.tried.project, last);
+        match simulate_into(self.source, &self.setup.asked(&project), output, watch) {
             Ok(runs) => runs.into_iter().next().filter(|driven| !driven.was_cancelled()).map(Ok),
             Err(error) => Some(Err(error)),
-        })
+        }
+    }
+
+    /// Whether the first step of a run decides: the run ends early or diverges, or settles as
+    /// little as the unstable linear loop.
+    fn is_decided(&self, steps: &Steps, driven: &ScenarioRun) -> bool {
+        let settles = steps.step(driven, Leg::There).settling_time_s.is_some();
+        driven.stopped().is_some() || (self.linear.grows && !settles)
     }
 
     fn judged(
@@ -221,7 +245,7 @@ impl TriedMachine<'_> {
         TrialRun {
             status: run.stopped().map_or("completed", |stopped| stopped.word),
             machine: Some(driven.whole()),
-            legs: Leg::ALL.into_iter().zip(legs).collect(),
+            legs: Leg::ALL.into_iter().zip(legs).take(run.windows.len()).collect(),
             worst: driven.worst(),
             remaining_amplitude_n: driven.remains().map(|[low, high]| 0.5 * (high - low)),
             machine_response: steps.response(run, driven.worst()),

@@ -69,13 +69,15 @@ impl Steps {
         (self.to_n - self.from_n).abs()
     }
 
-    /// The project with one scenario: in equilibrium under the first reference, then the steps.
-    pub(super) fn project(&self, project: &Project) -> Project {
+    /// The project with one scenario: in equilibrium under the first reference, then the steps up
+    /// to this one.
+    pub(super) fn project(&self, project: &Project, last: Leg) -> Project {
         let at = |at, value| Signal::Step { at, value, published: None };
-        let steps = Leg::ALL.map(|leg| at(self.begins_s(leg), self.ends(leg)[1]));
+        let driven = Leg::ALL.into_iter().take(last as usize + 1);
+        let steps = driven.map(|leg| at(self.begins_s(leg), self.ends(leg)[1]));
         let scenario = Scenario {
             name: "step".to_string(),
-            duration: self.begins_s(Leg::Again) + self.hold_s,
+            duration: self.begins_s(last) + self.hold_s,
             output_step: self.hold_s / ROWS,
             reference: std::iter::once(at(0.0, self.from_n)).chain(steps).collect(),
             settling_band_percent: BAND_PERCENT,
