@@ -25,6 +25,9 @@ const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
 const SPRUNG: [&str; 4] =
     ["load.model=spring_mass_damper", "load.mass=100", "load.stiffness=2e5", "load.damping=500"];
 
+/// A capacity of the sensor that leaves no room for larger steps than a tenth of the force.
+const TENTH_ALONE: &str = "force_sensor.capacity=3.4 kN";
+
 fn linearized(project: &Project) -> Linearization {
     linearize(&Setup::rig_of(project).unwrap(), None, &Setup::new(project).unwrap().sensor).unwrap()
 }
@@ -210,7 +213,7 @@ fn a_late_feed_forward_is_in_the_loop() {
         let viscous = "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }";
         let said = answer(
             &text,
-            &[&SPRUNG[..], &[viscous, &delay, &fed]].concat(),
+            &[&SPRUNG[..], &[viscous, &delay, &fed, TENTH_ALONE]].concat(),
             &[],
             &Request::Verify { proof: false, on_machine: true },
         );
@@ -241,7 +244,7 @@ fn a_sampled_feed_forward_is_in_the_loop() {
             [format!("controller.sample_time={sample_ms} ms"), format!("controller.delay={delay_ms} ms")];
         let fed = format!("controller.load_velocity_feed_forward.gain={gain}");
         let viscous = "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }";
-        let settings = [&SPRUNG[..], &[viscous, &timing[0], &timing[1], &fed]].concat();
+        let settings = [&SPRUNG[..], &[viscous, &timing[0], &timing[1], &fed, TENTH_ALONE]].concat();
         let said = answer(&text, &settings, &[], &Request::Verify { proof: false, on_machine: true });
         let object: Value = serde_json::from_str(&said.json).unwrap();
         assert_eq!(object["stable"], Value::from(stable), "{gain} {sample_ms} {delay_ms}: {}", said.text);

@@ -53,13 +53,10 @@ fn load(text: &str, settings: &[&str]) -> Loaded {
     project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"))
 }
 
-fn runs_of(text: &str, settings: &[&str]) -> Vec<ScenarioRun> {
-    simulate_project(&Memory::default(), &Setup::new(&load(text, settings).project).unwrap(), &mut |_| true)
-        .unwrap()
-}
-
 fn run_of(text: &str, settings: &[&str]) -> ScenarioRun {
-    runs_of(text, settings).remove(0)
+    let mut project = load(text, settings).project;
+    project.scenarios.truncate(1);
+    simulate_project(&Memory::default(), &Setup::new(&project).unwrap(), &mut |_| true).unwrap().remove(0)
 }
 
 /// The value of a signal at a time of the record.

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
 use phea_dynamics::simulation::Status;
-use phea_workbench::project::{self, Loaded, Refusal};
+use phea_workbench::project::{self, Loaded, Project, Refusal};
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{Record, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
@@ -20,10 +20,18 @@ fn read(text: &str, settings: &[&str]) -> Result<Loaded, Refusal> {
     project::read(&Memory::default().with("rig.toml", text), "rig.toml", &settings, &[])
 }
 
+/// The project with its first scenario alone.
+#[track_caller]
+fn first_scenario(text: &str, settings: &[&str]) -> Project {
+    let mut project = read(text, settings).unwrap_or_else(|report| panic!("{report}")).project;
+    project.scenarios.truncate(1);
+    project
+}
+
 /// The first scenario, in which every number is one.
 #[track_caller]
 fn run(text: &str, settings: &[&str]) -> ScenarioRun {
-    let project = read(text, settings).unwrap_or_else(|report| panic!("{report}")).project;
+    let project = first_scenario(text, settings);
     let run = simulate_project(&Memory::default(), &Setup::new(&project).unwrap(), &mut |_| true)
         .unwrap()
         .remove(0);
@@ -146,8 +154,7 @@ fn hoses_without_length() {
 #[track_caller]
 fn apart(text: &str, settings: &[&str]) -> f64 {
     let force = |more: &[&str]| {
-        let project =
-            read(text, &[settings, more].concat()).unwrap_or_else(|report| panic!("{report}")).project;
+        let project = first_scenario(text, &[settings, more].concat());
         let run = simulate_project(&Memory::default(), &Setup::new(&project).unwrap(), &mut |_| true)
             .unwrap()
             .remove(0);
