@@ -81,8 +81,7 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::Bench(common) => on_project(&common, &Request::Bench, None),
         Command::Identify(recorded) => told(recorded.json, identify::answered(&recorded)),
         Command::Report { common, alternatives } => {
-            let files = common.out.is_some();
-            on_project(&common, &Request::Report { files, alternatives }, None)
+            on_project(&common, &Request::Report { files: common.out.is_some(), alternatives }, None)
         }
     };
     ended(outcome)

@@ -421,10 +421,10 @@ fn degrees(order: usize, integrators: usize, sampled: bool) -> Vec<(usize, usize
 }
 
 /// Whether a continuous controller of this order is also tried with as many zeros as poles, once
-/// none with fewer zeros has succeeded: a pair of zeros over a pair of poles, say, which has the
-/// phase of the zeros at every frequency above.
+/// none with fewer zeros has succeeded: a lead of first order, or a pair of zeros over a pair of
+/// poles, say, which has the phase of the zeros at every frequency above.
 fn is_worth_as_many_zeros(order: usize, ground: &Ground) -> bool {
-    order >= 2 && order > ground.integrators
+    order > ground.integrators
 }
 
 /// The same order with one zero fewer, where structures grow: a larger relative degree has less

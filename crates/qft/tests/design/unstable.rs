@@ -236,3 +236,34 @@ fn a_pair_of_zeros_over_a_pair_of_poles_is_tried() {
     assert_met(&problem, &design, TrackingJudgement::Spread);
     assert_eq!((design.structure.order(), design.structure.relative_degree()), (Ok(2), Ok(0)));
 }
+
+/// Plants of second order without damping, or with less than none: a lead of first order satisfies
+/// their limits. A lag cannot: with k/s^2 or k/(s^2 - a) one coefficient of its closed loop is zero
+/// or negative whatever its gain.
+#[test]
+fn a_lead_of_first_order_is_tried() {
+    let frequencies = [0.3, 1.0, 3.0, 10.0, 30.0, 100.0];
+    // |T| <= 1.09 with (s/0.35 + 1)/(s/30 + 1)
+    let free = uncertain(&[("k", 1.0, 1.0, 2.0)], |p| (vec![p[0]], vec![1.0.into(), 0.0.into(), 0.0.into()]));
+    // |T| <= 1.43 with 4 (s/20 + 1)/(s/2000 + 1)
+    let attracted = uncertain(&[("a", 430.0, 380.0, 480.0), ("k", 450.0, 400.0, 500.0)], |p| {
+        (vec![p[1]], vec![1.0.into(), 0.0.into(), -p[0]])
+    });
+    // |T| <= 1.05, |S| <= 0.87 up to 4 rad/s with 0.15 (s/0.4 + 1)/(s/450 + 1)
+    let fluttering = uncertain(&[("k", 1.0, 1.0, 1.2), ("w", 8.0, 7.7, 8.8)], |p| {
+        let squared = p[1] * p[1];
+        (vec![p[0] * squared], vec![1.0.into(), p[1] * Recorded::from(-0.13), squared])
+    });
+    let sensitivity = Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.89));
+    let sensitivity = demand(sensitivity, &[0.3, 1.0, 3.0], [0.0, 4.0]);
+    for (plant, specifications) in [
+        (free, vec![stability(1.15, &frequencies)]),
+        (attracted, vec![stability(1.5, &frequencies)]),
+        (fluttering, vec![stability(1.08, &frequencies), sensitivity]),
+    ] {
+        let problem = problem(boxed(plant, Spacing::Linear, 3), specifications);
+        let design = designed(&problem, growing(1, PrefilterChoice::None, 1));
+        assert_met(&problem, &design, TrackingJudgement::Spread);
+        assert_eq!((design.structure.order(), design.structure.relative_degree()), (Ok(1), Ok(0)));
+    }
+}
