@@ -2,7 +2,7 @@
 //! compared with what the linear loop predicts.
 //!
 //! ```text
-//! project, audit -> rigs::rigs -> Rigs { project, plant } -> run::runs, at two sizes of the step -> judge -> Run { linear, machine, agreement, reason } -> answer
+//! project, audit -> rigs::rigs -> Tried { project, plant } -> TriedMachine::driven, at two sizes of the step -> judge -> Run { linear, machine, agreement, reason } -> answer
 //! ```
 
 mod judge;
@@ -16,6 +16,7 @@ pub use crate::linear_step::StepResponse;
 pub(crate) use rigs::waves_alone;
 pub use rigs::with_waves;
 pub use run::{Agreement, Leg, StepSize, TrialRun, TrialStep, agreement_word};
+use run::{DrivenSteps, TriedMachine};
 
 use crate::audit::ProjectAudit;
 use crate::rig::RigError;
@@ -85,14 +86,19 @@ pub fn tried(
     let (rigs, not_driven) = rigs::rigs(setup, rig, problem, view);
     let count = rigs.len() as f64;
     let mut runs = Vec::new();
+    let mut declared: Option<Vec<DrivenSteps>> = None;
     for (index, rig) in rigs.iter().enumerate() {
         let mut within = |progress: Progress| {
             watch(Progress { stage: STAGE, share: (index as f64 + progress.share) / count })
         };
-        match run::runs(source, rig, problem, view, &mut within)? {
-            Some(of_machine) => runs.extend(of_machine),
-            None => return Err(Stopped.into()),
+        let machine = TriedMachine::of(rig, problem)?;
+        if let Some(known) = declared.as_ref().filter(|_| rig.is_declared) {
+            runs.extend(machine.judged(known, problem, view));
+            continue;
         }
+        let Some(driven) = machine.driven(source, &mut within)? else { return Err(Stopped.into()) };
+        runs.extend(machine.judged(&driven, problem, view));
+        declared.get_or_insert(driven);
     }
     Ok(Some(Trial { runs, not_driven }))
 }

@@ -206,6 +206,20 @@ fn lost_motion_shows_on_the_way_back() {
     }
 }
 
+/// A worst plant that differs from the declared rig by the side of null alone has another linear
+/// loop, and the machine of the declared rig.
+#[test]
+fn a_side_of_null_is_no_other_machine() {
+    let object = tried(&["valve.hysteresis=0.4", "valve.threshold=0.02"]);
+    let [declared, worst] =
+        ["the rig as declared", "the worst plant of 1 robust stability"].map(|what| run(&object, what));
+    assert!(worst["plant"]["operating_point.spool_side"].is_number(), "{worst}");
+    for key in ["machine", "steps", "remaining_amplitude_n", "reference_n"] {
+        assert_eq!(declared[key], worst[key], "{key}");
+    }
+    assert_ne!(declared["linear"], worst["linear"]);
+}
+
 /// A spool of limited speed: a tenth of the force is reached as the linear loop predicts, and the
 /// largest step at which nothing saturates is not.
 #[test]

@@ -31,6 +31,9 @@ pub(super) struct Tried {
     pub(super) project: Project,
     /// `None` where none is known.
     pub(super) plant: Option<PlantMember>,
+    /// Whether its machine is that of the rig as declared: they differ at most by the side of null
+    /// from which the valve is linearised.
+    pub(super) is_declared: bool,
 }
 
 /// Relative deviation of a parameter of the linear model from that of a plant that is allowed.
@@ -59,6 +62,7 @@ pub(super) fn rigs(
         quarter_wave_rad_per_s,
         project,
         plant: Some(plant.clone()),
+        is_declared: false,
     };
     let mut rigs = vec![of("the rig as declared", project.clone(), None)];
     let waves = with_waves(project);
@@ -83,6 +87,7 @@ pub(super) fn rigs(
                 what,
                 named: Some(view.names.named(&worst.plant)),
                 quarter_wave_rad_per_s: None,
+                is_declared: is_same_machine(project.clone(), setup.project.clone()),
                 project,
                 plant: match &problem.family {
                     Family::Uncertain(family) => family.plant().member(&values),
@@ -93,6 +98,15 @@ pub(super) fn rigs(
         }
     }
     (rigs, missing)
+}
+
+/// Whether two projects have one machine, uncertainty and the side of null left out.
+fn is_same_machine(one: Project, other: Project) -> bool {
+    let [one, other] = [one, other].map(|mut project| {
+        project.operating_point.spool_side = None;
+        project.without_uncertainty()
+    });
+    one == other
 }
 
 /// The same rig with its lumped lines as transmission lines, and a transmission in as many segments

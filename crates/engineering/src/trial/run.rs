@@ -115,46 +115,6 @@ const LEAST: f64 = 0.2;
 const REDUCTION: f64 = 0.75;
 const REDUCTIONS: usize = 6;
 
-/// Drives one machine through steps by a tenth of its force, then through the largest at which
-/// nothing saturates; `None` where the watcher stops it.
-pub(super) fn runs(
-    source: &dyn Source,
-    tried: &Tried,
-    problem: &RobustProblem,
-    view: &ProjectAudit,
-    watch: Watch<'_>,
-) -> Result<Option<Vec<TrialRun>>, TrialError> {
-    let setup = Setup::new(&tried.project)?;
-    let machine = TriedMachine { source, tried, setup: &setup, linear: LinearStep::of(tried, problem)? };
-    let rig = setup.rig()?;
-    let tenth = Steps::tenth(rig, machine.linear.hold_s());
-    let judged =
-        |size, steps: &Steps, outcome: &TrialOutcome| machine.judged((size, steps), outcome, (problem, view));
-    let Some(first) = machine.driven(&tenth, &mut part(watch, STAGE, [0.0, 0.3])) else { return Ok(None) };
-    let mut runs = vec![judged(StepSize::Tenth, &tenth, &first)];
-    let Ok(driven) = &first else { return Ok(Some(runs)) };
-    if machine.is_decided(&tenth, driven) {
-        return Ok(Some(runs));
-    }
-    let mut steps = tenth.enlarged(rig, CommandLimits::of(setup.project, rig), driven);
-    for reduction in 0..REDUCTIONS {
-        let ratio = steps.size() / tenth.size();
-        if (ratio < WORTH && !is_limited(driven)) || ratio < LEAST {
-            break;
-        }
-        let from = 0.3 + 0.7 * reduction as f64 / REDUCTIONS as f64;
-        let Some(outcome) = machine.driven(&steps, &mut part(watch, STAGE, [from, 1.0])) else {
-            return Ok(None);
-        };
-        if outcome.as_ref().is_ok_and(|driven| !is_limited(driven) && !steps.stalls(driven)) {
-            runs.push(judged(StepSize::Largest, &steps, &outcome));
-            break;
-        }
-        steps = steps.scaled(REDUCTION);
-    }
-    Ok(Some(runs))
-}
-
 /// Whether a run met a limit or an end on its way.
 fn is_limited(driven: &ScenarioRun) -> bool {
     driven.occurrences.iter().any(|one| one.begins) || !driven.exceeded.is_empty()
@@ -163,35 +123,100 @@ fn is_limited(driven: &ScenarioRun) -> bool {
 /// A run of the steps, or why there is none.
 type TrialOutcome = Result<ScenarioRun, SimulateError>;
 
+/// Steps through which a machine was driven, and what came of them.
+pub(super) struct DrivenSteps {
+    size: StepSize,
+    steps: Steps,
+    outcome: TrialOutcome,
+}
+
 /// A machine, and what the linear loop predicts for it.
-struct TriedMachine<'a> {
-    source: &'a dyn Source,
+pub(super) struct TriedMachine<'a> {
     tried: &'a Tried,
-    setup: &'a Setup<'a>,
     linear: LinearStep,
 }
 
-impl TriedMachine<'_> {
+impl<'a> TriedMachine<'a> {
+    /// A machine with its prediction.
+    pub(super) fn of(tried: &'a Tried, problem: &RobustProblem) -> Result<TriedMachine<'a>, TrialError> {
+        Ok(TriedMachine { tried, linear: LinearStep::of(tried, problem)? })
+    }
+
+    /// Drives it through steps by a tenth of its force, then through the largest at which nothing
+    /// saturates; `None` where the watcher stops it.
+    pub(super) fn driven(
+        &self,
+        source: &dyn Source,
+        watch: Watch<'_>,
+    ) -> Result<Option<Vec<DrivenSteps>>, TrialError> {
+        let setup = Setup::new(&self.tried.project)?;
+        let rig = setup.rig()?;
+        let on = (source, &setup);
+        let tenth = Steps::tenth(rig, self.linear.hold_s());
+        let Some(outcome) = self.driven_by(on, &tenth, &mut part(watch, STAGE, [0.0, 0.3])) else {
+            return Ok(None);
+        };
+        let mut all = vec![DrivenSteps { size: StepSize::Tenth, steps: tenth, outcome }];
+        let Some(DrivenSteps { outcome: Ok(driven), .. }) = all.first() else { return Ok(Some(all)) };
+        if self.is_decided(&tenth, driven) {
+            return Ok(Some(all));
+        }
+        let was_limited = is_limited(driven);
+        let mut steps = tenth.enlarged(rig, CommandLimits::of(setup.project, rig), driven);
+        for reduction in 0..REDUCTIONS {
+            let ratio = steps.size() / tenth.size();
+            if (ratio < WORTH && !was_limited) || ratio < LEAST {
+                break;
+            }
+            let from = 0.3 + 0.7 * reduction as f64 / REDUCTIONS as f64;
+            let Some(outcome) = self.driven_by(on, &steps, &mut part(watch, STAGE, [from, 1.0])) else {
+                return Ok(None);
+            };
+            if outcome.as_ref().is_ok_and(|driven| !is_limited(driven) && !steps.stalls(driven)) {
+                all.push(DrivenSteps { size: StepSize::Largest, steps, outcome });
+                break;
+            }
+            steps = steps.scaled(REDUCTION);
+        }
+        Ok(Some(all))
+    }
+
+    /// The judgement of each.
+    pub(super) fn judged(
+        &self,
+        all: &[DrivenSteps],
+        problem: &RobustProblem,
+        view: &ProjectAudit,
+    ) -> Vec<TrialRun> {
+        all.iter().map(|driven| self.judgement(driven, (problem, view))).collect()
+    }
+
     /// Drives it; `None` where the watcher stops it. The first step alone comes first: where it
     /// decides, the others and the repetition at smaller tolerances would take most of the time.
-    fn driven(&self, steps: &Steps, watch: Watch<'_>) -> Option<TrialOutcome> {
+    fn driven_by(
+        &self,
+        on: (&dyn Source, &Setup<'_>),
+        steps: &Steps,
+        watch: Watch<'_>,
+    ) -> Option<TrialOutcome> {
         let once = RunOutput { repeats: false, ..RunOutput::new(true, None) };
-        let first = self.driven_up_to((steps, Leg::There), once, &mut part(watch, STAGE, [0.0, 0.3]));
+        let first = self.driven_up_to(on, (steps, Leg::There), once, &mut part(watch, STAGE, [0.0, 0.3]));
         if !matches!(&first, Some(Ok(driven)) if !self.is_decided(steps, driven)) {
             return first;
         }
         let whole = RunOutput::new(true, None);
-        self.driven_up_to((steps, Leg::Again), whole, &mut part(watch, STAGE, [0.3, 1.0]))
+        self.driven_up_to(on, (steps, Leg::Again), whole, &mut part(watch, STAGE, [0.3, 1.0]))
     }
 
     fn driven_up_to(
         &self,
+        (source, setup): (&dyn Source, &Setup<'_>),
         (steps, last): (&Steps, Leg),
         output: RunOutput<'_>,
         watch: Watch<'_>,
     ) -> Option<TrialOutcome> {
         let project = steps.project(&self.tried.project, last);
-        match simulate_into(self.source, &self.setup.asked(&project), output, watch) {
+        match simulate_into(source, &setup.asked(&project), output, watch) {
             Ok(runs) => runs.into_iter().next().filter(|driven| !driven.was_cancelled()).map(Ok),
             Err(error) => Some(Err(error)),
         }
@@ -204,12 +229,12 @@ impl TriedMachine<'_> {
         driven.stopped().is_some() || (self.linear.grows && !settles)
     }
 
-    fn judged(
+    fn judgement(
         &self,
-        (size, steps): (StepSize, &Steps),
-        outcome: &TrialOutcome,
+        DrivenSteps { size, steps, outcome }: &DrivenSteps,
         (problem, view): (&RobustProblem, &ProjectAudit),
     ) -> TrialRun {
+        let size = *size;
         let LinearStep { step: linear, ref response, grows } = self.linear;
         let blank = TrialRun {
             what: match size {
