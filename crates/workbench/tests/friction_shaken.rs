@@ -130,11 +130,9 @@ fn table(rows: &[[f64; 2]], noise: [f64; 2], seed: u64) -> String {
 #[test]
 fn equations_of_another_hand_come_back() {
     let rows = integrated(4137);
-    for seed in 1..=2 {
-        let source = recorded(&["bench.friction={ velocities = 8 }"]);
-        let source = source.with("own.csv", table(&rows[100..], [0.5, 5.0], seed));
-        tells(&parsed(&source, &[SLIDING, "own.csv"]), 0.08);
-    }
+    let source = recorded(&["bench.friction={ velocities = 8 }"]);
+    let source = source.with("own.csv", table(&rows[100..], [0.5, 5.0], 1));
+    tells(&parsed(&source, &[SLIDING, "own.csv"]), 0.08);
 }
 
 /// A load cell and its environment hold the rod of the whole machine, whose valve is shaken:

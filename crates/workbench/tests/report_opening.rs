@@ -219,8 +219,8 @@ fn what_to_do_next_follows_from_the_results() {
 /// A page of a rig without a controller has no columns and says so.
 #[test]
 fn cards_tell_load_lines_and_hose() {
-    let (undesigned, _) = HOSE.split_once("[design] ").unwrap();
-    let page = plain(&opening(&report_of(undesigned, &[])));
+    let (rig, _) = HOSE.split_once("[uncertainty]").unwrap();
+    let page = plain(&opening(&report_of(rig, &[])));
     for words in [
         "Load",
         "moves as prescribed, behind 20 kN/mm",
@@ -235,7 +235,7 @@ fn cards_tell_load_lines_and_hose() {
         "load.stiffness=1 MN/m",
         "load.damping=100 N.s/m",
     ];
-    let page = plain(&opening(&report_of(undesigned, &load)));
+    let page = plain(&opening(&report_of(rig, &load)));
     assert!(
         page.contains("spring, mass and damper: 20 kg, 1 kN/mm") || page.contains("20 kg, 1 MN/m"),
         "{page}"
