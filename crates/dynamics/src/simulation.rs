@@ -5,6 +5,7 @@
 //! time, and the times at which they break, so that no step ever crosses a break and every restart
 //! is exact.
 
+mod carried;
 mod commanded_plant;
 mod course;
 mod derivatives;
@@ -36,8 +37,8 @@ mod vector;
 
 pub use commanded_plant::{CommandedPlant, LoopSignals};
 pub use course::{
-    Amplification, Attention, Event, Input, InputSchedule, Observer, Outcome, Sampler, SimulationError,
-    SimulationSettings, Status, StepCounts,
+    Amplification, Attention, Event, GrowthCause, Input, InputSchedule, Observer, Outcome, Sampler,
+    SimulationError, SimulationSettings, Status, StepCounts,
 };
 pub use derivatives::DIRECTIONS;
 pub use driver::drive;

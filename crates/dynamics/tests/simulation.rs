@@ -1,6 +1,7 @@
 //! Systems driven in time, against closed forms, published solutions and independent methods.
 #![cfg(test)]
 
+mod carried;
 mod closed_loop;
 mod delays;
 mod events;

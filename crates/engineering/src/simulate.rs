@@ -52,13 +52,16 @@ pub use measured::Overlay;
 pub use metrics::{Cause, Measured, Metrics, Window};
 pub use parts::SignalParts;
 pub use record::{Look, Record};
-pub(crate) use repetition::moved;
 pub use repetition::{
-    Pass, PassAgreement, PassPlan, PassResult, PassSpread, Repetition, SMALLEST_TOLERANCE, repeated,
+    Pass, PassAgreement, PassPlan, PassResult, PassSpread, Repetition, SMALLEST_TOLERANCE, moved, repeated,
 };
 use run::RunPass;
-pub use run::{BeyondExpansion, Occurrence, ScenarioRun, StoppedRun, UnresolvedMode};
-pub use run::{COMMAND_LIMIT, DIVERGED, ERRORS_AMPLIFIED, REPEATED, amplification};
+pub use run::{BeyondExpansion, Occurrence, ScenarioProblem, ScenarioRun, StoppedRun, UnresolvedMode};
+pub use run::{
+    COMMAND_LIMIT, COMPLETED, DIVERGED, ERRORS_AMPLIFIED, OUTSIDE_MODEL, REPEATED, UNDETERMINED,
+    amplification,
+};
+pub(crate) use run::{outside_model_s, status_word};
 pub use saved::SavedState;
 
 pub use bench::options;
@@ -302,6 +305,19 @@ fn prepared<'p>(source: &dyn Source, setup: &Setup<'p>) -> Result<Vec<PreparedRu
         Ok(PreparedRun { scenario, bench, course, measured })
     };
     project.scenarios.iter().map(prepare).collect()
+}
+
+/// The scenarios of a project for another solver.
+///
+/// # Errors
+/// As [`simulate_project`].
+pub fn scenario_problems(
+    source: &dyn Source,
+    setup: &Setup<'_>,
+) -> Result<Vec<ScenarioProblem>, SimulateError> {
+    let prepared = prepared(source, setup)?;
+    let of = |one: &PreparedRun<'_>| ScenarioProblem::of(&one.bench, one.scenario, &one.course);
+    Ok(prepared.iter().map(of).collect())
 }
 
 impl PreparedRun<'_> {

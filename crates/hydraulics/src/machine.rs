@@ -208,6 +208,11 @@ impl Machine {
         self.layout.gas_places(shut)
     }
 
+    /// The lines to chambers A and B.
+    pub fn lines(&self) -> &[DynamicLine; 2] {
+        &self.lines
+    }
+
     /// Whether its inputs hold the setting of its accumulators.
     pub fn has_moving_setting(&self) -> bool {
         self.moving_setting

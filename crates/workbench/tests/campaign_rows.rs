@@ -10,6 +10,8 @@ use serde_json::Value;
 
 const CAMPAIGN: &str = include_str!("../../../examples/benchmark/campaign.toml");
 
+const KNEE: &str = include_str!("../../../examples/leg/knee.toml");
+
 /// One step of the force, and a load that moves.
 const SHORT: [&str; 4] = [
     "scenario.0.duration=0.4 s",
@@ -20,8 +22,12 @@ const SHORT: [&str; 4] = [
 
 /// The row of a run in a campaign of a few, and the same run by itself.
 fn agree(more: &[&str]) {
-    let source = Memory::default().with("campaign.toml", CAMPAIGN);
-    let settings: Vec<String> = SHORT.iter().chain(more).map(|text| (*text).to_string()).collect();
+    agree_of(CAMPAIGN, &[&SHORT[..], more].concat());
+}
+
+fn agree_of(text: &str, more: &[&str]) {
+    let source = Memory::default().with("campaign.toml", text);
+    let settings: Vec<String> = more.iter().map(|text| (*text).to_string()).collect();
     let loaded =
         project::read(&source, "campaign.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
     let plan = Plan::new(&source, &loaded, 5).unwrap();
@@ -81,4 +87,13 @@ fn a_load_that_yields_is_repeated_to_the_bit() {
     let fed = "controller.load_velocity_feed_forward.gain=5";
     agree(&[sprung, fed]);
     agree(&[sprung, fed, "controller.sample_time=1 ms"]);
+}
+
+/// A joint that the cylinder turns: its load is stated about the joint, its rows are moments.
+#[test]
+fn a_joint_is_repeated_to_the_bit() {
+    let campaign = "[campaign]\nparameters = { \"supply.pressure\" = { spread = \"10 %\" } }\n";
+    let text = format!("{KNEE}\n{campaign}");
+    agree_of(&text, &["scenario.0.load_motion.start=0.4 s", "scenario.0.duration=0.8 s"]);
+    agree_of(&text, &["controller.sample_time=1 ms"]);
 }

@@ -49,9 +49,11 @@ fn a_line_that_is_shut_cavitates_at_its_valve() {
         assert_eq!(found["distance_m"], Value::from(0.0));
         assert_eq!(begins(&run, "cavitation_line_a"), Some(first));
         assert_eq!(run["outside_model_s"].as_f64(), Some(first));
+        assert_eq!(run["status"], "outside_model");
     }
     let calm = run(&[SEGMENTS, "scenario.0.command.0.voltage=0.1 V"]);
     assert!(exceeded(&calm, "vapour_pressure", "line_a").is_none() && calm["outside_model_s"].is_null());
+    assert_eq!(calm["status"], "completed");
 }
 
 /// Re = 4 q/(pi d nu): the bore and the viscosity at which the same flow is laminar.
@@ -119,6 +121,7 @@ fn a_campaign_lists_limits_of_lines() {
     for kind in ["cavitation_line_a", "turbulent_line_a"] {
         assert!(kinds.contains(&kind), "{kinds:?}");
     }
+    assert_eq!((&all["statuses"]["outside_model"], &all["statuses"]["completed"]), (&2.into(), &0.into()));
 }
 
 /// What went into each part less what it lost is what it holds more, to a millionth of what went

@@ -73,6 +73,8 @@ fn an_unstable_sampled_loop_is_reported() {
     let (run, answer) = simulated(SAMPLED, &["controller.numerator=0.03*s+0.1", "scenario.0.duration=2.5 s"]);
     assert!(number(&run["errors_amplified"]["growth_logarithm"]) > 7.0, "{run}");
     assert!(run["repetition"]["passes"].as_array().unwrap().len() > 1);
+    assert_eq!(run["errors_amplified"]["cause"], "closed_loop");
+    assert!(answer.text.contains("the closed loop is unstable"), "{}", answer.text);
     assert!(answer.text.contains("errors within the tolerance may become visible"), "{}", answer.text);
     let rest = [
         "controller.numerator=0.03*s+0.1",
@@ -82,6 +84,11 @@ fn an_unstable_sampled_loop_is_reported() {
     assert!(number(&run["errors_amplified"]["growth_logarithm"]) > 30.0, "{run}");
     assert_eq!(run["repetition"]["status"], "undetermined", "{run}");
     assert!(answer.text.contains("no solver determines"), "{}", answer.text);
+    // numbers that rounding decides are no result
+    let (run, answer) = simulated(include_str!("projects/unstable_rest_sampled.toml"), &[]);
+    assert_eq!(run["errors_amplified"]["cause"], "closed_loop");
+    assert_eq!(run["repetition"]["status"], "undetermined");
+    assert_eq!((&run["status"], answer.affirmative), (&"undetermined".into(), false));
 }
 
 /// A step of 1 uN excites the unstable loop: the force grows as the frozen loop says.

@@ -41,7 +41,10 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ),
     ("apps/cli", &["phea-workbench"]),
     ("fuzz", &["phea-workbench"]),
-    ("benches/peers/sundials", &["phea-dynamics", "phea-hydraulics", "phea-machine"]),
+    (
+        "benches/peers/sundials",
+        &["phea-dynamics", "phea-engineering", "phea-hydraulics", "phea-machine", "phea-project"],
+    ),
     ("xtask", &[]),
 ];
 

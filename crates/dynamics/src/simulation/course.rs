@@ -224,8 +224,22 @@ pub struct Amplification {
     pub from_s: f64,
     /// When it was largest, in s of simulated time.
     pub until_s: f64,
-    /// Magnitude of the eigenvalue at that time, in rad/s.
+    /// Magnitude of the eigenvalue at that time, in rad/s; zero where no single mode grows.
     pub frequency_rad_per_s: f64,
+    /// What grows.
+    pub cause: GrowthCause,
+}
+
+/// What amplifies errors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GrowthCause {
+    /// A mode of the machine, with a continuous controller if there is one.
+    #[default]
+    Mode,
+    /// The closed loop: from sample to sample, or with its delays.
+    Loop,
+    /// The motion from kink to kink, though no mode grows: bouncing off a wall.
+    Motion,
 }
 
 impl Amplification {
@@ -234,6 +248,16 @@ impl Amplification {
         let [one, other] = all;
         let more = other.filter(|other| one.is_none_or(|one| one.logarithm < other.logarithm));
         more.or(one)
+    }
+
+    /// The one that names a mode where it may show errors of this tolerance, else the one that grew
+    /// more.
+    pub(super) fn named(
+        mode: Option<Amplification>,
+        motion: Option<Amplification>,
+        tolerance: f64,
+    ) -> Option<Amplification> {
+        mode.filter(|mode| mode.may_show_errors(tolerance)).or(Amplification::larger([mode, motion]))
     }
 
     /// Whether rounding may have grown to a thousandth of the scales of the states: no tolerance

@@ -7,6 +7,7 @@ mod queued;
 pub use queued::drive;
 
 use super::Lane;
+use super::carried::CarriedErrors;
 use super::course::{
     Amplification, Attention, Event, Observer, Outcome, SimulationError, SimulationSettings, Status,
 };
@@ -31,6 +32,8 @@ struct Drive<'a, S, O> {
     frozen: Vec<FrozenWatch>,
     /// For lanes that are sampled.
     propagator: Propagator<S>,
+    /// An error in each lane, carried along.
+    carried: CarriedErrors<S>,
     settings: SimulationSettings,
     slots: Vec<Option<Slot<'a, O>>>,
     state: Vec<S>,
@@ -82,6 +85,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
             watches: vec![watch; S::COUNT],
             frozen: vec![FrozenWatch::default(); S::COUNT],
             propagator: Propagator::new(states),
+            carried: CarriedErrors::new(states),
             settings: *settings,
             slots: (0..S::COUNT).map(|_| None).collect(),
             state: vec![zero; states],
@@ -149,6 +153,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         self.propagator.forget(lane);
         self.watches[lane].forget();
         self.frozen[lane] = FrozenWatch::default();
+        self.carried.forget(lane);
         let states = vec![0.0; system.states()];
         let Task { sampler, observer, .. } = task;
         passage.attention = observer.attention();
@@ -187,6 +192,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         self.indicate_ends(system);
         let error = self.look_between(system, error);
         self.learn(error);
+        let mut taken = 0;
         for lane in 0..S::COUNT {
             let Some(slot) = &mut self.slots[lane] else { continue };
             if slot.passage.status.is_some() || slot.propagated {
@@ -195,8 +201,10 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
             slot.passage.work.evaluations += self.method.evaluations();
             if slot.passage.judge(error.lane(lane)) {
                 self.take(system, lane);
+                taken |= 1 << lane;
             }
         }
+        self.carry(system, taken);
     }
 
     /// Rates, Jacobian and slopes in time where each lane stands.
@@ -435,9 +443,12 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         let mut events = passage.events;
         sort_by_number(&mut events, |event| event.time_s);
         let end = self.state.iter().map(|state| state.lane(lane)).collect();
-        let all =
-            [self.watches[lane].amplification(), self.frozen[lane].amplification_at_end(passage.time_s)];
-        let amplification = Amplification::larger(all);
+        let of_mode = Amplification::larger([
+            self.watches[lane].amplification(),
+            self.frozen[lane].amplification_at_end(passage.time_s),
+        ]);
+        let of_motion = self.carried.amplification(lane);
+        let amplification = Amplification::named(of_mode, of_motion, self.settings.tolerance);
         Some((Outcome { status, events, work: passage.work, end, amplification }, observer))
     }
 }

@@ -58,6 +58,8 @@ pub(super) trait Kernel<S: Lane> {
     fn attempt(&self, method: &mut Rosenbrock<S>, trial: StepTrial<'_, S>, inputs: &StepInputs<S>) -> S;
     /// As [`Rosenbrock::error_between`].
     fn error_between(&self, method: &mut Rosenbrock<S>, trial: StepTrial<'_, S>, at: (S, &[S])) -> S;
+    /// As [`Rosenbrock::carry`].
+    fn carry(&self, method: &mut Rosenbrock<S>, step: S, error: &mut [S]);
     /// As [`Propagator::step`].
     fn propagate(&self, propagator: &mut Propagator<S>, trial: StepTrial<'_, S>, inputs: &[S]) -> S;
 }
@@ -127,6 +129,10 @@ where
         S::vectorized(VectorizedErrorBetween { method, system: self, trial, at }).unwrap_or(S::from(f64::NAN))
     }
 
+    fn carry(&self, method: &mut Rosenbrock<S>, step: S, error: &mut [S]) {
+        S::vectorized(Carrying { method, step, error });
+    }
+
     fn propagate(&self, propagator: &mut Propagator<S>, trial: StepTrial<'_, S>, inputs: &[S]) -> S {
         S::vectorized(Propagation { propagator, system: self, trial, inputs }).unwrap_or(S::from(f64::NAN))
     }
@@ -185,6 +191,22 @@ impl<S: Lane, E: System<S>> WithSimd for VectorizedErrorBetween<'_, S, E> {
     #[inline(always)]
     fn with_simd<V: Simd>(self, _: V) -> S {
         self.method.error_between(self.system, self.trial, self.at)
+    }
+}
+
+/// [`Rosenbrock::carry`] with the vector instructions that there are.
+struct Carrying<'m, S> {
+    method: &'m mut Rosenbrock<S>,
+    step: S,
+    error: &'m mut [S],
+}
+
+impl<S: Lane> WithSimd for Carrying<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) {
+        self.method.carry(self.step, self.error);
     }
 }
 

@@ -135,6 +135,18 @@ impl<S: Lane> Stepper<S> {
         }
     }
 
+    /// Carries a small error over the step just attempted, where the method has the matrix for it;
+    /// whether it has.
+    pub(super) fn carry(&mut self, system: &dyn Kernel<S>, step: S, error: &mut [S]) -> bool {
+        match &mut self.steps {
+            MethodSteps::Implicit(method) => {
+                system.carry(method, step, error);
+                true
+            }
+            MethodSteps::Explicit(..) => false,
+        }
+    }
+
     /// The implicit method with the Jacobian that it last found.
     pub(super) fn linearized(&self) -> Option<&Rosenbrock<S>> {
         match &self.steps {

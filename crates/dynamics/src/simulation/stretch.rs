@@ -24,6 +24,13 @@ impl Stretch<'_> {
         self.passage.still
     }
 
+    /// The wave of this number that arrives at a time in s, from its start until as long after its
+    /// end as the wave travels; NaN where there is none.
+    pub fn arriving(&self, wave: usize, time_s: f64) -> f64 {
+        let waves = self.passage.histories.get(wave);
+        waves.map_or(f64::NAN, |wave| wave.arriving(time_s, time_s)[0])
+    }
+
     /// All inputs at a part of it, from 0 to 1.
     pub fn inputs_at(&self, part: f64, inputs: &mut [f64]) {
         self.passage.inputs_within(part, inputs);

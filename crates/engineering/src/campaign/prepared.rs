@@ -17,7 +17,7 @@ use crate::setup::Setup;
 use crate::simulate::{
     COMMAND_LIMIT, ControlledMachine, Divergence, ERRORS_AMPLIFIED, Follower, LineLimits, LineWatch,
     Occurrence, PassAgreement, PassPlan, PassResult, PreparedScenario, REPEATED, Repetition, SimulateError,
-    StoppedRun, amplification, course_of, moved, occurrences, options,
+    StoppedRun, amplification, course_of, moved, occurrences, options, outside_model_s, status_word,
 };
 
 /// A run ready to be driven.
@@ -140,8 +140,10 @@ impl Prepared {
         let stopped = stopped.or_else(|| pass.divergence.as_ref().map(StoppedRun::diverged));
         let mut kinds: Vec<&'static str> = Vec::new();
         let of_lines = seen.lines.found().filter_map(|exceeded| Occurrence::of(&exceeded));
-        let all = self.occurrences(pass).into_iter().chain(of_lines);
-        for occurrence in all.filter(|occurrence| occurrence.begins) {
+        let all: Vec<Occurrence> = self.occurrences(pass).into_iter().chain(of_lines).collect();
+        let outside_s = outside_model_s(&all, self.bench.machine.has_end_stops());
+        let undetermined = repetition.is_some_and(|repetition| !repetition.is_determined());
+        for occurrence in all.iter().filter(|occurrence| occurrence.begins) {
             if !kinds.contains(&occurrence.kind) {
                 kinds.push(occurrence.kind);
             }
@@ -156,7 +158,7 @@ impl Prepared {
             None => {}
         }
         let ran = Ran {
-            status: stopped.map_or("completed", |stopped| stopped.word),
+            status: status_word(stopped, outside_s, undetermined),
             ended_s: stopped.map(|stopped| stopped.time_s),
             steps: outcome.work.steps,
             occurrences: kinds,

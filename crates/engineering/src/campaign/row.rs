@@ -8,7 +8,8 @@ use phea_quantity::MotionKind;
 use super::csv::{Csv, quoted};
 use super::shortest_number;
 use super::simulate::{
-    COMMAND_LIMIT, Cause, DIVERGED, ERRORS_AMPLIFIED, LINE_OCCURRENCES, Metrics, REPEATED, Window,
+    COMMAND_LIMIT, COMPLETED, Cause, DIVERGED, ERRORS_AMPLIFIED, LINE_OCCURRENCES, Metrics, OUTSIDE_MODEL,
+    REPEATED, UNDETERMINED, Window,
 };
 
 /// Names of the metrics, in the order of a row.
@@ -31,14 +32,16 @@ const LUMP_COLUMNS: [&str; 3] =
     ["hydraulic_stiffness_n_per_m", "flow_gain_m3_per_s_v", "flow_pressure_coefficient_m3_per_s_pa"];
 
 /// How a run ended, in the words of a row.
-pub const STATUS_WORDS: [&str; 7] = [
-    "completed",
+pub const STATUS_WORDS: [&str; 9] = [
+    COMPLETED,
     "refused",
     "step_too_small",
     "not_finite",
     "too_many_steps",
     "unresolved_oscillation",
     DIVERGED,
+    OUTSIDE_MODEL,
+    UNDETERMINED,
 ];
 
 const REFUSED: &str = "refused";

@@ -30,10 +30,10 @@ impl<'a> ScenarioComparison<'a> {
         self.projects.iter().map(move |(_, runs)| runs.iter().find(|run| run.name == name))
     }
 
-    /// Whether every scenario of every project ran to its end.
+    /// Whether every scenario of every project ran to its end and is reliable.
     pub fn is_complete(&self) -> bool {
         let complete = |(loaded, runs): &(&Loaded, Vec<ScenarioRun>)| {
-            runs.len() == loaded.project.scenarios.len() && runs.iter().all(|run| run.stopped().is_none())
+            runs.len() == loaded.project.scenarios.len() && runs.iter().all(ScenarioRun::is_reliable)
         };
         self.projects.iter().all(complete)
     }

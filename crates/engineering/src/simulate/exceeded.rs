@@ -39,6 +39,13 @@ pub enum LimitPlace {
         /// m from the valve.
         distance_m: f64,
     },
+    /// In the neck of the accumulator at chamber `a` or `b`.
+    Neck(char),
+    /// In the line of a transmission.
+    Transmission {
+        /// m from the rod's piston.
+        distance_m: f64,
+    },
 }
 
 impl LimitPlace {
@@ -50,12 +57,18 @@ impl LimitPlace {
             LimitPlace::Chamber(_) => Some("chamber_b"),
             LimitPlace::Line { side: 'a', .. } => Some("line_a"),
             LimitPlace::Line { .. } => Some("line_b"),
+            LimitPlace::Neck('a') => Some("neck_a"),
+            LimitPlace::Neck(_) => Some("neck_b"),
+            LimitPlace::Transmission { .. } => Some("transmission"),
         }
     }
 
-    /// m from the valve, in a line.
+    /// m from the valve in a line, from the rod's piston in that of a transmission.
     pub fn distance_m(self) -> Option<f64> {
-        if let LimitPlace::Line { distance_m, .. } = self { Some(distance_m) } else { None }
+        match self {
+            LimitPlace::Line { distance_m, .. } | LimitPlace::Transmission { distance_m } => Some(distance_m),
+            LimitPlace::Rig | LimitPlace::Chamber(_) | LimitPlace::Neck(_) => None,
+        }
     }
 }
 
@@ -94,8 +107,9 @@ impl RigLimit {
     }
 }
 
-/// Names of the occurrences of lines: for each limit that of line A, then that of line B.
-pub const LINE_OCCURRENCES: [&str; 8] = [
+/// Names of the occurrences of lines: for each limit that of line A, then that of line B; then
+/// those of necks and of a transmission.
+pub const LINE_OCCURRENCES: [&str; 11] = [
     "cavitation_line_a",
     "cavitation_line_b",
     "working_pressure_a",
@@ -104,7 +118,12 @@ pub const LINE_OCCURRENCES: [&str; 8] = [
     "burst_pressure_b",
     "turbulent_line_a",
     "turbulent_line_b",
+    "turbulent_neck_a",
+    "turbulent_neck_b",
+    TURBULENT_TRANSMISSION,
 ];
+
+const TURBULENT_TRANSMISSION: &str = "turbulent_transmission";
 
 impl Exceeded {
     /// The name of its occurrence; `None` for limits that have none, and in a chamber for vapour
@@ -114,6 +133,8 @@ impl Exceeded {
             (RigLimit::VapourPressure, LimitPlace::Line { .. }) => 0,
             (RigLimit::WorkingPressure, _) => 2,
             (RigLimit::BurstPressure, _) => 4,
+            (RigLimit::LaminarFlow, LimitPlace::Transmission { .. }) => return Some(TURBULENT_TRANSMISSION),
+            (RigLimit::LaminarFlow, LimitPlace::Neck(_)) => 8,
             (RigLimit::LaminarFlow, _) => 6,
             _ => return None,
         };
@@ -278,6 +299,12 @@ pub fn words(exceeded: &Exceeded) -> String {
         [exceeded.peak_time_s, exceeded.first_time_s].map(|time| DisplayUnit::SECOND.number(time, 4));
     let place = match exceeded.place {
         LimitPlace::Rig => String::new(),
+        LimitPlace::Neck(side) => {
+            format!("in the neck of the accumulator at chamber {}", side.to_ascii_uppercase())
+        }
+        LimitPlace::Transmission { distance_m } => {
+            format!("in the transmission, {} from the rod's piston,", display(distance_m, &LENGTH, 3))
+        }
         LimitPlace::Chamber(side) => format!("in chamber {}", side.to_ascii_uppercase()),
         LimitPlace::Line { side, distance_m } => {
             format!(
@@ -306,8 +333,8 @@ pub fn words(exceeded: &Exceeded) -> String {
             exceeded.limit.word().replace('_', " ")
         ),
         RigLimit::LaminarFlow => format!(
-            "from {first} s on the flow is turbulent where the line has laminar friction: {place} the Reynolds number comes to {peak} at \
-             {at} s, and above {limit} the line loses more pressure than is computed"
+            "from {first} s on the flow is turbulent where laminar friction is computed: {place} the Reynolds number comes to {peak} at \
+             {at} s, and above {limit} more pressure is lost"
         ),
     }
 }

@@ -1,19 +1,24 @@
 //! Limits of lines and chambers: vapour pressure, the pressures that hoses and pipes bear, and the
 //! Reynolds number up to which their friction is that of the equations. They are watched at every
-//! node of a line, over the solution itself, between its rows too.
+//! node of a line, at its quarters where waves travel along it, in necks and in the line of a
+//! transmission, over the solution itself, between its rows too.
 //!
 //! ```text
 //! Re = 4 |q|/(pi d nu)          laminar up to 2300
 //! ```
 
+mod waves;
+
 use phea_dynamics::simulation::{Quartic, Stretch};
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::line::Line;
+use phea_hydraulics::series::SeriesElement;
 
 use super::bench::ControlledMachine;
 use super::exceeded::{Exceeded, LimitPlace, RigLimit, WatchedLimit};
 use super::sum::SignalSum;
 use crate::project::{DeclaredLine, LineMotion, Project};
+use waves::{WaveLine, WithinLine};
 
 /// The Reynolds number above which flow in a round pipe is no longer laminar.
 pub const LAMINAR_UP_TO: f64 = 2300.0;
@@ -25,6 +30,8 @@ pub struct LineLimits {
     /// Pa, of its hose or pipe, where stated.
     working_pa: Option<f64>,
     burst_pa: Option<f64>,
+    /// m, diameter of the neck of its accumulator.
+    neck_m: Option<f64>,
 }
 
 /// Nodes of a line in addition to its chamber.
@@ -55,7 +62,8 @@ impl LineLimits {
         let of_hose = line.hose().map(|hose| [hose.working_pressure, hose.burst_pressure]);
         let of_pipe = line.pipe().map(|pipe| [pipe.working_pressure, pipe.burst_pressure]);
         let [working_pa, burst_pa] = of_hose.or(of_pipe).unwrap_or_default();
-        LineLimits { nodes, working_pa, burst_pa }
+        let neck_m = line.accumulator.and_then(|gas| Some(gas.neck?.diameter));
+        LineLimits { nodes, working_pa, burst_pa, neck_m }
     }
 
     /// Whether the chamber's own pressure is not all there is to watch.
@@ -88,19 +96,34 @@ struct WatchedPoint {
     limits: Vec<usize>,
 }
 
+/// A line along which waves travel, with the limits of its pressure and flow.
+struct WatchedWaves {
+    line: WaveLine,
+    side: char,
+    length_m: f64,
+    /// Reynolds number over flow, s/m3.
+    scale: f64,
+    /// Indices of the limits of its pressure, and of that of its flow.
+    pressures: Vec<usize>,
+    flow: usize,
+}
+
 /// Watches chambers and lines.
 pub(crate) struct LineWatch {
     limits: Vec<WatchedLimit>,
     points: Vec<WatchedPoint>,
+    waves: Vec<WatchedWaves>,
 }
 
 impl LineWatch {
     /// Of both sides of a machine, from these observed states.
     pub(crate) fn of(bench: &ControlledMachine, wanted: &[usize]) -> LineWatch {
-        let mut watch = LineWatch { limits: vec![], points: vec![] };
+        let mut watch = LineWatch { limits: vec![], points: vec![], waves: vec![] };
         for side in [0, 1] {
             watch.side(bench, wanted, side);
+            watch.neck(bench, wanted, side);
         }
+        watch.transmission(bench, wanted);
         watch
     }
 
@@ -114,7 +137,9 @@ impl LineWatch {
             let watched = bench.line_limits[side].is_watched();
             chamber.into_iter().chain(own).filter(|_| watched).collect::<Vec<usize>>()
         };
-        [0, 1].into_iter().flat_map(of_side).collect()
+        let necks = [0, 1].into_iter().filter_map(|side| neck(bench, side));
+        let oil = transmission_flows(bench).into_iter();
+        [0, 1].into_iter().flat_map(of_side).chain(necks).chain(oil).collect()
     }
 
     fn side(&mut self, bench: &ControlledMachine, wanted: &[usize], side: usize) {
@@ -148,10 +173,19 @@ impl LineWatch {
         if flows.is_empty() {
             return;
         }
-        let laminar = WatchedLimit::new(RigLimit::LaminarFlow, [-LAMINAR_UP_TO, LAMINAR_UP_TO]);
-        let limits = vec![self.add(laminar)];
-        let scale = 4.0 / (std::f64::consts::PI * bore_m * components.fluid.kinematic_viscosity);
+        let laminar = self.add(laminar());
+        let limits = vec![laminar];
+        let scale = reynolds_over_flow(bench, bore_m);
         let count = flows.len();
+        if let (LineNodes::Waves, [at_valve, at_chamber]) = (own.nodes, &flows[..]) {
+            let state = |number: usize| line.get(number).map(|place| at(*place));
+            let ends = state(*at_valve).zip(state(*at_chamber));
+            self.waves.extend(ends.and_then(|(at_valve, at_chamber)| {
+                let line = WaveLine::of(bench, side, [at_valve, at_chamber])?;
+                let pressures = [&[in_line], &borne[..]].concat();
+                Some(WatchedWaves { line, side: name, length_m, scale, pressures, flow: laminar })
+            }));
+        }
         for (index, number) in flows.into_iter().enumerate() {
             let Some(place) = line.get(number).copied() else { continue };
             let distance_m = match own.nodes {
@@ -165,6 +199,32 @@ impl LineWatch {
                 place: place_m,
                 limits: limits.clone(),
             });
+        }
+    }
+
+    /// The flow through the neck of an accumulator.
+    fn neck(&mut self, bench: &ControlledMachine, wanted: &[usize], side: usize) {
+        let Some((place, diameter_m)) = neck(bench, side).zip(bench.line_limits[side].neck_m) else { return };
+        let limits = vec![self.add(laminar())];
+        let signal = SignalSum::of(wanted, bench.control.size(), move |state, _| state[place]);
+        let scale = reynolds_over_flow(bench, diameter_m);
+        self.points.push(WatchedPoint { signal, scale, place: LimitPlace::Neck(['a', 'b'][side]), limits });
+    }
+
+    /// The flow through the line of a transmission.
+    fn transmission(&mut self, bench: &ControlledMachine, wanted: &[usize]) {
+        let series = bench.rig.actuator.components().series;
+        let Some(SeriesElement::Transmission(transmission)) = series else { return };
+        let [length_m, bore_m] = size(&transmission.line);
+        let flows = transmission_flows(bench);
+        let limits = vec![self.add(laminar())];
+        let scale = transmission.piston_area * reynolds_over_flow(bench, bore_m);
+        let count = flows.len();
+        for (plug, place) in flows.into_iter().enumerate() {
+            let signal = SignalSum::of(wanted, bench.control.size(), move |state, _| state[place]);
+            let distance_m = length_m * (plug as f64 + 0.5) / count as f64;
+            let place = LimitPlace::Transmission { distance_m };
+            self.points.push(WatchedPoint { signal, scale, place, limits: limits.clone() });
         }
     }
 
@@ -184,12 +244,50 @@ impl LineWatch {
                 }
             }
         }
+        for WatchedWaves { line, side, length_m, scale, pressures, flow } in &self.waves {
+            for WithinLine { part, pressure, flow: along } in line.within(stretch) {
+                let place = LimitPlace::Line { side: *side, distance_m: part * length_m };
+                for limit in pressures {
+                    if let Some(limit) = self.limits.get_mut(*limit) {
+                        limit.follow(times_s, &pressure, place);
+                    }
+                }
+                let reynolds = along.map(|along| Quartic::constant(0.0).plus(*scale, &along));
+                if let (Some(reynolds), Some(limit)) = (reynolds, self.limits.get_mut(*flow)) {
+                    limit.follow(times_s, &reynolds, place);
+                }
+            }
+        }
     }
 
     /// The limits that were exceeded.
     pub(crate) fn found(&self) -> impl Iterator<Item = Exceeded> + '_ {
         self.limits.iter().filter_map(WatchedLimit::found)
     }
+}
+
+/// The limit of laminar flow in a round pipe, in both directions.
+fn laminar() -> WatchedLimit {
+    WatchedLimit::new(RigLimit::LaminarFlow, [-LAMINAR_UP_TO, LAMINAR_UP_TO])
+}
+
+/// 4/(pi d nu) in s/m3.
+fn reynolds_over_flow(bench: &ControlledMachine, bore_m: f64) -> f64 {
+    let viscosity = bench.rig.actuator.components().fluid.kinematic_viscosity;
+    4.0 / (std::f64::consts::PI * bore_m * viscosity)
+}
+
+/// The place of the flow through the neck at a chamber in the state.
+fn neck(bench: &ControlledMachine, side: usize) -> Option<usize> {
+    let wanted = ["neck_flow_a_m3_per_s", "neck_flow_b_m3_per_s"][side];
+    bench.machine.state_names().iter().position(|name| name == wanted)
+}
+
+/// Places of the velocities of the oil in a transmission, from the rod on.
+fn transmission_flows(bench: &ControlledMachine) -> Vec<usize> {
+    let names = bench.machine.state_names();
+    let velocity = |name: &str| name.starts_with("transmission_velocity");
+    names.iter().enumerate().filter(|(_, name)| velocity(name)).map(|(place, _)| place).collect()
 }
 
 /// Length and bore of a line as it is filled, m; of a volume they are not a number.

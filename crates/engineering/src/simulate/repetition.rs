@@ -15,6 +15,9 @@ pub const SMALLEST_TOLERANCE: f64 = 1e-10;
 /// still be visible: two that agree may both be wrong.
 const TRUSTED: u32 = 2;
 
+/// Largest difference of the last passes with which a run counts as a result.
+const LARGEST_DOUBT: f64 = 0.1;
+
 /// What a pass over a scenario is made with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassPlan {
@@ -108,12 +111,29 @@ impl PassResult {
     fn pass(&self, plan: PassPlan) -> Pass {
         Pass { plan, work: self.work, stopped: StoppedRun::of(self.status) }
     }
+
+    /// The largest difference from another pass: of the metrics, and of the forces where no window
+    /// has a number.
+    pub fn spread(&self, other: &PassResult) -> Option<PassSpread> {
+        spread(self, other)
+    }
 }
 
 impl Repetition {
     /// Whether its watcher ended a pass.
     pub fn was_cancelled(&self) -> bool {
         self.passes.iter().any(|pass| pass.stopped.is_some_and(|stopped| stopped.word == "cancelled"))
+    }
+
+    /// Whether there is a result: rounding does not decide it, and the last passes agree within a
+    /// tenth.
+    pub fn is_determined(&self) -> bool {
+        let near = self.spread.is_some_and(|spread| spread.part <= LARGEST_DOUBT);
+        match self.agreement {
+            PassAgreement::Agreed | PassAgreement::Stopped => true,
+            PassAgreement::Apart => near,
+            PassAgreement::Undetermined => false,
+        }
     }
 
     /// Steps of all passes.
@@ -124,8 +144,8 @@ impl Repetition {
 
 /// The result that is reported, after the first pass at a tolerance: where its errors may be
 /// visible, that of the last complete pass, each at a tenth of the tolerance of the one before,
-/// until two agree. Where even rounding may be visible, a pass from a start moved by rounding
-/// follows.
+/// until two agree. Where even rounding may be visible, or no two agree, a pass from a start moved
+/// by rounding follows.
 ///
 /// # Errors
 /// That of a pass.
@@ -152,7 +172,7 @@ pub fn repeated<R, E>(
             agreement = PassAgreement::Stopped;
             break;
         }
-        found = spread(&kept, &later);
+        found = kept.spread(&later);
         agreed = if found.is_none_or(|found| found.part <= LARGEST_PART) { agreed + 1 } else { 0 };
         let needed = if tighter > SMALLEST_TOLERANCE && later.grows(tighter) { TRUSTED } else { 1 };
         if agreed >= needed {
@@ -161,10 +181,10 @@ pub fn repeated<R, E>(
         (kept, seen, tolerance) = (later, next, tighter);
     }
     let rounded = kept.amplification.is_some_and(|grown| grown.may_show_rounding());
-    if rounded && agreement != PassAgreement::Stopped {
+    if agreement == PassAgreement::Apart || (rounded && agreement == PassAgreement::Agreed) {
         let moved = result(&again(plan(tolerance, true))?);
         passes.push(moved.pass(plan(tolerance, true)));
-        let moved = spread(&kept, &moved);
+        let moved = kept.spread(&moved);
         if moved.is_some_and(|moved| moved.part > LARGEST_PART) {
             (agreement, found) = (PassAgreement::Undetermined, moved);
         }
@@ -173,7 +193,7 @@ pub fn repeated<R, E>(
 }
 
 /// A state whose values are moved by a few roundings, each in its own direction.
-pub(crate) fn moved(start: &mut [f64], scales: &[f64]) {
+pub fn moved(start: &mut [f64], scales: &[f64]) {
     for (place, (state, scale)) in start.iter_mut().zip(scales).enumerate() {
         let towards = if place.is_multiple_of(2) { 4.0 } else { -4.0 };
         *state += towards * f64::EPSILON * (state.abs() + scale);

@@ -151,6 +151,19 @@ impl ScenarioRun {
         matches!(self.status, Status::Cancelled { .. }) || repeating
     }
 
+    /// How it ended, in one word, as in an answer; [`COMPLETED`] for a run whose numbers describe
+    /// the machine.
+    pub fn status_word(&self) -> &'static str {
+        let undetermined = self.repetition.as_ref().is_some_and(|passes| !passes.is_determined());
+        status_word(self.stopped(), self.outside_model_s, undetermined)
+    }
+
+    /// Whether it ran to its end, within the validity of its equations, and to a result that its
+    /// tolerance determines.
+    pub fn is_reliable(&self) -> bool {
+        self.status_word() == COMPLETED
+    }
+
     /// Why and when it ended early or diverged; `None` if it did neither.
     pub fn stopped(&self) -> Option<StoppedRun> {
         StoppedRun::of(self.status).or_else(|| self.divergence.as_ref().map(StoppedRun::diverged))
@@ -301,6 +314,27 @@ fn sampler<'a>(
     }
 }
 
+/// A scenario as another solver may take it: equations, inputs, and the state at time zero.
+#[derive(Clone, Debug)]
+pub struct ScenarioProblem {
+    /// The machine, with its controller where this is continuous.
+    pub control: Control,
+    /// Duration, rows and inputs.
+    pub course: InputSchedule,
+    /// Every state and every wave in transit.
+    pub start: Vec<f64>,
+}
+
+impl ScenarioProblem {
+    pub(super) fn of(bench: &ControlledMachine, scenario: &Scenario, course: &PreparedScenario) -> Self {
+        let inputs = inputs(&bench.control, course);
+        let (duration_s, output_step_s) = (scenario.duration, scenario.output_step);
+        let start = course.start.clone();
+        let course = InputSchedule { duration_s, output_step_s, inputs };
+        ScenarioProblem { control: bench.control.clone(), course, start }
+    }
+}
+
 /// Inputs of the loop, then those of its machine.
 fn inputs(control: &Control, course: &PreparedScenario) -> Vec<Input> {
     let reference = Input::Value(course.reference.clone());
@@ -341,7 +375,7 @@ fn found(
 
 /// When a chamber, a line or a transmission first cavitates, a chamber has no volume, or the piston
 /// leaves a stroke without end stops.
-fn outside_model_s(occurrences: &[Occurrence], has_end_stops: bool) -> Option<f64> {
+pub(crate) fn outside_model_s(occurrences: &[Occurrence], has_end_stops: bool) -> Option<f64> {
     let outside = |kind: &str| match kind {
         "cavitation_a" | "cavitation_b" | "cavitation_line_a" | "cavitation_line_b" => true,
         "cavitation_transmission" | "empty_a" | "empty_b" => true,
@@ -378,6 +412,29 @@ pub const REPEATED: &str = "repeated";
 
 /// Status of a run that ran to its end and diverged.
 pub const DIVERGED: &str = "diverged";
+
+/// Status of a run that ran to its end, and left the validity of its equations on the way.
+pub const OUTSIDE_MODEL: &str = "outside_model";
+
+/// Status of a run that ran to its end, of whose repetitions no two give one result.
+pub const UNDETERMINED: &str = "undetermined";
+
+/// Status of a run that ran to its end, and nothing is wrong with it.
+pub const COMPLETED: &str = "completed";
+
+/// The status of a run: that of its end first.
+pub(crate) fn status_word(
+    stopped: Option<StoppedRun>,
+    outside_model_s: Option<f64>,
+    undetermined: bool,
+) -> &'static str {
+    match (stopped, outside_model_s) {
+        (Some(stopped), _) => stopped.word,
+        (None, Some(_)) => OUTSIDE_MODEL,
+        (None, None) if undetermined => UNDETERMINED,
+        (None, None) => COMPLETED,
+    }
+}
 
 /// What grew most between the samples of a controller, or from one to the next.
 pub fn amplification(outcome: &Outcome, samples: &ControllerSamples) -> Option<Amplification> {

@@ -74,6 +74,18 @@ impl<S: Copy> DynamicLine<S> {
 }
 
 impl<S: Scalar> DynamicLine<S> {
+    /// Pressure over flow of each slow wave that travels one way, and half of the steady
+    /// resistance, in Pa s/m3; `None` without waves.
+    pub fn of_waves(&self) -> Option<(Vec<S>, S)> {
+        match self {
+            DynamicLine::Segments(_) => None,
+            DynamicLine::TransmissionLine(line) => {
+                Some((line.slow_impedances().to_vec(), line.half_resistance()))
+            }
+            DynamicLine::TwoWave(line) => Some((line.slow_impedances().to_vec(), line.half_resistance())),
+        }
+    }
+
     /// The contribution of the line to the compliance of the chamber, in m3/Pa.
     pub fn chamber_compliance(&self) -> S {
         match self {

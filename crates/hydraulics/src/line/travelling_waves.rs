@@ -118,6 +118,17 @@ impl<const M: usize, S: Copy> TravellingWaves<M, S> {
 }
 
 impl<const M: usize, S: Scalar> TravellingWaves<M, S> {
+    /// Z_i (1 + l_i) of each wave in Pa s/m3: pressure over flow of a slow wave that travels one
+    /// way.
+    pub fn slow_impedances(&self) -> [S; M] {
+        self.waves.each_ref().map(|wave| wave.impedance * wave.slow([S::from(1.0); TERMS]))
+    }
+
+    /// R_0/2 in Pa s/m3.
+    pub fn half_resistance(&self) -> S {
+        self.half_resistance
+    }
+
     /// State and arriving waves of a steady flow in m3/s into a chamber at this pressure in Pa.
     ///
     /// Waves share the pressure as capacities in series do, by T_i/Z_i.

@@ -86,6 +86,7 @@ pub(super) fn precharge_ranges(project: &Project, actuator: &DeclaredActuator, c
     let range_of = |name: &str| project.uncertainty.iter().find(|one| one.name == name);
     let most = range_of("supply.pressure").map_or(actuator.supply.pressure, |range| range.maximum);
     let supply = DeclaredSupply { pressure: most, ..actuator.supply.clone() };
+    supply_falls_short(project, actuator, check);
     let sides = [("line.a", &actuator.line.a), ("line.b", &actuator.line.b)];
     let mut seen = vec![];
     for (side, line) in sides {
@@ -111,6 +112,25 @@ pub(super) fn precharge_ranges(project: &Project, actuator: &DeclaredActuator, c
             check.error_with_help(&format!("{place}.maximum"), message, help);
         }
     }
+}
+
+/// A range of the supply pressure that goes below the precharge of the supply's own accumulator.
+fn supply_falls_short(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
+    let range = project.uncertainty.iter().find(|one| one.name == "supply.pressure");
+    let SupplyModel::PumpLimited(Pump { accumulator: Some(gas), .. }) = &actuator.supply.model else {
+        return;
+    };
+    let working = gas.working_precharge(ATMOSPHERE);
+    let stated = actuator.supply.pressure;
+    // without a stated pressure above the precharge the pressure itself is refused
+    let Some(range) = range.filter(|range| range.minimum <= working && working < stated) else { return };
+    let [pressure, precharge] =
+        [range.minimum, working].map(|pressure| quantity::display(pressure, &PRESSURE, 4));
+    let message = format!(
+        "the supply goes down to {pressure} and its accumulator has a precharge of {precharge}: the pump never lets oil into it there"
+    );
+    let help = "let the range end above the precharge, or state a lower `precharge_pressure`";
+    check.error_with_help("uncertainty.supply.pressure.minimum", message, help);
 }
 
 /// The maker's limit of the compression of the gas, at the highest pressure that the supply gives;

@@ -6,7 +6,7 @@ use crate::answer::{Answer, TableFormat};
 use crate::campaign::{self, CampaignError, Plan, RequestedRuns, RowStore, Summary};
 use crate::project::{self, Loaded};
 use crate::setup::Setup;
-use crate::simulate::{self, RunOutput, simulate_into};
+use crate::simulate::{self, RunOutput, ScenarioRun, simulate_into};
 use crate::source::{Destination, Source};
 use phea_dynamics::simulation::Attention;
 
@@ -94,6 +94,6 @@ fn one(
         document: campaign::run_document(&draw, &settings, &drawn, &runs),
         body: campaign::run_body((plan, &draw), &settings, (&drawn, &runs)),
         files: simulate::files(&drawn, &runs),
-        affirmative: runs.iter().all(|run| run.stopped().is_none()),
+        affirmative: runs.iter().all(ScenarioRun::is_reliable),
     })
 }

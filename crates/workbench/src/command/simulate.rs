@@ -103,7 +103,7 @@ pub(super) fn simulate_answer(
         document: document(loaded, &runs),
         body: body(loaded, &runs),
         files: written,
-        affirmative: all && runs.iter().all(|run: &ScenarioRun| run.stopped().is_none()),
+        affirmative: all && runs.iter().all(ScenarioRun::is_reliable),
     })
 }
 

@@ -12,6 +12,7 @@ use super::{
 };
 use crate::answer::{Object, body_in_use};
 use crate::project::Loaded;
+use phea_dynamics::simulation::{Amplification, GrowthCause};
 
 /// What `simulate` says to programs if a frequency response is requested: no scenario is run.
 pub(crate) fn frequency_body(loaded: &Loaded, found: &MachineResponses) -> Object {
@@ -79,15 +80,16 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
         Object::new()
             .with("from_s", grown.from_s)
             .with("until_s", grown.until_s)
-            .with("frequency_rad_per_s", grown.frequency_rad_per_s)
+            .told("frequency_rad_per_s", of_mode(&grown).ok_or("no single mode grows"))
             .with("growth_logarithm", grown.logarithm)
+            .with("cause", repetition::cause_word(grown.cause))
     });
     let repetition = run.repetition.as_ref().map(repetition::row);
     let divergence = run.divergence.as_ref().map(repetition::divergence_row);
     let ended_s = StoppedRun::of(run.status).map(|stopped| stopped.time_s);
     Object::new()
         .with("name", run.name.as_str())
-        .with("status", stopped.map_or("completed", |stopped| stopped.word))
+        .with("status", run.status_word())
         .told("ended_s", ended_s.ok_or("it ran to its end"))
         .told("divergence", divergence.ok_or("it does not diverge"))
         .told("unresolved_mode", mode.ok_or("every mode that grew was resolved"))
@@ -117,6 +119,11 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
         .and(adjustment(run))
         .told("ledgers", run.ledger.as_ref().map(ledger).map_err(|reason| *reason))
         .each("exceeded", &run.exceeded, exceeded)
+}
+
+/// The frequency of the mode that grows.
+fn of_mode(grown: &Amplification) -> Option<f64> {
+    (grown.cause != GrowthCause::Motion).then_some(grown.frequency_rad_per_s)
 }
 
 /// A measured signal over the simulated one.

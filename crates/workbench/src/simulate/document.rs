@@ -5,8 +5,8 @@ use super::exceeded_words;
 use super::metrics::{METRICS, OVERSHOOT, SETTLING, cells_of};
 use super::repetition::{divergence_words, sentences as doubts, work_words};
 use super::{
-    AdjustmentWork, BeyondExpansion, Cause, GasRange, Metrics, Occurrence, Overlay, ScenarioComparison,
-    ScenarioRun, StoppedRun, TrackingWish, Window,
+    AdjustmentWork, BeyondExpansion, Cause, GasRange, Metrics, OUTSIDE_MODEL, Occurrence, Overlay,
+    ScenarioComparison, ScenarioRun, StoppedRun, TrackingWish, UNDETERMINED, Window,
 };
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
@@ -43,8 +43,14 @@ pub(crate) fn headline(run: &ScenarioRun) -> String {
     let work = work_words(run);
     let loop_words = if run.open_loop { " open loop" } else { "" };
     match StoppedRun::of(run.status) {
-        None if run.divergence.is_some() => format!("{}: diverged{loop_words} ({work})", run.name),
-        None => format!("{}: completed{loop_words} ({work})", run.name),
+        None => {
+            let word = match run.status_word() {
+                OUTSIDE_MODEL => "completed outside its model",
+                UNDETERMINED => "completed without a result",
+                word => word,
+            };
+            format!("{}: {word}{loop_words} ({work})", run.name)
+        }
         Some(stopped) => {
             let why = why(&stopped);
             format!("{}: ended{loop_words} at {} s, {why} ({work})", run.name, significant(stopped.time_s, 6))
@@ -255,11 +261,14 @@ pub(crate) fn occurrence_sentences(run: &ScenarioRun) -> Vec<String> {
     sentences.extend(doubts(run));
     sentences.extend(run.beyond_expansion.iter().map(beyond_words));
     sentences.extend(run.exceeded.iter().map(exceeded_words));
-    sentences.extend(run.outside_model_s.map(|time_s| {
-        let from = DisplayUnit::SECOND.number(time_s, 5);
-        format!("from {from} s on the equations do not hold: what follows no longer describes a machine")
-    }));
+    sentences.extend(outside_words(run));
     sentences
+}
+
+/// The time from which the equations do not hold.
+fn outside_words(run: &ScenarioRun) -> Option<String> {
+    let from = DisplayUnit::SECOND.number(run.outside_model_s?, 5);
+    Some(format!("from {from} s on the equations do not hold: what follows no longer describes a machine"))
 }
 
 fn beyond_words(beyond: &BeyondExpansion) -> String {
@@ -290,6 +299,13 @@ fn occurrence_words(occurrence: &Occurrence) -> String {
             "the flow in the line to chamber # is turbulent",
             "the flow in the line to chamber # is laminar again",
         ],
+        "turbulent_neck" => [
+            "the flow in the neck at chamber # is turbulent",
+            "the flow in the neck at chamber # is laminar again",
+        ],
+        "turbulent_transmission" => {
+            ["the flow in the transmission is turbulent", "the flow in the transmission is laminar again"]
+        }
         "end_stop" => ["the piston reaches the end of chamber #", "the piston leaves the end of chamber #"],
         "empty" => ["chamber # has no volume left", "chamber # has volume again"],
         "load_contact" => ["the load touches the wall", "the load leaves the wall"],
@@ -327,7 +343,7 @@ pub(crate) fn comparison(comparison: &ScenarioComparison<'_>, asked: &[Loaded]) 
     let mut out = Document::default();
     for (number, (loaded, runs)) in comparison.projects.iter().enumerate() {
         out.line(format!("{}  {} ({})", letter(number), loaded.project.title, loaded.path));
-        for run in runs.iter().filter(|run| run.stopped().is_some()) {
+        for run in runs.iter().filter(|run| !run.is_reliable()) {
             out.line(format!("   {}", headline(run)));
         }
     }
@@ -344,7 +360,8 @@ pub(crate) fn comparison(comparison: &ScenarioComparison<'_>, asked: &[Loaded]) 
             let exceeded = run.iter().flat_map(|run| &run.exceeded).map(exceeded_words);
             let diverges = run.and_then(|run| run.divergence.as_ref()).map(divergence_words);
             let doubts = run.iter().flat_map(|run| doubts(run));
-            for sentence in diverges.into_iter().chain(doubts).chain(exceeded) {
+            let outside = run.and_then(outside_words);
+            for sentence in diverges.into_iter().chain(doubts).chain(exceeded).chain(outside) {
                 out.line(format!("   {}: {sentence}", letter(number)));
             }
         }

@@ -3,6 +3,7 @@
 use super::{Divergence, Pass, PassAgreement, PassSpread, Repetition, ScenarioRun, metric_of};
 use crate::answer::{Object, significant};
 use crate::quantity::{DisplayUnit, FORCE, VOLTAGE, display};
+use phea_dynamics::simulation::GrowthCause;
 
 /// The object `repetition` of a scenario.
 pub(super) fn row(repetition: &Repetition) -> Object {
@@ -39,6 +40,15 @@ fn spread(spread: &PassSpread) -> Object {
         .told("before", before)
         .told("after", after)
         .with("part", spread.part)
+}
+
+/// What amplifies errors, as an answer names it.
+pub(super) fn cause_word(cause: GrowthCause) -> &'static str {
+    match cause {
+        GrowthCause::Mode => "mode",
+        GrowthCause::Loop => "closed_loop",
+        GrowthCause::Motion => "motion",
+    }
 }
 
 /// The object `divergence` of a scenario.
@@ -82,10 +92,15 @@ pub(super) fn divergence_words(divergence: &Divergence) -> String {
 pub(super) fn sentences(run: &ScenarioRun) -> Vec<String> {
     let grown = run.errors_amplified.map(|grown| {
         let [from, until] = [grown.from_s, grown.until_s].map(|time| DisplayUnit::SECOND.number(time, 4));
-        format!(
-            "from {from} to {until} s a mode of {} rad/s grows so much that errors within the tolerance may become visible",
-            significant(grown.frequency_rad_per_s, 3),
-        )
+        let frequency = significant(grown.frequency_rad_per_s, 3);
+        let what = match grown.cause {
+            GrowthCause::Mode => format!("a mode of {frequency} rad/s grows"),
+            GrowthCause::Loop => format!("the closed loop is unstable: its mode of {frequency} rad/s grows"),
+            GrowthCause::Motion => {
+                "deviations grow from kink to kink, as from one bounce to the next,".to_string()
+            }
+        };
+        format!("from {from} to {until} s {what} so much that errors within the tolerance may become visible")
     });
     let repeated = run.repetition.as_ref().map(|repetition| agreement_words(run, repetition));
     let unknown = "the run was not repeated: `--check` estimates how far its result depends on them";

@@ -7,14 +7,16 @@ use std::time::Instant;
 use phea_dynamics::controller::{Compensator, Controller, ControllerState, Element, SampledController};
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{
-    CommandedPlant, Input, InputSchedule, Observer, Outcome, Plant, Sampler, Sensed, SimulationSettings,
-    Status, StepCounts, Task,
+    Amplification, CommandedPlant, Input, InputSchedule, Observer, Outcome, Plant, Sampler, Sensed,
+    SimulationSettings, Status, StepCounts, Task,
 };
+use phea_engineering::simulate::PassPlan;
 use phea_hydraulics::machine::INDICATORS;
 use phea_machine::{Commanded, Control as Loop, Watcher};
 use sundials::{CvodeError, Following, Kicks, Method, follow};
 
 use crate::patient::Patient;
+use crate::repeated::{Judged, Made, made};
 use crate::rig::{Control, OUTPUT_STEP_S, Rig};
 use crate::roughness::{Roughness, is_rough, roughest};
 
@@ -67,6 +69,8 @@ pub(crate) struct Compared {
     pub(crate) ours: Option<Ours>,
     /// The same at the tolerance of a project that says nothing.
     pub(crate) by_default: Option<Ours>,
+    /// The same, repeated where its errors may be visible.
+    pub(crate) repeated: Option<Judged>,
     /// The same model in C: largest difference over those rows as a part of the peak.
     pub(crate) twin: Option<f64>,
     /// What CVODE costs at phea's error: with its stability limit, and by Adams' method.
@@ -93,19 +97,23 @@ pub(crate) struct Ours {
     pub(crate) beyond: f64,
     /// Its ringing where trajectories have separated; `None` where they do not.
     pub(crate) roughness: Option<Roughness>,
-    /// Whether it reports that errors of [`TOLERANCE`] may be visible.
-    pub(crate) may_show_errors: bool,
+    /// What grew most.
+    pub(crate) amplification: Option<Amplification>,
     pub(crate) work: StepCounts,
     pub(crate) seconds: f64,
 }
 
 impl Ours {
     /// A run whose errors are not known yet.
-    fn new(outcome: &Outcome, seconds: f64) -> Ours {
-        let (status, work) = (outcome.status, outcome.work);
-        let may_show_errors = outcome.amplification.is_some_and(|grown| grown.may_show_errors(TOLERANCE));
+    pub(crate) fn new(outcome: &Outcome, seconds: f64) -> Ours {
+        let Outcome { status, work, amplification, .. } = *outcome;
         let (error, error_of_all, beyond) = (0.0, 0.0, 0.0);
-        Ours { status, error, error_of_all, beyond, roughness: None, may_show_errors, work, seconds }
+        Ours { status, error, error_of_all, beyond, roughness: None, amplification, work, seconds }
+    }
+
+    /// Whether it reports that errors of [`TOLERANCE`] may be visible.
+    pub(crate) fn may_show_errors(&self) -> bool {
+        self.amplification.is_some_and(|grown| grown.may_show_errors(TOLERANCE))
     }
 
     /// Whether it meets its requirements, and how it fails otherwise.
@@ -253,6 +261,8 @@ pub(crate) struct Manner {
     pub(crate) judged: f64,
     /// Whether CVODE is asked for the same error too, which takes longer.
     pub(crate) timed: bool,
+    /// Whether a run is judged as a project has it, repeated where errors may be visible.
+    pub(crate) repeated: bool,
 }
 
 /// Runs a rig both ways.
@@ -323,7 +333,8 @@ pub(crate) fn controller(control: &Control) -> Controller {
     }
 }
 
-type NewSampler<'a> = dyn Fn() -> Option<Box<dyn Sampler + 'a>> + 'a;
+/// Makes a sampler for each run.
+pub(crate) type NewSampler<'a> = dyn Fn() -> Option<Box<dyn Sampler + 'a>> + 'a;
 
 /// The comparison, and the force that CVODE finds.
 fn judge<'a>(
@@ -343,17 +354,10 @@ fn judge<'a>(
         Ok::<_, CvodeError>((states, patient.cost()))
     };
     let by_cvode = |following: &Following| counted(following).map(|(states, _)| states);
+    let made_by_phea = |plan: PassPlan| made(rig, system, course, sampler, plan);
     let by_phea = |tolerance: f64| {
-        let settings =
-            SimulationSettings { tolerance, maximum_steps: 2_000_000, ..SimulationSettings::default() };
-        let mut states = Vec::new();
-        let observer: Watcher<'_> =
-            Box::new(Rows { wanted: (0..system.size()[0]).collect(), states: &mut states });
-        let task = Task { start: start.clone(), course, sampler: sampler(), observer };
-        let begun = Instant::now();
-        let outcome = system.drive(task, &settings, &mut |_| true);
-        let seconds = begun.elapsed().as_secs_f64();
-        (Ours::new(&outcome.expect("a course that fits"), seconds), force(&states))
+        let Made { ours, force } = made_by_phea(PassPlan { tolerance, moved: false });
+        (ours, force)
     };
     let runs = [manner.judged, TOLERANCE].map(by_phea);
     let mut compared = Compared::default();
@@ -379,8 +383,12 @@ fn judge<'a>(
     let mut references = vec![&reference[..], &kicked, looser.as_deref().unwrap_or(&reference)];
     compared.take(&runs, &references);
     // whether CVODE's own errors are what rings
-    let finest = compared.differs().then(|| forces_at(FINEST)).flatten();
-    if let Some(finest) = &finest {
+    let finest = (compared.differs() || manner.repeated).then(|| forces_at(FINEST)).flatten();
+    if manner.repeated {
+        let truths = [finest.as_deref().unwrap_or(&reference), &reference];
+        compared.repeated = Some(Judged::of(rig, &made_by_phea, truths));
+    }
+    if let Some(finest) = finest.as_ref().filter(|_| compared.differs()) {
         references.push(finest);
         compared.take(&runs, &references);
     }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use phea_dynamics::simulation::Status;
 
 use crate::compare::{Compared, Ours, TOLERANCE};
+use crate::repeated::Judged;
 use crate::roughness::Roughness;
 use crate::{Described, FINER, LARGEST_ERROR, Outcome};
 
@@ -13,9 +14,6 @@ const LARGEST_DIFFERENCE: f64 = 1e-4;
 
 #[derive(Default)]
 pub(crate) struct Tally {
-    /// Whether an error above the largest at the default tolerance has to be reported, as one that
-    /// may be visible.
-    reported_errors: bool,
     run: usize,
     refused: BTreeMap<String, usize>,
     without_reference: usize,
@@ -41,12 +39,51 @@ pub(crate) struct Tally {
     default_faults: Vec<String>,
     default_steps: u64,
     checks: Checks,
+    projects: Projects,
     twins: Vec<f64>,
     /// CVODE's seconds and evaluations over phea's: with its stability limit, and by Adams' method.
     ratios: [[Vec<f64>; 2]; 2],
     /// Ill-posed rigs that fail at the tolerance at which they are judged, and not at a finer one.
     ill_posed: Vec<String>,
     failures: Vec<String>,
+}
+
+/// What came of runs as a project has them.
+#[derive(Default)]
+struct Projects {
+    /// How their repetitions ended, and how many were made once.
+    agreements: BTreeMap<String, usize>,
+    of_rows: Vec<f64>,
+    of_metrics: Vec<f64>,
+    /// Rigs whose rows, and whose metrics, CVODE does not determine to the largest error.
+    unknown: [usize; 2],
+    steps: u64,
+}
+
+impl Projects {
+    fn take(&mut self, judged: &Judged) {
+        let word = judged.repetition.as_ref().map_or("made once".to_string(), |repetition| {
+            format!("{:?}", repetition.agreement).to_lowercase()
+        });
+        *self.agreements.entry(word).or_default() += 1;
+        self.of_rows.push(judged.of_rows);
+        self.of_metrics.push(judged.of_metrics.map_or(0.0, |spread| spread.part));
+        for (count, part) in self.unknown.iter_mut().zip(judged.of_truth) {
+            *count += usize::from(part >= LARGEST_ERROR);
+        }
+        self.steps += judged.steps;
+    }
+
+    fn print(&mut self) {
+        if self.of_rows.is_empty() {
+            return;
+        }
+        let [rows, metrics] = self.unknown;
+        println!("as projects: {:?}, {} steps", self.agreements, self.steps);
+        println!("CVODE differs from itself in the rows of {rows} rigs, in metrics of {metrics}");
+        spread("error of rows, part of the peak", &mut self.of_rows);
+        spread("error of metrics, part of their size", &mut self.of_metrics);
+    }
 }
 
 /// What a run at a tenth of the default tolerance says of the error at it.
@@ -65,12 +102,6 @@ struct Checks {
 }
 
 impl Tally {
-    /// Of a family whose errors at the default tolerance must be reported, or one that is looked at
-    /// alone.
-    pub(crate) fn of(reported_errors: bool) -> Tally {
-        Tally { reported_errors, ..Tally::default() }
-    }
-
     pub(crate) fn take(&mut self, number: u64, outcome: &Outcome, told: bool) {
         self.run += 1;
         match outcome {
@@ -170,13 +201,14 @@ impl Tally {
         self.default_steps += run.work.steps + run.work.rejected;
         if let Some(fault) = run.fault() {
             let told = format!("rig {number}, at {TOLERANCE:e}: {fault}");
-            let is_reported = run.may_show_errors || !self.reported_errors;
-            let list = if run.status == Status::Completed && is_reported {
-                &mut self.default_faults
-            } else {
-                &mut self.failures
-            };
+            let list =
+                if run.status == Status::Completed { &mut self.default_faults } else { &mut self.failures };
             list.push(told);
+        }
+        if let Some(judged) = &compared.repeated {
+            self.projects.take(judged);
+            let fault = judged.fault();
+            self.failures.extend(fault.map(|fault| format!("rig {number}, as a project: {fault}")));
         }
         if run.status == Status::Completed {
             self.checks.take(number, compared, &run);
@@ -214,6 +246,7 @@ impl Tally {
             spread(name, values);
         }
         self.checks.print();
+        self.projects.print();
         println!("steps of the run that is judged: {}, evaluations {}", self.steps, self.evaluations);
         println!("steps at {TOLERANCE:e}: {}", self.default_steps);
         for fault in &self.default_faults {
@@ -237,7 +270,7 @@ impl Checks {
             self.errors.push(error);
         }
         let larger = error >= LARGEST_ERROR;
-        let (grown, checked) = (run.may_show_errors, estimate >= LARGEST_ERROR);
+        let (grown, checked) = (run.may_show_errors(), estimate >= LARGEST_ERROR);
         let counts = &mut self.reported[usize::from(!larger)];
         for (count, counted) in counts.iter_mut().zip([true, grown, checked, grown || checked]) {
             *count += usize::from(counted);

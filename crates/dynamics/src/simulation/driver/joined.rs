@@ -10,6 +10,24 @@ use crate::simulation::{Attention, Lane, Observer};
 const PROPAGATED: f64 = 0.1;
 
 impl<S: Lane, O: Observer> Drive<'_, S, O> {
+    /// Carries the error of the lanes whose bits are set over the step that they have taken by the
+    /// method.
+    pub(super) fn carry(&mut self, system: &dyn Kernel<S>, taken: u32) {
+        if taken == 0 || self.marks.is_empty() {
+            return;
+        }
+        self.carried.begin();
+        if !self.method.carry(system, self.step, &mut self.carried.next) {
+            return;
+        }
+        for lane in (0..S::COUNT).filter(|lane| taken & (1 << lane) != 0) {
+            let Some(Slot { passage, sampler: None, .. }) = &self.slots[lane] else { continue };
+            if passage.histories.is_empty() {
+                self.carried.take(lane, passage.time_s, &self.method.scales);
+            }
+        }
+    }
+
     /// Which lanes have matrices for the step to their next break.
     pub(super) fn choose_propagated(&mut self) {
         for lane in 0..S::COUNT {

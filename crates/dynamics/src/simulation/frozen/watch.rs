@@ -20,7 +20,7 @@ const MOST_GROWN: f64 = 0.5;
 /// ```
 ///
 /// A mode that grows for an instant, as friction makes it at one velocity, so counts for nothing.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct FrozenWatch {
     steps: u64,
     due: u64,
@@ -29,6 +29,13 @@ pub struct FrozenWatch {
     /// Growth and frequency of a mode that grew at the last two evaluations, in 1/s and rad/s.
     grows_on: Option<[f64; 2]>,
     growing: Amplifying,
+}
+
+impl Default for FrozenWatch {
+    fn default() -> FrozenWatch {
+        let growing = Amplifying::of_loop();
+        FrozenWatch { steps: 0, due: 0, interval: 0, before: None, grows_on: None, growing }
+    }
 }
 
 impl FrozenWatch {

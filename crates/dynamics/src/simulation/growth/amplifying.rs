@@ -1,6 +1,6 @@
 //! The growth of an error along a run.
 
-use crate::simulation::Amplification;
+use crate::simulation::{Amplification, GrowthCause};
 
 /// The growth since it last began, and the largest so far.
 #[derive(Clone, Copy, Debug, Default)]
@@ -10,9 +10,15 @@ pub(in crate::simulation) struct Amplifying {
     from_s: f64,
     logarithm: f64,
     largest: Option<Amplification>,
+    cause: GrowthCause,
 }
 
 impl Amplifying {
+    /// The growth of the closed loop.
+    pub(in crate::simulation) fn of_loop() -> Amplifying {
+        Amplifying { cause: GrowthCause::Loop, ..Amplifying::default() }
+    }
+
     /// The trapezoidal rule over the growth rate.
     pub(super) fn advance(&mut self, time_s: f64, growth_per_s: f64, frequency_rad_per_s: f64) {
         let (before_s, before) = self.before.replace((time_s, growth_per_s)).unwrap_or((time_s, 0.0));
@@ -28,8 +34,9 @@ impl Amplifying {
             (self.logarithm, self.from_s) = (0.0, time_s);
         }
         if self.logarithm > self.largest.map_or(0.0, |largest| largest.logarithm) {
-            let (logarithm, from_s) = (self.logarithm, self.from_s);
-            self.largest = Some(Amplification { logarithm, from_s, until_s: time_s, frequency_rad_per_s });
+            let Amplifying { logarithm, from_s, cause, .. } = *self;
+            let until_s = time_s;
+            self.largest = Some(Amplification { logarithm, from_s, until_s, frequency_rad_per_s, cause });
         }
     }
 
