@@ -107,6 +107,54 @@ fn pressures_that_a_pipe_bears_are_watched() {
     assert!(exceeded(&lumped, "working_pressure", "chamber_a").is_some(), "{lumped}");
 }
 
+/// Two pulses, sent from both ends at once, meet in the middle half a travelling time later and add
+/// up: oil cavitates there and at neither end. Segments are the other model.
+#[test]
+fn a_line_cavitates_where_its_waves_meet() {
+    let found = |model: &str| {
+        let text = include_str!("projects/meeting_pulses.toml");
+        let run = json(text, &[model], &[], &Request::Simulate(Default::default()))["scenarios"][0].clone();
+        assert!(exceeded(&run, "vapour_pressure", "chamber_a").is_none(), "{run}");
+        assert_eq!(run["status"], "outside_model", "{model}");
+        let one = exceeded(&run, "vapour_pressure", "line_a").unwrap();
+        let number = |key: &str| one[key].as_f64().unwrap();
+        assert!((number("distance_m") - 5.0).abs() < 1e-9, "{model}: {one}");
+        // 10 m at 1283 m/s: half of that after the valve opened and shut
+        // ORIGIN: analytic, c = sqrt(1.4e9/850)
+        let half_s = 5.0 / (1.4e9_f64 / 850.0).sqrt();
+        assert!((2e-3 + half_s..4.5e-3 + half_s).contains(&number("peak_time_s")), "{model}: {one}");
+        number("peak_time_s")
+    };
+    let [waves, segments] = [
+        "line.model=transmission_line",
+        "line={ model = \"segments\", segments = 16, length = \"10 m\", pipe = { bore = \"10 mm\" } }",
+    ]
+    .map(found);
+    assert!((waves - segments).abs() < 0.1e-3, "{waves} {segments}");
+}
+
+/// Re = 4 q/(pi d nu) in the neck of an accumulator and in the line of a transmission: turbulent
+/// with thin oil, laminar with thick.
+#[test]
+fn flow_in_necks_and_transmissions_is_watched() {
+    let neck = ["line.accumulator.neck_diameter=6 mm", "line.accumulator.neck_length=40 mm"];
+    let accumulator = include_str!("../../../examples/ybitu/accumulator.toml");
+    let transmission = include_str!("../../../examples/ybitu/transmission.toml");
+    for (text, own, place) in [(accumulator, &neck[..], "neck_a"), (transmission, &[], "transmission")] {
+        let found = |viscosity: &str| {
+            let settings = [own, &[viscosity]].concat();
+            let run =
+                json(text, &settings, &[], &Request::Simulate(Default::default()))["scenarios"][0].clone();
+            exceeded(&run, "laminar_flow", place).cloned()
+        };
+        let thin = found("fluid.kinematic_viscosity=1 cSt").unwrap();
+        assert!(
+            thin["peak"].as_f64().unwrap().abs() > 2300.0 && thin["limit"].as_f64().unwrap().abs() == 2300.0
+        );
+        assert_eq!(found("fluid.kinematic_viscosity=400 cSt"), None);
+    }
+}
+
 /// A campaign lists them with the other occurrences of a run, as the run by itself has them.
 #[test]
 fn a_campaign_lists_limits_of_lines() {

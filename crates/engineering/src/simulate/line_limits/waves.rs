@@ -5,9 +5,9 @@
 //! q(x, t) = (F(t + (1 - x) T) - B(t + x T))/(2 Z (1 + l))                of a line with one wave
 //! ```
 //!
-//! F_i arrives at the chamber and B_i at the valve, x from 0 at the valve to 1; Y are the flows into
-//! the line that its resistance acts on. Exact at rest, in steady flow, and for the waves as they
-//! arrive: friction damps them on their whole way.
+//! F_i arrives at the chamber and B_i at the valve, x from 0 at the valve to 1; Y are the flows
+//! into the line that its resistance acts on. Exact at rest, in steady flow, and for the waves as
+//! they arrive: friction damps them on their whole way.
 
 use phea_dynamics::simulation::{Quartic, Stretch};
 
