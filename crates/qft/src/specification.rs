@@ -73,6 +73,20 @@ impl Requirement {
     pub fn limits(&self) -> (Option<&Limit>, &Limit) {
         (self.lower.as_ref(), &self.upper)
     }
+
+    /// The part of a reserve in dB that a design keeps to every limit at a frequency: all of it, or
+    /// less where two limits are less than 1 dB apart, or less than four reserves.
+    pub fn reserve_at_db(&self, reserve_db: f64, frequency_rad_per_s: f64) -> f64 {
+        let lower = self.lower.as_ref().and_then(|limit| limit.magnitude(frequency_rad_per_s));
+        let ratio = self.upper.magnitude(frequency_rad_per_s).zip(lower).map(|(upper, lower)| upper / lower);
+        reserve_db * fraction_kept(reserve_db, ratio.map(|ratio| 20.0 * portable::log10(ratio)))
+    }
+}
+
+/// The fraction of a reserve that is kept where two limits leave this room between them, in dB: all
+/// of it where the room is 1 dB and four reserves, so that both together take half of it at most.
+pub(crate) fn fraction_kept(reserve_db: f64, room_db: Option<f64>) -> f64 {
+    room_db.map_or(1.0, |room_db| (room_db / (4.0 * reserve_db).max(1.0)).clamp(0.0, 1.0))
 }
 
 /// A requirement with the frequencies at which bounds are drawn and the band over which it must

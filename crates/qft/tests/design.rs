@@ -10,6 +10,7 @@ mod fed_forward;
 mod problems;
 mod published;
 mod relaxed;
+mod reserve;
 mod rounded;
 mod servo;
 mod unstable;

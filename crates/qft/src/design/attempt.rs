@@ -340,8 +340,8 @@ impl Attempt {
         };
         let (findings, _) = audit_among(&problem, &[], kept, &mut part(watch, CHECKING, WHOLE))?;
         let judgement = self.judgement();
-        let tolerance_db = self.new_below_db(&judgement);
-        let examples = counterexamples(&findings, tolerance_db, self.shaping.tracking());
+        let new = self.new_margins(&judgement);
+        let examples = counterexamples(&findings, new, self.shaping.tracking());
         if examples.is_empty() {
             return Ok(false);
         }

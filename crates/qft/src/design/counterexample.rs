@@ -2,7 +2,9 @@
 
 use crate::loop_shaping::DesignProblem;
 use crate::specification::ClosedLoop;
-use crate::verification::{Audit, DelayMargin, PlantPoint, SpecificationFinding, TrackingJudgement, Verdict};
+use crate::verification::{
+    Audit, DelayMargin, PlantPoint, SpecificationFinding, TrackingJudgement, Verdict, WorstCase,
+};
 
 /// A plant, or the pair of a spread, and the frequency at which it violates a limit (0 and infinity
 /// included), if there is one.
@@ -12,24 +14,37 @@ pub(super) struct Counterexample {
     pub(super) frequency_rad_per_s: Option<f64>,
 }
 
-/// The plants whose margin lies below minus a tolerance (that of tracking counts for both limits of
-/// a spread), each once with each of its frequencies.
+/// Which margins are new.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct NewMargins {
+    /// Those below the reserve by more than this, for single limits and for tracking, dB.
+    pub(super) below_db: [f64; 2],
+    /// Margin to be kept to every limit, dB; where two limits are less than 1 dB apart, that
+    /// fraction of it.
+    pub(super) reserve_db: f64,
+}
+
+/// The plants whose margin lies below the reserve by more than a tolerance (both count twice for a
+/// spread, which has two limits), each once with each of its frequencies.
 pub(super) fn counterexamples(
     findings: &[SpecificationFinding],
-    [tolerance_db, of_tracking_db]: [f64; 2],
+    NewMargins { below_db: [tolerance_db, of_tracking_db], reserve_db }: NewMargins,
     tracking: TrackingJudgement,
 ) -> Vec<Counterexample> {
     let mut found: Vec<Counterexample> = Vec::new();
     for finding in findings {
+        let limits = if is_spread(finding, tracking) { 2.0 } else { 1.0 };
         let tolerance = match finding.requirement.closed_loop() {
-            _ if is_spread(finding, tracking) => 2.0 * of_tracking_db,
-            ClosedLoop::Tracking => of_tracking_db,
+            ClosedLoop::Tracking => limits * of_tracking_db,
             _ => tolerance_db,
+        };
+        let least = |case: &WorstCase| {
+            limits * finding.requirement.reserve_at_db(reserve_db, case.frequency_rad_per_s) - tolerance
         };
         let bands = finding.violations.iter().map(|band| &band.worst);
         let cases = finding.worst.iter().chain(&finding.interior).chain(bands);
         let cases = cases.chain(&finding.at_design_frequencies);
-        for case in cases.filter(|case| case.margin_db < -tolerance) {
+        for case in cases.filter(|case| case.margin_db < least(case)) {
             let plants = std::iter::once(&case.plant).chain(&case.other).cloned().collect();
             let example = Counterexample { plants, frequency_rad_per_s: Some(case.frequency_rad_per_s) };
             if !found.contains(&example) {

@@ -45,9 +45,8 @@ pub struct DesignOptions {
     pub seed: u64,
     /// A margin of minus this much still counts as met, dB.
     pub tolerance_db: f64,
-    /// Margin that the search keeps to every limit at the plants and frequencies of its samples, in
-    /// proportion where two limits leave less than 1 dB between them, dB. Between the samples a
-    /// plant may use a part of it up.
+    /// Margin that the design keeps to every limit, between its samples too, dB; where two limits
+    /// are near, [`Requirement::reserve_at_db`](crate::specification::Requirement::reserve_at_db).
     pub reserve_db: f64,
     /// The number format of the coefficients of a sampled controller, which is judged with rounded
     /// coefficients. A continuous controller is not rounded.

@@ -18,7 +18,7 @@ use phea_dynamics::portable;
 
 use super::samples::FrequencyColumn;
 use super::structure::DECIBELS_PER_NEPER;
-use crate::specification::{ClosedLoop, Specification};
+use crate::specification::{ClosedLoop, Specification, fraction_kept};
 use crate::verification::TrackingJudgement;
 
 pub(super) use crossover::{ColumnDependence, DelayMargins, bandwidth, delay_margins};
@@ -56,8 +56,8 @@ pub(super) struct ColumnLoop {
 /// By how much limits are tightened, and how a margin between two of them counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Keeping {
-    /// Every limit is tightened by this much, dB; where two limits are less than 1 dB apart, by
-    /// that share of it.
+    /// Every limit is tightened by this much, dB; by a part of it where two limits are near, see
+    /// [`fraction_kept`].
     pub(super) reserve_db: f64,
     /// Whether a margin counts by its share of what two limits leave between them, where that is
     /// less than 1 dB. Otherwise limits that meet, as those of tracking do at zero frequency, would
@@ -87,8 +87,9 @@ pub(super) fn demands(
         let upper = upper.magnitude(frequency).map(square);
         let ratio = upper.zip(lower).map(|(upper, lower)| upper / lower);
         // the square of a magnitude moves by a tenth of a power of ten for each dB
-        let room_db = ratio.map_or(1.0, |ratio| 10.0 * portable::log10(ratio)).clamp(0.0, 1.0);
-        let inwards = portable::pow(10.0, -0.1 * reserve_db * room_db);
+        let room_db = ratio.map(|ratio| 10.0 * portable::log10(ratio));
+        let inwards = portable::pow(10.0, -0.1 * reserve_db * fraction_kept(reserve_db, room_db));
+        let room_db = room_db.map_or(1.0, |room_db| room_db.clamp(0.0, 1.0));
         let [lower, upper] = [lower.map(|lower| lower / inwards), upper.map(|upper| upper * inwards)];
         let spread = specification.requirement.is_tracking() && tracking == TrackingJudgement::Spread;
         let limits = match spread {

@@ -206,8 +206,7 @@ impl Samples {
         self.demand_anew();
     }
 
-    /// Tightens every limit by this much, dB; where two limits are less than 1 dB apart, by that
-    /// share of it.
+    /// Tightens every limit by this much, dB; by a part of it where two limits are near.
     pub(crate) fn keep_in_reserve(&mut self, reserve_db: f64) {
         self.keeping.reserve_db = reserve_db;
         self.demand_anew();

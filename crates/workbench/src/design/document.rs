@@ -15,6 +15,21 @@ use crate::project::{Loaded, snippet};
 use crate::quantity::DisplayUnit;
 use crate::trial;
 
+/// Accuracy to which a design keeps a reserve, dB.
+const RESERVE_KEPT_DB: f64 = 2e-3;
+
+/// The least margin of the audit less the reserve to be kept where it occurs, dB.
+fn least_beyond_reserve_db(view: &ProjectDesign) -> f64 {
+    let left = view.designed.view.audit.specifications.iter().filter_map(|finding| {
+        let worst = finding.worst.as_ref()?;
+        let kept_db = finding.requirement.reserve_at_db(view.options.reserve_db, worst.frequency_rad_per_s);
+        // a spread has two limits
+        let limits = if worst.other.is_some() { 2.0 } else { 1.0 };
+        Some(worst.margin_db - limits * kept_db)
+    });
+    left.fold(f64::INFINITY, f64::min)
+}
+
 /// Digits of the numbers of a controller, for people.
 const DIGITS: usize = 5;
 
@@ -34,7 +49,15 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
             true => ", for what the recordings leave out of the family",
             false => "",
         };
-        out.sentences([format!("the search kept a reserve of {reserve} dB to every limit{why}")]);
+        out.sentences([match least_beyond_reserve_db(view) {
+            least_db if least_db >= -RESERVE_KEPT_DB => {
+                format!("every margin keeps a reserve of {reserve} dB to its limit{why}")
+            }
+            least_db => format!(
+                "the reserve of {reserve} dB to every limit{why} is not kept: a margin misses it by {} dB",
+                significant(-least_db, 2)
+            ),
+        }]);
     }
     if let Some(trial) = &view.trial {
         out.append(trial::document(trial, None));

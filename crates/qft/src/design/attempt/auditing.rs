@@ -6,8 +6,8 @@ use phea_dynamics::watch::{Watch, part};
 use super::{AUDITING, Attempt, AttemptEnding, LoopDesignError, WHOLE};
 use crate::audit::audit_with;
 use crate::design::counterexample::{
-    Counterexample, audited_margin_db, counterexamples, of_beside, too_little_delay, unstable_plant,
-    worst_over_rate_db,
+    Counterexample, NewMargins, audited_margin_db, counterexamples, of_beside, too_little_delay,
+    unstable_plant, worst_over_rate_db,
 };
 use crate::family::{Family, UncertainFamily};
 use crate::kept_plants::KeptPlants;
@@ -77,7 +77,8 @@ impl Attempt {
         let problem = self.shaping.samples().problem();
         let is_met = |one: &Audit| one.verdict == Verdict::Met && too_little_delay(one, problem).is_empty();
         if all().all(is_met) {
-            return Ok(Some(AttemptEnding::Met(audit)));
+            let misses = self.misses_reserve(&audit, &judgement)?;
+            return Ok((!misses).then_some(AttemptEnding::Met(audit)));
         }
         let stable = all().all(|one| one.stability.verdict == Verdict::Met);
         let over_rate = |one: &Audit| worst_over_rate_db(&one.specifications, self.shaping.tracking());
@@ -91,6 +92,16 @@ impl Attempt {
             true => AttemptEnding::Missed { worst_margin_db, audit: Some(audit) },
             false => AttemptEnding::NotConverged(audit),
         }))
+    }
+
+    /// Whether a loop that satisfies its limits misses the reserve at plants that were not among
+    /// the samples, which are now.
+    fn misses_reserve(&mut self, audit: &Audit, judgement: &Judgement) -> Result<bool, LoopDesignError> {
+        if self.relaxes || self.options.reserve_db <= 0.0 {
+            return Ok(false);
+        }
+        let examples = self.examples(audit, judgement);
+        self.takes_in(&examples)
     }
 
     /// The audit of an attempt as it stands, if it has not ended or has ended without a stable
@@ -111,22 +122,24 @@ impl Attempt {
     fn examples(&self, audit: &Audit, judgement: &Judgement) -> Vec<Counterexample> {
         let mut examples = unstable_plant(audit);
         examples.extend(too_little_delay(audit, self.shaping.samples().problem()));
-        let tolerance_db = self.new_below_db(judgement);
-        examples.extend(counterexamples(&audit.specifications, tolerance_db, self.shaping.tracking()));
+        let new = self.new_margins(judgement);
+        examples.extend(counterexamples(&audit.specifications, new, self.shaping.tracking()));
         examples
     }
 
-    /// Margins below minus these values count as new, for single limits and for tracking: where the
-    /// worst margin itself is sought, a margin is new if it is worse than all that were evaluated.
+    /// Margins that count as new, for single limits and for tracking: those that miss the reserve,
+    /// or, where the worst margin itself is sought, those worse than all that were evaluated.
     /// Limits of tracking may meet, and a margin to them counts by its share of the room: a
     /// negative one is new.
-    pub(super) fn new_below_db(&self, judgement: &Judgement) -> [f64; 2] {
+    pub(super) fn new_margins(&self, judgement: &Judgement) -> NewMargins {
         let worst_db = judgement.worst_margin_db;
         let ordinary = 0.5 * self.options.tolerance_db;
-        match self.aim {
+        let below_db = match self.aim {
             Aim::WorstMargin if self.relaxes => [RELAXATION_TOLERANCE_DB - worst_db.min(0.0); 2],
             Aim::WorstMargin => [ordinary.min(RELAXATION_TOLERANCE_DB - worst_db), ordinary],
             Aim::Objective => [ordinary; 2],
-        }
+        };
+        let reserve_db = if self.relaxes { 0.0 } else { self.options.reserve_db };
+        NewMargins { below_db, reserve_db }
     }
 }
