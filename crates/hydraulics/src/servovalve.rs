@@ -71,6 +71,22 @@ impl<S: Copy> Edges<S> {
     }
 }
 
+impl<S: Scalar> Edges<S> {
+    /// The leakage of an ideal valve, whose edges are shut at null: the limit of equal leakage that
+    /// vanishes, m3/(s Pa^0.5).
+    ///
+    /// ```text
+    /// G_3 = G_4 = G_5 = G_6 = g:      g root(p_S - p) = g root(p - p_T),      p_A = p_B = (p_S + p_T)/2             for every g > 0
+    /// K_c = g/sqrt(2 (p_S - p_T))  ->  0,      K_qU = K_v sqrt((p_S - p_T)/2)/U_Cn
+    /// ```
+    ///
+    /// Without any leakage every pressure of a chamber is an equilibrium. The limit has one; under
+    /// a load p_A + p_B = p_S + p_T too, of edges with equal flow coefficients.
+    pub fn vanishing() -> Edges<S> {
+        Edges::equal(S::from(VANISHING))
+    }
+}
+
 /// A four-way servovalve with a spool of second order. Units: m3/(s Pa^0.5), m3/s, V, rad/s, Pa.
 ///
 /// ```text
@@ -98,6 +114,10 @@ pub struct Servovalve<S = f64> {
     /// Drop in Pa below which an edge's flow is laminar: [`crate::orifice::regular_root`].
     pub transition_pressure: S,
 }
+
+/// Leakage of an edge of an ideal valve, m3/(s Pa^0.5): a part in 10^7 of that of ordinary edges.
+/// The spool that holds a load is then 1e-9 of its travel from null, which rounding resolves.
+const VANISHING: f64 = 1e-16;
 
 /// Pressures at the valve's supply and tank ports, in Pa gauge.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -188,6 +188,7 @@ fn valve<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>, supply_
             }
         },
         leakage_coefficients: match declared.leakage {
+            ValveCoefficients::Edges { edges: leakage, .. } if is_shut(leakage) => Edges::vanishing(),
             ValveCoefficients::Edges { edges: leakage, .. } => edges("leakage_coefficients", leakage),
             ValveCoefficients::Rated(NullLeakage { flow, pressure, .. }) => {
                 let (leakage, pressure) = (at("null_leakage", flow), at("null_leakage_pressure", pressure));
@@ -202,6 +203,11 @@ fn valve<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>, supply_
         damping_ratio: at("damping_ratio", declared.damping_ratio),
         transition_pressure: at("transition_pressure", declared.transition_pressure),
     }
+}
+
+/// Whether no edge leaks: an ideal valve.
+fn is_shut(leakage: EdgeCoefficients) -> bool {
+    leakage.in_order().iter().all(|edge| *edge == 0.0)
 }
 
 /// The line as physics.

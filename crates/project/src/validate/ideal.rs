@@ -6,7 +6,7 @@ use crate::{Component, DeclaredActuator, Load, Project, ValveCoefficients};
 /// A line, a leakage or a stiffness of zero.
 pub(super) fn limits(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     valve_on_chamber(actuator, check);
-    shut_valve(actuator, check);
+    shut_valve(project, actuator, check);
     free_mass(project, actuator, check);
 }
 
@@ -36,16 +36,19 @@ fn valve_on_chamber(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     }
 }
 
-/// Edges that are shut at null leave the pressures of the chambers open.
-fn shut_valve(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
+/// Edges that are shut at null leave the pressures of the chambers open, unless all are: an ideal
+/// valve is the limit of equal leakage.
+fn shut_valve(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     let ValveCoefficients::Edges { edges, .. } = &actuator.valve.leakage else { return };
-    let is_shut = edges.in_order().iter().any(|edge| *edge <= 0.0);
-    if !is_shut {
+    let is_shut = |edge: &f64| *edge <= 0.0;
+    let is_moved = project.uncertainty.iter().any(|one| one.name.starts_with("valve.leakage_coefficients"));
+    let is_ideal = edges.in_order().iter().all(|edge| *edge == 0.0) && !is_moved;
+    if is_ideal || !edges.in_order().iter().any(is_shut) {
         return;
     }
     let message =
         "an edge without leakage is shut at null, where any pressure of the chamber is an equilibrium";
-    let help = "state small coefficients, equal ones for a symmetric valve: 1e-12 m3/(s.Pa^0.5) is a millionth of an ordinary edge, and the pressures are those of the limit";
+    let help = "state four zeros for an ideal valve, whose pressures are those of equal leakage that vanishes, or small coefficients: 1e-12 m3/(s.Pa^0.5) is a thousandth of an ordinary edge";
     check.error_with_help("valve.leakage_coefficients", message, help);
 }
 
