@@ -9,12 +9,14 @@
 
 mod column;
 mod disc;
+mod smooth;
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
 use phea_qft::family::{MeasuredFamily, MeasuredPlant};
 
 use self::column::{MeasurementColumns, ResponseForm};
+use self::smooth::{Discs, smoothed};
 use super::ProjectFamilyError;
 use crate::project::{DeclaredFamily, Findings, Project};
 use crate::source::Source;
@@ -74,19 +76,37 @@ fn plant(name: &str, path: &str, bytes: Vec<u8>, findings: &mut Findings) -> Opt
         let found = table.error(row, columns.command.parts()[0], message, findings);
         findings.push(found.expected("a response that is not zero, or no row for this frequency"));
     }
+    let (command, radii) = match radii {
+        Some((_, radii)) if findings.error_count() == before => {
+            within_discs(frequencies, command, radii, spread.get(1))
+        }
+        _ => (command, Vec::new()),
+    };
     let plant = MeasuredPlant {
         name: name.to_string(),
         frequencies_rad_per_s: frequencies.clone(),
         command,
         disturbance: responses.next(),
         unstable_poles: 0,
-        radii: radii.map_or_else(Vec::new, |(_, radii)| {
-            disc::of_all_rows(radii, if columns.radius.is_some() { spread.get(1) } else { None })
-        }),
+        radii,
         integrators: None,
         is_resolved: false,
     };
     (findings.error_count() == before).then_some(plant)
+}
+
+/// The response and the radii of the discs that hold it at every row at once, narrowed where it is
+/// smooth.
+fn within_discs(
+    frequencies: &[f64],
+    response: Vec<Complex64>,
+    radii: &[f64],
+    stated: Option<&Vec<f64>>,
+) -> (Vec<Complex64>, Vec<f64>) {
+    let deviations = disc::deviations(radii, stated);
+    let radii = disc::of_all_rows(radii, stated);
+    let discs = Discs { frequencies, response: &response, deviations: &deviations, radii: &radii };
+    smoothed(&discs).unwrap_or((response, radii))
 }
 
 /// Reports frequencies that are not above the greatest one before.

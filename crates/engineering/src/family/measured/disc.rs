@@ -29,6 +29,17 @@ pub(super) fn of_all_rows(radii: &[f64], deviations: Option<&Vec<f64>>) -> Vec<f
     radii.iter().enumerate().map(widened).collect()
 }
 
+/// The standard deviation of each row's error; those of the columns, or of a normal distribution
+/// with these radii.
+///
+/// ```text
+/// r^2 = F(2, infinity; 0.05) sigma^2 = -ln(0.05) sigma^2
+/// ```
+pub(super) fn deviations(radii: &[f64], stated: Option<&Vec<f64>>) -> Vec<f64> {
+    let normal = (-portable::ln(OUTSIDE)).sqrt();
+    stated.cloned().unwrap_or_else(|| radii.iter().map(|radius| radius / normal).collect())
+}
+
 /// F(2, 2 half; p)
 fn quantile(half: f64, outside: f64) -> f64 {
     half * (portable::pow(outside, -1.0 / half) - 1.0)
