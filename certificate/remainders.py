@@ -139,8 +139,13 @@ def mean(a, b):
 
 
 def magnitude(y):
+    """Of y that takes both signs little: y, or -y, with what the other sign changes."""
     c, rho = y.reach()
-    return y if c >= rho else -y if c <= -rho else mean(y, -y)
+    if abs(c) >= rho:
+        return y if c >= 0 else -y
+    own, middle = y if c >= 0 else -y, mean(y, -y)
+    own = Model(own.polynomial, own.rest + 2 * (rho - abs(c)), y.degree)
+    return own if own.rest < middle.rest else middle
 
 
 def select(i, j, k, l):

@@ -6,6 +6,7 @@
 //! sees only this value: it can evaluate a plant at any point of the parameter box, over numbers,
 //! dual numbers or intervals, and so search and prove between the grid points.
 
+mod followed;
 pub mod responding;
 
 use std::sync::Arc;
@@ -149,6 +150,9 @@ enum PlantEquations {
 #[derive(Clone, Debug, PartialEq)]
 struct RecordedPlant {
     coefficients: Arc<Expression>,
+    /// The same coefficients by other operations, which polynomials follow; absent where those of
+    /// `coefficients` do.
+    followed: Option<Arc<Expression>>,
     command: (usize, usize),
     disturbance: Option<(usize, usize)>,
     rate: Option<(usize, usize)>,
@@ -224,7 +228,8 @@ impl UncertainPlant {
         });
         check_lengths(command)?;
         disturbance.map_or(Ok(()), check_lengths)?;
-        let recorded = RecordedPlant { coefficients: Arc::new(coefficients), command, disturbance, rate };
+        let coefficients = Arc::new(coefficients);
+        let recorded = RecordedPlant { coefficients, followed: None, command, disturbance, rate };
         Ok(UncertainPlant { parameters, equations: PlantEquations::Rational(recorded) })
     }
 

@@ -172,7 +172,8 @@ fn sought_point(view: &ProjectAudit) -> &'static str {
     let sought = ["operating_point.load_force", "operating_point.load_pressure", "operating_point.velocity"];
     match headings.iter().any(|name| sought.contains(name)) {
         true => {
-            ": the command that holds a load or a velocity is found by halving, which they do not follow; ranges of `flow_gain`, \
+            ": they do not follow the command that holds a load or a velocity through null of the spool, with a pump that is limited, or where \
+             more than three numbers move it; ranges of `flow_gain`, \
              `flow_pressure_coefficient` and `hydraulic_stiffness` can be proven, and `check` prints those of this family"
         }
         false => "",

@@ -24,6 +24,7 @@ use phea_hydraulics::two_pressure::{
 
 use super::ProjectFamilyError;
 use super::moved::{self, MovedNumber};
+use super::start::BalanceStart;
 use super::visited::Visited;
 use crate::project::{DeclaredActuator, LINEAR_PARAMETERS, Project};
 use crate::rig::{
@@ -43,6 +44,16 @@ pub(super) fn uncertain_plant(
     let recorded = UncertainPlant::record(parameters, |values| {
         visited.open(project, declared).plant(values, visited.moved, visited.equal).1.coefficients()
     })?;
+    let recorded = match BalanceStart::of(&visited, project, recorded.parameters()) {
+        None => recorded,
+        Some(start) => {
+            let open = Open { start: Some(&start), ..visited.open(project, declared) };
+            let followed = UncertainPlant::record(recorded.parameters().to_vec(), |values| {
+                open.plant(values, visited.moved, visited.equal).1.coefficients()
+            })?;
+            recorded.with_followed(&followed)
+        }
+    };
     let expression = recorded.expression();
     let mut all = recorded.parameters().iter().enumerate();
     let idle = all.find(|(index, _)| expression.is_some_and(|one| !one.depends_on(*index)));
@@ -79,6 +90,8 @@ pub(super) struct Open<'a> {
     /// Of the parameters, then of what their directions move.
     pub(super) names: &'a [String],
     pub(super) moved: &'a [MovedNumber],
+    /// What the balance is solved from; by halving where it is absent.
+    pub(super) start: Option<&'a BalanceStart>,
 }
 
 /// A rig at its operating point.
@@ -114,6 +127,13 @@ impl Open<'_> {
         self.settled(&numbers, self.idle(&components(self.declared, &numbers), &numbers))
     }
 
+    /// The same with the supply as it is stated.
+    pub(super) fn stated<S: Scalar>(&self, values: &[S]) -> (S, Steady<S>, Balance<S>) {
+        let all = self.all(values);
+        let numbers = Numbers::open(self.names, &all);
+        self.idle(&components(self.declared, &numbers), &numbers)
+    }
+
     /// The values of all open numbers.
     pub(super) fn all<S: Scalar>(&self, parameters: &[S]) -> Vec<S> {
         moved::values(parameters, self.moved)
@@ -147,7 +167,18 @@ impl Open<'_> {
         moved: bool,
         equal: Equal,
     ) -> (RigAtPoint<S>, LinearPlant<S>) {
-        let place = self.place(values, moved);
+        let solved = self.solved(values, moved);
+        self.plant_at(values, solved, equal)
+    }
+
+    /// The same with supply, spool and pressures at these values.
+    pub(super) fn plant_at<S: Scalar>(
+        &self,
+        values: &[S],
+        solved: (Supply<S>, Settled<S>),
+        equal: Equal,
+    ) -> (RigAtPoint<S>, LinearPlant<S>) {
+        let place = self.place_at(values, solved);
         let all = self.all(values);
         let numbers = Numbers::open(self.names, &all);
         let load = load_at(&self.declared.load, &numbers, &place.components, &place.point);
@@ -183,22 +214,40 @@ impl Open<'_> {
     /// The rig with these values; its pressures are those of the declared rig if nothing changes
     /// them.
     pub(super) fn place<S: Scalar>(&self, values: &[S], moved: bool) -> RigAtPoint<S> {
+        let solved = self.solved(values, moved);
+        self.place_at(values, solved)
+    }
+
+    /// Supply, spool and pressures at the operating point.
+    pub(super) fn solved<S: Scalar>(&self, values: &[S], moved: bool) -> (Supply<S>, Settled<S>) {
         let all = self.all(values);
         let numbers = Numbers::open(self.names, &all);
         let components = components(self.declared, &numbers);
         let (position, steady, idle) = self.idle(&components, &numbers);
         let known = &self.rig.point;
-        let (supply, at) = match (moved, &self.rig.supply) {
+        match (moved, &self.rig.supply) {
             (true, _) => {
                 let (_, _, balance) = self.settled(&numbers, (position, steady, idle));
-                (balance.supply, balance.settle(steady))
+                let settled = match self.start {
+                    None => balance.settle(steady),
+                    Some(start) => balance.settle_from(steady, start.at(values)),
+                };
+                (balance.supply, settled)
             }
             (false, found) => {
                 let pressure = found.map_or(idle.supply.pressure, |found| S::from(found.supply.pressure));
                 let pressures = [known.pressure_a, known.pressure_b].map(S::from);
                 (Supply { pressure, ..idle.supply }, Settled { command: S::from(known.command), pressures })
             }
-        };
+        }
+    }
+
+    /// The rig with these values, and with supply, spool and pressures at these.
+    fn place_at<S: Scalar>(&self, values: &[S], (supply, at): (Supply<S>, Settled<S>)) -> RigAtPoint<S> {
+        let all = self.all(values);
+        let numbers = Numbers::open(self.names, &all);
+        let components = components(self.declared, &numbers);
+        let (position, steady, idle) = self.idle(&components, &numbers);
         let Settled { command, pressures } = at;
         let balance = Balance { supply, ..idle };
         let none = S::from(0.0);

@@ -9,6 +9,7 @@ use std::collections::BTreeSet;
 use phea_qft::family::{Extent, UncertainFamily};
 
 use super::ProjectFamilyError;
+use super::jumps::jumps;
 use super::visited::Visited;
 use crate::setup::Setup;
 
@@ -31,7 +32,8 @@ pub(super) fn with_crossings(
         return Ok(family);
     }
     let visited = Visited::new(setup, family.plant().parameters())?;
-    let found = crossings(&visited, &family);
+    let mut found = crossings(&visited, &family);
+    found.extend(jumps(&visited, setup.project, &family));
     if found.is_empty() {
         return Ok(family);
     }

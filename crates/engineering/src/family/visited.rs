@@ -38,9 +38,9 @@ pub(super) struct Visited {
     /// What is equal on both sides of every plant.
     pub(super) equal: Equal,
     /// The uncertain numbers on which they depend.
-    movers: Vec<usize>,
+    pub(super) movers: Vec<usize>,
     /// Command and both pressures.
-    settled: Expression,
+    pub(super) settled: Expression,
 }
 
 impl Visited {
@@ -53,7 +53,7 @@ impl Visited {
         let own: Vec<String> = parameters.iter().map(|parameter| parameter.name.clone()).collect();
         let by_directions = moved::moved(project, &own);
         let names = moved::names(&own, &by_directions);
-        let open = Open { project, declared, rig: &rig, names: &names, moved: &by_directions };
+        let open = Open { project, declared, rig: &rig, names: &names, moved: &by_directions, start: None };
         let all: Vec<&str> = own.iter().map(String::as_str).collect();
         let settled = Expression::record(&all, |values| {
             let (_, steady, balance) = open.balance(values);
@@ -87,7 +87,8 @@ impl Visited {
 
     /// The rig with its uncertain numbers open.
     pub(super) fn open<'a>(&'a self, project: &'a Project, declared: &'a DeclaredActuator) -> Open<'a> {
-        Open { project, declared, rig: &self.rig, names: &self.names, moved: &self.by_directions }
+        let (names, moved) = (&self.names, &self.by_directions);
+        Open { project, declared, rig: &self.rig, names, moved, start: None }
     }
 
     /// The error at a plant; `None` if its recorded pressures are those of its operating point.

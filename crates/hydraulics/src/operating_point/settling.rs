@@ -51,6 +51,8 @@ const HALVINGS_OF_ORIFICE: usize = 20;
 const ROUNDS: usize = 3;
 /// Newton steps without and with leakage.
 const STEPS: [usize; 2] = [5, 9];
+/// Newton steps from a start next to the solution: each squares its relative error.
+const STEPS_FROM_START: usize = 2;
 /// Share of the nominal voltage within which a spool counts as at null: closer than rounding can
 /// distinguish.
 pub(super) const AT_NULL: f64 = 1e-12;
@@ -97,6 +99,44 @@ impl<S: Scalar> Balance<S> {
                 Settled { command, pressures: [half * (mean + load_pressure), half * (mean - load_pressure)] }
             }
         }
+    }
+
+    /// Where the valve and the chambers settle, by Newton steps from a start next to it: smooth in
+    /// every parameter and in the start, where [`Balance::settle`] halves and chooses.
+    ///
+    /// # Example
+    /// From a volt and ten bar beside, the second step has the digits of the solution.
+    /// ```
+    /// use phea_hydraulics::operating_point::{Balance, Settled, SteadyLoad, Steady};
+    /// use phea_hydraulics::reference_rig::{USEFUL_AREA, valve};
+    /// use phea_hydraulics::servovalve::Supply;
+    /// let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };
+    /// let balance = Balance { valve: valve(), supply, areas: [USEFUL_AREA; 2], across: None, outward: None };
+    /// let steady = Steady::Moving { velocity: 0.05, load: SteadyLoad::Force(2e3) };
+    /// let found = balance.settle(steady);
+    /// let start = Settled { command: found.command + 0.01, pressures: found.pressures.map(|pressure| pressure + 1e4) };
+    /// assert!(balance.error(steady, &start) > 1e-3 && balance.error(steady, &balance.settle_from(steady, start)) < 1e-9);
+    /// ```
+    pub fn settle_from(&self, steady: Steady<S>, start: Settled<S>) -> Settled<S> {
+        let Settled { mut command, mut pressures } = start;
+        match steady {
+            Steady::Command(_) => {
+                for _ in 0..STEPS_FROM_START {
+                    let [step_a, step_b] = self.step_at(command, S::from(0.0), pressures);
+                    pressures = [pressures[0] + step_a, pressures[1] + step_b];
+                }
+            }
+            Steady::Moving { velocity, load } => {
+                let hold = self.hold(velocity, load);
+                for _ in 0..STEPS_FROM_START {
+                    let [step, step_a] = self.step_moving(&hold, command, pressures[0]);
+                    (command, pressures[0]) = (command + step, pressures[0] + step_a);
+                }
+                pressures[1] = hold.other(pressures[0]);
+            }
+            Steady::Matched(..) => return self.settle(steady),
+        }
+        Settled { command, pressures }
     }
 
     /// Newton steps after the first guess.

@@ -185,7 +185,11 @@ impl Model {
                 match (least.least() >= 0.0, most.most() <= 0.0) {
                     (true, _) => of(y).cloned(),
                     (_, true) => Some(minus(of(y)?)),
-                    _ => Some(either(of(y)?, &minus(of(y)?))),
+                    // |y| is the greater of y and -y
+                    _ => {
+                        let apart = [least.times(2.0), most.times(2.0)];
+                        Some(extremum([of(y)?, &minus(of(y)?)], apart, true))
+                    }
                 }
             }
             Node::Binary(Binary::Add, y, z) => Some(of(y)?.plus(of(z)?)),

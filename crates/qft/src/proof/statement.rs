@@ -28,7 +28,7 @@ pub(super) fn stated(family: &Family, compensation: &Compensation) -> Result<Cer
         return Err(NotProven::RateFedForward);
     }
     let parts = [compensation.feedback(), compensation.prefilter(), compensation.sensor()];
-    let expression = family.plant().expression().ok_or(NotProven::Waves)?;
+    let expression = family.plant().followed_expression().ok_or(NotProven::Waves)?;
     let (boxes, variables) = boxes(family)?;
     let ends = family.plant().parameters().iter();
     let all: Vec<Interval> = ends.map(|one| Interval::new(one.minimum, one.maximum)).collect();
