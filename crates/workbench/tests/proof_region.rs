@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use crate::ask::HOSE;
-use phea_dynamics::portable::{log10, magnitude};
+use phea_dynamics::portable::{log10, magnitude, pow};
 use phea_dynamics::watch::unwatched;
 use phea_qft::audit::audit;
 use phea_qft::family::Family;
@@ -73,7 +73,7 @@ fn proven(uncertainty: &str) -> Certificate {
         let share = |axis: usize| (number / count.pow(axis as u32) % count) as f64 / (count - 1) as f64;
         let values = family.values(&(0..axes).map(share).collect::<Vec<f64>>());
         for step in 0..40 {
-            let frequency = 0.1 * 1e5_f64.powf(f64::from(step) / 39.0);
+            let frequency = 0.1 * pow(1e5, f64::from(step) / 39.0);
             let open = family.plant().response(&values, frequency).unwrap()
                 * problem.compensation.feedback().at_frequency(frequency);
             worst_db = worst_db.max(20.0 * log10(magnitude(open / (1.0 + open)) / LIMIT));

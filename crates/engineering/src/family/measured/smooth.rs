@@ -6,8 +6,8 @@
 //! r_i = J_i (sum h_j^2 sigma_j^2)^(1/2) + 2 |a - a'|       |P - P_i e^a| <= |P_i e^a| (e^r_i - 1)
 //! ```
 //!
-//! h_j are the weights of the fit, J_i is the factor for all rows to hold at once, a' is that of the
-//! next window. The window grows as long as its rows scatter about the parabola as their own
+//! h_j are the weights of the fit, J_i is the factor for all rows to hold at once, and a' is that
+//! of the next window. The window grows as long as its rows scatter about the parabola as their own
 //! discs say, and as long as what it finds agrees with the smaller ones; of those the last but one
 //! is taken, whose bias is well below what the last one was tested for. Next to a resonance that
 //! few rows show no window passes, and the row keeps its own disc.
