@@ -8,8 +8,10 @@
 //! signals of a scenario. In text the separator is found, and the row that names the columns,
 //! wherever it is; a unit stands in a heading or below it; a decimal sign is a point or a comma,
 //! one of them in a whole file. Rows without any value and rows that begin with `#` are not rows.
+//! Times are numbers, or stamps of a clock, which are read as seconds since the first one.
 
 mod cell;
+mod clock;
 mod column;
 mod decode;
 mod faults;
@@ -18,8 +20,10 @@ mod labview;
 mod layout;
 mod parquet;
 mod text;
+mod times;
 
 pub use column::{Column, Measurand, Sought, TIME_NAMES, TIMES};
+pub(crate) use times::{median_step, not_increasing};
 
 use self::parquet::ParquetRows;
 use self::text::TextRows;
@@ -184,6 +188,15 @@ impl MeasuredTable {
         let TableRows::Text(rows) = &self.rows else { return "" };
         let place = rows.place(findings.content(rows.text), row, column.index);
         findings.content(rows.text).get(place.start..place.end).unwrap_or_default()
+    }
+
+    /// Whether the first value of a column is a stamp of a clock.
+    fn is_clock(&self, index: usize, findings: &Findings) -> bool {
+        let TableRows::Text(rows) = &self.rows else { return false };
+        let content = findings.content(rows.text);
+        let place = rows.place(content, 0, index);
+        let first = content.get(place.start..place.end).unwrap_or_default();
+        clock::ClockStamp::read(first).is_some()
     }
 
     /// The heading of a column, as written.

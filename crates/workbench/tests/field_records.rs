@@ -140,6 +140,59 @@ fn rounded_stamps_of_even_rows_are_even() {
     assert!(refused(late)[0].message.contains("after the row before"));
 }
 
+/// A time of the day with a date or without, over midnight too, is the time since the first row.
+#[test]
+fn stamps_of_a_clock_are_times() {
+    let stamped = |name: &str, stamp: fn(f64) -> String| {
+        table(&format!("{name},command_v,force_n\n"), 1e-3, |_, time| {
+            let [command, force] = sample(time);
+            format!("{},{command:.6},{force:.6}", stamp(time))
+        })
+    };
+    let morning: fn(f64) -> String = |time| format!("10:00:{time:06.3}");
+    let midnight: fn(f64) -> String = |time| match time {
+        time if time < 0.0995 => format!("23:59:{:06.3}", 59.9 + time),
+        time => format!("00:00:{:06.3}", time - 0.1),
+    };
+    let february: fn(f64) -> String = |time| format!("2024-02-{}", if time < 0.0995 { "28" } else { "29" });
+    same(&accepted(stamped("time", morning)));
+    same(&accepted(stamped("Time [ms]", morning)));
+    same(&accepted(stamped("time", midnight)));
+    same(&accepted(stamped("Timestamp", |time| format!("2026-11-27T10:00:{time:06.3}"))));
+    same(&accepted(stamped("Date/Time", |time| format!("27.11.2026 10:00:{time:06.3}"))));
+    let leap = |time: f64| format!("{}T{}", february(time), midnight(time));
+    let rows = (0..200).map(|row| leap(f64::from(row) * 1e-3)).collect::<Vec<_>>();
+    let text = stamped("time", |time| format!("row{:.0}", 1e3 * time));
+    let dated = |zone: &str| {
+        let replaced = |(row, stamp): (usize, &String)| (format!("row{row},"), format!("{stamp}{zone},"));
+        rows.iter().enumerate().map(replaced).fold(text.clone(), |text, (from, to)| text.replace(&from, &to))
+    };
+    same(&accepted(dated("")));
+    same(&accepted(dated("Z")));
+    same(&accepted(dated("-03:00")));
+    let commas = stamped("time", morning).replace(',', ";").replace('.', ",");
+    same(&accepted(commas));
+    // a number among stamps, and an hour that no day has
+    let mixed = refused(stamped("time", morning).replace("10:00:00.050", "0.050"));
+    assert!(mixed[0].message.contains("`0.050` is not a number") && mixed[0].line == 52, "{mixed:?}");
+    let late = refused(stamped("time", morning).replace("10:00:00.050", "25:00:00.050"));
+    assert!(late[0].help.as_deref().unwrap_or("").contains("2026-11-27T10:00:00.001"), "{late:?}");
+}
+
+/// A stamp that is late is named itself, and not the row after it, which is early against it.
+#[test]
+fn the_first_wrong_stamp_is_named() {
+    for late in [0.3e-3, 0.9e-3, 2.5e-3] {
+        let text = table("time_s,command_v,force_n\n", 1e-3, |row, time| {
+            let [command, force] = sample(time);
+            let late = if row == 58 { late } else { 0.0 };
+            format!("{:.6},{command:.6},{force:.6}", time + late)
+        });
+        let found = refused(text);
+        assert_eq!((found.len(), found[0].line), (1, 60), "{late}: {found:?}");
+    }
+}
+
 /// A run that is moved at a constant velocity, logged by software: late rows change nothing.
 #[test]
 fn a_run_of_the_cylinder_may_have_late_rows() {
@@ -177,6 +230,12 @@ fn numbers_that_no_rig_of_this_size_has_are_refused_with_their_unit() {
             "force_kn",
             "3000",
             "plausible in N",
+        ),
+        (
+            "reference = { kind = \"file\", start = \"0 s\", file = \"f.csv\" }",
+            "force_n",
+            "3",
+            "plausible in kN",
         ),
         (
             "command = { kind = \"file\", start = \"0 s\", file = \"f.csv\" }",
@@ -273,6 +332,33 @@ fn errors_of_the_computed_rig_have_a_place() {
     );
     let found = places(&start, &[], &Request::Simulate(SimulateRequest::default()));
     assert!(found[0].line > line_of(&start, "duration = \"0.1 s\"") - 3, "{found:?}");
+}
+
+/// A table that a command needs and that is absent would be at the end of the file; one that the
+/// command refuses has its line.
+#[test]
+fn errors_about_absent_tables_have_a_place() {
+    let simulate = Request::Simulate(SimulateRequest::default());
+    let verify = Request::Verify { proof: false, on_machine: false };
+    let design = Request::Design { seed: None, stages: false, repair: true };
+    let cases = [
+        ("sizing", ask::size_request(None, None)),
+        ("scenario", simulate),
+        ("specification", verify.clone()),
+        ("specification", design),
+        ("controller", verify),
+    ];
+    for (table, request) in cases {
+        let text = without(ask::HOSE, table);
+        let found = places(&text, &[], &request);
+        let end = text.lines().count() + usize::from(text.ends_with('\n'));
+        assert_eq!(found[0].line, end, "{table}: {found:?}");
+        assert!(found[0].message.contains(&format!("[{table}]")), "{found:?}");
+    }
+    let motor = include_str!("../../../examples/rotary/vane.toml");
+    let found = places(motor, &[], &Request::Bench);
+    let line = motor.lines().position(|line| line.starts_with("[motor]")).unwrap() + 1;
+    assert!(found[0].line == line && found[0].message.contains("is for a [cylinder]"), "{found:?}");
 }
 
 /// A project without one of its tables.

@@ -269,7 +269,7 @@ fn recordings_that_are_none_of_a_line_are_refused_with_the_place() {
     let back = |n: u32| format!("{},{n},{n}", if n == 7 { 3 } else { n });
     refused(
         &rows("time_s,pressure_bar,volume_ml", &back),
-        &["stand.csv:9", "not after that of the row before"],
+        &["stand.csv:9", "a time before that of the row before"],
     );
     refused("pressure_bar,volume_ml\n1,2\n2,4\n", &["2 rows are too few", "at least 10 rows"]);
     refused(&rows("pressure_bar,volume_ml", &|n| format!("7,{n}")), &["the pressure never moves"]);

@@ -268,7 +268,12 @@ fn a_measured_motion_is_that_motion() {
 #[test]
 fn a_motion_file_is_refused_with_its_place() {
     let cases = [
-        ("time_s, position_m\n0, 0\n0, 1\n", "3:1", "times must increase from row to row"),
+        ("time_s, position_m\n0, 0\n0, 1\n", "3:1", "the time of the row before, with other values"),
+        (
+            "time_s, position_m\n0, 0\n1, 1\n9, 1\n3, 1\n4, 1\n",
+            "4:1",
+            "a time that is not before that of the next row",
+        ),
         ("time_s, position_m\n0, 0\n1, 1;2\n", "3:4", "`1;2` is not a number"),
         ("time_s, positon_mm\n0, 0\n1, 1\n", "1:9", "unknown column `positon_mm`"),
         ("time_s\n0\n1\n", "1:1", "there is no column `position`"),

@@ -99,7 +99,7 @@ fn it_is_told_in_text_json_and_a_figure() {
 #[test]
 fn a_measurement_that_cannot_be_taken_is_refused_with_its_place() {
     let cases = [
-        ("t,F,pressure_a_pa\n0,1,2\n0,1,2\n", "3:1 times must increase from row to row"),
+        ("t,F,pressure_a_pa\n0,1,2\n0,1,2\n", "3:1 the time of the row before, with other values"),
         ("t,F,pressure_a_pa\n0,1,2\n1,,2\n", "3:3 there is no value"),
         ("t,F,pressure_a_pa\n0,1,2\n1,1\n", "3:1 2 values for 3 columns"),
         ("t,F,pressure_a_pa\n0,1,NaN\n", "2:5 `NaN` is not a number"),

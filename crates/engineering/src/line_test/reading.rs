@@ -8,7 +8,7 @@ use crate::project::{Findings, RawFinding};
 use crate::quantity::{FLOW, LENGTH, PRESSURE, TIME, VOLUME};
 use crate::response::{SampledPair, time_step};
 use crate::source::Source;
-use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES};
+use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES, not_increasing};
 
 /// A recording of a blocked line.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,8 +123,7 @@ fn are_enough(table: &MeasuredTable, rows: &[f64], findings: &mut Findings) -> b
 fn increasing(table: &MeasuredTable, column: &Column, times: &[f64], findings: &mut Findings) {
     let falls = |pair: &[f64]| matches!(pair, [one, next] if next <= one);
     if let Some(row) = times.windows(2).position(falls) {
-        let found = table.error(row + 1, column, "a time that is not after that of the row before", findings);
-        findings.push(found.expected("times that increase from row to row"));
+        findings.push(not_increasing(table, column, (times, row + 1), findings));
     }
 }
 

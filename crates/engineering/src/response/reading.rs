@@ -4,7 +4,7 @@ use crate::identify::IdentifyError;
 use crate::project::{Findings, RawFinding, RecordedResponse, ResponseSignal};
 use crate::quantity::{FORCE, RATIO, TIME, VOLTAGE, display};
 use crate::source::Source;
-use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES};
+use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES, median_step};
 
 /// Two signals of a record, sampled at equal intervals. SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,7 +127,10 @@ pub fn time_step(
         _ => 0.0,
     };
     let most = times.windows(2).map(off).fold(0.0, f64::max);
-    let row = times.windows(2).position(|pair| off(pair) >= most).map_or(0, |row| row + 1);
+    let rounded = ((1.0 + ROUNDING) * spacing.digit).max(UNEVEN * usual);
+    // a row that is late is early for the row after it, by the same but for rounding errors
+    let beyond = rounded.min((1.0 - 1e-6) * most);
+    let row = times.windows(2).position(|pair| off(pair) > beyond).map_or(0, |row| row + 1);
     let since =
         times.get(row).zip(times.get(row.saturating_sub(1))).map_or(0.0, |(one, before)| one - before);
     let message = format!("{} after the row before", display(since, &TIME, 4));
@@ -199,14 +202,4 @@ fn last_digit(times: &[f64]) -> f64 {
         times.iter().all(|time| off(time) < 1e-4 * (1.0 + 1e-9 * (time / digit).abs()))
     };
     [1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7].into_iter().find(is_multiple).unwrap_or(0.0)
-}
-
-fn median_step(times: &[f64]) -> f64 {
-    let mut steps: Vec<f64> =
-        times.windows(2).filter_map(|pair| Some(pair.last()? - pair.first()?)).collect();
-    let middle = steps.len() / 2;
-    if steps.is_empty() {
-        return 0.0;
-    }
-    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
 }

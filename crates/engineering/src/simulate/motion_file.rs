@@ -14,7 +14,7 @@ use super::plausible;
 use crate::project::{Findings, Project, RawFinding, Refusal};
 use crate::quantity::{FORCE, LENGTH, RATIO, VOLTAGE};
 use crate::source::Source;
-use crate::table::{Column, Measurand, MeasuredTable, Sought, TIMES};
+use crate::table::{Column, Measurand, MeasuredTable, Sought, TIMES, not_increasing};
 
 static POSITION: Measurand = Measurand::of("position", &LENGTH);
 /// A force over time.
@@ -99,8 +99,7 @@ pub(super) fn rising(table: &MeasuredTable, column: &Column, times: &[f64], find
     let mut last = f64::NEG_INFINITY;
     for (row, time) in times.iter().enumerate().filter(|(_, time)| !time.is_nan()) {
         if *time <= last {
-            let found = table.error(row, column, "times must increase from row to row", findings);
-            return findings.push(found.expected("a later time"));
+            return findings.push(not_increasing(table, column, (times, row), findings));
         }
         last = *time;
     }

@@ -27,7 +27,15 @@ fn held(actuator: &DeclaredActuator, dimension: &Dimension) -> Option<(f64, &'st
     }
 }
 
-/// Refuses a column that goes beyond ten times what the rig holds.
+/// Whether a column of it that stays far below what the rig holds is in another unit: no force
+/// sensor shows a thousandth of its rig, but motions may be that small, and pressures near the
+/// tank's.
+fn is_of_full_scale(dimension: &Dimension) -> bool {
+    [&FORCE, &TORQUE].iter().any(|one| std::ptr::eq(dimension, *one))
+}
+
+/// Refuses a column that goes beyond ten times what the rig holds, and forces below a thousandth
+/// of it that another unit would make plausible.
 pub(super) fn check(
     project: &Project,
     table: &MeasuredTable,
@@ -39,7 +47,8 @@ pub(super) fn check(
     let Some((held, words)) = held.filter(|(held, _)| *held > 0.0) else { return };
     let most =
         values.iter().filter(|value| !value.is_nan()).fold(0.0, |most: f64, value| most.max(value.abs()));
-    if most <= BEYOND * held {
+    let is_small = is_of_full_scale(dimension) && most > 0.0 && most < USUAL[0] * held;
+    if most <= BEYOND * held && !is_small {
         return;
     }
     let in_si = |unit: &str| UnitScale::new(unit, dimension).ok()?.read("1");
@@ -48,15 +57,20 @@ pub(super) fn check(
         let other = in_si(unit).map_or(f64::NAN, |other| most / stated * other / held);
         (USUAL[0]..=USUAL[1]).contains(&other)
     };
-    let units: Vec<&str> = ["N", "kN", "N.m", "m", "mm", "V", "mV", "Pa", "kPa", "bar", "MPa", "psi"]
-        .iter()
-        .filter(would_do)
-        .copied()
-        .collect();
+    let units: Vec<&str> =
+        ["N", "kN", "MN", "N.m", "kN.m", "m", "mm", "V", "mV", "Pa", "kPa", "bar", "MPa", "psi"]
+            .iter()
+            .filter(would_do)
+            .copied()
+            .collect();
     let heading = table.heading(column);
     let reached = display(most / stated, &crate::quantity::RATIO, 4);
-    let message =
-        format!("`{heading}` reaches {reached} {}, and {words} {}", column.unit, display(held, dimension, 4));
+    if is_small && units.is_empty() {
+        return;
+    }
+    let only = if is_small { "only " } else { "" };
+    let held = display(held, dimension, 4);
+    let message = format!("`{heading}` reaches {only}{reached} {}, and {words} {held}", column.unit);
     let place = table.headings.get(column.index).map(|heading| heading.place).unwrap_or_default();
     let found = RawFinding::error(place, message);
     findings.push(match units.is_empty() {

@@ -35,7 +35,7 @@ impl Measurand {
 /// Times of the rows, as loggers call them.
 pub static TIMES: Measurand = Measurand::of("time", &TIME).called(TIME_NAMES);
 /// What loggers call the time.
-pub const TIME_NAMES: &[&str] = &["t", "X_Value"];
+pub const TIME_NAMES: &[&str] = &["t", "X_Value", "timestamp", "datetime", "date_time", "date/time"];
 /// The shortest word that names a signal without its unit.
 const WORD: usize = 3;
 
@@ -60,6 +60,8 @@ pub struct Column {
     /// Whether its numbers are shares.
     pub is_share: bool,
     pub(super) scale: UnitScale,
+    /// Whether it may have stamps of a clock.
+    pub(super) is_time: bool,
 }
 
 impl Column {
@@ -173,6 +175,11 @@ impl MeasuredTable {
             return None;
         }
         let said = if beside.is_empty() { heading.unit.as_deref().map_or("", bare) } else { beside };
+        let is_time = std::ptr::eq(sought.measurand.dimension, &TIME);
+        if is_time && self.is_clock(index, findings) {
+            let scale = UnitScale::new(TIME.si, &TIME).ok()?;
+            return Some(Column { index, unit: TIME.si.to_string(), is_share: false, scale, is_time });
+        }
         let Some((unit, scale)) = sought.unit_of(sought.unit.unwrap_or(said)) else {
             findings.push(self.without_unit(sought, heading, sought.unit.unwrap_or(said)));
             return None;
@@ -186,7 +193,7 @@ impl MeasuredTable {
             findings.push(RawFinding::warning(heading.place, message));
         }
         let is_share = sought.measurand.may_be_share && unit == "%";
-        Some(Column { index, unit, is_share, scale })
+        Some(Column { index, unit, is_share, scale, is_time })
     }
 
     fn without_unit(&self, sought: &Sought<'_>, heading: &Heading, written: &str) -> RawFinding {

@@ -1,6 +1,7 @@
 //! A table as text.
 
 use super::cell::{Cells, Separator};
+use super::clock::ClockReading;
 use super::column::{Column, Sought};
 use super::faults::Faults;
 use super::heading::{bare, unit_meant};
@@ -198,6 +199,7 @@ impl TextRows {
             },
             incomplete: Faults::default(),
             wrong: vec![Faults::default(); columns.len()],
+            clocks: vec![ClockReading::default(); columns.len()],
             point: None,
             comma: None,
         };
@@ -244,7 +246,8 @@ fn no_number(place: Place, text: &str) -> RawFinding {
         return found.help("write numbers without signs between thousands");
     }
     found.maybe_help(
-        text.contains(':').then(|| "write times as numbers, such as seconds from the start".into()),
+        text.contains(':')
+            .then(|| "write times as seconds from the start, 10:00:00.001 or 2026-11-27T10:00:00.001".into()),
     )
 }
 
@@ -256,6 +259,8 @@ struct TextReading {
     incomplete: Faults,
     /// What is not a number, for each column.
     wrong: Vec<Faults>,
+    /// Stamps of each column.
+    clocks: Vec<ClockReading>,
     /// The first number with a decimal point, and the first with a decimal comma.
     point: Option<Place>,
     comma: Option<Place>,
@@ -263,7 +268,8 @@ struct TextReading {
 
 impl TextReading {
     fn take(&mut self, row: usize, slot: usize, column: &Column, cell: super::cell::TextCell<'_>) {
-        let value = column.scale.read(cell.text);
+        let is_clock = column.is_time && self.clocks.get(slot).is_some_and(ClockReading::has_begun);
+        let value = if is_clock { None } else { column.scale.read(cell.text) };
         if self.point.is_none() && value.is_some() && cell.text.contains('.') {
             self.point = Some(cell.place(self.text));
         }
@@ -279,8 +285,15 @@ impl TextReading {
             self.numbers.gaps.get_mut(slot).into_iter().for_each(|gaps| gaps.push(row));
             return f64::NAN;
         }
+        if let Some(seconds) = self.stamp(slot, column, cell.text) {
+            return seconds;
+        }
+        let is_clock = self.clocks.get(slot).is_some_and(ClockReading::has_begun);
         let has_both = cell.text.contains('.') && cell.text.contains(',');
-        if !has_both && let Some(value) = column.scale.read(&cell.text.replace(',', ".")) {
+        if !is_clock
+            && !has_both
+            && let Some(value) = column.scale.read(&cell.text.replace(',', "."))
+        {
             self.comma.get_or_insert(cell.place(self.text));
             return value;
         }
@@ -288,6 +301,16 @@ impl TextReading {
         let found = || no_number(place, cell.text).expected(column.expected());
         self.wrong.get_mut(slot).into_iter().for_each(|wrong| wrong.add(found));
         f64::NAN
+    }
+
+    /// The time of a stamp, where all values before it are stamps or gaps too.
+    fn stamp(&mut self, slot: usize, column: &Column, text: &str) -> Option<f64> {
+        let clock = self.clocks.get_mut(slot).filter(|_| column.is_time)?;
+        let has_numbers = || self.numbers.columns.get(slot)?.iter().find(|value| !value.is_nan());
+        if !clock.has_begun() && has_numbers().is_some() {
+            return None;
+        }
+        clock.seconds(text)
     }
 
     /// Takes no number of a row that is not whole.

@@ -2,7 +2,7 @@
 
 use super::Taken;
 use crate::project::{Findings, RawFinding, TestSignal};
-use crate::table::{Column, ColumnNumbers, MeasuredTable};
+use crate::table::{Column, ColumnNumbers, MeasuredTable, not_increasing};
 
 /// A column with more gaps than this share of the rows is not a record.
 const MOST_GAPS: f64 = 0.5;
@@ -77,16 +77,7 @@ fn leave_out_repeated(
                 continue;
             }
             Some((_, at_last)) if time <= at_last => {
-                let [message, cure] = if time == at_last {
-                    ["the time of the row before, with other values", "write times with all their digits"]
-                } else {
-                    [
-                        "a time before that of the row before",
-                        "sort the rows by time; where the clock started anew, write two files",
-                    ]
-                };
-                let found = table.error(row, column, message, findings);
-                findings.push(found.expected("times that increase from row to row").help(cure));
+                findings.push(not_increasing(table, column, (times, row), findings));
             }
             _ => {}
         }
