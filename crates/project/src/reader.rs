@@ -183,6 +183,12 @@ impl<'a> Reader<'a> {
         Place { text: self.project_text, start: 0, end: 0 }
     }
 
+    /// The end of the project file, where another table would be written.
+    pub(crate) fn end_place(&self) -> Place {
+        let end = self.findings.content(self.project_text).len();
+        Place { text: self.project_text, start: end, end }
+    }
+
     /// A top-level key, whether read or not.
     pub(crate) fn root_entry(&self, key: &str) -> Option<&'a Entry> {
         self.root.get(key)

@@ -15,6 +15,7 @@ mod linear_loop;
 mod linkage;
 mod measured;
 mod motor;
+mod order;
 mod plausible;
 mod rig;
 mod series;
@@ -60,10 +61,7 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     linear_loop::controllers(project, &mut check);
     impedance::impedance(project, &mut check);
     design::design(project, &mut check);
-    if let Some(line) = &project.bench.line {
-        check.increasing("bench.line.pressures", &line.pressures);
-        check.increasing("bench.line.frequencies", &line.frequencies);
-    }
+    order::bench(&project.bench, &mut check);
     if let Some(identified) = &project.identify {
         identify::identify(identified, &mut check);
         identify::in_use(project, identified, &mut check);
@@ -72,13 +70,12 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     alternative::load_cases(project, &mut check);
 }
 
-/// An error that was found later.
+/// An error that was found later. A table that is absent would be at the end of the file.
 pub(super) fn late(late: &LateError, reader: &mut Reader<'_>) {
     let mut check = Check { reader };
-    match late.help.as_str() {
-        "" => check.error(&late.path, &late.message),
-        help => check.error_with_help(&late.path, &late.message, help),
-    }
+    let place = if check.has_table(&late.path) { check.place(&late.path) } else { check.reader.end_place() };
+    let help = Some(late.help.clone()).filter(|help| !help.is_empty());
+    check.push_error(&late.path, RawFinding::error(place, &late.message).maybe_help(help));
 }
 
 impl DeclaredElement {
@@ -177,15 +174,6 @@ impl Check<'_, '_> {
         }
         let place = self.place(path);
         self.reader.findings.push(RawFinding::error(place, message).consequence());
-    }
-
-    /// Two numbers must be in order.
-    fn ascending(&mut self, path: &str, pair: Option<[f64; 2]>) {
-        if let Some([low, high]) = pair
-            && low > high
-        {
-            self.error(path, format!("`{}` is reversed: the lower value comes first", last(path)));
-        }
     }
 
     /// Numbers must increase from one to the next.

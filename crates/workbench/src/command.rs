@@ -175,13 +175,12 @@ pub fn answer_into(
     destination: Option<&dyn Destination>,
     watch: Watch<'_>,
 ) -> Result<Answer, CommandError> {
-    motor::refuse(loaded, request)?;
     // these three know their own way: the bench tests the declared valve, whose recordings may not
     // be there yet
-    let identified = match request {
+    let identified = motor::refuse(loaded, request).and_then(|()| match request {
         Request::Bench | Request::Compare | Request::Campaign(_) => Ok(None),
         _ => with_recordings(source, loaded, watch),
-    };
+    });
     let answer = identified.and_then(|identified| {
         let loaded = identified.as_ref().unwrap_or(loaded);
         answer_as_read(source, loaded, catalogues, request, destination, watch)

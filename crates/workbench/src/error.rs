@@ -128,13 +128,20 @@ pub enum CommandError {
 }
 
 impl CommandError {
-    /// The same error at the place of the key that it names, as the refusal of the project.
+    /// The same error as the refusal of the project, at the first key or table that it names and
+    /// that the project has; at the end of the file where all of them are absent.
     pub(crate) fn into_refusal(self, source: &dyn Source, loaded: &Loaded) -> CommandError {
-        let Some(late) = place::late(&self, &loaded.project) else { return self };
-        let refusal = refused(source, loaded, &late);
-        // what is absent has no place
-        let has_place = |found: &Diagnostic| found.message == late.message && found.span.end > 0;
-        if refusal.diagnostics.iter().any(has_place) { CommandError::Refused(refusal) } else { self }
+        let mut at_the_end = None;
+        for late in place::late(&self, &loaded.project) {
+            let refusal = refused(source, loaded, &late);
+            let of_late = |found: &&Diagnostic| found.message == late.message && found.line > 0;
+            match refusal.diagnostics.iter().find(of_late) {
+                Some(found) if is_at_the_end(found, loaded) => drop(at_the_end.get_or_insert(refusal)),
+                Some(_) => return CommandError::Refused(refusal),
+                None => {}
+            }
+        }
+        at_the_end.map_or(self, CommandError::Refused)
     }
 
     /// The findings, if files that the project names were rejected, with a place for each.
@@ -163,6 +170,11 @@ impl CommandError {
                 )
         )
     }
+}
+
+/// Whether a finding points behind everything that the project file has.
+fn is_at_the_end(found: &Diagnostic, loaded: &Loaded) -> bool {
+    found.file == loaded.path && found.span.start >= loaded.bytes.len()
 }
 
 // The error of a smaller procedure within another is that of the smaller one.

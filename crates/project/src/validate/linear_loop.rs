@@ -119,12 +119,7 @@ fn quantization(declared: &DeclaredQuantization, sample_time: Option<f64>, check
         if (bits > 0) != range.is_some() {
             check.error(path, format!("`{name}_bits` and `{name}_range` make a converter together"));
         }
-        if range.is_some_and(|[low, high]| low >= high) {
-            check.error(
-                &format!("{path}.{name}_range"),
-                format!("`{name}_range` is empty or reversed: the lower value comes first"),
-            );
-        }
+        check.strictly_ascending(&format!("{path}.{name}_range"), range);
     }
     for (name, allowed, converter, bits) in [
         ("allowed_force_error", declared.allowed_force_error, "command", declared.command_bits),

@@ -2,9 +2,9 @@
 
 use super::{Check, adjustment, cross_port, line_motion};
 use crate::{
-    BoundedNumber, Component, DeclaredAccumulator, DeclaredActuator, DeclaredCylinder, DeclaredFriction,
-    DeclaredLine, DeclaredLines, DeclaredPipe, DeclaredSupply, FrictionLaw, NullLeakage, Project, Pump,
-    StribeckCurve, SupplyModel, Valve,
+    Component, DeclaredAccumulator, DeclaredActuator, DeclaredCylinder, DeclaredFriction, DeclaredLine,
+    DeclaredLines, DeclaredPipe, DeclaredSupply, FrictionLaw, NullLeakage, Project, Pump, StribeckCurve,
+    SupplyModel, Valve,
 };
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE as ATMOSPHERE;
 use phea_hydraulics::stroke::FURTHER_STAGES;
@@ -271,8 +271,7 @@ fn friction(friction: &DeclaredFriction, part: &str, check: &mut Check<'_, '_>) 
         return;
     }
     if breakaway < coulomb {
-        check.error(&at("static"), "`static` friction is below `coulomb` friction");
-        return;
+        return check.in_order([&at("coulomb"), &at("static")], [coulomb, breakaway]);
     }
     let FrictionLaw::LuGre { bristle_damping, .. } = friction.law else { return };
     let least = bristle_damping * (breakaway - coulomb) / coulomb;
@@ -362,7 +361,9 @@ pub(super) fn line(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
     if let Some((key, Some(working), Some(burst))) = of_hose.or(of_pipe)
         && burst < working
     {
-        check.error(&format!("{path}.{key}"), "`burst_pressure` is below `working_pressure`");
+        let working_key = key.replace("burst", "working");
+        let paths = [working_key.as_str(), key].map(|key| format!("{path}.{key}"));
+        check.in_order([&paths[0], &paths[1]], [working, burst]);
     }
     line.pipe().into_iter().for_each(|pipe| outer_diameter(pipe, path, check));
     check.interval(&format!("{path}.dynamic_stiffening"), line.dynamic_stiffening);
@@ -379,31 +380,5 @@ fn outer_diameter(pipe: &DeclaredPipe, path: &str, check: &mut Check<'_, '_>) {
         let [outer, made] = [outer, made].map(|size| quantity::display(size, &LENGTH, 4));
         let message = format!("`outer_diameter` is {outer}, and bore and walls make {made}");
         check.warning(&format!("{path}.pipe.outer_diameter"), message);
-    }
-}
-
-impl Check<'_, '_> {
-    fn interval(&mut self, path: &str, interval: Option<BoundedNumber>) {
-        let Some(BoundedNumber { nominal, minimum, maximum }) = interval else { return };
-        self.bounds(path, [minimum, nominal, maximum]);
-    }
-
-    /// Minimum, nominal and maximum in order.
-    pub(super) fn bounds(&mut self, path: &str, [minimum, nominal, maximum]: [f64; 3]) {
-        if ["minimum", "nominal", "maximum"].iter().any(|name| {
-            let part = format!("{path}.{name}");
-            self.refused(&part) || !self.declared(&part)
-        }) {
-            return;
-        }
-        if minimum > maximum {
-            return self.error(&format!("{path}.minimum"), "`minimum` is above `maximum`");
-        }
-        if minimum > nominal {
-            self.error(&format!("{path}.minimum"), "`minimum` is above `nominal`");
-        }
-        if maximum < nominal {
-            self.error(&format!("{path}.maximum"), "`maximum` is below `nominal`");
-        }
     }
 }

@@ -35,9 +35,9 @@ fn one_specification(specification: &DeclaredSpecification, path: &str, check: &
     }
     if let (Some(DeclaredLimit::Constant(lower)), Some(DeclaredLimit::Constant(upper))) =
         (&specification.lower, &specification.upper)
-        && lower > upper
     {
-        check.error(&format!("{path}.lower"), "`lower` is above `upper`");
+        let paths = ["lower", "upper"].map(|key| format!("{path}.{key}"));
+        check.in_order([&paths[0], &paths[1]], [*lower, *upper]);
     }
     frequencies(specification, path, check);
 }
@@ -51,11 +51,7 @@ fn frequencies(specification: &DeclaredSpecification, path: &str, check: &mut Ch
         }
     }
     check.increasing(&at, &specification.frequencies);
-    if let Some([low, high]) = specification.band
-        && low >= high
-    {
-        check.error(&format!("{path}.band"), "`band` is empty or reversed: the lower frequency comes first");
-    }
+    check.strictly_ascending(&format!("{path}.band"), specification.band);
 }
 
 fn one_limit(limit: &DeclaredLimit, kind: ClosedLoop, name: &str, path: &str, check: &mut Check<'_, '_>) {

@@ -43,10 +43,11 @@ pub(super) fn with_actuator(project: &Project, actuator: &DeclaredActuator, chec
 fn sizing(sizing: &DeclaredSizing, check: &mut Check<'_, '_>) {
     check.ascending("sizing.oil_velocity", sizing.oil_velocity);
     check.ascending("sizing.hose_length", sizing.hose_length);
-    if let (Some(minimum), Some(maximum)) = (sizing.minimum_gain, sizing.maximum_gain)
-        && minimum > maximum
-    {
-        check.error("sizing.minimum_gain", "`minimum_gain` is above `maximum_gain`");
+    if let (Some(minimum), Some(maximum)) = (sizing.minimum_gain, sizing.maximum_gain) {
+        check.in_order(["sizing.minimum_gain", "sizing.maximum_gain"], [minimum, maximum]);
+    }
+    if let Some(means) = &sizing.other_means {
+        check.ascending("sizing.other_means.force_range", means.force_range);
     }
 }
 
@@ -169,6 +170,10 @@ fn campaign(project: &Project, campaign: &Campaign, check: &mut Check<'_, '_>) {
                 if distribution == Distribution::LogUniform && low <= 0.0 {
                     check.error(&path, "a log-uniform distribution needs a `minimum` above zero");
                 }
+            }
+            (None, Some(low), Some(high)) if low > high => {
+                let ends = ["minimum", "maximum"].map(|end| format!("{path}.{end}"));
+                check.in_order([&ends[0], &ends[1]], [low, high]);
             }
             (None, Some(_), Some(_)) => check.error(&path, "`minimum` must be below `maximum`"),
             _ => check.error(&path, format!("`{}` takes `spread`, or `minimum` and `maximum`", varied.path)),

@@ -1,8 +1,10 @@
 //! Where the key is that an error names: what is wrong with a valid project is sometimes known only
 //! where its rig is computed.
 
+use phea_engineering::alternatives::AlternativesError;
 use phea_engineering::bench::BenchError;
 use phea_engineering::campaign::CampaignError;
+use phea_engineering::design::DesignError;
 use phea_engineering::family::ProjectFamilyError;
 use phea_engineering::rig::RigError;
 use phea_engineering::simulate::SimulateError;
@@ -11,38 +13,44 @@ use phea_engineering::sizing::SizingError;
 use super::CommandError;
 use crate::project::{LateError, Project};
 
-/// The error at the place of a key; `None` for one that is not of the project, or that has places
-/// of its own.
-pub(super) fn late(error: &CommandError, project: &Project) -> Option<LateError> {
+/// The error at each key or table that it names, in the order of its sentence; empty for an error
+/// that is not of the project, or that has places of its own.
+pub(super) fn late(error: &CommandError, project: &Project) -> Vec<LateError> {
     if error.refusal().is_some() || error.is_of_files() {
-        return None;
+        return vec![];
     }
     match error {
-        CommandError::Specification(error) => Some(error.at()),
+        CommandError::Specification(error) => vec![error.at()],
         CommandError::Rig(error)
         | CommandError::Family(ProjectFamilyError::Rig(error))
         | CommandError::Sizing(SizingError::Rig(error))
         | CommandError::Simulate(SimulateError::Rig(error))
         | CommandError::Campaign(CampaignError::Simulate(SimulateError::Rig(error)))
-        | CommandError::Bench(BenchError::Rig(error)) => Some(match error {
-            RigError::Accumulator(empty) => empty.at(),
-            error => return named(error.to_string(), project),
-        }),
+        | CommandError::Bench(BenchError::Rig(error)) => match error {
+            RigError::Accumulator(empty) => vec![empty.at()],
+            error => named(&error.to_string(), project),
+        },
         CommandError::Control(_)
         | CommandError::Family(_)
         | CommandError::Sizing(_)
         | CommandError::Simulate(_)
         | CommandError::Bench(_)
         | CommandError::Campaign(_)
-        | CommandError::Loop(_) => named(error.to_string(), project),
-        _ => None,
+        | CommandError::Audit(_)
+        | CommandError::Design(DesignError::NoSpecification)
+        | CommandError::Alternatives(AlternativesError::NoAlternative)
+        | CommandError::NothingToReport
+        | CommandError::OfCylinders { .. }
+        | CommandError::Loop(_) => named(&error.to_string(), project),
+        _ => vec![],
     }
 }
 
-/// An error at the scenario or the table that its sentence names.
-fn named(message: String, project: &Project) -> Option<LateError> {
-    let path = scenario(&message, project).or_else(|| table(&message))?;
-    Some(LateError { path, message, help: String::new() })
+/// An error at the scenario or the tables that its sentence names.
+fn named(message: &str, project: &Project) -> Vec<LateError> {
+    let paths = scenario(message, project).map_or_else(|| tables(message), |path| vec![path]);
+    let at = |path| LateError { path, message: message.to_string(), help: String::new() };
+    paths.into_iter().map(at).collect()
 }
 
 fn scenario(message: &str, project: &Project) -> Option<String> {
@@ -51,11 +59,14 @@ fn scenario(message: &str, project: &Project) -> Option<String> {
     Some(format!("scenario[{index}]"))
 }
 
-/// The path of `[table]` and of the key in backticks that may follow it.
-fn table(message: &str) -> Option<String> {
-    let (_, from) = message.split_once('[')?;
-    let (table, rest) = from.trim_start_matches('[').split_once(']')?;
-    let key =
-        rest.trim_start_matches(']').trim_start().strip_prefix('`').and_then(|rest| rest.split_once('`'));
-    Some(key.map_or_else(|| table.to_string(), |(key, _)| format!("{table}.{key}")))
+/// The path of each `[table]` and of the key in backticks that may follow it.
+fn tables(message: &str) -> Vec<String> {
+    let one = |from: &str| {
+        let (table, rest) = from.split_once(']')?;
+        let key =
+            rest.trim_start_matches(']').trim_start().strip_prefix('`').and_then(|rest| rest.split_once('`'));
+        let path = key.map_or_else(|| table.to_string(), |(key, _)| format!("{table}.{key}"));
+        Some(path).filter(|path| !path.is_empty())
+    };
+    message.split('[').skip(1).filter_map(one).collect()
 }

@@ -1,0 +1,119 @@
+//! Pairs of values of which one may not be above the other.
+
+use super::{Check, last};
+use crate::{Bench, BoundedNumber};
+
+impl Check<'_, '_> {
+    /// A value as the file or the setting has it, without quotes; empty where it is not stated.
+    fn written(&self, path: &str) -> String {
+        let place = self.reader.places.get(path).copied().unwrap_or_default();
+        let text = self.reader.findings.content(place.text).get(place.start..place.end);
+        text.unwrap_or_default().trim_matches(['"', '\'']).to_string()
+    }
+
+    /// That the value of one key is above or below that of another, each as written.
+    fn compared(&self, path: &str, word: &str, other: &str) -> String {
+        let other = match self.written(other) {
+            written if written.is_empty() => format!("the default of `{}`", last(other)),
+            written => format!("`{}`, {written}", last(other)),
+        };
+        format!("`{}`, {}, is {word} {other}", last(path), self.written(path))
+    }
+
+    /// The two values of a list as written.
+    fn written_pair(&self, path: &str) -> Option<[String; 2]> {
+        let written = self.written(path);
+        let (first, second) = written.trim_matches(['[', ']']).split_once(',')?;
+        let bare = |text: &str| text.trim_matches([' ', '\n', '\r', '\t', ',', '"', '\'']).to_string();
+        Some([bare(first), bare(second)])
+    }
+
+    /// Two numbers of one list must be in order.
+    pub(super) fn ascending(&mut self, path: &str, pair: Option<[f64; 2]>) {
+        if let Some([low, high]) = pair
+            && low > high
+        {
+            self.reversed(path);
+        }
+    }
+
+    /// The same of numbers that may not be equal either.
+    pub(super) fn strictly_ascending(&mut self, path: &str, pair: Option<[f64; 2]>) {
+        match pair {
+            Some([low, high]) if low == high => {
+                self.error(path, format!("`{}` is empty: both ends are equal", last(path)));
+            }
+            pair => self.ascending(path, pair),
+        }
+    }
+
+    fn reversed(&mut self, path: &str) {
+        let message = match self.written_pair(path) {
+            Some([first, second]) => {
+                format!(
+                    "`{}` is reversed: {first} is above {second}, and the lower value comes first",
+                    last(path)
+                )
+            }
+            None => format!("`{}` is reversed: the lower value comes first", last(path)),
+        };
+        self.error(path, message);
+    }
+
+    /// Two numbers of one table must be in order, each with its path; refused at the first one, or
+    /// at the second where that one alone is stated.
+    pub(super) fn in_order(&mut self, [lower, upper]: [&str; 2], [low, high]: [f64; 2]) {
+        if low > high && !self.refused(lower) && !self.refused(upper) {
+            let (at, word, other) = match self.declared(lower) {
+                true => (lower, "above", upper),
+                false => (upper, "below", lower),
+            };
+            self.error(at, self.compared(at, word, other));
+        }
+    }
+
+    /// A number between two, each stated.
+    pub(super) fn interval(&mut self, path: &str, interval: Option<BoundedNumber>) {
+        let Some(BoundedNumber { nominal, minimum, maximum }) = interval else { return };
+        self.bounds(path, [minimum, nominal, maximum]);
+    }
+
+    /// Minimum, nominal and maximum in order.
+    pub(super) fn bounds(&mut self, path: &str, [minimum, nominal, maximum]: [f64; 3]) {
+        let parts = ["minimum", "nominal", "maximum"].map(|name| format!("{path}.{name}"));
+        let [least, usual, most] = [&parts[0], &parts[1], &parts[2]];
+        if parts.iter().any(|part| self.refused(part) || !self.declared(part)) {
+            return;
+        }
+        if minimum > maximum {
+            return self.in_order([least, most], [minimum, maximum]);
+        }
+        self.in_order([least, usual], [minimum, nominal]);
+        if maximum < nominal {
+            self.error(most, self.compared(most, "below", usual));
+        }
+    }
+}
+
+/// Ranges of the virtual bench.
+pub(super) fn bench(bench: &Bench, check: &mut Check<'_, '_>) {
+    let low_flow = bench.low_flow_meter.as_ref().map(|small| small.meter);
+    let meters = [
+        ("leak_meter", Some(bench.leak_meter)),
+        ("flow_meter", Some(bench.flow_meter)),
+        ("low_flow_meter", low_flow),
+    ];
+    for (name, meter) in meters.into_iter().filter_map(|(name, meter)| Some((name, meter?))) {
+        let [minimum, range] = ["minimum", "range"].map(|key| format!("bench.{name}.{key}"));
+        check.in_order([&minimum, &range], [meter.minimum, meter.range]);
+    }
+    if let Some(line) = &bench.line {
+        check.strictly_ascending("bench.line.pressures", Some(line.pressures));
+        check.strictly_ascending("bench.line.frequencies", Some(line.frequencies));
+    }
+    if let Some(friction) = &bench.friction {
+        let paths = ["bench.friction.slowest", "bench.friction.fastest"];
+        check.in_order(paths, [friction.slowest, friction.fastest]);
+        check.strictly_ascending("bench.friction.shaken.frequencies", friction.shaken.frequencies);
+    }
+}
