@@ -74,6 +74,7 @@ mod validate;
 mod valve;
 mod verification;
 mod visitor;
+mod written_units;
 
 pub use adjustment::*;
 pub use alternative::*;
@@ -130,6 +131,7 @@ pub use text::{Findings, Place, RawFinding};
 pub use tree::{Entry, TreeNode, Value as TreeValue, read as read_tree, value_or_finding};
 pub(crate) use visitor::Visitor;
 pub use visitor::word_of;
+pub use written_units::WrittenUnits;
 
 use phea_dynamics::portable;
 use phea_quantity::{MotionKind, RATIO};

@@ -46,7 +46,7 @@ use crate::identify::in_use;
 use crate::line_test::line_runs;
 use crate::linearize::SweepRequest;
 use crate::option::OptionError;
-use crate::project::{Loaded, refused};
+use crate::project::{Loaded, WrittenUnits, refused};
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::report_beside;
 use crate::rig::RigError;
@@ -272,7 +272,7 @@ fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<
     let mut document = Document::default();
     document.warnings(told.clone());
     if !derived.is_empty() {
-        document.append(derived::document(&derived));
+        document.append(derived::document(&derived, &WrittenUnits::of(loaded)));
         document.gap();
     }
     if let Some(ranges) = visited.as_ref().filter(|_| !derived.is_empty()) {

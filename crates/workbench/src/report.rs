@@ -30,6 +30,7 @@ mod specifications;
 mod stiffness;
 mod test_bench;
 
+pub use campaign::runs_within_budget;
 pub use opening::{Decided, Decision};
 
 use phea_dynamics::watch::Watch;
@@ -43,7 +44,7 @@ use crate::error::CommandError;
 use crate::figure::Figure;
 use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop_of, settling_words};
 use crate::linearize::{Linearization, linearize, stiffness_at_settings, stiffness_words};
-use crate::project::{DeclaredActuator, Loaded, Project, Signal};
+use crate::project::{DeclaredActuator, Loaded, Project, Signal, WrittenUnits};
 use crate::quantity::MotionKind;
 use crate::rig::Rig;
 use crate::setup::Setup;
@@ -111,7 +112,11 @@ pub(crate) fn report_beside(
     if project.actuator.is_none() && project.specifications.is_empty() {
         return Err(CommandError::NothingToReport);
     }
-    let mut rig = project.actuator.as_ref().map(|actuator| rig_part(setup, actuator, problem)).transpose()?;
+    let mut rig = project
+        .actuator
+        .as_ref()
+        .map(|actuator| rig_part(setup, (actuator, &WrittenUnits::of(loaded)), problem))
+        .transpose()?;
     let judged = judged::judged(source, setup, watch)?;
     let deployed = judged.as_ref().and_then(Judged::found).map(|view| view.deployed(project));
     let driven = driven::driven(source, setup, deployed.as_ref(), watch)?;
@@ -242,7 +247,7 @@ struct RigPart {
 
 fn rig_part(
     setup: &Setup<'_>,
-    actuator: &DeclaredActuator,
+    (actuator, units): (&DeclaredActuator, &WrittenUnits),
     problem: Option<&ProblemOfSizing>,
 ) -> Result<RigPart, CommandError> {
     let refused = problem.and_then(|problem| problem.as_ref().err());
@@ -263,7 +268,7 @@ fn rig_part(
     chapters.extend(refused.map(sizing::refused));
     let appendix = vec![
         stiffness::chapter(actuator, rig, &linearization),
-        Chapter::of("derived", "Derived quantities", derived::document(&derived)),
+        Chapter::of("derived", "Derived quantities", derived::document(&derived, units)),
         models::chapter(setup, &linearization)?,
         impedance::chapter(setup, &linearization)?,
         response::chapter(setup, given.as_ref(), reference(project)),

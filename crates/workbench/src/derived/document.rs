@@ -4,17 +4,20 @@ use super::Derived;
 use crate::answer::significant;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::family::{Extreme, VisitedRange};
-use crate::project::Project;
+use crate::project::{Project, WrittenUnits};
 use crate::replaced::{ReplacedRange, replaced_ranges};
 
 /// All derived quantities, and the values that the project states instead.
-pub(crate) fn document(derived: &[Derived]) -> Document {
+pub(crate) fn document(derived: &[Derived], units: &WrittenUnits) -> Document {
     let mut out = Document::default();
     let mut groups: Vec<&str> = derived.iter().map(|quantity| quantity.group).collect();
     groups.dedup();
     for group in groups {
         let own = derived.iter().filter(|quantity| quantity.group == group);
-        out.section(group, Table::new(["quantity", "value", "unit", "equation"]).with(own.map(cells)));
+        out.section(
+            group,
+            Table::new(["quantity", "value", "unit", "equation"]).with(own.map(|one| cells(one, units))),
+        );
     }
     let absent = derived.iter().filter_map(|quantity| Some((&quantity.name, quantity.value.err()?)));
     out.sentences(absent.map(|(name, reason)| format!("`{name}`: {reason}")));
@@ -23,17 +26,21 @@ pub(crate) fn document(derived: &[Derived]) -> Document {
         out.heading("Stated by the project and used instead of the derived value");
         out.explanation("The linear models use these values. Where a stated value and the derived one differ, the nonlinear machine follows the derived one.");
         out.marked(
-            stated.into_iter().map(|one| (one.contradicts().then_some(StatusMark::Bad), sentence(one))),
+            stated
+                .into_iter()
+                .map(|one| (one.contradicts().then_some(StatusMark::Bad), sentence(one, units))),
         );
     }
     out
 }
 
-fn cells(quantity: &Derived) -> [Cell; 4] {
+fn cells(quantity: &Derived, units: &WrittenUnits) -> [Cell; 4] {
+    let shown = |value: f64| units.shown(&quantity.name, value, quantity.unit);
+    let (_, unit) = shown(quantity.value.unwrap_or_default());
     [
         Cell::Name { name: quantity.name.clone(), symbol: quantity.symbol.to_string() },
-        quantity.value.map_or(Cell::Missing, |value| Cell::number(value, 5)),
-        Cell::Unit(quantity.unit),
+        quantity.value.map_or(Cell::Missing, |value| Cell::number(shown(value).0, 5)),
+        Cell::unit(unit),
         Cell::Equation(quantity.equation.to_string()),
     ]
 }
@@ -50,7 +57,7 @@ pub(crate) fn visited(project: &Project, ranges: &[VisitedRange]) -> Document {
     );
     let row = |range: &VisitedRange| {
         let [least, most] = [&range.minimum, &range.maximum].map(|end| Cell::number(end.value, 4));
-        [range.symbol.into(), least, most, Cell::Unit(range.unit)]
+        [range.symbol.into(), least, most, Cell::unit(range.unit)]
     };
     out.table(Table::new(["quantity", "least", "most", "unit"]).with(ranges.iter().map(row)));
     let place = |of: &str, symbol: &str, end: &Extreme| {
@@ -76,7 +83,7 @@ pub(crate) fn replaced_table(ranges: &[ReplacedRange]) -> Table {
         let ends = [range.stated[0], range.stated[1], range.visited[0], range.visited[1]];
         let [least, most, low, high] = ends.map(|end| Cell::number(end, 3));
         let share = Cell::from(format!("{} %", significant(100.0 * range.share, 2)));
-        [range.symbol.into(), least, most, low, high, Cell::Unit(range.unit), share]
+        [range.symbol.into(), least, most, low, high, Cell::unit(range.unit), share]
     };
     let headings = ["quantity", "replaced from", "to", "visited from", "to", "unit", "share visited"];
     Table::new(headings).with(ranges.iter().map(row))
@@ -115,14 +122,15 @@ fn stated(derived: &[Derived]) -> Vec<&Derived> {
 }
 
 /// A stated value next to the derived one, in a sentence.
-fn sentence(quantity: &Derived) -> String {
+fn sentence(quantity: &Derived, units: &WrittenUnits) -> String {
     let Some(stated) = &quantity.stated else { return String::new() };
-    let with_unit = match quantity.unit {
-        "1" => significant(stated.value, 4),
-        unit => format!("{} {unit}", significant(stated.value, 4)),
+    let shown = |value: f64| significant(units.shown(&quantity.name, value, quantity.unit).0, 4);
+    let with_unit = match units.shown(&quantity.name, stated.value, quantity.unit).1.as_str() {
+        "1" => shown(stated.value),
+        unit => format!("{} {unit}", shown(stated.value)),
     };
     let bounds = stated.bounds.map_or(String::new(), |[minimum, maximum]| {
-        format!(", from {} to {}", significant(minimum, 4), significant(maximum, 4))
+        format!(", from {} to {}", shown(minimum), shown(maximum))
     });
     let own = if quantity.outside_own_bounds() { "; the stated value lies outside these bounds" } else { "" };
     let verdict = match (quantity.contradicts_derived(), stated.bounds) {
@@ -137,6 +145,6 @@ fn sentence(quantity: &Derived) -> String {
         quantity.symbol,
         with_unit,
         stated.place,
-        quantity.value.map_or("-".to_string(), |value| significant(value, 4))
+        quantity.value.map_or("-".to_string(), shown)
     )
 }

@@ -4,6 +4,8 @@ use phea_engineering::audit::{frequency_number, margin_words, verdict_words};
 use phea_engineering::trial::{Agreement, agreement_word};
 use phea_qft::verification::Verdict;
 
+use std::borrow::Cow;
+
 use crate::answer::significant;
 use crate::quantity::DisplayUnit;
 
@@ -71,7 +73,7 @@ pub(crate) enum Cell {
     /// An equation or one of its symbols.
     Equation(String),
     /// A unit.
-    Unit(&'static str),
+    Unit(Cow<'static, str>),
     /// A number with its unit, which is empty where the heading has it.
     Quantity { value: f64, precision: Precision, unit: &'static str },
     /// What is good or bad.
@@ -89,6 +91,11 @@ impl Cell {
     /// Nothing at all.
     pub(crate) fn empty() -> Cell {
         Cell::Text(String::new())
+    }
+
+    /// A unit.
+    pub(crate) fn unit(symbol: impl Into<Cow<'static, str>>) -> Cell {
+        Cell::Unit(symbol.into())
     }
 
     /// A number with this number of significant digits.

@@ -133,7 +133,7 @@ fn coefficients(found: &Identification) -> Vec<Vec<Cell>> {
         if let Some(bootstrap) = &found.bootstrap {
             row.extend(ends(interval.and(bootstrap.intervals.get(index).copied())));
         }
-        row.extend([number(by_hand), Cell::Unit(unit)]);
+        row.extend([number(by_hand), Cell::unit(*unit)]);
         row
     })
     .collect()

@@ -30,7 +30,7 @@ pub(crate) fn tell_in_use(recorded: &FromRecordings, out: &mut Document) {
             Cell::number(low, 4),
             Cell::number(high, 4),
             declared,
-            Cell::Unit(one.unit),
+            Cell::unit(one.unit),
         ]
     });
     out.table(Table::new(headings).with(rows));

@@ -95,7 +95,7 @@ pub(crate) fn tell(found: &Identification, of_thesis: bool, out: &mut Document) 
             number(reading.value),
             low,
             high,
-            Cell::Unit(line.unit),
+            Cell::unit(line.unit),
             Cell::Equation(line.equation.to_string()),
         ];
         cells.extend(of_thesis.then(|| line.thesis.map_or(Cell::Missing, Cell::from)));

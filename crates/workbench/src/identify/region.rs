@@ -49,7 +49,7 @@ fn sentences(region: &JointRegion) -> Vec<String> {
 }
 
 fn row(direction: &UncertaintyDirection, effect: f64) -> [Cell; 3] {
-    [Cell::Code(direction.name.clone()), Cell::number(100.0 * effect, 2), Cell::Unit("%")]
+    [Cell::Code(direction.name.clone()), Cell::number(100.0 * effect, 2), Cell::unit("%")]
 }
 
 #[derive(Serialize)]

@@ -91,12 +91,16 @@ pub(super) fn driven(
     Ok(Some(CampaignChapter { chapter: Chapter::of(anchor, title, document), fact, steps }))
 }
 
-/// As many of the runs as the budget allows, judged by the steps of the first of them.
 fn within_budget(asked: u64, pilot: &[Row]) -> u64 {
     let steps: u64 = pilot.iter().filter_map(Row::ran).map(|ran| ran.steps).sum();
-    let count = pilot.len() as u64;
-    match (count * BUDGET_STEPS).checked_div(steps) {
-        Some(most) => asked.min(most.max(count)),
+    runs_within_budget(asked, [pilot.len() as u64, steps])
+}
+
+/// As many of the requested runs as a report makes within its steps of integration, judged by the
+/// runs that were made first and by their steps.
+pub fn runs_within_budget(asked: u64, [made, steps]: [u64; 2]) -> u64 {
+    match made.saturating_mul(BUDGET_STEPS).checked_div(steps) {
+        Some(most) => asked.min(most.max(made)),
         None => asked,
     }
 }
@@ -213,7 +217,7 @@ fn drawn(out: &mut Document, plan: &Plan, summary: &Summary) {
         let unit = if shown.symbol == "1" { "" } else { shown.symbol };
         let all = [range.minimum, range.maximum].into_iter().chain(values);
         let numbers = all.map(|value| Cell::number(shown.of(value), DIGITS));
-        [Cell::Code(range.path.clone()), Cell::Unit(unit)].into_iter().chain(numbers).collect::<Vec<_>>()
+        [Cell::Code(range.path.clone()), Cell::unit(unit)].into_iter().chain(numbers).collect::<Vec<_>>()
     };
     let normal = plan.ranges().iter().any(|range| range.distribution == Distribution::Normal);
     let ends = " The ends of a normal distribution are two standard deviations from its middle.";
