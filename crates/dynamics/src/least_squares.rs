@@ -36,12 +36,20 @@ pub struct Settings {
     pub maximum_evaluations: usize,
     /// Relative decrease of the sum below which it has converged.
     pub tolerance: f64,
+    /// Damping of the first step: small where the start is near the minimum, so that a long valley
+    /// does not take many steps.
+    pub first_damping: f64,
 }
 
 impl Default for Settings {
     /// 1.345 has 95 % of the efficiency of plain squares where the noise is normal (Huber 1981).
     fn default() -> Settings {
-        Settings { robust_beyond: 1.345, maximum_evaluations: 100, tolerance: 1e-10 }
+        Settings {
+            robust_beyond: 1.345,
+            maximum_evaluations: 100,
+            tolerance: 1e-10,
+            first_damping: FULL_STEP,
+        }
     }
 }
 
@@ -135,7 +143,7 @@ pub fn minimise(
     };
     let cost = sum(&linearised);
     let mut best = Minimum { variables, cost, linearised, evaluations, ending: Ending::OutOfEvaluations };
-    let mut damping = FULL_STEP;
+    let mut damping = settings.first_damping;
     let mut curvature = CurvatureWeight::OfLoss;
     // steps in a row that changed next to nothing
     let mut idle = 0;

@@ -7,6 +7,7 @@
 //! The model is [`phea_hydraulics::servovalve::TestedValve`]; all signals of all files are
 //! explained by one set of coefficients.
 
+mod averaged;
 mod bootstrap;
 mod channels;
 mod contents;

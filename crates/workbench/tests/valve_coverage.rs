@@ -34,6 +34,34 @@ fn soak_four_hundred_intervals_cover_the_truth_and_are_narrow() {
     check(400, "bench.sample_time=500 ms", 366..=391);
 }
 
+/// A recording of more than 20,000 rows, which is searched over averages first, has the coefficients
+/// and intervals of one that lacks ten of them and is searched over all rows.
+#[test]
+fn many_rows_are_identified_as_a_few_fewer_are() {
+    let files = recorded(7, &["bench.duration=2001 s", "bench.sample_time=100 ms"]);
+    let without = |left_out: std::ops::Range<usize>| {
+        // one test has all of its rows, the others every twentieth
+        let of = |(index, (name, text)): (usize, &(String, String))| {
+            let every = if index == 0 { 1 } else { 20 };
+            let rows = text.lines().skip(1).take(20_005).step_by(every).enumerate();
+            let rows = rows.filter(|(row, _)| index > 0 || !left_out.contains(row)).map(|(_, line)| line);
+            let lines: Vec<&str> = text.lines().take(1).chain(rows).collect();
+            (name.clone(), lines.join("\n"))
+        };
+        intervals_from(files.iter().enumerate().map(of).collect())
+    };
+    // rows of the greatest command, each of which says little
+    let [many, fewer] = [0..0, 5_000..5_010].map(without);
+    for (index, (path, _)) in TRUTH.iter().enumerate() {
+        let [one, other] = [many[index], fewer[index]].map(|[low, high]| [high + low, high - low]);
+        let [moved, wider] = [(one[0] - other[0]) / other[1], one[1] / other[1]];
+        println!("{path:40} moved by {moved:.3} half widths, {wider:.4} as wide");
+        // ORIGIN: analytic, ten of 20,000 rows move an estimate by sqrt(10/20,000) = 2 % of its
+        // standard deviation, and change its interval by 0.03 %
+        assert!(moved.abs() < 0.05 && (wider - 1.0).abs() < 0.01, "{path}: {moved} {wider}");
+    }
+}
+
 #[track_caller]
 fn check(repetitions: u32, setting: &str, allowed: std::ops::RangeInclusive<usize>) {
     let found = study(1..=repetitions, &[setting]);
@@ -85,15 +113,23 @@ fn study(seeds: std::ops::RangeInclusive<u32>, settings: &[&str]) -> Study {
     study
 }
 
-/// The intervals of one repetition, by the files that the bench writes.
-fn intervals(seed: u32, settings: &[&str]) -> [[f64; 2]; COUNT] {
+/// Names and texts of the files that the bench writes.
+fn recorded(seed: u32, settings: &[&str]) -> Vec<(String, String)> {
     let seed = format!("bench.seed={seed}");
     let settings = [&VALVE[..], settings, &[&seed]].concat();
-    let recorded = answer(HOSE, &settings, &[], &Request::Bench).files;
-    let files: Vec<String> = recorded.iter().map(|file| file.name.clone()).collect();
-    let source = recorded.into_iter().fold(Memory::default(), |source, file| {
-        source.with(&file.name, String::from_utf8(file.bytes).unwrap())
-    });
+    let files = answer(HOSE, &settings, &[], &Request::Bench).files.into_iter();
+    files.map(|file| (file.name, String::from_utf8(file.bytes).unwrap())).collect()
+}
+
+/// The intervals of one repetition, by the files that the bench writes.
+fn intervals(seed: u32, settings: &[&str]) -> [[f64; 2]; COUNT] {
+    intervals_from(recorded(seed, settings))
+}
+
+fn intervals_from(recorded: Vec<(String, String)>) -> [[f64; 2]; COUNT] {
+    let files: Vec<String> = recorded.iter().map(|(name, _)| name.clone()).collect();
+    let source =
+        recorded.into_iter().fold(Memory::default(), |source, (name, text)| source.with(&name, text));
     let asked = IdentifyRequest { files, starts: Some(1), ..IdentifyRequest::default() };
     let loaded = load(HOSE, &[], &[]);
     let found = identify_watched(&source, Some(&loaded), &asked, &mut |_| true).unwrap();

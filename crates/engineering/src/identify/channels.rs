@@ -2,7 +2,7 @@
 
 use phea_dynamics::least_squares::{Linearised, Minimum, Settings, minimise};
 use phea_dynamics::watch::{Stopped, Watch, tell};
-use phea_hydraulics::servovalve::TestedValve;
+use phea_hydraulics::servovalve::{TestOutput, TestedValve};
 
 use super::recording::{RecordedSignal, Recording, median};
 use super::variables::Variables;
@@ -19,6 +19,13 @@ const FEW_EVALUATIONS: usize = 60;
 /// Evaluations of the last search. Where the recordings hardly distinguish coefficients, the sum
 /// has a long curved valley.
 const EVALUATIONS: usize = 1000;
+
+/// Decrease of the negative logarithm of the likelihood that moves no coefficient by more than a
+/// twentieth of its standard deviation.
+const NO_EVIDENCE: f64 = 1e-3;
+
+/// Damping of a search that begins near its end.
+const UNDAMPED: f64 = 1e-10;
 
 /// A signal and the scale of its residuals.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,6 +100,21 @@ impl<'a> Together<'a> {
         found
     }
 
+    /// The same residuals without derivatives.
+    pub(super) fn residuals(&self, variables: &[f64]) -> Vec<f64> {
+        let coefficients = self.variables.coefficients(variables);
+        let of = |one: &Recording| self.tested.outputs(&coefficients, one.circuit, &one.inputs);
+        let outputs: Vec<_> = self.recordings.iter().map(of).collect();
+        let of_channel = |channel: &Channel| {
+            let (signal, outputs) = self.signal(channel).zip(outputs.get(channel.recording))?;
+            let one = |(output, value): (&TestOutput, &Option<f64>)| {
+                Some((signal.kind.shown(output) - (*value)?) / channel.scale)
+            };
+            Some(outputs.iter().zip(&signal.values).filter_map(one).collect::<Vec<f64>>())
+        };
+        self.channels.iter().filter_map(of_channel).flatten().collect()
+    }
+
     /// The group of each residual: the readings of one instant.
     pub(super) fn groups(&self) -> Vec<usize> {
         let mut before = 0;
@@ -126,6 +148,19 @@ impl<'a> Together<'a> {
     /// The minimum that a search from here leads to.
     pub(super) fn searched_to_the_end(&self, start: &[f64], watch: Watch<'_>) -> Result<Minimum, Stopped> {
         let many = Settings { maximum_evaluations: EVALUATIONS, ..Settings::default() };
+        self.searched_with(start, many, watch)
+    }
+
+    /// The minimum near a start that differs from it by less than the noise.
+    pub(super) fn searched_from_near(&self, start: &[f64], watch: Watch<'_>) -> Result<Minimum, Stopped> {
+        let rows: usize = self.recordings.iter().map(|one| one.inputs.len()).sum();
+        let tolerance = NO_EVIDENCE / rows.max(1) as f64;
+        let many = Settings {
+            maximum_evaluations: EVALUATIONS,
+            tolerance,
+            first_damping: UNDAMPED,
+            ..Settings::default()
+        };
         self.searched_with(start, many, watch)
     }
 

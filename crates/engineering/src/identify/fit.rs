@@ -5,6 +5,7 @@ use phea_dynamics::random::stream;
 use phea_dynamics::watch::{Stopped, Watch};
 use phea_hydraulics::servovalve::{LeakageModel, StaticCoefficients, TestedValve};
 
+use super::averaged::averaged;
 use super::channels::{Channel, Together};
 use super::recording::Recording;
 use super::variables::{COUNT, Kind, Variables};
@@ -18,6 +19,14 @@ const ROUGH: f64 = 1e-5;
 
 /// Relative change of the scales below which no further round is made.
 const SAME_SCALE: f64 = 1e-3;
+
+/// Rows of the first search: all over a recording, and near null.
+const OTHERS: usize = 150;
+const NEAR: usize = 1500;
+
+/// Rows of a recording beyond which the minimum is found over averages of its rows first. The last
+/// search is over all rows from there, and ends after few evaluations.
+const MANY_ROWS: usize = 20_000;
 
 /// The valve that explains the recordings best, with the signals and their scales.
 pub(super) struct Fit<'a> {
@@ -98,7 +107,24 @@ fn fitted_from<'a>(
         return Err(IdentifyError::Data("no recorded signal changes: there is nothing to fit".to_string()));
     }
     let (start, agreeing) = best_start(starts, &together, watch)?;
-    let mut minimum = together.searched(&start, ROUGH, watch)?;
+    let minimum = if together.recordings.iter().any(|one| one.inputs.len() > MANY_ROWS) {
+        let fewer: Vec<Recording> = together.recordings.iter().map(averaged).collect();
+        let mut few = Together::new(&fewer, together.tested, together.variables);
+        let near = settled(&mut few, &start, watch)?.variables;
+        together.rescale(&together.residuals(&near));
+        together.searched_from_near(&near, watch)?
+    } else {
+        settled(&mut together, &start, watch)?
+    };
+    if minimum.ending == Ending::NoStart || minimum.linearised.residuals.len() <= COUNT {
+        return Err(IdentifyError::Data("the recordings have too few rows to fit a valve".to_string()));
+    }
+    Ok(Fit { together, minimum, starts: [starts.len(), agreeing] })
+}
+
+/// The minimum that a start leads to, with the scale of each signal from its residuals there.
+fn settled(together: &mut Together<'_>, start: &[f64], watch: Watch<'_>) -> Result<Minimum, Stopped> {
+    let mut minimum = together.searched(start, ROUGH, watch)?;
     for _ in 0..ROUNDS {
         let change = together.rescale(&minimum.linearised.residuals);
         minimum = together.searched(&minimum.variables, ROUGH, watch)?;
@@ -106,11 +132,7 @@ fn fitted_from<'a>(
             break;
         }
     }
-    minimum = together.searched_to_the_end(&minimum.variables, watch)?;
-    if minimum.ending == Ending::NoStart || minimum.linearised.residuals.len() <= COUNT {
-        return Err(IdentifyError::Data("the recordings have too few rows to fit a valve".to_string()));
-    }
-    Ok(Fit { together, minimum, starts: [starts.len(), agreeing] })
+    together.searched_to_the_end(&minimum.variables, watch)
 }
 
 /// The best end of several starts, over fewer rows, and how many of them lead there.
@@ -119,7 +141,7 @@ fn best_start(
     together: &Together<'_>,
     watch: Watch<'_>,
 ) -> Result<(Vec<f64>, usize), Stopped> {
-    let fewer: Vec<Recording> = together.recordings.iter().map(thinned).collect();
+    let fewer: Vec<Recording> = together.recordings.iter().map(|one| thinned(one, OTHERS, NEAR)).collect();
     let together = Together::new(&fewer, together.tested, together.variables);
     let mut found: Vec<Minimum> = Vec::with_capacity(starts.len());
     for start in starts {
@@ -131,14 +153,16 @@ fn best_start(
     Ok((best.map_or(together.variables.start(), |minimum| minimum.variables), agreeing))
 }
 
-/// Rows for a first search: all near null, and some of the others.
-fn thinned(recording: &Recording) -> Recording {
-    const OTHERS: usize = 150;
+/// Rows for a first search: those near null, every second one or about `most_near` of them, and
+/// about `others` from all.
+fn thinned(recording: &Recording, others: usize, most_near: usize) -> Recording {
     let largest = recording.inputs.iter().map(|input| input.command.abs()).fold(0.0, f64::max);
     let near =
         |row: &usize| recording.inputs.get(*row).is_some_and(|input| input.command.abs() < 0.1 * largest);
-    let stride = (recording.inputs.len() / OTHERS).max(1);
-    let rows: Vec<usize> =
-        (0..recording.inputs.len()).filter(|row| row % stride == 0 || (near(row) && row % 2 == 0)).collect();
+    let stride = (recording.inputs.len() / others).max(1);
+    let near_stride = ((0..recording.inputs.len()).filter(near).count() / most_near).max(2);
+    let rows: Vec<usize> = (0..recording.inputs.len())
+        .filter(|row| row % stride == 0 || (near(row) && row % near_stride == 0))
+        .collect();
     recording.only(&rows)
 }

@@ -80,6 +80,12 @@ impl SignalKind {
             SignalKind::PortFlowMagnitude => [0.0, 0.0, 0.0, output.port_flow.signum()],
         }
     }
+
+    /// The combination of these.
+    pub(super) fn shown(self, output: &TestOutput) -> f64 {
+        let all = [output.pressure_a, output.pressure_b, output.leak_flow, output.port_flow];
+        all.iter().zip(self.weights(output)).map(|(signal, weight)| signal * weight).sum()
+    }
 }
 
 impl Recording {

@@ -16,12 +16,7 @@ impl Identification {
         let recorded = self.recordings.get(signal.recording).and_then(|one| one.signal(signal.kind));
         let Some(recorded) = recorded else { return Vec::new() };
         let shown = self.shown(signal.recording, coefficients);
-        let one = |(output, value): (&TestOutput, &Option<f64>)| {
-            let all = [output.pressure_a, output.pressure_b, output.leak_flow, output.port_flow];
-            let weighted =
-                all.iter().zip(signal.kind.weights(output)).map(|(signal, weight)| signal * weight);
-            Some(weighted.sum::<f64>() - (*value)?)
-        };
+        let one = |(output, value): (&TestOutput, &Option<f64>)| Some(signal.kind.shown(output) - (*value)?);
         shown.iter().zip(&recorded.values).map(one).collect()
     }
 

@@ -1,0 +1,92 @@
+//! Averages over neighbouring rows, from which a search over all rows begins.
+
+use phea_hydraulics::servovalve::{Supply, TestInput};
+
+use super::recording::{RecordedSignal, Recording, median};
+
+/// About how many averages a recording has near null, and away from it.
+const NEAR: usize = 1500;
+const OTHERS: usize = 500;
+
+/// Share of the greatest command within which a row is near null.
+const NEAR_NULL: f64 = 0.1;
+
+/// Distances from the median, over the median distance, beyond which a value is an outlier.
+const OUTLYING: f64 = 6.0;
+
+/// A recording with one row for each block of neighbouring rows whose command goes one way.
+///
+/// Where noise is white, the averages determine the coefficients as well as all rows do; what they
+/// change is the curvature of a signal within a block, and its outliers.
+pub(super) fn averaged(recording: &Recording) -> Recording {
+    let blocks = blocks(recording);
+    let mean = |values: &[f64], block: &std::ops::Range<usize>| {
+        let own = values.get(block.clone()).unwrap_or_default();
+        own.iter().sum::<f64>() / own.len().max(1) as f64
+    };
+    let of_inputs = |of: fn(&TestInput) -> f64| -> Vec<f64> {
+        let all: Vec<f64> = recording.inputs.iter().map(of).collect();
+        blocks.iter().map(|block| mean(&all, block)).collect()
+    };
+    let commands = of_inputs(|input| input.command);
+    let supplies = of_inputs(|input| input.supply.pressure);
+    let tanks = of_inputs(|input| input.supply.tank_pressure);
+    let loads = of_inputs(|input| input.load_pressure);
+    let inputs = commands.iter().zip(supplies).zip(tanks).zip(loads);
+    let signals = recording.signals.iter().map(|signal| RecordedSignal {
+        kind: signal.kind,
+        values: blocks.iter().map(|block| inner_mean(signal.values.get(block.clone())?)).collect(),
+    });
+    let these = |values: &Vec<f64>| blocks.iter().map(|block| mean(values, block)).collect();
+    Recording {
+        file: recording.file.clone(),
+        circuit: recording.circuit,
+        times: these(&recording.times),
+        inputs: inputs
+            .map(|(((command, pressure), tank_pressure), load_pressure)| TestInput {
+                command: *command,
+                supply: Supply { pressure, tank_pressure },
+                load_pressure,
+            })
+            .collect(),
+        oil_temperature: recording.oil_temperature.as_ref().map(these),
+        signals: signals.collect(),
+    }
+}
+
+/// Neighbouring rows that are averaged: fewer near null.
+fn blocks(recording: &Recording) -> Vec<std::ops::Range<usize>> {
+    let commands: Vec<f64> = recording.inputs.iter().map(|input| input.command).collect();
+    let bound = NEAR_NULL * commands.iter().fold(0.0, |most: f64, command| most.max(command.abs()));
+    let is_near = |row: usize| commands.get(row).is_some_and(|command| command.abs() < bound);
+    let near = (0..commands.len()).filter(|row| is_near(*row)).count();
+    let lengths = [commands.len() / OTHERS, near / NEAR].map(|length| length.max(1));
+    let rises = |row: usize| {
+        let pair = commands.get(row.checked_sub(1)?..=row)?;
+        pair.first().zip(pair.last()).filter(|(before, now)| before != now).map(|(before, now)| now > before)
+    };
+    let mut blocks = Vec::new();
+    let (mut from, mut way) = (0, None);
+    for row in 0..commands.len() {
+        let now = rises(row);
+        let turns = now.is_some() && way.is_some() && now != way;
+        let length = lengths[usize::from(is_near(from))];
+        if row > from && (turns || row - from >= length || is_near(row) != is_near(from)) {
+            blocks.push(from..row);
+            from = row;
+        }
+        way = now.or(way);
+    }
+    blocks.push(from..commands.len());
+    blocks
+}
+
+/// The mean of the values that are no outliers; absent where none was read.
+fn inner_mean(values: &[Option<f64>]) -> Option<f64> {
+    let read: Vec<f64> = values.iter().flatten().copied().collect();
+    let middle = median(read.clone());
+    let usual = median(read.iter().map(|value| (value - middle).abs()).collect());
+    let inner = read.iter().filter(|value| (**value - middle).abs() <= OUTLYING * usual);
+    let (sum, count) = inner.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    (count > 0.0).then_some(sum / count)
+}
