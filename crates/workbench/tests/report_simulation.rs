@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
 use phea_workbench::project;
-use phea_workbench::report::{Report, report};
+use phea_workbench::report::{Report, report, runs_within_budget};
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
@@ -168,4 +168,35 @@ fn assumptions_are_those_of_the_rig() {
     assert!(hose.contains("wall of a hose") && !volumes.contains("wall of a hose"));
     assert!(hose.contains("no waves travel in it"));
     assert!(!volumes.contains("no waves travel in it") && volumes.contains("by its viscous part alone"));
+}
+
+/// The step of a tracking specification, by its time.
+const IN_TIME: &str = "[[specification]]\nkind = \"tracking\"\nfrequencies = [0.1, 1]\nband = [0.1, 1]\n\
+    [specification.upper]\novershoot_percent = 1\nsettling_time = \"0.4 s\"\nsettling_band_percent = 1\nzero = \"60 rad/s\"\n\
+    [specification.lower]\nsettling_time = \"0.8 s\"\nsettling_band_percent = 1\npole = \"60 rad/s\"\n";
+
+/// What the first page says of a requirement in time is the worst over the runs of the campaign too.
+#[test]
+fn the_first_page_takes_the_worst_of_the_campaign() {
+    let text = format!("{CAMPAIGN}\n{IN_TIME}");
+    let report = reported(&text, &["scenario.0.duration=2.9 s", "campaign.runs=24"]);
+    let settling = row(chapter(&report, "campaign"), "settling (s)");
+    let (worst, run) = settling[6].split_once(" (").expect("a run");
+    let (_, page) = report.html.split_once("id=\"decision\">").expect("the first page");
+    let page = page.split("</section>").next().unwrap();
+    let worst = format!("{:.3} s at worst (campaign, run {run}", worst.parse::<f64>().unwrap());
+    assert!(page.replace('\u{a0}', " ").contains(&worst), "{worst}");
+}
+
+/// A report makes as many runs as its steps of integration suffice for, judged by the first of them,
+/// and these at least.
+#[test]
+fn a_campaign_keeps_its_budget_of_steps() {
+    // ORIGIN: analytic, ten million steps over those of a run
+    for (steps_of_a_run, runs) in [(3_000, 500), (20_000, 500), (40_000, 250), (1_000_000, 10)] {
+        assert_eq!(runs_within_budget(500, [8, 8 * steps_of_a_run]), runs, "{steps_of_a_run}");
+    }
+    assert_eq!(runs_within_budget(500, [8, 8 * 10_000_000]), 8, "those that were made");
+    assert_eq!(runs_within_budget(500, [8, 0]), 500, "none was completed");
+    assert_eq!(runs_within_budget(5, [5, 5 * 3_000]), 5);
 }
