@@ -108,6 +108,9 @@ impl Known {
     }
 }
 
+/// Difference of the criterion that no further search makes up for.
+const FAR: f64 = 1000.0;
+
 /// How thoroughly is searched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Search {
@@ -241,9 +244,14 @@ pub fn identify(
     let first = fit::fitted(&recordings, tested, &variables, search, watch)?;
     let second = fit::with_the_other_model(&first, watch)?;
     let starts = first.starts;
-    let evidence = ModelEvidence::of([&first, &second]);
-    let wanted = search.leakage_model.or(evidence.preferred()).unwrap_or(known.leakage_model);
-    let found = if wanted == first.together.tested.leakage_model { first } else { second };
+    let mut evidence = ModelEvidence::of([&first, &second]);
+    let wanted = |evidence: &ModelEvidence| {
+        search.leakage_model.or(evidence.preferred()).unwrap_or(known.leakage_model)
+    };
+    let (is_far, model) = (evidence.difference() > FAR, first.together.tested.leakage_model);
+    let second = if is_far && wanted(&evidence) == model { second } else { second.to_the_end(watch)? };
+    evidence = ModelEvidence::of([&first, &second]);
+    let found = if wanted(&evidence) == model { first } else { second };
     let coefficients = found.coefficients();
     let groups = found.together.groups();
     let told = intervals::told(&found.minimum.linearised, &groups, &variables, &coefficients);

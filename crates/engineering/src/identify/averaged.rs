@@ -4,9 +4,10 @@ use phea_hydraulics::servovalve::{Supply, TestInput};
 
 use super::recording::{RecordedSignal, Recording, median};
 
-/// About how many averages a recording has near null, and away from it.
+/// About how many averages a recording has near null, and away from it, where leakage is still
+/// curved: its curvature within an average counts with the fourth power of their length.
 const NEAR: usize = 1500;
-const OTHERS: usize = 500;
+const OTHERS: usize = 2500;
 
 /// Share of the greatest command within which a row is near null.
 const NEAR_NULL: f64 = 0.1;

@@ -18,7 +18,7 @@ const FEW_EVALUATIONS: usize = 60;
 
 /// Evaluations of the last search. Where the recordings hardly distinguish coefficients, the sum
 /// has a long curved valley.
-const EVALUATIONS: usize = 1000;
+pub(super) const EVALUATIONS: usize = 1000;
 
 /// Decrease of the negative logarithm of the likelihood that moves no coefficient by more than a
 /// twentieth of its standard deviation.
@@ -152,15 +152,16 @@ impl<'a> Together<'a> {
     }
 
     /// The minimum near a start that differs from it by less than the noise.
-    pub(super) fn searched_from_near(&self, start: &[f64], watch: Watch<'_>) -> Result<Minimum, Stopped> {
+    pub(super) fn searched_from_near(
+        &self,
+        start: &[f64],
+        maximum_evaluations: usize,
+        watch: Watch<'_>,
+    ) -> Result<Minimum, Stopped> {
         let rows: usize = self.recordings.iter().map(|one| one.inputs.len()).sum();
         let tolerance = NO_EVIDENCE / rows.max(1) as f64;
-        let many = Settings {
-            maximum_evaluations: EVALUATIONS,
-            tolerance,
-            first_damping: UNDAMPED,
-            ..Settings::default()
-        };
+        let many =
+            Settings { maximum_evaluations, tolerance, first_damping: UNDAMPED, ..Settings::default() };
         self.searched_with(start, many, watch)
     }
 

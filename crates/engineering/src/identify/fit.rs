@@ -6,7 +6,7 @@ use phea_dynamics::watch::{Stopped, Watch};
 use phea_hydraulics::servovalve::{LeakageModel, StaticCoefficients, TestedValve};
 
 use super::averaged::averaged;
-use super::channels::{Channel, Together};
+use super::channels::{Channel, EVALUATIONS, Together};
 use super::recording::Recording;
 use super::variables::{COUNT, Kind, Variables};
 use super::{COEFFICIENT_NAMES, IdentifyError, Search, SignalFit};
@@ -27,6 +27,9 @@ const NEAR: usize = 1500;
 /// Rows of a recording beyond which the minimum is found over averages of its rows first. The last
 /// search is over all rows from there, and ends after few evaluations.
 const MANY_ROWS: usize = 20_000;
+
+/// Evaluations over all of many rows of a model that need not be the one that is wanted.
+const ROUGH_EVALUATIONS: usize = 12;
 
 /// The valve that explains the recordings best, with the signals and their scales.
 pub(super) struct Fit<'a> {
@@ -83,7 +86,7 @@ pub(super) fn fitted<'a>(
         let mut state = stream(u64::from(search.seed), index as u64);
         if index == 0 { variables.start() } else { variables.scattered(&mut state) }
     });
-    fitted_from(&starts.collect::<Vec<_>>(), Together::new(recordings, tested, variables), watch)
+    fitted_from(&starts.collect::<Vec<_>>(), Together::new(recordings, tested, variables), EVALUATIONS, watch)
 }
 
 /// The same recordings explained with the other model of the leakage, from where this one ended.
@@ -95,24 +98,25 @@ pub(super) fn with_the_other_model<'a>(first: &Fit<'a>, watch: Watch<'_>) -> Res
     };
     let tested = TestedValve { leakage_model, ..before.tested };
     let together = Together::new(before.recordings, tested, before.variables);
-    fitted_from(std::slice::from_ref(&first.minimum.variables), together, watch)
+    fitted_from(std::slice::from_ref(&first.minimum.variables), together, ROUGH_EVALUATIONS, watch)
 }
 
 fn fitted_from<'a>(
     starts: &[Vec<f64>],
     mut together: Together<'a>,
+    most: usize,
     watch: Watch<'_>,
 ) -> Result<Fit<'a>, IdentifyError> {
     if together.channels.is_empty() {
         return Err(IdentifyError::Data("no recorded signal changes: there is nothing to fit".to_string()));
     }
     let (start, agreeing) = best_start(starts, &together, watch)?;
-    let minimum = if together.recordings.iter().any(|one| one.inputs.len() > MANY_ROWS) {
+    let minimum = if has_many_rows(together.recordings) {
         let fewer: Vec<Recording> = together.recordings.iter().map(averaged).collect();
         let mut few = Together::new(&fewer, together.tested, together.variables);
         let near = settled(&mut few, &start, watch)?.variables;
         together.rescale(&together.residuals(&near));
-        together.searched_from_near(&near, watch)?
+        near_minimum(&together, &near, most, watch)?
     } else {
         settled(&mut together, &start, watch)?
     };
@@ -120,6 +124,46 @@ fn fitted_from<'a>(
         return Err(IdentifyError::Data("the recordings have too few rows to fit a valve".to_string()));
     }
     Ok(Fit { together, minimum, starts: [starts.len(), agreeing] })
+}
+
+/// Whether the minimum is found over averages first.
+fn has_many_rows(recordings: &[Recording]) -> bool {
+    recordings.iter().any(|one| one.inputs.len() > MANY_ROWS)
+}
+
+impl Fit<'_> {
+    /// The same at its minimum, where the search over many rows was cut short.
+    pub(super) fn to_the_end(self, watch: Watch<'_>) -> Result<Self, IdentifyError> {
+        if self.minimum.ending != Ending::OutOfEvaluations || !has_many_rows(self.together.recordings) {
+            return Ok(self);
+        }
+        let minimum = near_minimum(&self.together, &self.minimum.variables, EVALUATIONS, watch)?;
+        Ok(Fit { minimum, ..self })
+    }
+}
+
+/// The minimum over all rows near a start, searched with the flow coefficients as in series.
+fn near_minimum(
+    together: &Together<'_>,
+    near: &[f64],
+    most: usize,
+    watch: Watch<'_>,
+) -> Result<Minimum, Stopped> {
+    let usual = together.variables;
+    let begun = usual.coefficients(near);
+    let variables = usual.in_series(&begun);
+    let in_series = Together { variables: &variables, channels: together.channels.clone(), ..*together };
+    let start = variables.of(&begun);
+    let mut minimum = in_series.searched_from_near(&start, most, watch)?;
+    let coefficients = variables.coefficients(&minimum.variables);
+    let mut factors = usual.slopes(&coefficients);
+    for (factor, slope) in factors.iter_mut().zip(variables.slopes(&coefficients)) {
+        *factor /= slope;
+    }
+    for row in minimum.linearised.jacobian.chunks_exact_mut(COUNT) {
+        row.iter_mut().zip(factors).for_each(|(slope, factor)| *slope *= factor);
+    }
+    Ok(Minimum { variables: usual.of(&coefficients), ..minimum })
 }
 
 /// The minimum that a start leads to, with the scale of each signal from its residuals there.

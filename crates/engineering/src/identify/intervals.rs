@@ -104,7 +104,7 @@ pub(super) fn intervals(
         let ends = [-half, half].map(|by| match Kind::of(index) {
             Kind::Positive => number * portable::exp(by),
             Kind::MayVanish => (number + by * scale).max(0.0),
-            Kind::EitherSign => number + by * scale,
+            Kind::EitherSign | Kind::InSeries => number + by * scale,
         });
         *found = (half < NOTHING_SAID).then_some(ends);
     }

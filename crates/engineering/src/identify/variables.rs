@@ -12,6 +12,12 @@ pub(super) const TARE_FLOW: usize = 9;
 const NULL_BIAS: usize = 10;
 const HYSTERESIS: usize = 11;
 
+/// Flow coefficients, the first ones.
+const EDGES: usize = 4;
+
+/// Least coefficient over its reference that is varied by its inverse.
+const LEAST_IN_SERIES: f64 = 0.05;
+
 /// Step of the null bias that counts as much as a factor of e in a positive coefficient, over the
 /// nominal voltage.
 const BIAS_SCALE: f64 = 0.01;
@@ -28,6 +34,8 @@ pub(super) enum Kind {
     MayVanish,
     /// Of either sign, in steps.
     EitherSign,
+    /// Positive, by its square's inverse over that of the reference: edges in series add by it.
+    InSeries,
 }
 
 impl Kind {
@@ -51,12 +59,43 @@ pub(super) struct Variables {
     reference: [f64; COUNT],
     bias_step: f64,
     nominal_voltage: f64,
+    /// Which flow coefficients are varied as [`Kind::InSeries`].
+    in_series: [bool; EDGES],
 }
 
 impl Variables {
     pub(super) fn around(reference: &StaticCoefficients, nominal_voltage: f64) -> Variables {
         let reference = reference.to_array();
-        Variables { reference, bias_step: BIAS_SCALE * nominal_voltage, nominal_voltage }
+        let bias_step = BIAS_SCALE * nominal_voltage;
+        Variables { reference, bias_step, nominal_voltage, in_series: [false; EDGES] }
+    }
+
+    /// The same with the flow coefficients as in series, but for those that nearly vanish here:
+    /// what a test of joined ports leaves open of them is a straight line, where it is a curved
+    /// valley of their logarithms.
+    pub(super) fn in_series(&self, near: &StaticCoefficients) -> Variables {
+        let mut in_series = [false; EDGES];
+        for ((is_used, number), reference) in in_series.iter_mut().zip(near.to_array()).zip(self.reference) {
+            *is_used = number > LEAST_IN_SERIES * reference;
+        }
+        Variables { in_series, ..self.clone() }
+    }
+
+    fn kind(&self, index: usize) -> Kind {
+        let is_in_series = self.in_series.get(index).is_some_and(|is_used| *is_used);
+        if is_in_series { Kind::InSeries } else { Kind::of(index) }
+    }
+
+    /// The variables of coefficients.
+    pub(super) fn of(&self, coefficients: &StaticCoefficients) -> Vec<f64> {
+        let all = coefficients.to_array().into_iter().zip(self.reference).enumerate();
+        let of = |(index, (number, reference)): (usize, (f64, f64))| match self.kind(index) {
+            Kind::Positive => portable::ln(number / reference),
+            Kind::MayVanish => number / reference,
+            Kind::EitherSign => (number - reference) / self.bias_step,
+            Kind::InSeries => (reference / number) * (reference / number),
+        };
+        all.map(of).collect()
     }
 
     /// Those of the reference.
@@ -77,8 +116,9 @@ impl Variables {
     pub(super) fn coefficients(&self, variables: &[f64]) -> StaticCoefficients {
         let mut numbers = self.reference;
         for (index, (number, x)) in numbers.iter_mut().zip(variables).enumerate() {
-            *number = match Kind::of(index) {
+            *number = match self.kind(index) {
                 Kind::Positive => *number * portable::exp(*x),
+                Kind::InSeries => *number / x.sqrt(),
                 Kind::MayVanish => *number * x,
                 Kind::EitherSign => *number + x * self.bias_step,
             };
@@ -104,8 +144,9 @@ impl Variables {
     ) -> [f64; COUNT] {
         let mut found = coefficients.to_array();
         for (index, (number, reference)) in found.iter_mut().zip(self.reference).enumerate() {
-            *number = match Kind::of(index) {
+            *number = match self.kind(index) {
                 Kind::Positive => *number,
+                Kind::InSeries => -0.5 * *number * (*number / reference) * (*number / reference),
                 Kind::MayVanish => vanishing(*number, reference),
                 Kind::EitherSign => self.bias_step,
             };
@@ -121,6 +162,9 @@ impl Variables {
         let [.., shape, tare, bias, width] = &self.reference;
         for bounds in bounds.iter_mut().skip(4).take(4) {
             *bounds = [LEAST_LEAKAGE, 100.0];
+        }
+        for (bounds, _) in bounds.iter_mut().zip(self.in_series).filter(|(_, is_used)| *is_used) {
+            *bounds = [1e-4, 1e4];
         }
         bounds[SHAPE] = [1.0, 5000.0].map(|end| portable::ln(end / shape));
         bounds[TARE_FLOW] = [0.0, 1e-2 / tare];
