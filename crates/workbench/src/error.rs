@@ -25,7 +25,7 @@ use phea_engineering::sizing::SizingError;
 use phea_engineering::specification::SpecificationError;
 use phea_engineering::trial::TrialError;
 
-use crate::project::{Diagnostic, Loaded, Refusal, refused};
+use crate::project::{Diagnostic, Loaded, Refusal, Severity, refused};
 use crate::source::Source;
 
 /// Why a valid project has no answer.
@@ -133,7 +133,9 @@ impl CommandError {
     pub(crate) fn into_refusal(self, source: &dyn Source, loaded: &Loaded) -> CommandError {
         let mut at_the_end = None;
         for late in place::late(&self, &loaded.project) {
-            let refusal = refused(source, loaded, &late);
+            let mut refusal = refused(source, loaded, &late);
+            // the warnings of the project were reported when it was read
+            refusal.diagnostics.retain(|found| found.severity == Severity::Error);
             let of_late = |found: &&Diagnostic| found.message == late.message && found.line > 0;
             match refusal.diagnostics.iter().find(of_late) {
                 Some(found) if is_at_the_end(found, loaded) => drop(at_the_end.get_or_insert(refusal)),

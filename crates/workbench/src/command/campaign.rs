@@ -46,7 +46,8 @@ pub fn campaign_watched(
 ) -> Result<Answer, CommandError> {
     let identified = with_recordings(source, loaded, watch)?;
     let loaded = identified.as_ref().unwrap_or(loaded);
-    let plan = Plan::new(source, loaded, request.seed)?;
+    let plan = Plan::new(source, loaded, request.seed)
+        .map_err(|error| CommandError::from(error).into_refusal(source, loaded))?;
     let wanted = match request.asked {
         CampaignRuns::All(wanted) => wanted,
         CampaignRuns::One(run) => {
