@@ -39,6 +39,7 @@ use phea_dynamics::least_squares::Ending;
 use phea_dynamics::watch::{Stopped, Watch};
 use phea_hydraulics::servovalve::{LeakageModel, STATIC_COEFFICIENTS, StaticCoefficients, TestedValve};
 
+use self::fit::Fit;
 use self::variables::Variables;
 use crate::project::{Project, Refusal};
 
@@ -242,16 +243,8 @@ pub fn identify(
     let first_guess = guess::first_guess(&recordings, &tested, &simple);
     let variables = Variables::around(&first_guess, tested.nominal_voltage);
     let first = fit::fitted(&recordings, tested, &variables, search, watch)?;
-    let second = fit::with_the_other_model(&first, watch)?;
     let starts = first.starts;
-    let mut evidence = ModelEvidence::of([&first, &second]);
-    let wanted = |evidence: &ModelEvidence| {
-        search.leakage_model.or(evidence.preferred()).unwrap_or(known.leakage_model)
-    };
-    let (is_far, model) = (evidence.difference() > FAR, first.together.tested.leakage_model);
-    let second = if is_far && wanted(&evidence) == model { second } else { second.to_the_end(watch)? };
-    evidence = ModelEvidence::of([&first, &second]);
-    let found = if wanted(&evidence) == model { first } else { second };
+    let (evidence, found) = best_model(first, (search.leakage_model, known.leakage_model), watch)?;
     let coefficients = found.coefficients();
     let groups = found.together.groups();
     let told = intervals::told(&found.minimum.linearised, &groups, &variables, &coefficients);
@@ -293,6 +286,24 @@ pub fn identify(
         tested,
         recordings,
     })
+}
+
+/// Both models of the leakage compared, and the fit of the wanted one, or else the preferred one,
+/// or else the usual one.
+fn best_model<'a>(
+    first: Fit<'a>,
+    (wanted, usual): (Option<LeakageModel>, LeakageModel),
+    watch: Watch<'_>,
+) -> Result<(ModelEvidence, Fit<'a>), IdentifyError> {
+    let model = first.together.tested.leakage_model;
+    let is_first = |evidence: &ModelEvidence| wanted.or(evidence.preferred()).unwrap_or(usual) == model;
+    let second = fit::with_the_other_model(&first, watch)?;
+    let rough = ModelEvidence::of([&first, &second]);
+    let is_settled = rough.difference() > FAR && is_first(&rough);
+    let second = if is_settled { second } else { second.searched_to_the_end(watch)? };
+    let evidence = ModelEvidence::of([&first, &second]);
+    let found = if is_first(&evidence) { first } else { second };
+    Ok((evidence, found))
 }
 
 /// Root mean square of all residuals, each over the range of its signal.

@@ -112,11 +112,7 @@ pub(crate) fn report_beside(
     if project.actuator.is_none() && project.specifications.is_empty() {
         return Err(CommandError::NothingToReport);
     }
-    let mut rig = project
-        .actuator
-        .as_ref()
-        .map(|actuator| rig_part(setup, (actuator, &WrittenUnits::of(loaded)), problem))
-        .transpose()?;
+    let mut rig = rig_part(setup, loaded, problem)?;
     let judged = judged::judged(source, setup, watch)?;
     let deployed = judged.as_ref().and_then(Judged::found).map(|view| view.deployed(project));
     let driven = driven::driven(source, setup, deployed.as_ref(), watch)?;
@@ -247,9 +243,10 @@ struct RigPart {
 
 fn rig_part(
     setup: &Setup<'_>,
-    (actuator, units): (&DeclaredActuator, &WrittenUnits),
+    loaded: &Loaded,
     problem: Option<&ProblemOfSizing>,
-) -> Result<RigPart, CommandError> {
+) -> Result<Option<RigPart>, CommandError> {
+    let Some(actuator) = &setup.project.actuator else { return Ok(None) };
     let refused = problem.and_then(|problem| problem.as_ref().err());
     let problem = problem.and_then(|problem| problem.as_ref().ok());
     let (project, rig, sensor) = (setup.project, setup.rig()?, &setup.sensor);
@@ -268,7 +265,7 @@ fn rig_part(
     chapters.extend(refused.map(sizing::refused));
     let appendix = vec![
         stiffness::chapter(actuator, rig, &linearization),
-        Chapter::of("derived", "Derived quantities", derived::document(&derived, units)),
+        Chapter::of("derived", "Derived quantities", derived::document(&derived, &WrittenUnits::of(loaded))),
         models::chapter(setup, &linearization)?,
         impedance::chapter(setup, &linearization)?,
         response::chapter(setup, given.as_ref(), reference(project)),
@@ -276,7 +273,7 @@ fn rig_part(
     let mut facts = vec![("Load", rig::load_words(actuator)), ("Lines", rig::lines_words(actuator))];
     facts.extend(summary((&linearization, rig), sizing.as_ref(), problem, given.as_ref()));
     let no_hose_fits = sizing.is_some_and(|sizing| sizing.best().is_none());
-    Ok(RigPart { chapters, appendix, facts, no_hose_fits })
+    Ok(Some(RigPart { chapters, appendix, facts, no_hose_fits }))
 }
 
 /// The verdict of the audit in a few words.

@@ -175,7 +175,8 @@ const IN_TIME: &str = "[[specification]]\nkind = \"tracking\"\nfrequencies = [0.
     [specification.upper]\novershoot_percent = 1\nsettling_time = \"0.4 s\"\nsettling_band_percent = 1\nzero = \"60 rad/s\"\n\
     [specification.lower]\nsettling_time = \"0.8 s\"\nsettling_band_percent = 1\npole = \"60 rad/s\"\n";
 
-/// What the first page says of a requirement in time is the worst over the runs of the campaign too.
+/// What the first page says of a requirement in time is the worst over the runs of the campaign
+/// too.
 #[test]
 fn the_first_page_takes_the_worst_of_the_campaign() {
     let text = format!("{CAMPAIGN}\n{IN_TIME}");
@@ -188,8 +189,8 @@ fn the_first_page_takes_the_worst_of_the_campaign() {
     assert!(page.replace('\u{a0}', " ").contains(&worst), "{worst}");
 }
 
-/// A report makes as many runs as its steps of integration suffice for, judged by the first of them,
-/// and these at least.
+/// A report makes as many runs as its steps of integration suffice for, judged by the first of
+/// them, and these at least.
 #[test]
 fn a_campaign_keeps_its_budget_of_steps() {
     // ORIGIN: analytic, ten million steps over those of a run

@@ -34,8 +34,8 @@ fn soak_four_hundred_intervals_cover_the_truth_and_are_narrow() {
     check(400, "bench.sample_time=500 ms", 366..=391);
 }
 
-/// A recording of more than 20,000 rows, which is searched over averages first, has the coefficients
-/// and intervals of one that lacks ten of them and is searched over all rows.
+/// A recording of more than 20,000 rows, which is searched over averages first, has the
+/// coefficients and intervals of one that lacks ten of them and is searched over all rows.
 #[test]
 fn many_rows_are_identified_as_a_few_fewer_are() {
     let files = recorded(7, &["bench.duration=2001 s", "bench.sample_time=100 ms"]);

@@ -133,7 +133,7 @@ fn has_many_rows(recordings: &[Recording]) -> bool {
 
 impl Fit<'_> {
     /// The same at its minimum, where the search over many rows was cut short.
-    pub(super) fn to_the_end(self, watch: Watch<'_>) -> Result<Self, IdentifyError> {
+    pub(super) fn searched_to_the_end(self, watch: Watch<'_>) -> Result<Self, IdentifyError> {
         if self.minimum.ending != Ending::OutOfEvaluations || !has_many_rows(self.together.recordings) {
             return Ok(self);
         }
