@@ -412,7 +412,7 @@ fn what_is_refused_of_a_campaign_has_its_place_and_a_hint() {
     for (table, words) in [
         ("{ spread = \"-20 %\" }", "`spread` must be above 0"),
         ("{ spread = \"20 bar\" }", "bar"),
-        ("{ minimum = \"90 bar\", maximum = \"60 bar\" }", "`minimum` must be below `maximum`"),
+        ("{ minimum = \"90 bar\", maximum = \"60 bar\" }", "`minimum`, 90 bar, is above `maximum`, 60 bar"),
         ("{ minimum = \"-5 bar\", maximum = \"60 bar\" }", "`minimum` must be"),
     ] {
         let text = refused(&[&pressure(table)]);

@@ -8,9 +8,8 @@ use phea_qft::design::{
     ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice, diagnose,
 };
 use phea_qft::loop_shaping::{Structure, StructureFactor};
-use phea_workbench::audit::AuditError;
 use phea_workbench::command::{CommandError, Request};
-use phea_workbench::design::{DesignError, Explanation, design_options, design_problem};
+use phea_workbench::design::{Explanation, design_options, design_problem};
 use phea_workbench::project;
 use phea_workbench::robust::robust_problem;
 use phea_workbench::setup::Setup;
@@ -104,7 +103,8 @@ fn a_controller_may_give_its_timing_alone() {
     assert_eq!(object["command"], "check");
     let refused =
         try_answer(TIMED, &[], &[], &Request::Verify { proof: false, on_machine: false }).unwrap_err();
-    assert!(matches!(refused, CommandError::Audit(AuditError::NoLaw)), "{refused}");
+    assert!(matches!(refused, CommandError::Refused(_)), "{refused}");
+    assert!(refused.to_string().contains("[controller] states only when it acts"), "{refused}");
     assert!(refused.to_string().contains("phea design"), "{refused}");
 }
 
@@ -112,7 +112,8 @@ fn a_controller_may_give_its_timing_alone() {
 fn nothing_is_designed_for_no_specification() {
     let bare = include_str!("../../project/tests/valid/design_growing.toml");
     let refused = try_answer(bare, &[], &[], &DESIGN).unwrap_err();
-    assert!(matches!(refused, CommandError::Design(DesignError::NoSpecification)), "{refused}");
+    assert!(matches!(refused, CommandError::Refused(_)), "{refused}");
+    assert!(refused.to_string().contains("states no [[specification]]"), "{refused}");
 }
 
 /// An integrator of unknown gain at 100 Hz, with converters.

@@ -270,7 +270,7 @@ fn records_that_give_no_response_are_refused_with_the_place_and_the_reason() {
     let mut late = times.clone();
     late[57] += 0.004;
     let jittery = table("time_s,input,output", [&late, &wave, &wave]);
-    refused(&jittery, &usual, &["shaken.csv:60", "6 ms after the row before", "10 ms apart"]);
+    refused(&jittery, &usual, &["shaken.csv:59", "14 ms after the row before", "10 ms apart"]);
     let gap: String = table("time_s,input,output", [&times, &wave, &wave])
         .lines()
         .enumerate()

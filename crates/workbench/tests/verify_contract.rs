@@ -126,7 +126,8 @@ fn a_feed_forward_is_told_to_be_left_out() {
 fn without_a_controller_there_is_nothing_to_verify() {
     let bare = HOSE.split("[controller]").next().unwrap();
     let refused = try_answer(bare, &[], &[], &Request::Verify { proof: false, on_machine: false });
-    assert!(matches!(refused, Err(CommandError::Audit(_))), "{refused:?}");
+    assert!(matches!(refused, Err(CommandError::Refused(_))), "{refused:?}");
+    assert!(refused.unwrap_err().to_string().contains("no [controller] to be verified"));
 }
 
 #[test]

@@ -86,7 +86,7 @@ fn rows(
     let numbers = table.all_numbers(&wanted, findings);
     let [times, values_at] = numbers.as_slice() else { return None };
     rising(&table, time, times, findings);
-    plausible::check(project, &table, (value, values.dimension), values_at, findings);
+    plausible::check_driving(project, &table, (value, values.dimension), values_at, findings);
     if times.len() < 2 && findings.error_count() == 0 {
         let what = if std::ptr::eq(values, &POSITION) { "motion" } else { "signal" };
         findings.push(RawFinding::error(table.header_place(), format!("a {what} needs two rows at least")));

@@ -27,18 +27,39 @@ fn held(actuator: &DeclaredActuator, dimension: &Dimension) -> Option<(f64, &'st
     }
 }
 
-/// Whether a column of it that stays far below what the rig holds is in another unit: no force
-/// sensor shows a thousandth of its rig, but motions may be that small, and pressures near the
-/// tank's.
+/// Whether what drives a rig is usually of the size that it holds: motions may be far smaller, and
+/// pressures near the tank's.
 fn is_of_full_scale(dimension: &Dimension) -> bool {
     [&FORCE, &TORQUE].iter().any(|one| std::ptr::eq(dimension, *one))
 }
 
-/// Refuses a column that goes beyond ten times what the rig holds, and forces below a thousandth
-/// of it that another unit would make plausible.
+/// Refuses a column of what was measured that goes beyond ten times what the rig holds. It may be
+/// as small as noise.
 pub(super) fn check(
     project: &Project,
     table: &MeasuredTable,
+    of_column: (&Column, &'static Dimension),
+    values: &[f64],
+    findings: &mut Findings,
+) {
+    doubt(project, (table, false), of_column, values, findings);
+}
+
+/// The same of a column that drives a scenario; forces below a thousandth of what the rig holds are
+/// refused too where another unit would make them plausible.
+pub(super) fn check_driving(
+    project: &Project,
+    table: &MeasuredTable,
+    of_column: (&Column, &'static Dimension),
+    values: &[f64],
+    findings: &mut Findings,
+) {
+    doubt(project, (table, true), of_column, values, findings);
+}
+
+fn doubt(
+    project: &Project,
+    (table, drives): (&MeasuredTable, bool),
     (column, dimension): (&Column, &'static Dimension),
     values: &[f64],
     findings: &mut Findings,
@@ -47,7 +68,7 @@ pub(super) fn check(
     let Some((held, words)) = held.filter(|(held, _)| *held > 0.0) else { return };
     let most =
         values.iter().filter(|value| !value.is_nan()).fold(0.0, |most: f64, value| most.max(value.abs()));
-    let is_small = is_of_full_scale(dimension) && most > 0.0 && most < USUAL[0] * held;
+    let is_small = drives && is_of_full_scale(dimension) && most > 0.0 && most < USUAL[0] * held;
     if most <= BEYOND * held && !is_small {
         return;
     }
@@ -73,9 +94,14 @@ pub(super) fn check(
     let message = format!("`{heading}` reaches {only}{reached} {}, and {words} {held}", column.unit);
     let place = table.headings.get(column.index).map(|heading| heading.place).unwrap_or_default();
     let found = RawFinding::error(place, message);
-    findings.push(match units.is_empty() {
-        true => found.help("is it the right column, in the unit that its heading says?"),
-        false => found
-            .help(format!("these numbers would be plausible in {}: correct the heading", units.join(" or "))),
+    let units = units.join(" or ");
+    findings.push(match (units.is_empty(), is_small) {
+        (true, _) => found.help("is it the right column, in the unit that its heading says?"),
+        (false, false) => {
+            found.help(format!("these numbers would be plausible in {units}: correct the heading"))
+        }
+        (false, true) => found.help(format!(
+            "these numbers would be plausible in {units}: correct the heading; forces that are so small are stated in the project, as steps, ramps or sines"
+        )),
     });
 }
