@@ -142,10 +142,10 @@ impl Alternatives {
 }
 
 impl JudgedAlternative {
-    /// Whether it has a design that was driven.
+    /// Whether it has a design that was driven, to results that describe the machine.
     pub(crate) fn is_judged(&self) -> bool {
-        let completed = |runs: &Vec<ScenarioRun>| runs.iter().all(|run| run.stopped().is_none());
-        self.design.is_ok() && self.runs.as_ref().is_ok_and(completed)
+        let reliable = |runs: &Vec<ScenarioRun>| runs.iter().all(ScenarioRun::is_reliable);
+        self.design.is_ok() && self.runs.as_ref().is_ok_and(reliable)
     }
 
     /// Whether the machine does something that the verdict excludes.

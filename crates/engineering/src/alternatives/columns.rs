@@ -6,7 +6,7 @@ use super::comparison::{ColumnSense, sense_of};
 use super::{JudgedAlternative, no_rig};
 use crate::design::LoopFigures;
 use crate::quantity::DisplayUnit;
-use crate::simulate::{DIVERGED, Metrics, NOT_SETTLED, ScenarioRun, StoppedRun};
+use crate::simulate::{DIVERGED, Metrics, NOT_SETTLED, ScenarioRun, StoppedRun, UNDETERMINED};
 
 /// A number of an alternative.
 #[derive(Clone, Debug, PartialEq)]
@@ -183,8 +183,8 @@ fn driven(run: Result<&ScenarioRun, String>) -> [AlternativeColumn; 6] {
 /// E = integral of p_S q_S dt                  by the trapezoidal rule over the samples of the record
 /// ```
 fn energy_from_supply(run: &ScenarioRun) -> Result<f64, String> {
-    if let Some(stopped) = run.stopped() {
-        return Err(end_of(&stopped));
+    if let Some(reason) = without_result(run) {
+        return Err(reason);
     }
     let record = &run.record;
     let [pressure, flow] = ["supply_pressure_pa", "supply_flow_m3_per_s"].map(|name| record.signal(name));
@@ -193,18 +193,26 @@ fn energy_from_supply(run: &ScenarioRun) -> Result<f64, String> {
     Ok(steps.map(|(times, powers)| 0.5 * (powers[0] + powers[1]) * (times[1] - times[0])).sum())
 }
 
-fn end_of(StoppedRun { time_s, word, .. }: &StoppedRun) -> String {
-    match *word {
-        DIVERGED => format!("the run diverges from {time_s} s on"),
-        word => format!("the run ended at {time_s} s: {word}"),
+/// Why a run has no numbers of the machine; `None` if it has.
+fn without_result(run: &ScenarioRun) -> Option<String> {
+    if let Some(StoppedRun { time_s, word, .. }) = run.stopped() {
+        return Some(match word {
+            DIVERGED => format!("the run diverges from {time_s} s on"),
+            word => format!("the run ended at {time_s} s: {word}"),
+        });
+    }
+    match (run.status_word(), run.outside_model_s) {
+        (UNDETERMINED, _) => Some("no solver determines the result of the run".to_string()),
+        (_, Some(time_s)) => Some(format!("from {time_s} s on the equations of the machine do not hold")),
+        _ => None,
     }
 }
 
-/// The greatest value over all events; none where the run ended early, or the force does not settle
+/// The greatest value over all events; none where the run has no result, or the force does not settle
 /// after one of them.
 fn greatest(run: &ScenarioRun, metric: fn(&Metrics) -> crate::simulate::Measured) -> Result<f64, String> {
-    if let Some(stopped) = run.stopped() {
-        return Err(end_of(&stopped));
+    if let Some(reason) = without_result(run) {
+        return Err(reason);
     }
     let values = || run.windows.iter().map(|(_, metrics)| metric(metrics));
     if values().any(|value| value == Err(NOT_SETTLED)) {

@@ -12,7 +12,7 @@ use super::steps::Steps;
 use crate::audit::ProjectAudit;
 use crate::quantity::{DisplayUnit, FORCE, significant};
 use crate::robust::RobustProblem;
-use crate::simulate::{DIVERGED, ScenarioRun, SimulateError, TimeRequirement};
+use crate::simulate::{DIVERGED, ScenarioRun, SimulateError, TimeRequirement, UNDETERMINED};
 
 /// Motion of a force that counts as settled, as a share of the step.
 const STILL: f64 = 0.01;
@@ -131,6 +131,9 @@ pub(super) fn judge(
     }
     if let Some(missed) = missed_in_time(&whole, linear, problem) {
         return (Agreement::Differs, missed);
+    }
+    if driven.run.status_word() == UNDETERMINED {
+        return (Agreement::Differs, format!("{told}, and no solver determines the result"));
     }
     match met(driven.run).first() {
         Some(kind) => (Agreement::Differs, format!("{told}, and meets {}", kind.replace('_', " "))),

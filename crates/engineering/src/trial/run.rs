@@ -268,7 +268,7 @@ impl<'a> TriedMachine<'a> {
         let driven = Driven { run, steps, size, legs, linear, grows };
         let (agreement, reason) = judge(&driven, problem, view);
         TrialRun {
-            status: run.stopped().map_or("completed", |stopped| stopped.word),
+            status: run.status_word(),
             machine: Some(driven.whole()),
             legs: Leg::ALL.into_iter().zip(legs).take(run.windows.len()).collect(),
             worst: driven.worst(),

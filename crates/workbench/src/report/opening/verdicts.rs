@@ -11,7 +11,7 @@ use crate::audit::frequency_words;
 use crate::document::{Cell, StatusMark, Table};
 use crate::quantity::DisplayUnit;
 use crate::report::specifications::demand;
-use crate::simulate::ScenarioRun;
+use crate::simulate::{ScenarioRun, UNDETERMINED};
 use crate::trial;
 
 type Rows = Vec<Vec<Cell>>;
@@ -134,9 +134,13 @@ fn driven(runs: &[ScenarioRun]) -> Cell {
     if ended < runs.len() {
         return Cell::from("no").marked(false).then(format!(": {ended} of {}", runs.len()));
     }
-    match outside {
-        0 => Cell::from("yes").marked(true),
-        _ => Cell::from("yes")
+    let undetermined = runs.iter().filter(|run| run.status_word() == UNDETERMINED).count();
+    match (undetermined, outside) {
+        (0, 0) => Cell::from("yes").marked(true),
+        (1.., _) => Cell::from("yes")
+            .marked(false)
+            .then(format!(", but no solver determines the result of {undetermined}")),
+        (0, _) => Cell::from("yes")
             .marked(StatusMark::Note)
             .then(format!(", but {outside} beyond what the equations hold for")),
     }
