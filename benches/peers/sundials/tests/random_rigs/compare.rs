@@ -7,12 +7,12 @@ use std::time::Instant;
 use phea_dynamics::controller::{Compensator, Controller, ControllerState, Element, SampledController};
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::simulation::{
-    Amplification, CommandedPlant, Input, InputSchedule, Observer, Outcome, Plant, Sampler, Sensed,
-    SimulationSettings, Status, StepCounts, Task,
+    Amplification, CommandedPlant, Input, InputSchedule, Observer, Outcome, Plant, Sampler, Sensed, Status,
+    StepCounts,
 };
 use phea_engineering::simulate::PassPlan;
 use phea_hydraulics::machine::INDICATORS;
-use phea_machine::{Commanded, Control as Loop, Watcher};
+use phea_machine::{Commanded, Control as Loop};
 use sundials::{CvodeError, Following, Kicks, Method, follow};
 
 use crate::patient::Patient;
