@@ -97,12 +97,33 @@ impl WrittenUnits {
     /// Counts the unit of a value, if it is a number with one.
     fn count(&mut self, key: &str, text: &str) {
         let Some((_, unit)) = text.trim().split_once(' ') else { return };
-        let is_of = |dimension: &&&Dimension| !KEPT.contains(&dimension.si) && parse(text, dimension).is_ok();
+        // the expansion of a hose, a volume per length, has the dimension of an area
+        let is_expansion = key.contains("expansion");
+        let is_of = |dimension: &&&Dimension| {
+            let is_other = dimension.si == if is_expansion { "m2" } else { "m3/m" };
+            !KEPT.contains(&dimension.si) && !is_other && parse(text, dimension).is_ok()
+        };
         let Some(dimension) = DIMENSIONS.iter().find(is_of) else { return };
         let used = self.used.entry((dimension.si, UnitFamily::of(key))).or_default();
         match used.iter_mut().find(|(known, _)| known == unit.trim()) {
             Some((_, count)) => *count += 1,
             None => used.push((unit.trim().to_string(), 1)),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::WrittenUnits;
+
+    /// The expansion of a hose and an area have one dimension, and each its own unit.
+    #[test]
+    fn an_expansion_is_no_area() {
+        let mut units = WrittenUnits::default();
+        units.take_in("volumetric_expansion = \"6 mL/m\"");
+        assert_eq!(units.shown("line.volumetric_expansion", 9.6e-6, "m3/m").1, "mL/m");
+        assert_eq!(units.shown("cylinder.area_a", 3e-3, "m2"), (3e-3, "m2".to_string()));
+        units.take_in("area_a = \"31 cm2\"");
+        assert_eq!(units.shown("cylinder.area_a", 3e-3, "m2").1, "cm2");
     }
 }

@@ -58,6 +58,18 @@ fn a_lag_that_settles_too_late_is_not_met() {
     }
 }
 
+/// k/s closed settles after ln(50)/k, here after forty times the requirement: a stable step is
+/// computed until it settles, and its worst plant is the slowest.
+#[test]
+fn a_step_far_beyond_the_requirement_is_computed_until_it_settles() {
+    let slow = "k = { nominal = 0.2, minimum = 0.1, maximum = 0.4, points = 3 }";
+    let (object, words) = verify(&project("numerator = \"k\"\ndenominator = \"s\"", slow, "", &lower(1.0)));
+    let found = &object["specifications"][0]["in_time"];
+    ask::near(number(found, "worst_settling_time_s"), 10.0 * 50.0_f64.ln(), 0.01);
+    assert_eq!(found["settling_plant"]["k"], 0.1);
+    assert!(words.contains("settled in 39"), "{words}");
+}
+
 /// Limits that are stated are only compared with the requirement.
 #[test]
 fn a_stated_limit_is_not_replaced_by_what_was_required_of_it() {

@@ -208,8 +208,8 @@ fn without_result(run: &ScenarioRun) -> Option<String> {
     }
 }
 
-/// The greatest value over all events; none where the run has no result, or the force does not settle
-/// after one of them.
+/// The greatest value over all events; none where the run has no result, or the force does not
+/// settle after one of them.
 fn greatest(run: &ScenarioRun, metric: fn(&Metrics) -> crate::simulate::Measured) -> Result<f64, String> {
     if let Some(reason) = without_result(run) {
         return Err(reason);

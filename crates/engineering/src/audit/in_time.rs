@@ -68,6 +68,10 @@ const ACCURACY_OF_RESPONSE_PERCENT: f64 = 0.1;
 /// Duration of a step, in settling times that are required, and the points of a continuous one.
 const SETTLING_TIMES: f64 = 10.0;
 const POINTS: usize = 2000;
+/// A step that has not settled by then is computed for longer, by this factor and so often: every
+/// plant is stable.
+const LONGER: f64 = 4.0;
+const EXTENSIONS: usize = 3;
 /// Most members of a family whose steps are computed; of plants without polynomials, whose steps
 /// cost a hundred times as much.
 const MEMBERS: usize = 150;
@@ -161,11 +165,24 @@ impl StepSearch<'_> {
     fn step(&self, values: &[f64]) -> Result<[f64; 2], TimeResponseError> {
         let compensation = &self.problem.compensation;
         let member = compensation.member_of(self.family.plant(), values)?;
-        let duration_s = SETTLING_TIMES * self.wish.horizon_s;
-        let response = linear_step(&member, compensation, duration_s, POINTS)?;
         let band = self.wish.band_percent + accuracy(&member);
-        let metrics = step_metrics(&response.times_s, &response.values, StepBaseline::unit(), band)?;
-        Ok([metrics.overshoot_percent, metrics.settling.time_s().unwrap_or(f64::INFINITY)])
+        let within = |duration_s: f64| {
+            let response = linear_step(&member, compensation, duration_s, POINTS)?;
+            step_metrics(&response.times_s, &response.values, StepBaseline::unit(), band)
+        };
+        let mut duration_s = SETTLING_TIMES * self.wish.horizon_s;
+        let mut metrics = within(duration_s)?;
+        let mut overshoot_percent = metrics.overshoot_percent;
+        let extensions = if matches!(member, Member::Responding { .. }) { 0 } else { EXTENSIONS };
+        for _ in 0..extensions {
+            if metrics.settling.time_s().is_some() {
+                break;
+            }
+            duration_s *= LONGER;
+            metrics = within(duration_s)?;
+            overshoot_percent = overshoot_percent.max(metrics.overshoot_percent);
+        }
+        Ok([overshoot_percent, metrics.settling.time_s().unwrap_or(f64::INFINITY)])
     }
 
     /// Whether the plant is the worst so far, of each property.

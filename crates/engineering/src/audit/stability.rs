@@ -11,7 +11,10 @@ use crate::quantity::significant;
 
 /// Whether the family is stable, and how this is known.
 pub fn stability_sentence(stability: &StabilityFinding, names: &PlantNames) -> String {
-    let plant = names.text(&stability.plant);
+    let plant = match &stability.reason {
+        StabilityReason::AllStable { closest: Some(closest), .. } => names.text(&closest.plant),
+        _ => names.text(&stability.plant),
+    };
     let rate = |value: f64| significant(value, 3);
     match (stability.verdict, stability.largest_real_part) {
         (Verdict::Met, Some(real)) => {

@@ -16,7 +16,7 @@ pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Docume
         Agreement::Contradicts => "contradicts the verdict",
     };
     out.explanation(format!(
-        "The machine {did}. The nonlinear rig under this controller: steps of the reference there, back and there again, by a tenth of the force that the supply can produce and then as large as the command allows, compared with those of the linear loop. Of the three steps the worst numbers are given."
+        "The machine {did}. The nonlinear rig under this controller: steps of the reference there, back and there again, by a tenth of the force that the supply can produce and then as large as the command allows, compared with those of the linear loop. Of the three steps the worst numbers are given; a force within 2 % of the step has settled."
     ));
     out.table(
         Table::new(["machine", "step", "", "overshoot", "linear", "settles in", "linear", "remains"])
@@ -85,7 +85,14 @@ fn figure(trial: &Trial, [name, title]: [&str; 2]) -> Option<Figure> {
     let named = drawn.filter_map(|run| series(&run.what, &run.machine_response)).collect();
     let quantity = "Force, part of the step".to_string();
     let chart = FamilySteps { quantity, nominal, named, ..FamilySteps::default() };
-    let caption = "The worst of three steps of the reference (there, back and there again) on the nonlinear machine: the rig as declared, with waves in its lines, and its worst plants made into rigs. A force that leaves the frame is drawn up to there.";
+    let waves = if runs.iter().any(|run| run.quarter_wave_rad_per_s.is_some()) {
+        " with waves in its lines,"
+    } else {
+        ""
+    };
+    let caption = format!(
+        "The worst of three steps of the reference (there, back and there again) on the nonlinear machine: the rig as declared,{waves} and its worst plants made into rigs. A force that leaves the frame is drawn up to there."
+    );
     Some(chart.draw(&Words::new(name, title, caption)))
 }
 

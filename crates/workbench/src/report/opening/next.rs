@@ -221,13 +221,19 @@ fn machine_words(side: &Side<'_>, run: &TrialRun) -> String {
         ),
         None if run.plant.is_some() => format!(
             "Narrow `[uncertainty]`, or take care near {}: simulated as a machine with the {} controller, {verdict}{why}.",
-            run.what, side.name
+            run.what.trim_end_matches(", largest step"),
+            side.name
         ),
         None => format!(
             "Do not trust the verdict on this rig yet: driven under the {} controller {verdict}{why}.",
             side.name
         ),
     }
+}
+
+fn violates_tracking(view: &ProjectAudit) -> bool {
+    let mut all = view.audit.specifications.iter();
+    all.any(|one| one.requirement.is_tracking() && one.verdict == Verdict::Violated)
 }
 
 /// A step of the machine that misses the wish, and the response of the tracking limits themselves.
@@ -244,11 +250,13 @@ fn wishes(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
     });
     let told: Vec<String> = overshoot.into_iter().chain(settling).collect();
     (!told.is_empty()).then(|| {
-        format!(
-            "Tighten the limits of tracking if what is required in time must be met exactly: at worst a step under the {} controller {}.",
-            side.name,
-            told.join(" and ")
-        )
+        let worst = format!("at worst a step under the {} controller {}.", side.name, told.join(" and "));
+        match side.view.is_some_and(violates_tracking) {
+            true => format!("What is required in time is missed with the limits of tracking: {worst}"),
+            false => format!(
+                "Tighten the limits of tracking if what is required in time must be met exactly: {worst}"
+            ),
+        }
     })
 }
 

@@ -99,7 +99,14 @@ fn finding(finding: &SpecificationFinding, is_proven: bool) -> Cell {
 
 fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
     let mut rows = Vec::new();
-    rows.extend(row("tried on the rig, its worst plants, waves in its lines", sides, |side| {
+    let has_waves = |side: &Side<'_>| {
+        side.trial.is_some_and(|trial| trial.runs.iter().any(|run| run.quarter_wave_rad_per_s.is_some()))
+    };
+    let tried = match sides.iter().any(has_waves) {
+        true => "tried on the rig, its worst plants, waves in its lines",
+        false => "tried on the rig and its worst plants",
+    };
+    rows.extend(row(tried, sides, |side| {
         let trial = side.trial?;
         let words = trial::words(trial);
         let which = words.split_once(": ").map_or(String::new(), |(_, which)| format!(": {which}"));
