@@ -194,7 +194,7 @@ fn syntax_error(text: usize, content: &str, error: &toml::de::Error) -> RawFindi
     let line_start = content[..boundary(content, span.start)].rfind('\n').map_or(0, |at| at + 1);
     let line = content[line_start..].lines().next().unwrap_or_default();
     let help = line.split_once('=').and_then(|(_, value)| quote_help(value.trim()));
-    found.maybe_help(help)
+    found.maybe_help(help.or_else(|| number_help(line, span.start.saturating_sub(line_start))))
 }
 
 /// The nearest position at or before `at` where a character begins.
@@ -210,6 +210,24 @@ fn quote_help(value: &str) -> Option<String> {
     let plain = !value.contains(['"', '\'', '[', '{', ',']);
     (begins_with_digit && has_letter && plain)
         .then(|| format!("a quantity with its unit is written in quotes: \"{value}\""))
+}
+
+/// A number at a place of a line with a decimal comma, or without a digit on one side of its point:
+/// `0,8`, `.8` and `8.`, which TOML does not have.
+fn number_help(line: &str, at: usize) -> Option<String> {
+    let is_of_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | ',' | '-' | '+' | 'e' | 'E');
+    let (before, after) = line.split_at_checked(boundary(line, at))?;
+    let start = before.rfind(|c| !is_of_number(c)).map_or(0, |last| last + 1);
+    let end = at + after.find(|c| !is_of_number(c)).unwrap_or(after.len());
+    let written = line.get(start..end)?.trim_end_matches(',');
+    let pointed = written.replacen(',', ".", 1);
+    let unsigned = pointed.trim_start_matches(['-', '+']);
+    let sign = pointed.strip_suffix(unsigned)?;
+    let [leading, trailing] = [unsigned.starts_with('.'), unsigned.ends_with('.')];
+    let number =
+        format!("{sign}{}{unsigned}{}", if leading { "0" } else { "" }, if trailing { "0" } else { "" });
+    (number != written && number.parse::<f64>().is_ok())
+        .then(|| format!("a number has a decimal point with a digit on both sides: {number}"))
 }
 
 /// Builds the tree, and rejects numbers that f64 cannot hold.
@@ -269,5 +287,28 @@ impl TreeBuilder<'_> {
             self.findings.push(RawFinding::error(place, "the number is too large"));
         }
         Value::Number(value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::number_help;
+
+    #[test]
+    fn numbers_that_toml_does_not_have_are_shown_as_it_has_them() {
+        for (line, at, number) in [
+            ("damping_ratio = 0,8", 17, Some("0.8")),
+            ("damping_ratio = .8", 16, Some("0.8")),
+            ("gain = -.5", 8, Some("-0.5")),
+            ("gain = 8.", 9, Some("8.0")),
+            ("k = { nominal = 0,8, minimum = 0.1 }", 18, Some("0.8")),
+            ("übersetzung = 1,5", 16, Some("1.5")),
+            ("points = 3", 9, None),
+            ("frequencies = [1, 2", 19, None),
+            ("gain = 1.5.2", 10, None),
+        ] {
+            let help = number_help(line, at);
+            assert_eq!(help.as_deref().and_then(|help| help.rsplit(' ').next()), number, "{line}");
+        }
     }
 }

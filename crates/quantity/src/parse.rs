@@ -112,7 +112,8 @@ fn unitless(text: &str, number: &DecimalNumber, dimension: &Dimension) -> Result
     if number.infinite || dimension.exponents == Exponents::NONE {
         return number.times(&UnitProduct::default(), text);
     }
-    let bare = text.trim();
+    let zero = if text.trim().starts_with('.') { "0" } else { "" };
+    let bare = format!("{zero}{}", text.trim());
     let message = "this number has no unit";
     let help = format!("add one, or write {bare} without quotes for {}", dimension.si);
     Err(QuantityError::new(message, 0..text.len()).help(help))
