@@ -91,7 +91,7 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
 struct LockedTable {
     path: PathBuf,
     file: File,
-    /// Whether there was none before.
+    /// True where no such file stood there before.
     is_new: bool,
     /// When all of it was last flushed to the disk.
     kept: Instant,

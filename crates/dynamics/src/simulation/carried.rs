@@ -31,7 +31,7 @@ pub(super) struct CarriedErrors<S> {
 /// The growth of the error in a lane.
 #[derive(Clone, Copy, Debug, Default)]
 struct CarriedLane {
-    /// Where the signs come from.
+    /// State of the random numbers from which the signs are drawn.
     chance: u64,
     from_s: f64,
     /// Logarithm of what the error was scaled back by.

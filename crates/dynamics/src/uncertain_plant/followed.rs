@@ -29,8 +29,9 @@ impl UncertainPlant {
     #[must_use]
     pub fn with_followed(mut self, other: &UncertainPlant) -> UncertainPlant {
         if let (PlantEquations::Rational(own), Some(other)) = (&mut self.equations, other.recorded())
-            && [own.command] == [other.command]
-            && [own.disturbance, own.rate] == [other.disturbance, other.rate]
+            && own.command == other.command
+            && own.disturbance == other.disturbance
+            && own.rate == other.rate
         {
             own.followed = Some(other.coefficients.clone());
         }

@@ -16,7 +16,7 @@ use phea_hydraulics::servovalve::Supply;
 use phea_qft::family::UncertainFamily;
 
 use super::hydraulic::Open;
-use super::visited::Visited;
+use super::visited::{Visited, lines};
 use crate::project::Project;
 
 /// Boxes with more coordinates are searched from their nominal plant only.
@@ -50,16 +50,9 @@ pub(super) fn jumps(visited: &Visited, project: &Project, family: &UncertainFami
     let open = visited.open(project, declared);
     let Some(signs) = signs(visited, &open, family) else { return Vec::new() };
     let choices = Choices { visited, open, family, signs };
-    let nominal = family.shares(&family.plant().nominal());
-    let count = nominal.len();
-    let corners = if count <= CORNER_COORDINATES { 1_usize << count } else { 0 };
-    let corner = |corner: usize| -> Vec<f64> {
-        (0..count).map(|axis| f64::from(u8::from(corner >> axis & 1 == 1))).collect()
-    };
     let mut found = Vec::new();
-    for axis in 0..count {
-        let lower = (0..corners).filter(|corner| corner >> axis & 1 == 0).map(corner);
-        for from in std::iter::once(nominal.clone()).chain(lower) {
+    for axis in 0..family.coordinates().len() {
+        for from in lines(family, axis, CORNER_COORDINATES) {
             found.extend(choices.along(&from, axis));
         }
     }

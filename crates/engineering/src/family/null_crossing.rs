@@ -10,7 +10,7 @@ use phea_qft::family::{Extent, UncertainFamily};
 
 use super::ProjectFamilyError;
 use super::jumps::jumps;
-use super::visited::Visited;
+use super::visited::{Visited, lines};
 use crate::setup::Setup;
 
 /// Boxes with more coordinates are crossed from their nominal plant only.
@@ -47,19 +47,10 @@ pub(super) fn with_crossings(
 
 /// The plants on either side of each crossing.
 fn crossings(visited: &Visited, family: &UncertainFamily) -> Vec<Vec<f64>> {
-    let nominal = family.shares(&family.plant().nominal());
-    let count = nominal.len();
-    let corners = if count <= CORNER_COORDINATES { 1_usize << count } else { 0 };
-    let corner = |corner: usize| -> Vec<f64> {
-        (0..count).map(|axis| f64::from(u8::from(corner >> axis & 1 == 1))).collect()
-    };
     let mut found = Vec::new();
     for axis in visited.axes(family) {
-        let lower = (0..corners).filter(|corner| corner >> axis & 1 == 0).map(corner);
-        let lines = std::iter::once(nominal.clone()).chain(lower);
-        found.extend(
-            lines.map(|from| beside_null(visited, family, &from, axis)).filter(|two| !two.is_empty()),
-        );
+        let beside = |from: Vec<f64>| beside_null(visited, family, &from, axis);
+        found.extend(lines(family, axis, CORNER_COORDINATES).map(beside).filter(|two| !two.is_empty()));
     }
     let step = found.len().div_ceil(CROSSINGS).max(1);
     found.into_iter().step_by(step).flatten().collect()

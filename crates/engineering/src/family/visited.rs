@@ -223,3 +223,20 @@ pub(super) fn within(parameters: &[UncertainParameter]) -> Vec<Vec<f64>> {
     points.extend([0.0, 1.0].map(|share| parameters.iter().map(|one| at(one, share)).collect()));
     points
 }
+
+/// Shares of the box from which lines go along one coordinate: those of the nominal plant, and its
+/// edges, if it has no more coordinates than this.
+pub(super) fn lines(
+    family: &UncertainFamily,
+    axis: usize,
+    most: usize,
+) -> impl Iterator<Item = Vec<f64>> + use<> {
+    let nominal = family.shares(&family.plant().nominal());
+    let count = nominal.len();
+    let corners = if count <= most { 1_usize << count } else { 0 };
+    let lower = (0..corners).filter(move |corner| corner >> axis & 1 == 0);
+    let corner = move |corner: usize| -> Vec<f64> {
+        (0..count).map(|axis| f64::from(u8::from(corner >> axis & 1 == 1))).collect()
+    };
+    std::iter::once(nominal).chain(lower.map(corner))
+}

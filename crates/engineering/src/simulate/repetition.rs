@@ -91,7 +91,7 @@ pub struct PassResult {
     pub status: Status,
     /// What it cost.
     pub work: StepCounts,
-    /// What grew most.
+    /// The largest growth of errors; `None` where none grew.
     pub amplification: Option<Amplification>,
     /// Whether the command swings from end to end of its range: such a run separates from its
     /// neighbours.

@@ -201,7 +201,7 @@ pub(super) struct RunPass<'t> {
     pub(super) table: Option<RunTable<'t>>,
     /// The force at some times, N.
     force_n: Vec<f64>,
-    /// What grew most.
+    /// The largest growth of errors; `None` where none grew.
     amplification: Option<Amplification>,
 }
 

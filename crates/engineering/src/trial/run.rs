@@ -102,6 +102,16 @@ pub struct TrialRun {
     pub met: Vec<&'static str>,
 }
 
+/// End of the name of a run with the largest step.
+const LARGEST: &str = ", largest step";
+
+impl TrialRun {
+    /// The machine, without the size of its steps.
+    pub fn machine_name(&self) -> &str {
+        self.what.strip_suffix(LARGEST).unwrap_or(&self.what)
+    }
+}
+
 /// Percent of the step within which the force counts as settled.
 pub(super) const BAND_PERCENT: f64 = 2.0;
 /// Duration of a step in settling times of the linear loop, and its bounds in s.
@@ -239,7 +249,7 @@ impl<'a> TriedMachine<'a> {
         let blank = TrialRun {
             what: match size {
                 StepSize::Tenth => self.tried.what.clone(),
-                StepSize::Largest => format!("{}, largest step", self.tried.what),
+                StepSize::Largest => format!("{}{LARGEST}", self.tried.what),
             },
             size,
             plant: self.tried.named.clone(),

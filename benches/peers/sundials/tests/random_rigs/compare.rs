@@ -97,7 +97,7 @@ pub(crate) struct Ours {
     pub(crate) beyond: f64,
     /// Its ringing where trajectories have separated; `None` where they do not.
     pub(crate) roughness: Option<Roughness>,
-    /// What grew most.
+    /// The largest growth of errors; `None` where none grew.
     pub(crate) amplification: Option<Amplification>,
     pub(crate) work: StepCounts,
     pub(crate) seconds: f64,
@@ -111,7 +111,7 @@ impl Ours {
         Ours { status, error, error_of_all, beyond, roughness: None, amplification, work, seconds }
     }
 
-    /// Whether it reports that errors of [`TOLERANCE`] may be visible.
+    /// True where it reports that errors of [`TOLERANCE`] may be visible.
     pub(crate) fn may_show_errors(&self) -> bool {
         self.amplification.is_some_and(|grown| grown.may_show_errors(TOLERANCE))
     }
@@ -261,7 +261,7 @@ pub(crate) struct Manner {
     pub(crate) judged: f64,
     /// Whether CVODE is asked for the same error too, which takes longer.
     pub(crate) timed: bool,
-    /// Whether a run is judged as a project has it, repeated where errors may be visible.
+    /// True for runs that are judged as a project has them, repeated where errors may be visible.
     pub(crate) repeated: bool,
 }
 

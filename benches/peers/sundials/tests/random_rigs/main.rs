@@ -9,7 +9,7 @@
 //! empties; and `kinked`, which meet end stops, walls and stages of a telescopic piston, stick and
 //! reverse. One of these words runs as many of that family alone; without one, the last two are run
 //! a sixteenth and a fifth as often, at most 60 and 200 of them, which the stage `soak` asks for.
-//! Of the necks an error above the thousandth at the default tolerance is a failure unless it is
+//! For necks, an error above the thousandth at the default tolerance is a failure unless it is
 //! reported as one that may be visible, and so are ten times the steps that CVODE tries at 1e-9,
 //! which is their only reference. Kinked rigs are run as a project is, repeated where errors may be
 //! visible, and every row and metric must be right unless the run reports otherwise: [`repeated`].

@@ -7,7 +7,7 @@
 //! metrics   as two passes are compared; reported by every repetition but one whose passes agree
 //! ```
 //!
-//! Where CVODE at 1e-11 and at 1e-13 differs from itself by as much, there is no truth, and a run
+//! There is no truth where CVODE at 1e-11 and at 1e-13 differs from itself by as much: a run then
 //! must report that errors may be visible.
 
 use std::time::Instant;

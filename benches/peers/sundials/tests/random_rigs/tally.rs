@@ -48,7 +48,7 @@ pub(crate) struct Tally {
     failures: Vec<String>,
 }
 
-/// What came of runs as a project has them.
+/// Results of runs as a project has them.
 #[derive(Default)]
 struct Projects {
     /// How their repetitions ended, and how many were made once.

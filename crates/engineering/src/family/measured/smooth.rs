@@ -15,6 +15,7 @@
 //! Noise that neighbours share, as segments with a window have it, hides in the parabola and leaves
 //! too little scatter: then only every second or third row is used, or none.
 
+use nalgebra::Matrix3;
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
@@ -142,7 +143,7 @@ impl Discs<'_> {
                 }
             }
         }
-        let inverse = inverse(normal)?;
+        let inverse: [[f64; ORDER]; ORDER] = Matrix3::from(normal).cholesky()?.inverse().into();
         let mut coefficients = [Complex64::new(0.0, 0.0); ORDER];
         for one in &rows {
             let powers = powers(one);
@@ -208,28 +209,4 @@ struct WindowRow {
     /// ln(P_j/P_i)
     value: Complex64,
     deviation: f64,
-}
-
-/// The inverse of a symmetric positive matrix, by Gauss and Jordan.
-fn inverse(mut of: [[f64; ORDER]; ORDER]) -> Option<[[f64; ORDER]; ORDER]> {
-    let mut out = [[0.0; ORDER]; ORDER];
-    for (place, line) in out.iter_mut().enumerate() {
-        line[place] = 1.0;
-    }
-    for pivot in 0..ORDER {
-        let scale = of[pivot][pivot];
-        if scale.is_nan() || scale <= 0.0 {
-            return None;
-        }
-        let [own, own_out] = [of[pivot].map(|entry| entry / scale), out[pivot].map(|entry| entry / scale)];
-        (of[pivot], out[pivot]) = (own, own_out);
-        for line in (0..ORDER).filter(|line| *line != pivot) {
-            let factor = of[line][pivot];
-            let less = |from: [f64; ORDER], by: [f64; ORDER]| {
-                std::array::from_fn(|column| from[column] - factor * by[column])
-            };
-            (of[line], out[line]) = (less(of[line], own), less(out[line], own_out));
-        }
-    }
-    Some(out)
 }

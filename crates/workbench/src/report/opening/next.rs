@@ -221,7 +221,7 @@ fn machine_words(side: &Side<'_>, run: &TrialRun) -> String {
         ),
         None if run.plant.is_some() => format!(
             "Narrow `[uncertainty]`, or take care near {}: simulated as a machine with the {} controller, {verdict}{why}.",
-            run.what.trim_end_matches(", largest step"),
+            run.machine_name(),
             side.name
         ),
         None => format!(
