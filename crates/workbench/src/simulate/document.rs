@@ -49,7 +49,8 @@ pub(crate) fn headline(run: &ScenarioRun) -> String {
                 UNDETERMINED => "completed without a result",
                 word => word,
             };
-            format!("{}: {word}{loop_words} ({work})", run.name)
+            let comma = if run.open_loop && !run.is_reliable() { "," } else { "" };
+            format!("{}: {word}{comma}{loop_words} ({work})", run.name)
         }
         Some(stopped) => {
             let why = why(&stopped);
