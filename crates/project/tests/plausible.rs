@@ -35,6 +35,10 @@ fn a_unit_that_was_forgotten_is_asked_for() {
             "`stiffness` is 150 N/m: load cells have 1 kN/mm to 10000 kN/mm; was 150 kN/mm meant?",
         ),
         ("supply.pressure=160", "`pressure` is 160 Pa: supplies have 10 bar to 500 bar; was 160 bar meant?"),
+        (
+            "fluid.entrained_air=0.5",
+            "`entrained_air` is 0.5: fluids of hydraulics have 0 to 0.02; was 0.005 meant?",
+        ),
         ("line.length=1500", "`length` is 1500 m: lines have 50 mm to 30 m; was 1.5 m meant?"),
     ] {
         assert_eq!(warnings(HOSE, &[setting]), [told], "{setting}");

@@ -1,6 +1,7 @@
 //! Pairs of values of which one may not be above the other.
 
 use super::{Check, last};
+use crate::toml_text::quoted;
 use crate::{Bench, BoundedNumber};
 
 impl Check<'_, '_> {
@@ -48,16 +49,32 @@ impl Check<'_, '_> {
     }
 
     fn reversed(&mut self, path: &str) {
-        let message = match self.written_pair(path) {
+        let name = last(path);
+        match self.written_pair(path) {
             Some([first, second]) => {
-                format!(
-                    "`{}` is reversed: {first} is above {second}, and the lower value comes first",
-                    last(path)
-                )
+                let message = format!(
+                    "`{name}` is reversed: {first} is above {second}, and the lower value comes first"
+                );
+                let [low, high] = [second, first].map(|value| in_toml_as_written(&value));
+                self.error_with_help(path, message, format!("exchange them: `{name} = [{low}, {high}]`"));
             }
-            None => format!("`{}` is reversed: the lower value comes first", last(path)),
-        };
-        self.error(path, message);
+            None => self.error(path, format!("`{name}` is reversed: the lower value comes first")),
+        }
+    }
+
+    /// The cure of two keys in the wrong order: both are exchanged, or the one that is stated goes
+    /// to the other side of a default.
+    fn exchanged(&self, lower: &str, upper: &str) -> String {
+        let [low, high] = [lower, upper].map(|path| self.written(path));
+        let [least, most] = [last(lower), last(upper)];
+        match (low.is_empty(), high.is_empty()) {
+            (false, false) => {
+                let [low, high] = [low, high].map(|value| in_toml_as_written(&value));
+                format!("if they were exchanged: `{least} = {high}` and `{most} = {low}`")
+            }
+            (true, _) => format!("state a lower `{least}` too, or a higher `{most}`"),
+            (_, true) => format!("state a higher `{most}` too, or a lower `{least}`"),
+        }
     }
 
     /// Two numbers of one table must be in order, each with its path; refused at the first one, or
@@ -68,7 +85,7 @@ impl Check<'_, '_> {
                 true => (lower, "above", upper),
                 false => (upper, "below", lower),
             };
-            self.error(at, self.compared(at, word, other));
+            self.error_with_help(at, self.compared(at, word, other), self.exchanged(lower, upper));
         }
     }
 
@@ -88,11 +105,21 @@ impl Check<'_, '_> {
         if minimum > maximum {
             return self.in_order([least, most], [minimum, maximum]);
         }
-        self.in_order([least, usual], [minimum, nominal]);
+        let [low, high] = [least, most].map(|path| self.written(path));
+        let within = format!("state a `nominal` from {low} to {high}, or widen the range to it");
+        if minimum > nominal {
+            self.error_with_help(least, self.compared(least, "above", usual), &*within);
+        }
         if maximum < nominal {
-            self.error(most, self.compared(most, "below", usual));
+            self.error_with_help(most, self.compared(most, "below", usual), within);
         }
     }
+}
+
+/// A value as it was written, without quotes, as TOML takes it.
+fn in_toml_as_written(value: &str) -> String {
+    let is_bare = value.replace('_', "").parse::<f64>().is_ok();
+    if is_bare { value.to_string() } else { quoted(value) }
 }
 
 /// Ranges of the virtual bench.

@@ -6,10 +6,11 @@ use crate::listing::Listing;
 use phea_quantity::display;
 
 /// Usual ranges in SI: path, least, greatest, and the part.
-const USUAL: [(&str, f64, f64, &str); 29] = [
+const USUAL: [(&str, f64, f64, &str); 30] = [
     ("fluid.bulk_modulus", 1e9, 2.5e9, "fluids of hydraulics"),
     ("fluid.density", 700.0, 1300.0, "fluids of hydraulics"),
     ("fluid.kinematic_viscosity", 5e-6, 5e-4, "fluids of hydraulics"),
+    ("fluid.entrained_air", 0.0, 0.02, "fluids of hydraulics"),
     ("supply.pressure", 1e6, 5e7, "supplies"),
     ("supply.flow", 5e-6, 2e-2, "pumps"),
     ("valve.natural_frequency", 60.0, 3000.0, "servovalves"),
@@ -41,6 +42,8 @@ const USUAL: [(&str, f64, f64, &str); 29] = [
 const BEYOND: f64 = 10.0;
 /// Typical factors of a pressure whose unit is missing or wrong: bar, mega, kilo, giga.
 const SLIPS_OF_PRESSURE: [f64; 5] = [1e5, 1e6, 1e3, 1e9, 1e-3];
+/// The same of a ratio: percent.
+const SLIPS_OF_RATIO: [f64; 1] = [1e-2];
 /// The same for other quantities: milli, centi, L/min, kilo, mega, micro.
 const SLIPS: [f64; 6] = [1e-3, 1e-2, 1e-3 / 60.0, 1e3, 1e6, 1e-6];
 
@@ -64,7 +67,11 @@ pub(super) fn numbers(project: &Project, check: &mut Check<'_, '_>) {
             continue;
         }
         let words = |value: f64| display(value, key.dimension, 3);
-        let slips: &[f64] = if key.dimension.si == "Pa" { &SLIPS_OF_PRESSURE } else { &SLIPS };
+        let slips: &[f64] = match key.dimension.si {
+            "Pa" => &SLIPS_OF_PRESSURE,
+            "1" => &SLIPS_OF_RATIO,
+            _ => &SLIPS,
+        };
         let meant = slips.iter().map(|slip| slip * value).find(|value| (*least..=*most).contains(value));
         let meant = meant.map_or(String::new(), |value| format!("; was {} meant?", words(value)));
         let message = format!(

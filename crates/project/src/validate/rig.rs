@@ -356,14 +356,13 @@ pub(super) fn line(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
     if stiffening && line.hose().is_none() && !sized {
         check.warning("line.dynamic_stiffening", "`dynamic_stiffening` has no effect without a hose");
     }
-    let of_hose = line.hose().map(|hose| ("burst_pressure", hose.working_pressure, hose.burst_pressure));
-    let of_pipe = line.pipe().map(|pipe| ("pipe.burst_pressure", pipe.working_pressure, pipe.burst_pressure));
-    if let Some((key, Some(working), Some(burst))) = of_hose.or(of_pipe)
+    let of_hose = line.hose().map(|hose| ("", hose.working_pressure, hose.burst_pressure));
+    let of_pipe = line.pipe().map(|pipe| (".pipe", pipe.working_pressure, pipe.burst_pressure));
+    if let Some((part, Some(working), Some(burst))) = of_hose.or(of_pipe)
         && burst < working
     {
-        let working_key = key.replace("burst", "working");
-        let paths = [working_key.as_str(), key].map(|key| format!("{path}.{key}"));
-        check.in_order([&paths[0], &paths[1]], [working, burst]);
+        let [low, high] = ["working_pressure", "burst_pressure"].map(|key| format!("{path}{part}.{key}"));
+        check.in_order([&low, &high], [working, burst]);
     }
     line.pipe().into_iter().for_each(|pipe| outer_diameter(pipe, path, check));
     check.interval(&format!("{path}.dynamic_stiffening"), line.dynamic_stiffening);
