@@ -26,6 +26,8 @@ pub use sensitivity::{Influence, sensitivity};
 
 use phea_hydraulics::stiffness::StiffnessModel;
 
+use crate::rig::LargestFlow;
+
 /// The question that is asked about every hose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Question {
@@ -51,6 +53,8 @@ pub struct SizingStep {
 pub struct Sizing {
     /// Every bore considered, with its oil velocity.
     pub bores: Vec<CommercialBore>,
+    /// The largest flows of the lines, and what limits them.
+    pub flow: LargestFlow,
     /// Bores from equation 6.17 at the highest and at the lowest recommended velocity, m.
     pub bore_range_m: [f64; 2],
     /// Gain at which equation 6.16 requires an infinitely stiff transmission, V/N.
@@ -98,6 +102,7 @@ pub fn size(problem: &SizingProblem, question: Question) -> Sizing {
     let mut sizing = Sizing {
         load: problem.load,
         model: problem.model,
+        flow: problem.flow.clone(),
         bores,
         bore_range_m: bore::range(problem),
         pole_gain_v_per_n: problem.pole_gain(),

@@ -80,6 +80,7 @@ mod simulation_equivalences;
 mod simulation_measured;
 mod simulation_robustness;
 mod sizing_catalogue;
+mod sizing_flow;
 mod sizing_laws;
 mod specification;
 mod sweep;

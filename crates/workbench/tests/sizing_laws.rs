@@ -289,16 +289,3 @@ fn a_settling_time_and_its_band_give_the_time_constant() {
     within(with("settling_time = \"0.2 s\"\nsettling_band_percent = 1"), 0.2 / 100_f64.ln(), 1e-10);
     within(with("settling_time = \"0.2 s\"\nsettling_band_percent = 2"), 0.2 / 50_f64.ln(), 1e-10);
 }
-
-#[test]
-fn the_smaller_of_pump_and_valve_sets_the_velocity() {
-    let velocity = |setting: &str| {
-        let size = size_for_length(HOSE, &[setting], "1.5 m");
-        number(candidate(&size, EATON, "uniform"), "oil_velocity_m_per_s")
-    };
-    let section = std::f64::consts::FRAC_PI_4 * 0.0127_f64.powi(2);
-    // ORIGIN: analytic, 20 L/min below and 60 L/min above the valve's rated 10 gpm = 37.854118
-    // L/min; the smaller of the nominal flows counts, as in Ledezma (2019), section 6.4.1
-    near(velocity("supply.flow=\"20 L/min\""), 0.02 / 60.0 / section, 1e-12);
-    near(velocity("supply.flow=\"60 L/min\""), 3.785_411_8e-2 / 60.0 / section, 1e-8);
-}

@@ -16,7 +16,7 @@ use super::valve::valve;
 use crate::linearize::{stiffness_models, stroke_stiffness};
 use crate::project::Project;
 use crate::quantity::MotionKind;
-use crate::rig::{ParameterOrigin, Rig, RigError};
+use crate::rig::{FlowLimit, ParameterOrigin, Rig, RigError, largest_flow};
 use crate::setup::Setup;
 
 /// Every derived quantity of a rig, in the order in which they follow from each other.
@@ -288,29 +288,34 @@ fn friction(rig: &Rig, list: &mut List) {
 }
 
 fn flow(project: &Project, rig: &Rig, list: &mut List) {
-    let Some(flow) = project.actuator.as_ref().and_then(|actuator| actuator.supply.flow()) else { return };
-    let cylinder = &rig.actuator.components().cylinder;
+    let Some(declared) = &project.actuator else { return };
+    let components = rig.actuator.components();
     list.group("Flow");
-    let [area_a, area_b] = cylinder.greatest_areas();
-    let speed = flow / area_a.max(area_b);
-    let equation = if list.motion.is_rotary() { "v_{max} = q_{pump}/D" } else { "v_{max} = q_{pump}/A" };
-    list.add("supply.piston_speed", "v_max", speed, list.motion.symbol("m/s"), equation);
-    let (a, b) = (rig.actuator.components().line_a, rig.actuator.components().line_b);
-    let lines = if a == b { vec![("line", a)] } else { vec![("line.a", a), ("line.b", b)] };
-    for (name, line) in lines {
+    if let Some(flow) = declared.supply.flow() {
+        let [area_a, area_b] = components.cylinder.greatest_areas();
+        let speed = flow / area_a.max(area_b);
+        let equation = if list.motion.is_rotary() { "v_{max} = q_{pump}/D" } else { "v_{max} = q_{pump}/A" };
+        list.add("supply.piston_speed", "v_max", speed, list.motion.symbol("m/s"), equation);
+    }
+    let largest = largest_flow(components, &declared.supply);
+    let equation = match largest.limit {
+        FlowLimit::Pump => "v_{oil} = 4 q/(π D_{ho}^2), unloaded, q_{pump} into the valve",
+        FlowLimit::Valve => "v_{oil} = 4 q/(π D_{ho}^2), unloaded, the valve fully open",
+    };
+    let (a, b) = (components.line_a, components.line_b);
+    let [flow_a, flow_b] = largest.lines;
+    let lines = match a == b {
+        true => vec![("line", a, largest.line())],
+        false => vec![("line.a", a, flow_a), ("line.b", b, flow_b)],
+    };
+    for (name, line, flow) in lines {
         let bore = match line {
             Line::Hose { hose, .. } => hose.bore,
             Line::Pipe { pipe, .. } => pipe.bore,
             Line::Volume { .. } => continue,
         };
         let velocity = 4.0 * flow / (std::f64::consts::PI * bore * bore);
-        list.add(
-            format!("{name}.oil_velocity"),
-            "v_oil",
-            velocity,
-            "m/s",
-            "v_{oil} = 4 q_{pump}/(π D_{ho}^2)",
-        );
+        list.add(format!("{name}.oil_velocity"), "v_oil", velocity, "m/s", equation);
     }
 }
 

@@ -34,7 +34,7 @@ pub struct CommercialBore {
 /// v = 4 q/(pi D^2)                                                         thesis (6.17)
 /// ```
 pub(super) fn oil_velocity(problem: &SizingProblem, bore: f64) -> f64 {
-    4.0 * problem.maximum_flow / (PI * bore * bore)
+    4.0 * problem.maximum_flow() / (PI * bore * bore)
 }
 
 pub(super) fn verdict(problem: &SizingProblem, bore: f64) -> BoreVerdict {
@@ -56,19 +56,17 @@ pub(super) fn verdict(problem: &SizingProblem, bore: f64) -> BoreVerdict {
 /// ```
 pub(super) fn range(problem: &SizingProblem) -> [f64; 2] {
     let [slowest, fastest] = problem.oil_velocity;
-    [fastest, slowest].map(|velocity| (4.0 * problem.maximum_flow / (PI * velocity)).sqrt())
+    [fastest, slowest].map(|velocity| (4.0 * problem.maximum_flow() / (PI * velocity)).sqrt())
 }
 
 /// Recommended oil velocity of return and suction lines, m/s (Rabie 2009, quoted in Ledezma 2019,
 /// section 6.3.1.1).
 const LOW_PRESSURE_VELOCITY: [f64; 2] = [0.6, 1.2];
 
-/// Bores of the lines without pressure: a return line carries more than the valve takes where the
-/// areas differ.
+/// Bores of the lines without pressure: a return line carries as much as the fuller line, which is
+/// more than the valve takes where the areas differ.
 fn low_pressure_lines(problem: &SizingProblem) -> SizingStep {
     let [slowest, fastest] = LOW_PRESSURE_VELOCITY;
-    let areas = [problem.cylinder.area_a, problem.cylinder.area_b];
-    let ratio = (areas[0] / areas[1]).max(areas[1] / areas[0]);
     let bores = |flow: f64| {
         let [small, large] = [fastest, slowest].map(|velocity| (4.0 * flow / (PI * velocity)).sqrt());
         let [small, large] = [small, large].map(|bore| DisplayUnit::MILLIMETRE.number(bore, 3));
@@ -78,9 +76,9 @@ fn low_pressure_lines(problem: &SizingProblem) -> SizingStep {
         step: "c.2",
         text: format!(
             "Return and suction lines carry oil at {slowest} to {fastest} m/s: bores of {} for the return line of {} L/min, of {} for suction.",
-            bores(ratio * problem.maximum_flow),
-            DisplayUnit::LITRE_PER_MINUTE.number(ratio * problem.maximum_flow, 4),
-            bores(problem.maximum_flow)
+            bores(problem.maximum_flow()),
+            DisplayUnit::LITRE_PER_MINUTE.number(problem.maximum_flow(), 4),
+            bores(problem.flow.taken)
         ),
     }
 }
@@ -117,8 +115,8 @@ pub(super) fn assess(problem: &SizingProblem, decisions: &mut Vec<SizingStep>) -
         step: "c.3",
         text: format!(
             "Largest flow {} L/min ({}): bores from {smallest} to {largest} mm; on the market there are {}.",
-            DisplayUnit::LITRE_PER_MINUTE.number(problem.maximum_flow, 4),
-            problem.maximum_flow_origin,
+            DisplayUnit::LITRE_PER_MINUTE.number(problem.maximum_flow(), 4),
+            problem.flow.origin(),
             if feasible.is_empty() { "none".to_string() } else { feasible.join(", ") }
         ),
     });

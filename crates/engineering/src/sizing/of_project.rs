@@ -7,7 +7,9 @@ use super::{HoseOption, OtherMeansProblem, SizedLoad, SizingProblem};
 use crate::catalogue::{Catalogue, CatalogueKind, DASH_SIZES};
 use crate::project::{self, HoseProperties, Load, SettlingTime, Speed};
 use crate::quantity::significant;
-use crate::rig::{ExpansionPressures, Numbers, Rig, RigError, VolumetricExpansion, hose, stiffening};
+use crate::rig::{
+    ExpansionPressures, Numbers, Rig, RigError, VolumetricExpansion, hose, largest_flow, stiffening,
+};
 use crate::setup::Setup;
 
 /// Recommended oil velocity of pressure lines, m/s (Rabie 2009, quoted in Ledezma 2019, section
@@ -31,9 +33,6 @@ pub enum SizingError {
         "the project has no [sizing]: add one with `time_constant`, or `settling_time` and `settling_band_percent`"
     )]
     Absent,
-    /// No flow limits the bore.
-    #[error("sizing needs the largest flow: `flow` in [supply], or `nominal_flow` in [valve]")]
-    Flow,
     /// The gas of an accumulator would share the work of the hose.
     #[error(
         "sizing finds the hose that is soft enough by itself and counts no gas: size without [line] `accumulator`"
@@ -65,7 +64,6 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
     let components = rig.actuator.components();
     refuse_what_no_hose_is_sized_for(components)?;
     let (time_constant, time_constant_origin) = time_constant(wish.speed);
-    let (maximum_flow, maximum_flow_origin) = maximum_flow(actuator)?;
     let hoses = hoses(actuator, catalogue);
     if hoses.is_empty() {
         return Err(SizingError::NoHose);
@@ -100,8 +98,7 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
         internal_leakage: rig.internal_leakage,
         time_constant,
         time_constant_origin,
-        maximum_flow,
-        maximum_flow_origin,
+        flow: largest_flow(components, &actuator.supply),
         oil_velocity: wish.oil_velocity.unwrap_or(OIL_VELOCITY),
         minimum_gain: wish.minimum_gain.unwrap_or(MINIMUM_GAIN),
         maximum_gain: wish.maximum_gain.unwrap_or(MAXIMUM_GAIN),
@@ -184,18 +181,6 @@ fn time_constant(speed: Speed) -> (f64, String) {
             );
             (time / constants, origin)
         }
-    }
-}
-
-fn maximum_flow(actuator: &project::DeclaredActuator) -> Result<(f64, String), SizingError> {
-    match (actuator.supply.flow(), actuator.valve.flow.rating().map(|rated| rated.flow)) {
-        (Some(pump), Some(valve)) if pump <= valve => {
-            Ok((pump, "the pump's, less than the valve's rated flow".to_string()))
-        }
-        (Some(_), Some(valve)) => Ok((valve, "the valve's rated flow, less than the pump's".to_string())),
-        (Some(pump), None) => Ok((pump, "the pump's".to_string())),
-        (None, Some(valve)) => Ok((valve, "the valve's rated flow".to_string())),
-        (None, None) => Err(SizingError::Flow),
     }
 }
 

@@ -8,6 +8,7 @@ use phea_hydraulics::stiffness::{StiffnessModel, StrokeStiffness, chamber_compli
 use super::SizingStep;
 use super::other_means::OtherMeansProblem;
 use crate::quantity::{DisplayUnit, significant};
+use crate::rig::LargestFlow;
 
 /// The input of the procedure, with every value resolved. SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,10 +39,8 @@ pub struct SizingProblem {
     pub time_constant: f64,
     /// Where tau_d comes from, in words.
     pub time_constant_origin: String,
-    /// Largest flow through the hose, m3/s.
-    pub maximum_flow: f64,
-    /// What limits the flow, in words.
-    pub maximum_flow_origin: String,
+    /// The largest flows of the lines, and what limits them.
+    pub flow: LargestFlow,
     /// Recommended oil velocities, lowest and highest, m/s.
     pub oil_velocity: [f64; 2],
     /// The least proportional gain that is practical, V/N.
@@ -146,6 +145,11 @@ impl HoseOption {
 }
 
 impl SizingProblem {
+    /// q_max, the largest flow of a line, m3/s.
+    pub fn maximum_flow(&self) -> f64 {
+        self.flow.line()
+    }
+
     /// Hydraulic stiffness that gives the desired time constant under gain K_p, thesis (6.16), N/m;
     /// infinite at and below the gain where not even a rigid transmission is stiff enough.
     pub(crate) fn stiffness_for_gain(&self, gain: f64) -> f64 {

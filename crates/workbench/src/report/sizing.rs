@@ -43,11 +43,11 @@ fn bores(problem: &SizingProblem, sizing: &Sizing) -> Figure {
     let [smallest, largest] = sizing.bore_range_m.map(|bore| DisplayUnit::MILLIMETRE.number(bore, 3));
     let caption = format!(
         "At {} L/min the recommended velocities of {slowest} to {fastest} m/s take a bore of {smallest} to {largest} mm. A faster bore is rejected, a slower one only causes a warning.",
-        DisplayUnit::LITRE_PER_MINUTE.number(problem.maximum_flow, 3)
+        DisplayUnit::LITRE_PER_MINUTE.number(problem.maximum_flow(), 3)
     );
     let chart = Nomograph {
         bores: sizing.bores.iter().map(bore).collect(),
-        design_flow_m3_per_s: problem.maximum_flow,
+        design_flow_m3_per_s: problem.maximum_flow(),
         velocity_range_m_per_s: (slowest, fastest),
     };
     chart.draw(&Words::new("sizing-nomograph", "Feasible bores", caption))

@@ -1,10 +1,20 @@
 use super::model_name;
 use super::{BoreVerdict, Candidate, Consequence, OtherMeans, SizedLoad, Sizing};
+use phea_engineering::rig::FlowLimit;
+
 use crate::answer::{Csv, Object, OutputFile, quoted};
 
 /// What `size` says to programs.
 pub(crate) fn body(sizing: &Sizing) -> Object {
+    let limit = match sizing.flow.limit {
+        FlowLimit::Valve => "valve",
+        FlowLimit::Pump => "pump",
+    };
     let body = Object::new()
+        .with("maximum_flow_m3_per_s", sizing.flow.line())
+        .with("maximum_flow_limit", limit)
+        .with("valve_flow_m3_per_s", sizing.flow.valve)
+        .maybe("pump_flow_m3_per_s", sizing.flow.pump.map(|(flow, _)| flow))
         .with("bore_range_m", sizing.bore_range_m)
         .with("pole_gain_v_per_n", sizing.pole_gain_v_per_n)
         .with("load", load_name(sizing.load))
