@@ -250,7 +250,11 @@ impl ProjectAudit {
     /// The verdict on the specifications over frequency and on the requirements in time: a step
     /// that misses one violates what was required.
     pub fn verdict(&self) -> Verdict {
-        if self.misses_in_time() { Verdict::Violated } else { self.audit.verdict }
+        match self.audit.verdict {
+            _ if self.misses_in_time() => Verdict::Violated,
+            Verdict::Met if self.in_time.iter().any(TimeFinding::is_open) => Verdict::NotProven,
+            own => own,
+        }
     }
 
     /// The evidence for that verdict: the steps of plants that were visited are a search.
@@ -266,9 +270,9 @@ impl ProjectAudit {
         }
     }
 
-    /// The requirement in time of a specification, by its index.
+    /// The requirement in time of a limit on a closed loop, by its index.
     pub fn in_time_of(&self, index: usize) -> Option<&TimeFinding> {
-        self.in_time.iter().find(|finding| finding.requirement.specification == index)
+        self.in_time.iter().find(|finding| finding.requirement.limits == Some(index))
     }
 
     /// Whether a step misses a requirement in time that its limits follow from.

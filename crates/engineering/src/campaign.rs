@@ -15,6 +15,7 @@ mod plan;
 mod prepared;
 mod queue;
 mod range;
+mod required;
 mod row;
 mod spread;
 mod statistics;
@@ -25,6 +26,7 @@ mod workers;
 pub use ledger::{RequestedRuns, RowStore, Shard};
 pub use plan::{Draw, Plan};
 pub use range::VariedRange;
+pub use required::{CampaignRequirement, NotJudged, SatisfiedRuns};
 pub use row::{LUMP_NAMES, METRIC_NAMES, Ran, Row, RowOutcome, STATUS_WORDS};
 pub use spread::{QUANTILES, Spread};
 pub use statistics::{Bands, Summary, WorstRun};
@@ -37,6 +39,7 @@ use crate::csv;
 use crate::project::{self, Refusal};
 use crate::quantity;
 use crate::simulate::{self, SimulateError, shortest_number};
+use crate::specification::SpecificationError;
 
 /// Why a valid project has no campaign.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -145,6 +148,9 @@ pub enum CampaignError {
     /// The machine or its controller cannot be simulated.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
+    /// A limit that is stated in time has no response.
+    #[error(transparent)]
+    Specification(#[from] SpecificationError),
     /// A run, written as settings, is no longer a valid project.
     #[error("{0}")]
     Settings(Box<Refusal>),

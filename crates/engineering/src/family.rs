@@ -161,7 +161,7 @@ pub fn family(setup: &Setup<'_>, source: &dyn Source) -> Result<Family, ProjectF
 
 /// A limit on load motion needs a path from it.
 fn check_second_path(project: &Project, family: &Family) -> Result<(), ProjectFamilyError> {
-    let wanted = project.specifications.iter().any(|one| one.kind == ClosedLoop::LoadMotion);
+    let wanted = project.specifications.iter().any(|one| one.closed_loop() == Some(ClosedLoop::LoadMotion));
     match family {
         Family::Measured(family) if wanted => {
             let without = family.plants().iter().find(|plant| plant.disturbance.is_none());

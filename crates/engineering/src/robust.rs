@@ -17,12 +17,11 @@ use phea_qft::verification::{PlantPoint, TOLERANCE_DB};
 use crate::caveat::{Caveat, caveats};
 use crate::family::{ProjectFamilyError, family};
 use crate::plant_names::PlantNames;
-use crate::project::Project;
 use crate::quantity::MotionKind;
 use crate::setup::{ControlError, Setup, velocity_noise};
-use crate::simulate::{TimeRequirement, TrackingWish};
+use crate::simulate::{TimeRequirement, time_requirements};
 use crate::source::Source;
-use crate::specification::{SpecificationError, kind_words, of_rounding, specifications, wishes};
+use crate::specification::{SpecificationError, kind_words, of_rounding, specifications};
 use phea_dynamics::watch::{Stopped, Watch, tell};
 
 /// A family of plants within a loop, and the specifications of the loop.
@@ -42,7 +41,7 @@ pub struct RobustProblem {
     pub specifications: Vec<Specification>,
     /// The name of each: its kind, or the signal that is rounded.
     pub specification_names: Vec<String>,
-    /// Requirements in time of tracking specifications.
+    /// Requirements in time: of specifications of their own, then of limits of tracking.
     pub in_time: Vec<TimeRequirement>,
     /// The rig itself as a family of one, where the family does not contain it, and what of it is
     /// outside.
@@ -139,7 +138,7 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
         has_prefilter: setup.prefilter.is_some(),
         specifications,
         specification_names,
-        in_time: in_time(setup.project)?,
+        in_time: time_requirements(setup.project)?,
         rig_outside: match setup.outside() {
             Some((alone, beyond)) => Some((self::family(&Setup::new(&alone)?, source)?, beyond)),
             None => None,
@@ -153,17 +152,6 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
 
 /// Why plants whose lines move have no polynomials.
 pub(crate) const LINES_IN_MOTION: &str = "lines in motion";
-
-/// The requirements in time, one for each specification that states any.
-fn in_time(project: &Project) -> Result<Vec<TimeRequirement>, SpecificationError> {
-    let wishes = wishes(project)?;
-    let of = |specification| {
-        let wish = TrackingWish::of_specification(&wishes, specification + 1)?;
-        let mut own = wishes.iter().filter(|wish| wish.number == specification + 1);
-        Some(TimeRequirement { specification, wish, follows: own.all(|wish| wish.follows) })
-    };
-    Ok((0..project.specifications.len()).filter_map(of).collect())
-}
 
 fn without_polynomials(setup: &Setup<'_>, family: &Family) -> Option<&'static str> {
     let Family::Uncertain(family) = family else { return None };

@@ -25,6 +25,7 @@ mod parts;
 mod plausible;
 mod record;
 mod repetition;
+mod requirement;
 mod run;
 mod saved;
 pub(crate) mod shortest_number;
@@ -70,8 +71,9 @@ pub use course::{ScenarioDrive, driven};
 pub(crate) use file_names::table_names;
 pub use files::{RunTable, files};
 pub use follower::Follower;
+pub use requirement::{RequiredSteps, TimeRequirement, time_requirements};
 pub use run::occurrences;
-pub use wish::{HeldWish, TimeRequirement, TrackingWish};
+pub use wish::{HeldWish, ReachedStep, TrackingWish};
 
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::simulation::{Attention, EquilibriumError, ProfileError, SimulationError};

@@ -109,7 +109,7 @@ impl CheckedWish {
     }
 }
 
-/// The specifications of a project, in file order.
+/// The limits of a project on closed loops, in file order.
 ///
 /// # Errors
 /// [`SpecificationError`] for a limit that is absent or not a function of frequency.
@@ -128,8 +128,15 @@ impl CheckedWish {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn specifications(project: &Project) -> Result<Vec<Specification>, SpecificationError> {
-    let numbered = project.specifications.iter().enumerate();
-    numbered.map(|(index, declared)| specification(declared, index + 1)).collect()
+    closed_loops(project).map(|(number, kind, declared)| specification(declared, kind, number)).collect()
+}
+
+/// The specifications that limit a closed loop, with their numbers in the file, from 1.
+pub(crate) fn closed_loops(
+    project: &Project,
+) -> impl Iterator<Item = (usize, ClosedLoop, &project::DeclaredSpecification)> {
+    let all = project.specifications.iter().enumerate();
+    all.filter_map(|(index, declared)| Some((index + 1, declared.closed_loop()?, declared)))
 }
 
 /// Every limit of tracking that was stated in time, compared with its wish; in file order.
@@ -174,6 +181,7 @@ pub fn wishes(project: &Project) -> Result<Vec<CheckedWish>, SpecificationError>
 
 fn specification(
     declared: &project::DeclaredSpecification,
+    kind: ClosedLoop,
     number: usize,
 ) -> Result<Specification, SpecificationError> {
     let found = |key: &'static str, limit: &Option<project::DeclaredLimit>, takes: limit::Takes| {
@@ -181,7 +189,7 @@ fn specification(
         let found = found.and_then(|limit| limit::over_frequency(limit, takes));
         found.map_err(|reason| SpecificationError { number, key, reason })
     };
-    let requirement = match declared.kind {
+    let requirement = match kind {
         ClosedLoop::Tracking => Requirement::tracking(
             found("lower", &declared.lower, limit::Takes::Wish(TrackingSide::Lower))?,
             found("upper", &declared.upper, limit::Takes::Wish(TrackingSide::Upper))?,
@@ -203,11 +211,11 @@ fn specification(
 /// # Errors
 /// [`SpecificationError`] for a limit that is absent or not a function of frequency.
 pub fn crossed_limits(project: &Project) -> Result<Option<SpecificationError>, SpecificationError> {
-    let crossed = |(index, one): (usize, &Specification)| {
+    let crossed = |((number, ..), one): ((usize, ClosedLoop, _), &Specification)| {
         let reason = crossed(&one.requirement, &one.frequencies_rad_per_s, one.band_rad_per_s)?;
-        Some(SpecificationError { number: index + 1, key: "lower", reason })
+        Some(SpecificationError { number, key: "lower", reason })
     };
-    Ok(specifications(project)?.iter().enumerate().find_map(crossed))
+    Ok(closed_loops(project).zip(&specifications(project)?).find_map(crossed))
 }
 
 /// How far the limits may cross, as a share: rounding.

@@ -7,12 +7,14 @@
 
 mod judge;
 mod prediction;
+mod required;
 mod rigs;
 mod run;
 mod steps;
 pub use judge::percent_words;
 
 pub use crate::linear_step::StepResponse;
+pub use required::HeldRequirement;
 pub(crate) use rigs::waves_alone;
 pub use rigs::with_waves;
 pub use run::{Agreement, Leg, StepSize, TrialRun, TrialStep, agreement_word};
@@ -60,6 +62,12 @@ pub struct Trial {
 }
 
 impl Trial {
+    /// Whether every run satisfies what is required of it in time; `None` where nothing is.
+    pub fn satisfies(&self) -> Option<bool> {
+        let required = self.runs.iter().any(|run| !run.requirements.is_empty());
+        required.then(|| self.runs.iter().all(TrialRun::satisfies))
+    }
+
     /// The worst of all runs.
     pub fn agreement(&self) -> Agreement {
         self.runs.iter().map(|run| run.agreement).max().unwrap_or(Agreement::Agrees)

@@ -4,13 +4,28 @@ use super::key::{key, plain};
 use super::limit::DeclaredLimit;
 use super::visitor::Visitor;
 use phea_dynamics::closed_loop::ClosedLoop;
-use phea_quantity::ANGULAR_FREQUENCY;
+use phea_quantity::{ANGULAR_FREQUENCY, FORCE, PERCENT, TIME};
+
+/// What a specification is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpecificationKind {
+    /// The magnitude of a closed loop over frequency.
+    ClosedLoop(ClosedLoop),
+    /// The response to a step of the reference over time.
+    Step,
+}
+
+impl Default for SpecificationKind {
+    fn default() -> Self {
+        SpecificationKind::ClosedLoop(ClosedLoop::default())
+    }
+}
 
 /// One specification.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredSpecification {
-    /// Which closed loop is limited.
-    pub kind: ClosedLoop,
+    /// What is limited.
+    pub kind: SpecificationKind,
     /// Upper limit; for every kind except tracking.
     pub limit: Option<DeclaredLimit>,
     /// Upper limit of tracking.
@@ -21,19 +36,52 @@ pub struct DeclaredSpecification {
     pub frequencies: Vec<f64>,
     /// rad/s, where it must hold; absent: the span of `frequencies`.
     pub band: Option<[f64; 2]>,
+    /// What is required of a step; of the kind `step`.
+    pub step: RequiredStep,
 }
 
+/// What is required of the response to a step of the reference, of every plant and in every run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RequiredStep {
+    /// Most overshoot, percent of the step.
+    pub overshoot_percent: Option<f64>,
+    /// Settled by then, s.
+    pub settling_time: Option<f64>,
+    /// The band of the settling time, percent of the step; absent: [`SETTLING_BAND_PERCENT`].
+    pub settling_band_percent: Option<f64>,
+    /// From 10 to 90 percent of the step within this time, s.
+    pub rise_time: Option<f64>,
+    /// Size of the step on the nonlinear rig, N, with the sign of its direction; absent: a tenth of
+    /// the force that the supply can produce.
+    pub amplitude: Option<f64>,
+    /// Force from which the step begins on the nonlinear rig, N; absent: that of the operating
+    /// point.
+    pub initial_force: Option<f64>,
+}
+
+/// Percent of a step within which it counts as settled where no band is stated.
+pub const SETTLING_BAND_PERCENT: f64 = 2.0;
+
 /// The words of `kind`, by which answers and certificates call a closed loop too.
-pub static SPECIFICATION_KINDS: [(&str, ClosedLoop); 6] = [
-    ("robust_stability", ClosedLoop::RobustStability),
-    ("sensitivity", ClosedLoop::Sensitivity),
-    ("plant_input_disturbance", ClosedLoop::PlantInputDisturbance),
-    ("control_effort", ClosedLoop::ControlEffort),
-    ("load_motion", ClosedLoop::LoadMotion),
-    ("tracking", ClosedLoop::Tracking),
+pub static SPECIFICATION_KINDS: [(&str, SpecificationKind); 7] = [
+    ("robust_stability", SpecificationKind::ClosedLoop(ClosedLoop::RobustStability)),
+    ("sensitivity", SpecificationKind::ClosedLoop(ClosedLoop::Sensitivity)),
+    ("plant_input_disturbance", SpecificationKind::ClosedLoop(ClosedLoop::PlantInputDisturbance)),
+    ("control_effort", SpecificationKind::ClosedLoop(ClosedLoop::ControlEffort)),
+    ("load_motion", SpecificationKind::ClosedLoop(ClosedLoop::LoadMotion)),
+    ("tracking", SpecificationKind::ClosedLoop(ClosedLoop::Tracking)),
+    ("step", SpecificationKind::Step),
 ];
 
 impl DeclaredSpecification {
+    /// The closed loop whose magnitude is limited; `None` for a requirement in time.
+    pub fn closed_loop(&self) -> Option<ClosedLoop> {
+        match self.kind {
+            SpecificationKind::ClosedLoop(closed_loop) => Some(closed_loop),
+            SpecificationKind::Step => None,
+        }
+    }
+
     /// Where it must hold, rad/s: the declared band, or the span of the frequencies.
     pub fn band_rad_per_s(&self) -> [f64; 2] {
         let first = self.frequencies.first().copied().unwrap_or(0.0);
@@ -42,13 +90,33 @@ impl DeclaredSpecification {
     }
 
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        v.choice(plain("kind", "Which closed loop is limited."), &SPECIFICATION_KINDS, &mut self.kind, true);
-        DeclaredLimit::visit("limit", "Upper limit, of every kind but tracking.", &mut self.limit, v);
+        let k = plain("kind", "Which closed loop is limited, or \"step\": what is required in time.");
+        v.choice(k, &SPECIFICATION_KINDS, &mut self.kind, true);
+        DeclaredLimit::visit("limit", "Upper limit, of a closed loop but tracking.", &mut self.limit, v);
         DeclaredLimit::visit("upper", "Upper limit of tracking.", &mut self.upper, v);
         DeclaredLimit::visit("lower", "Lower limit of tracking.", &mut self.lower, v);
         let k = key("frequencies", &ANGULAR_FREQUENCY, "Where bounds are drawn, increasing.").positive();
         v.quantities(k, &mut self.frequencies, false);
         let k = key("band", &ANGULAR_FREQUENCY, "Where it must hold; absent: the span of `frequencies`.");
         v.pair(k.not_negative().or_infinite(), &mut self.band);
+        self.step.visit(v);
+    }
+}
+
+impl RequiredStep {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("overshoot_percent", &PERCENT, "Largest overshoot, in percent of the step; of \"step\".");
+        v.optional(k.not_negative().below(100.0), &mut self.overshoot_percent);
+        let k = key("settling_time", &TIME, "Largest settling time; of \"step\".").positive();
+        v.optional(k, &mut self.settling_time);
+        let k =
+            key("settling_band_percent", &PERCENT, "Band of the settling time; absent: 2 %; of \"step\".");
+        v.optional(k.positive().below(100.0), &mut self.settling_band_percent);
+        let k = key("rise_time", &TIME, "Longest rise from 10 to 90 %; of \"step\".").positive();
+        v.optional(k, &mut self.rise_time);
+        let k = key("amplitude", &FORCE, "Size of the step on the nonlinear rig, signed; of \"step\".");
+        v.optional(k.of_motion(), &mut self.amplitude);
+        let k = key("initial_force", &FORCE, "Force before the step on the nonlinear rig; of \"step\".");
+        v.optional(k.of_motion(), &mut self.initial_force);
     }
 }

@@ -57,7 +57,7 @@ use crate::simulate::compare_projects;
 use crate::sizing::{self, Candidate, Question, SizingError, size, sizing_problem};
 use crate::source::{Destination, HeldFiles, Source};
 use crate::specification::{self, crossed_limits, wishes};
-use crate::trial::{Agreement, tried};
+use crate::trial::{Agreement, Trial, tried};
 use alternatives::{alternatives_answer, read_alternatives};
 use linearize::{linearize_answer, swept_answer};
 use simulate::simulate_answer;
@@ -381,7 +381,9 @@ fn verify_answer(
         document: audit::output(&view, Some(&trial)),
         body: audit::body(&view).with("machine", crate::trial::body(&trial)),
         files,
-        affirmative: is_met && trial.agreement() != Agreement::Contradicts,
+        affirmative: is_met
+            && trial.agreement() != Agreement::Contradicts
+            && trial.satisfies() != Some(false),
     })
 }
 
@@ -417,7 +419,9 @@ fn design_answer(
         document: design::output(loaded, &view)?,
         body: design::body(&view)?,
         files: if stages { design::stage_files(loaded, &view, watch)? } else { design::files(loaded, &view) },
-        affirmative: view.is_met() && view.agreement() != Agreement::Contradicts,
+        affirmative: view.is_met()
+            && view.agreement() != Agreement::Contradicts
+            && view.trial.as_ref().and_then(Trial::satisfies) != Some(false),
     })
 }
 

@@ -63,6 +63,7 @@ mod report_opening;
 mod report_page;
 mod report_simulation;
 mod report_typeset;
+mod required_step;
 mod response_identification;
 mod rest;
 mod sampled_notch;

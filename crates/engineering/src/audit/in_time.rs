@@ -32,6 +32,9 @@ pub enum TimeOutcome {
         /// The longest settling time, s, infinite where a step does not settle within the time
         /// that was computed; likewise.
         settling: Option<WorstStep>,
+        /// The longest rise from 10 to 90 percent, s, infinite where a step does not rise within
+        /// the time that was computed; likewise.
+        rise: Option<WorstStep>,
     },
     /// No step was computed.
     NotExamined(Unexamined),
@@ -86,10 +89,27 @@ impl TimeFinding {
         self.requirement.follows && self.verdict() == Some(Verdict::Violated)
     }
 
+    /// Whether nothing is known of what a specification of its own requires.
+    pub fn is_open(&self) -> bool {
+        self.requirement.limits.is_none() && self.verdict().is_none()
+    }
+
+    /// The worst step of the property that is furthest beyond its limit, or else nearest to it.
+    pub fn nearest(&self) -> Option<&WorstStep> {
+        let TimeOutcome::Searched { overshoot, settling, rise, .. } = &self.outcome else { return None };
+        let TrackingWish { overshoot_percent, settling_time_s, rise_time_s, .. } = self.requirement.wish;
+        let each = [(overshoot, overshoot_percent), (settling, settling_time_s), (rise, rise_time_s)];
+        let shares = each.into_iter().filter_map(|(worst, most)| {
+            let worst = worst.as_ref()?;
+            Some((worst.value / most?.max(ACCURACY_PERCENT), worst))
+        });
+        shares.max_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, worst)| worst)
+    }
+
     /// The verdict on the steps alone; `None` where no step was computed.
     pub fn verdict(&self) -> Option<Verdict> {
-        let TimeOutcome::Searched { overshoot, settling, .. } = &self.outcome else { return None };
-        let satisfied = overshoot.iter().chain(settling).all(|worst| worst.is_satisfied);
+        let TimeOutcome::Searched { overshoot, settling, rise, .. } = &self.outcome else { return None };
+        let satisfied = overshoot.iter().chain(settling).chain(rise).all(|worst| worst.is_satisfied);
         Some(if satisfied { Verdict::Met } else { Verdict::Violated })
     }
 }
@@ -109,21 +129,22 @@ fn outcome(
     requirement: &TimeRequirement,
 ) -> Result<TimeOutcome, Unexamined> {
     let Family::Uncertain(family) = &problem.family else { return Err(Unexamined::Measured) };
-    if !problem.has_prefilter {
+    if requirement.limits.is_some() && !problem.has_prefilter {
         return Err(Unexamined::NoPrefilter);
     }
     if audit.stability.verdict != Verdict::Met {
         return Err(Unexamined::NotStable);
     }
-    let mut search = StepSearch { problem, family, wish: requirement.wish, plants: 0, worst: [None, None] };
+    let mut search =
+        StepSearch { problem, family, wish: requirement.wish, plants: 0, worst: [None, None, None] };
     for values in visited(family, audit) {
         search.visit(&values).map_err(Unexamined::Step)?;
     }
     if family.extent() == Extent::Box && family.plant().is_rational() {
         search.between().map_err(Unexamined::Step)?;
     }
-    let StepSearch { plants, worst: [overshoot, settling], .. } = search;
-    Ok(TimeOutcome::Searched { plants, overshoot, settling })
+    let StepSearch { plants, worst: [overshoot, settling, rise], .. } = search;
+    Ok(TimeOutcome::Searched { plants, overshoot, settling, rise })
 }
 
 /// The nominal plant, members spread over the family, and the plants that the audit found worst.
@@ -151,18 +172,18 @@ fn worst_plants(finding: &SpecificationFinding) -> impl Iterator<Item = &PlantPo
     cases.flat_map(|case| std::iter::once(&case.plant).chain(&case.other))
 }
 
-/// Steps of plants, and the worst of each property so far: overshoot, settling time.
+/// Steps of plants, and the worst of each property so far: overshoot, settling time, rise time.
 struct StepSearch<'a> {
     problem: &'a RobustProblem,
     family: &'a UncertainFamily,
     wish: TrackingWish,
     plants: usize,
-    worst: [Option<WorstStep>; 2],
+    worst: [Option<WorstStep>; 3],
 }
 
 impl StepSearch<'_> {
-    /// Overshoot in percent and settling time in s of the step of a plant.
-    fn step(&self, values: &[f64]) -> Result<[f64; 2], TimeResponseError> {
+    /// Overshoot in percent, settling time and rise time in s of the step of a plant.
+    fn step(&self, values: &[f64]) -> Result<[f64; 3], TimeResponseError> {
         let compensation = &self.problem.compensation;
         let member = compensation.member_of(self.family.plant(), values)?;
         let band = self.wish.band_percent + accuracy(&member);
@@ -182,27 +203,28 @@ impl StepSearch<'_> {
             metrics = within(duration_s)?;
             overshoot_percent = overshoot_percent.max(metrics.overshoot_percent);
         }
-        Ok([overshoot_percent, metrics.settling.time_s().unwrap_or(f64::INFINITY)])
+        let times_s = [metrics.settling.time_s(), metrics.rise_time_10_90_s];
+        let [settling_s, rise_s] = times_s.map(|time_s| time_s.unwrap_or(f64::INFINITY));
+        Ok([overshoot_percent, settling_s, rise_s])
     }
 
-    /// Whether the plant is the worst so far, of each property.
-    fn visit(&mut self, values: &[f64]) -> Result<[bool; 2], TimeResponseError> {
+    /// Takes a plant in where it is the worst so far of a property.
+    fn visit(&mut self, values: &[f64]) -> Result<(), TimeResponseError> {
         let found = self.step(values)?;
         self.plants += 1;
         let room =
             if self.family.plant().is_rational() { ACCURACY_PERCENT } else { ACCURACY_OF_RESPONSE_PERCENT };
-        let most = [self.wish.overshoot_percent.map(|most| most + room), self.wish.settling_time_s];
-        let mut is_worst = [false; 2];
+        let TrackingWish { overshoot_percent, settling_time_s, rise_time_s, .. } = self.wish;
+        let most = [overshoot_percent.map(|most| most + room), settling_time_s, rise_time_s];
         for (index, (value, most)) in found.into_iter().zip(most).enumerate() {
             let Some(most) = most else { continue };
             let known = self.worst[index].as_ref().map_or(f64::NEG_INFINITY, |worst| worst.value);
             if value > known {
                 let plant = PlantPoint::Parameters(values.to_vec());
                 self.worst[index] = Some(WorstStep { value, is_satisfied: value <= most, plant });
-                is_worst[index] = true;
             }
         }
-        Ok(is_worst)
+        Ok(())
     }
 
     /// Follows each property from its worst plant along the coordinates of the box, as long as it

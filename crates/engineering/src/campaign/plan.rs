@@ -15,7 +15,10 @@ use super::varied::ranges;
 use crate::project::{Loaded, MotionShape, Project, Scenario, Signal, print};
 use crate::quantity::MotionKind;
 use crate::setup::Setup;
-use crate::simulate::{ControlledMachine, LineWatch, ScenarioDrive, SimulateError, Window, driven};
+use crate::simulate::{
+    ControlledMachine, LineWatch, ScenarioDrive, SimulateError, TimeRequirement, Window, driven,
+    time_requirements,
+};
 use crate::source::Source;
 
 /// Largest number of times at which the bands of the force are given over the whole scenario, and
@@ -72,6 +75,8 @@ pub struct Plan {
     pub(super) band_looks: Vec<usize>,
     /// Indices of the states that force and command depend on.
     pub(super) look: Vec<usize>,
+    /// What is required in time.
+    pub(super) requirements: Vec<TimeRequirement>,
     ranges: Vec<VariedRange>,
     seed: u32,
 }
@@ -142,6 +147,7 @@ impl Plan {
         };
         let look = look(&bench);
         Ok(Plan {
+            requirements: time_requirements(&project)?,
             project,
             scenario,
             place,

@@ -1,6 +1,7 @@
 //! Statistics of all runs of a campaign: counts, quantiles, bands over time, and the worst runs.
 
 use super::plan::Plan;
+use super::required::{CampaignRequirement, required};
 use super::row::{LUMP_NAMES, METRIC_NAMES, Ran, Row, RowOutcome, STATUS_WORDS, meaningful};
 use super::spread::{Spread, quantiles, spread};
 use phea_dynamics::order::sort_numbers;
@@ -43,6 +44,8 @@ pub struct Summary {
     pub outside: [Option<usize>; LUMP_NAMES.len()],
     /// Bands of the force.
     pub bands: Bands,
+    /// What is required in time, and how many runs satisfy it.
+    pub requirements: Vec<CampaignRequirement>,
     /// Runs to look at again, in the order of the metrics they are worst in.
     pub worst: Vec<WorstRun>,
 }
@@ -79,6 +82,7 @@ impl Summary {
             ended: driven.iter().filter_map(|(run, ran)| Some((*run, ran.status, ran.ended_s?))).collect(),
             occurrences: occurrences(&driven),
             worst: worst(&metrics),
+            requirements: required(plan, rows),
             metrics,
             lumps: [lump(0), lump(1), lump(2)],
             outside: [outside(plan, rows, 0), outside(plan, rows, 1), outside(plan, rows, 2)],

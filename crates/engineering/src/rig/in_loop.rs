@@ -150,5 +150,5 @@ pub(crate) fn velocity_gain<S: Scalar>(declared: &DeclaredActuator, numbers: &Nu
 
 /// Whether a specification limits the path that a prescribed load has into the loop.
 pub(crate) fn limits_load_motion(project: &Project) -> bool {
-    project.specifications.iter().any(|specification| specification.kind == ClosedLoop::LoadMotion)
+    project.specifications.iter().any(|one| one.closed_loop() == Some(ClosedLoop::LoadMotion))
 }

@@ -2,11 +2,17 @@
 
 use super::metrics::NOT_SETTLED;
 use super::{Cause, Metrics, Window};
+use crate::project::{RequiredStep, SETTLING_BAND_PERCENT};
 use crate::quantity::significant;
 use crate::specification::CheckedWish;
 
 /// Tolerance in percent of the required value: printed numbers have three digits.
 const ROUNDED: f64 = 1e-6;
+/// Percent of a step: a simulated overshoot below it counts as none.
+const NO_OVERSHOOT_PERCENT: f64 = 0.01;
+/// How long a step is looked at first: in rise times, or without one in s.
+const RISES: f64 = 3.0;
+const HORIZON_S: f64 = 0.1;
 
 /// Wishes of the first tracking specification that has any: the overshoot of its upper limit, the
 /// settling time of its lower one.
@@ -16,22 +22,24 @@ pub struct TrackingWish {
     pub overshoot_percent: Option<f64>,
     /// Settled by then, s.
     pub settling_time_s: Option<f64>,
+    /// From 10 to 90 percent of the step within this time, s.
+    pub rise_time_s: Option<f64>,
     /// The band of the settling time, percent of the step.
     pub band_percent: f64,
-    /// The settling time of the lower limit, or of the upper one where only that states one, s.
+    /// The settling time of the lower limit, or of the upper one where only that states one, s: how
+    /// long a step is looked at first.
     pub horizon_s: f64,
 }
 
-/// A requirement in time of a specification.
+/// What a step does.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TimeRequirement {
-    /// Index of the specification.
-    pub specification: usize,
-    /// What is required of every step.
-    pub wish: TrackingWish,
-    /// Whether the limits follow from it: then it is part of the verdict. Stated limits are only
-    /// compared with it.
-    pub follows: bool,
+pub struct ReachedStep {
+    /// Percent of the step.
+    pub overshoot_percent: f64,
+    /// s, infinite where it does not settle.
+    pub settling_time_s: f64,
+    /// From 10 to 90 percent, s, infinite where it does not rise so far.
+    pub rise_time_s: f64,
 }
 
 /// A wish compared with a step.
@@ -62,9 +70,22 @@ impl TrackingWish {
         Some(TrackingWish {
             overshoot_percent: upper.map(|wished| wished.overshoot_percent),
             settling_time_s: lower.map(|wished| wished.settling_time_s),
+            rise_time_s: None,
             band_percent: lower.or(upper)?.settling_band_percent,
             horizon_s: lower.or(upper)?.settling_time_s,
         })
+    }
+
+    /// What a specification of the kind `step` requires.
+    pub(crate) fn of_step(step: &RequiredStep) -> TrackingWish {
+        let of_rise = step.rise_time.map(|time_s| RISES * time_s);
+        TrackingWish {
+            overshoot_percent: step.overshoot_percent,
+            settling_time_s: step.settling_time,
+            rise_time_s: step.rise_time,
+            band_percent: step.settling_band_percent.unwrap_or(SETTLING_BAND_PERCENT),
+            horizon_s: step.settling_time.or(of_rise).unwrap_or(HORIZON_S),
+        }
     }
 
     /// The wish for the overshoot, in words.
@@ -76,6 +97,52 @@ impl TrackingWish {
     /// The wish for the settling time, in words.
     pub fn settling_words(&self) -> Option<String> {
         self.settling_time_s.map(|time_s| format!("settled within {} % in {time_s} s", self.band_percent))
+    }
+
+    /// The wish for the rise time, in words.
+    pub fn rise_words(&self) -> Option<String> {
+        self.rise_time_s.map(|time_s| format!("risen from 10 to 90 % in {time_s} s"))
+    }
+
+    /// All of it, in words.
+    pub fn words(&self) -> String {
+        let all = [self.overshoot_words(), self.settling_words(), self.rise_words()];
+        all.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    }
+
+    /// Whether a step satisfies it, up to the rounding of printed numbers. An overshoot below
+    /// [`NO_OVERSHOOT_PERCENT`] counts as none.
+    pub fn is_satisfied(&self, reached: &ReachedStep) -> bool {
+        self.excess(reached) <= 1.0 + ROUNDED
+    }
+
+    /// The largest ratio of what a step reaches to what is required; zero where nothing is.
+    pub fn excess(&self, reached: &ReachedStep) -> f64 {
+        let overshoot_percent = self.overshoot_percent.map(|most| most.max(NO_OVERSHOOT_PERCENT));
+        let each = [
+            (reached.overshoot_percent, overshoot_percent),
+            (reached.settling_time_s, self.settling_time_s),
+            (reached.rise_time_s, self.rise_time_s),
+        ];
+        each.into_iter().filter_map(|(value, most)| Some(value / most?)).fold(0.0, f64::max)
+    }
+
+    /// What a step does of what is required, in words.
+    pub fn reached_words(&self, reached: &ReachedStep) -> String {
+        let in_time = |time_s: f64, did: &str, never: &str| match time_s {
+            f64::INFINITY => never.to_string(),
+            time_s => format!("{did} in {} s", significant(time_s, 3)),
+        };
+        let overshoot = match reached.overshoot_percent {
+            percent if percent < NO_OVERSHOOT_PERCENT => "no overshoot".to_string(),
+            percent => format!("{} % overshoot", significant(percent, 3)),
+        };
+        let each = [
+            self.overshoot_percent.map(|_| overshoot),
+            self.settling_time_s.map(|_| in_time(reached.settling_time_s, "settled", "not settled")),
+            self.rise_time_s.map(|_| in_time(reached.rise_time_s, "risen", "not risen to 90 %")),
+        ];
+        each.into_iter().flatten().collect::<Vec<_>>().join(", ")
     }
 
     /// The overshoot of a step and the required value; `None` where none is required or the window

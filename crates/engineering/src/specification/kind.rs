@@ -2,7 +2,7 @@
 
 use phea_qft::specification::{ClosedLoop, Requirement};
 
-use crate::project::{SPECIFICATION_KINDS, word_of};
+use crate::project::{SPECIFICATION_KINDS, SpecificationKind, word_of};
 
 /// The word of a kind, as the project file spells it.
 pub fn kind_key(requirement: &Requirement) -> &'static str {
@@ -11,7 +11,7 @@ pub fn kind_key(requirement: &Requirement) -> &'static str {
 
 /// The word of the kind that limits a closed loop.
 pub fn closed_loop_key(closed_loop: ClosedLoop) -> &'static str {
-    word_of(&SPECIFICATION_KINDS, &closed_loop)
+    word_of(&SPECIFICATION_KINDS, &SpecificationKind::ClosedLoop(closed_loop))
 }
 
 /// The kind for people.

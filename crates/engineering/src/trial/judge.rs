@@ -113,7 +113,7 @@ pub(super) fn judge(
     let highest = driven.first_most(|leg| leg.overshoot_percent.unwrap_or(0.0));
     let told = format!("it overshoots by {}{}{beside}", percent_words(overshoot), leg_words(highest));
     let more = overshoot - predicted.unwrap_or(overshoot);
-    let most = most_overshoot_percent(problem).filter(|_| driven.size == StepSize::Tenth);
+    let most = most_overshoot_percent(problem).filter(|_| driven.size != StepSize::Largest);
     if more > OVERSHOOT_ROOM_PERCENT && most.is_some_and(|most| overshoot > most) {
         return (broken, format!("{told}: more than the limit on |L/(1+L)| lets a loop overshoot"));
     }

@@ -69,23 +69,22 @@ pub(super) fn rigs(
     rigs.extend(waves.map(|project| of("the rig with waves in its lines", project, quarter_wave(rig))));
     let mut missing = Vec::new();
     let mut known: Vec<&PlantPoint> = Vec::new();
-    for (index, finding) in view.audit.specifications.iter().enumerate() {
-        let Some(worst) = &finding.worst else { continue };
-        let Some(numbers) = view.names.numbers(&worst.plant) else { continue };
-        if known.contains(&&worst.plant) {
+    for (of, plant) in worst_plants(view) {
+        let Some(numbers) = view.names.numbers(plant) else { continue };
+        if known.contains(&plant) {
             continue;
         }
-        known.push(&worst.plant);
+        known.push(plant);
         let (names, values): (Vec<&str>, Vec<f64>) = numbers.map(|(name, _, value)| (name, value)).unzip();
         // the one plant of a family without parameters is the rig as declared
         if names.is_empty() {
             continue;
         }
-        let what = format!("the worst plant of {}", view.numbered(index));
+        let what = format!("the worst plant of {of}");
         match made(setup, rig, &names, &values) {
             Ok(project) => rigs.push(Tried {
                 what,
-                named: Some(view.names.named(&worst.plant)),
+                named: Some(view.names.named(plant)),
                 quarter_wave_rad_per_s: None,
                 is_declared: is_same_machine(project.clone(), setup.project.clone()),
                 project,
@@ -94,10 +93,27 @@ pub(super) fn rigs(
                     Family::Measured(_) => None,
                 },
             }),
-            Err(reason) => missing.push(format!("{what} ({}): {reason}", view.names.text(&worst.plant))),
+            Err(reason) => missing.push(format!("{what} ({}): {reason}", view.names.text(plant))),
         }
     }
     (rigs, missing)
+}
+
+/// The worst plant of each limit, and of each requirement in time that is part of the verdict, with
+/// what it is the worst of.
+fn worst_plants(view: &ProjectAudit) -> impl Iterator<Item = (String, &PlantPoint)> {
+    let of_limits = view.audit.specifications.iter().enumerate();
+    let of_limits =
+        of_limits.filter_map(|(index, finding)| Some((view.numbered(index), &finding.worst.as_ref()?.plant)));
+    let in_time = view.in_time.iter().filter(|finding| finding.requirement.follows);
+    let in_time = in_time.filter_map(|finding| {
+        let of = match finding.requirement.limits {
+            Some(index) => format!("{} in time", view.numbered(index)),
+            None => "the required step".to_string(),
+        };
+        Some((of, &finding.nearest()?.plant))
+    });
+    of_limits.chain(in_time)
 }
 
 /// Whether two projects have one machine, uncertainty and the side of null left out.

@@ -2,6 +2,7 @@
 
 use super::judge::{Driven, judge, met, not_started};
 use super::prediction::{Prediction, predicted};
+use super::required::{HeldRequirement, held};
 use super::rigs::Tried;
 use super::steps::{CommandLimits, Steps};
 use super::{STAGE, TrialError};
@@ -12,7 +13,7 @@ use crate::project::{LineMotion, Project};
 use crate::quantity::significant;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
-use crate::simulate::{RunOutput, ScenarioRun, SimulateError, simulate_into};
+use crate::simulate::{RequiredSteps, RunOutput, ScenarioRun, SimulateError, simulate_into};
 use crate::source::Source;
 use phea_dynamics::watch::{Watch, part};
 
@@ -43,6 +44,8 @@ pub enum StepSize {
     Tenth,
     /// The largest within reach at which the command stays within its limit.
     Largest,
+    /// As a requirement in time states it.
+    Required,
 }
 
 /// The steps of a run, in the order in which they are driven.
@@ -87,6 +90,9 @@ pub struct TrialRun {
     /// Half the range of the force over the last fifth of a step, the largest of all steps, N: the
     /// amplitude of an oscillation that remains. `None` if the run ended before.
     pub remaining_amplitude_n: Option<f64>,
+    /// What is required in time of these steps, and whether they satisfy it; empty if it did not
+    /// start.
+    pub requirements: Vec<HeldRequirement>,
     /// The linear loop's response; empty if it is absent.
     pub linear_response: StepResponse,
     /// The machine's in its worst step; empty where it did not start.
@@ -104,11 +110,19 @@ pub struct TrialRun {
 
 /// End of the name of a run with the largest step.
 const LARGEST: &str = ", largest step";
+/// The same where a requirement states the step.
+const REQUIRED: &str = ", required step";
 
 impl TrialRun {
     /// The machine, without the size of its steps.
     pub fn machine_name(&self) -> &str {
-        self.what.strip_suffix(LARGEST).unwrap_or(&self.what)
+        let without = |end: &str| self.what.strip_suffix(end);
+        without(LARGEST).or(without(REQUIRED)).unwrap_or(&self.what)
+    }
+
+    /// Whether the steps satisfy all that is required of them in time.
+    pub fn satisfies(&self) -> bool {
+        self.requirements.iter().all(|held| held.is_satisfied)
     }
 }
 
@@ -136,6 +150,7 @@ type TrialOutcome = Result<ScenarioRun, SimulateError>;
 /// Steps through which a machine was driven, and what came of them.
 pub(super) struct DrivenSteps {
     size: StepSize,
+    required: RequiredSteps,
     steps: Steps,
     outcome: TrialOutcome,
 }
@@ -144,16 +159,24 @@ pub(super) struct DrivenSteps {
 pub(super) struct TriedMachine<'a> {
     tried: &'a Tried,
     linear: LinearStep,
+    /// The steps that requirements state.
+    required: Vec<RequiredSteps>,
 }
 
 impl<'a> TriedMachine<'a> {
     /// A machine with its prediction.
     pub(super) fn of(tried: &'a Tried, problem: &RobustProblem) -> Result<TriedMachine<'a>, TrialError> {
-        Ok(TriedMachine { tried, linear: LinearStep::of(tried, problem)? })
+        let mut required: Vec<RequiredSteps> = Vec::new();
+        for one in problem.in_time.iter().filter(|one| one.steps.are_stated()) {
+            if !required.contains(&one.steps) {
+                required.push(one.steps);
+            }
+        }
+        Ok(TriedMachine { tried, linear: LinearStep::of(tried, problem)?, required })
     }
 
-    /// Drives it through steps by a tenth of its force, then through the largest at which nothing
-    /// saturates; `None` where the watcher stops it.
+    /// Drives it through the steps that are required, or else by a tenth of its force, then through
+    /// the largest at which nothing saturates; `None` where the watcher stops it.
     pub(super) fn driven(
         &self,
         source: &dyn Source,
@@ -162,19 +185,30 @@ impl<'a> TriedMachine<'a> {
         let setup = Setup::new(&self.tried.project)?;
         let rig = setup.rig()?;
         let on = (source, &setup);
-        let tenth = Steps::tenth(rig, self.linear.hold_s());
-        let Some(outcome) = self.driven_by(on, &tenth, &mut part(watch, STAGE, [0.0, 0.3])) else {
-            return Ok(None);
+        let mut firsts = vec![(StepSize::Tenth, RequiredSteps::default())];
+        if !self.required.is_empty() {
+            firsts = self.required.iter().map(|one| (StepSize::Required, *one)).collect();
+        }
+        let (count, mut all) = (firsts.len() as f64, Vec::new());
+        for (index, (size, required)) in firsts.into_iter().enumerate() {
+            let steps = Steps::first(rig, required, self.linear.hold_s());
+            let share = [index, index + 1].map(|done| 0.3 * done as f64 / count);
+            let Some(outcome) = self.driven_by(on, &steps, &mut part(watch, STAGE, share)) else {
+                return Ok(None);
+            };
+            all.push(DrivenSteps { size, required, steps, outcome });
+        }
+        let Some(DrivenSteps { outcome: Ok(driven), steps: first, .. }) = all.first() else {
+            return Ok(Some(all));
         };
-        let mut all = vec![DrivenSteps { size: StepSize::Tenth, steps: tenth, outcome }];
-        let Some(DrivenSteps { outcome: Ok(driven), .. }) = all.first() else { return Ok(Some(all)) };
-        if self.is_decided(&tenth, driven) {
+        if self.is_decided(first, driven) {
             return Ok(Some(all));
         }
+        let first = *first;
         let was_limited = is_limited(driven);
-        let mut steps = tenth.enlarged(rig, CommandLimits::of(setup.project, rig), driven);
+        let mut steps = first.enlarged(rig, CommandLimits::of(setup.project, rig), driven);
         for reduction in 0..REDUCTIONS {
-            let ratio = steps.size() / tenth.size();
+            let ratio = steps.size() / first.size();
             if (ratio < WORTH && !was_limited) || ratio < LEAST {
                 break;
             }
@@ -183,7 +217,8 @@ impl<'a> TriedMachine<'a> {
                 return Ok(None);
             };
             if outcome.as_ref().is_ok_and(|driven| !is_limited(driven) && !steps.stalls(driven)) {
-                all.push(DrivenSteps { size: StepSize::Largest, steps, outcome });
+                let required = RequiredSteps::default();
+                all.push(DrivenSteps { size: StepSize::Largest, required, steps, outcome });
                 break;
             }
             steps = steps.scaled(REDUCTION);
@@ -241,7 +276,7 @@ impl<'a> TriedMachine<'a> {
 
     fn judgement(
         &self,
-        DrivenSteps { size, steps, outcome }: &DrivenSteps,
+        DrivenSteps { size, required, steps, outcome }: &DrivenSteps,
         (problem, view): (&RobustProblem, &ProjectAudit),
     ) -> TrialRun {
         let size = *size;
@@ -250,6 +285,7 @@ impl<'a> TriedMachine<'a> {
             what: match size {
                 StepSize::Tenth => self.tried.what.clone(),
                 StepSize::Largest => format!("{}{LARGEST}", self.tried.what),
+                StepSize::Required => format!("{}{REQUIRED}", self.tried.what),
             },
             size,
             plant: self.tried.named.clone(),
@@ -260,6 +296,7 @@ impl<'a> TriedMachine<'a> {
             legs: vec![],
             worst: Leg::There,
             remaining_amplitude_n: None,
+            requirements: vec![],
             linear_response: response.clone(),
             machine_response: StepResponse::default(),
             agreement: Agreement::Differs,
@@ -283,6 +320,7 @@ impl<'a> TriedMachine<'a> {
             legs: Leg::ALL.into_iter().zip(legs).take(run.windows.len()).collect(),
             worst: driven.worst(),
             remaining_amplitude_n: driven.remains().map(|[low, high]| 0.5 * (high - low)),
+            requirements: held(&problem.in_time, steps, (*required, run)),
             machine_response: steps.response(run, driven.worst()),
             agreement,
             reason: self.with_waves_named(reason, agreement),

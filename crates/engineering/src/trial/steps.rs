@@ -10,7 +10,7 @@ use super::run::{BAND_PERCENT, Leg, TrialStep};
 use crate::linear_step::StepResponse;
 use crate::project::{Project, Scenario, Signal};
 use crate::rig::Rig;
-use crate::simulate::ScenarioRun;
+use crate::simulate::{RequiredSteps, ScenarioRun};
 
 /// The first step over the force that the supply can produce.
 const STEP_SHARE: f64 = 0.1;
@@ -39,14 +39,14 @@ pub(super) struct Steps {
 }
 
 impl Steps {
-    /// Steps by a tenth of the force that the supply can produce, from the force of the operating
-    /// point in the direction with more room.
-    pub(super) fn tenth(rig: &Rig, hold_s: f64) -> Steps {
+    /// The steps that are stated, or else steps by a tenth of the force that the supply can
+    /// produce, from the force of the operating point in the direction with more room.
+    pub(super) fn first(rig: &Rig, required: RequiredSteps, hold_s: f64) -> Steps {
         let push = push(rig);
-        let from_n = rig.point.hydraulic_force;
+        let from_n = required.initial_force_n.unwrap_or(rig.point.hydraulic_force);
         let step = STEP_SHARE * push;
         let towards = if from_n + step <= REACH * push { step } else { -step };
-        Steps { from_n, to_n: from_n + towards, hold_s }
+        Steps { from_n, to_n: from_n + required.amplitude_n.unwrap_or(towards), hold_s }
     }
 
     /// Steps in the same direction, as large as the supply, the force sensor, and the room that a
@@ -104,8 +104,15 @@ impl Steps {
     /// an oscillation is within the band at some moment too.
     pub(super) fn step(&self, driven: &ScenarioRun, leg: Leg) -> TrialStep {
         let step = self.measured(driven, leg);
-        let late_s = (1.0 - LATE_SHARE) * self.hold_s;
-        TrialStep { settling_time_s: step.settling_time_s.filter(|time_s| *time_s < late_s), ..step }
+        TrialStep {
+            settling_time_s: step.settling_time_s.filter(|time_s| self.settles_early(*time_s)),
+            ..step
+        }
+    }
+
+    /// Whether the force was watched for long enough after it settled.
+    pub(super) fn settles_early(&self, settling_time_s: f64) -> bool {
+        settling_time_s < (1.0 - LATE_SHARE) * self.hold_s
     }
 
     fn measured(&self, driven: &ScenarioRun, leg: Leg) -> TrialStep {

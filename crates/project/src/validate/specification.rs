@@ -1,23 +1,61 @@
 //! `[[specification]]`.
 
 use super::Check;
-use crate::{DeclaredLimit, DeclaredSpecification, Formula, MarginWish, Project, ResponseWish, Variable};
+use crate::{
+    DeclaredLimit, DeclaredSpecification, Formula, MarginWish, Project, RequiredStep, ResponseWish, Variable,
+};
 use phea_dynamics::closed_loop::ClosedLoop;
 
 pub(super) fn specifications(project: &Project, check: &mut Check<'_, '_>) {
     for (index, specification) in project.specifications.iter().enumerate() {
-        one_specification(specification, &format!("specification[{index}]"), check);
+        let path = format!("specification[{index}]");
+        match specification.closed_loop() {
+            Some(kind) => one_specification(specification, kind, &path, check),
+            None => required_step(&specification.step, &path, check),
+        }
         let second_path = project.plant.as_ref().is_none_or(|plant| plant.disturbance.is_some());
-        if specification.kind == ClosedLoop::LoadMotion && !second_path {
+        if specification.closed_loop() == Some(ClosedLoop::LoadMotion) && !second_path {
             check.error(&format!("specification[{index}].kind"), "\"load_motion\" needs [plant.disturbance]");
         }
     }
 }
 
-fn one_specification(specification: &DeclaredSpecification, path: &str, check: &mut Check<'_, '_>) {
+const STEP_KEYS: &[&str] = &[
+    "overshoot_percent",
+    "settling_time",
+    "settling_band_percent",
+    "rise_time",
+    "amplitude",
+    "initial_force",
+];
+
+fn required_step(step: &RequiredStep, path: &str, check: &mut Check<'_, '_>) {
+    let because = "belongs to the limit of a closed loop, not to a step";
+    refuse(&["limit", "upper", "lower", "frequencies", "band"], because, path, check);
+    let required = [step.overshoot_percent, step.settling_time, step.rise_time];
+    if required.iter().all(Option::is_none) {
+        let message = "nothing is required of the step";
+        let help = "state `overshoot_percent`, `settling_time` or `rise_time`";
+        check.error_with_help(path, message, help);
+    }
+    if step.settling_time.is_none() {
+        refuse(&["settling_band_percent"], "needs `settling_time`", path, check);
+    }
+    if step.amplitude == Some(0.0) {
+        check.error(&format!("{path}.amplitude"), "a step of no size requires nothing");
+    }
+}
+
+fn one_specification(
+    specification: &DeclaredSpecification,
+    kind: ClosedLoop,
+    path: &str,
+    check: &mut Check<'_, '_>,
+) {
+    refuse(STEP_KEYS, "belongs to `kind = \"step\"`, or into `upper` or `lower`", path, check);
     let limits =
         [("limit", &specification.limit), ("upper", &specification.upper), ("lower", &specification.lower)];
-    let tracking = specification.kind == ClosedLoop::Tracking;
+    let tracking = kind == ClosedLoop::Tracking;
     for (name, limit) in limits {
         let belongs = tracking != (name == "limit");
         let at = format!("{path}.{name}");
@@ -30,7 +68,7 @@ fn one_specification(specification: &DeclaredSpecification, path: &str, check: &
             check.error(&at, format!("`{name}` does not belong here: this kind takes {right}"));
         }
         if let Some(limit) = limit.as_ref().filter(|_| belongs) {
-            one_limit(limit, specification.kind, name, &at, check);
+            one_limit(limit, kind, name, &at, check);
         }
     }
     if let (Some(DeclaredLimit::Constant(lower)), Some(DeclaredLimit::Constant(upper))) =

@@ -53,10 +53,30 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
         .with("timing", timing)
         .maybe("velocity_noise", view.velocity_noise.as_ref().map(|noise| velocity_noise(noise, names)))
         .maybe("amplifying_prefilter", view.amplifying_prefilter.map(amplifying))
-        .each("specifications", audit.specifications.iter().enumerate(), |(index, finding)| {
-            specification(view, index, finding)
-        })
+        .each("specifications", in_file_order(view), |one| one)
         .each("warnings", &view.caveats, |caveat| caveat.sentence.as_str())
+}
+
+/// The limits on closed loops and the requirements on steps, as the file has them; what has no
+/// number in it, such as a limit on rounding, comes last.
+fn in_file_order(view: &ProjectAudit) -> Vec<Object> {
+    let mut steps = view.in_time.iter().filter(|finding| finding.requirement.limits.is_none()).peekable();
+    let mut ordered = Vec::new();
+    for (index, finding) in view.audit.specifications.iter().enumerate() {
+        while let Some(step) = steps.next_if(|step| step.requirement.number == ordered.len() + 1) {
+            ordered.push(step_specification(&view.names, step));
+        }
+        ordered.push(specification(view, index, finding));
+    }
+    ordered.extend(steps.map(|step| step_specification(&view.names, step)));
+    ordered
+}
+
+/// A requirement on steps: the plant is that of the property that is nearest to its limit or
+/// furthest beyond.
+fn step_specification(names: &PlantNames, finding: &TimeFinding) -> Object {
+    let nearest = finding.nearest().map(|worst| names.named(&worst.plant));
+    Object::new().with("kind", "step").and(in_time(names, finding)).with("plant", nearest)
 }
 
 /// The prefilter, where it amplifies.
@@ -136,10 +156,11 @@ fn in_time(names: &PlantNames, finding: &TimeFinding) -> Object {
     let required = Object::new()
         .maybe("overshoot_percent", wish.overshoot_percent)
         .maybe("settling_time_s", wish.settling_time_s)
+        .maybe("rise_time_s", wish.rise_time_s)
         .with("settling_band_percent", wish.band_percent);
     let (searched, reason) = match &finding.outcome {
-        TimeOutcome::Searched { plants, overshoot, settling } => {
-            (Some((*plants, overshoot, settling)), String::new())
+        TimeOutcome::Searched { plants, overshoot, settling, rise } => {
+            (Some((*plants, [overshoot, settling, rise])), String::new())
         }
         TimeOutcome::NotExamined(why) => (None, unexamined_words(why)),
     };
@@ -147,16 +168,18 @@ fn in_time(names: &PlantNames, finding: &TimeFinding) -> Object {
         .known("verdict", finding.verdict().map(verdict_key), &reason)
         .with("part_of_verdict", finding.requirement.follows)
         .with("required", required);
-    let Some((plants, overshoot, settling)) = searched else { return object };
-    let of = |worst: &Option<WorstStep>| worst.clone();
-    let (overshoot, settling) = (of(overshoot), of(settling));
+    let Some((plants, worst)) = searched else { return object };
+    let [overshoot, settling, rise] = worst.map(Option::as_ref);
+    let named = |worst: &WorstStep| names.named(&worst.plant);
     object
         .with("evidence", evidence_key(Evidence::Search))
         .with("plants", plants)
-        .maybe("worst_overshoot_percent", overshoot.as_ref().map(|worst| worst.value))
-        .maybe("overshoot_plant", overshoot.map(|worst| names.named(&worst.plant)))
-        .maybe("worst_settling_time_s", settling.as_ref().map(|worst| worst.value))
-        .maybe("settling_plant", settling.map(|worst| names.named(&worst.plant)))
+        .maybe("worst_overshoot_percent", overshoot.map(|worst| worst.value))
+        .maybe("overshoot_plant", overshoot.map(named))
+        .maybe("worst_settling_time_s", settling.map(|worst| worst.value))
+        .maybe("settling_plant", settling.map(named))
+        .maybe("worst_rise_time_s", rise.map(|worst| worst.value))
+        .maybe("rise_plant", rise.map(named))
 }
 
 /// Whether a claim is proven: false where it is refuted, `null` where it is neither.

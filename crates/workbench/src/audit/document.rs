@@ -113,6 +113,11 @@ fn specifications(view: &ProjectAudit) -> Table {
             rows.row([one, inside, limits, verdict, margin, frequency, design, place]);
         }
     }
+    for finding in view.in_time.iter().filter(|finding| finding.requirement.limits.is_none()) {
+        let verdict = Cell::verdict(finding.verdict().unwrap_or(Verdict::NotProven));
+        let [number, margin, place, design, at] = [(); 5].map(|()| Cell::empty());
+        rows.row([number, "step".into(), "y(t)".into(), verdict, margin, place, design, at]);
+    }
     rows
 }
 
@@ -179,7 +184,10 @@ fn worst_plants(view: &ProjectAudit) -> Vec<(String, Vec<String>)> {
             }
         })
     };
-    findings.filter_map(of).flatten().collect()
+    let in_time = view.in_time.iter().filter(|finding| finding.requirement.limits.is_none());
+    let of_step =
+        in_time.filter_map(|finding| Some(("step".to_string(), view.names.cells(&finding.nearest()?.plant))));
+    findings.filter_map(of).flatten().chain(of_step).collect()
 }
 
 fn violations(view: &ProjectAudit) -> Table {

@@ -11,19 +11,22 @@ use crate::answer::significant;
 /// `2 tracking in time: at most 5 % overshoot and settled within 2 % in 0.8 s are required and not
 /// met; ...`
 pub(crate) fn sentence(view: &ProjectAudit, finding: &TimeFinding) -> String {
-    let name = format!("{} in time", view.numbered(finding.requirement.specification));
-    let wish = &finding.requirement.wish;
-    let required: Vec<String> = wish.overshoot_words().into_iter().chain(wish.settling_words()).collect();
-    let required = required.join(", ");
-    let (plants, overshoot, settling) = match &finding.outcome {
+    let name = match finding.requirement.limits {
+        Some(index) => format!("{} in time", view.numbered(index)),
+        None => "step".to_string(),
+    };
+    let required = finding.requirement.wish.words();
+    let (plants, worst) = match &finding.outcome {
         TimeOutcome::NotExamined(why) => {
             return format!("{name} is not examined: {}; required is {required}", unexamined_words(why));
         }
-        TimeOutcome::Searched { plants, overshoot, settling } => (plants, overshoot, settling),
+        TimeOutcome::Searched { plants, overshoot, settling, rise } => (plants, [overshoot, settling, rise]),
     };
+    let [overshoot, settling, rise] = worst.map(Option::as_ref);
     let worst = [
-        overshoot.as_ref().map(|worst| at(view, &overshoot_words(worst), worst)),
-        settling.as_ref().map(|worst| at(view, &settling_words(worst), worst)),
+        overshoot.map(|worst| at(view, &overshoot_words(worst), worst)),
+        settling.map(|worst| at(view, &settling_words(worst), worst)),
+        rise.map(|worst| at(view, &rise_words(worst), worst)),
     ];
     let worst: Vec<String> = worst.into_iter().flatten().collect();
     let word = if finding.verdict() == Some(Verdict::Met) { "met" } else { "not met" };
@@ -57,13 +60,22 @@ fn settling_words(worst: &WorstStep) -> String {
     }
 }
 
+/// `risen in 0.12 s`
+fn rise_words(worst: &WorstStep) -> String {
+    match worst.value {
+        f64::INFINITY => "not risen to 90 % within the time that was computed".to_string(),
+        time_s => format!("risen from 10 to 90 % in {} s", significant(time_s, 3)),
+    }
+}
+
 /// Each requirement that is missed: `settled in 1.08 s at worst where 0.8 s is required`.
 pub(crate) fn missed(finding: &TimeFinding) -> Vec<String> {
-    let TimeOutcome::Searched { overshoot, settling, .. } = &finding.outcome else { return vec![] };
+    let TimeOutcome::Searched { overshoot, settling, rise, .. } = &finding.outcome else { return vec![] };
     let wish = &finding.requirement.wish;
     let open = |worst: &&WorstStep| !worst.is_satisfied;
     let of_overshoot = overshoot.as_ref().filter(open).zip(wish.overshoot_percent);
     let of_settling = settling.as_ref().filter(open).zip(wish.settling_time_s);
+    let of_rise = rise.as_ref().filter(open).zip(wish.rise_time_s);
     let mut missed = Vec::new();
     missed.extend(
         of_overshoot
@@ -72,6 +84,9 @@ pub(crate) fn missed(finding: &TimeFinding) -> Vec<String> {
     missed.extend(
         of_settling
             .map(|(worst, most)| format!("{} at worst where {most} s is required", settling_words(worst))),
+    );
+    missed.extend(
+        of_rise.map(|(worst, most)| format!("{} at worst where {most} s is required", rise_words(worst))),
     );
     missed
 }

@@ -1,6 +1,7 @@
 //! The JSON object of `campaign`.
 
-use super::RequestedRuns;
+use super::document::not_judged_words;
+use super::{CampaignRequirement, RequestedRuns};
 use super::{Draw, Plan};
 use super::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
 use super::{QUANTILES, Spread};
@@ -51,6 +52,7 @@ pub(crate) fn body(plan: &Plan, wanted: RequestedRuns, rows: usize, summary: &Su
         .with("metrics", events(plan, summary))
         .with("lumps", lumps(plan, summary))
         .with("bands", bands)
+        .each("requirements", &summary.requirements, requirement)
         .each("worst_runs", &summary.worst, |worst| worst_run(plan, worst))
 }
 
@@ -94,6 +96,41 @@ fn spread_row(spread: Option<Spread>, runs: usize) -> Object {
         .with("maximum", spread.map(|spread| spread.extremes[1]))
         .with("worst", worst)
         .with("reason", spread.is_none().then_some("no run has one"))
+}
+
+/// How many runs satisfy a requirement in time, or why that is not known.
+fn requirement(one: &CampaignRequirement) -> Object {
+    let wish = &one.wish;
+    let object = Object::new()
+        .with("specification", one.number)
+        .with("requirement", wish.words())
+        .maybe("overshoot_percent", wish.overshoot_percent)
+        .maybe("settling_time_s", wish.settling_time_s)
+        .maybe("rise_time_s", wish.rise_time_s)
+        .with("settling_band_percent", wish.band_percent);
+    match one.judged {
+        Ok(judged) => {
+            let worst = judged.worst.map(|(run, reached)| {
+                Object::new()
+                    .with("run", run)
+                    .with("overshoot_percent", reached.overshoot_percent)
+                    .with("settling_time_s", reached.settling_time_s)
+                    .with("rise_time_s", reached.rise_time_s)
+            });
+            object
+                .with("satisfied", judged.satisfied)
+                .with("runs", judged.runs)
+                .with("confidence_95", judged.confidence_95())
+                .maybe("worst", worst)
+        }
+        Err(why) => {
+            let none: Option<usize> = None;
+            object
+                .known("satisfied", none, not_judged_words(why))
+                .known("runs", none, not_judged_words(why))
+                .known("confidence_95", none, not_judged_words(why))
+        }
+    }
 }
 
 /// `bounds` are those of the uncertain parameter; `outside` counts the runs whose machine is

@@ -1,7 +1,7 @@
 //! What `campaign` says to people.
 
-use super::RequestedRuns;
 use super::Summary;
+use super::{CampaignRequirement, NotJudged, RequestedRuns};
 use super::{Draw, Plan};
 use super::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
 use super::{QUANTILES, Spread};
@@ -76,6 +76,7 @@ pub(crate) fn document(
         out.gap();
         out.table(metrics(plan, summary));
         out.gap();
+        out.sentences(summary.requirements.iter().map(requirement));
         out.table(lumps(plan, summary));
     }
     if let Some(worst) = summary.worst.first() {
@@ -85,6 +86,39 @@ pub(crate) fn document(
         ));
     }
     out
+}
+
+/// `291 of 300 runs (97.0 %; 94.4 to 98.4 % with 95 % confidence) satisfy: at most 2 % overshoot`
+pub(crate) fn requirement(one: &CampaignRequirement) -> String {
+    let required = one.wish.words();
+    let judged = match one.judged {
+        Ok(judged) => judged,
+        Err(why) => return format!("not judged: {required}; {}", not_judged_words(why)),
+    };
+    let percent = |part: f64| significant(100.0 * part, 3);
+    let [low, high] = judged.confidence_95().map(percent);
+    let part = percent(judged.satisfied as f64 / judged.runs.max(1) as f64);
+    let worst = match judged.worst {
+        Some((run, reached)) if judged.satisfied < judged.runs => {
+            format!("; the worst is run {run}: {}", one.wish.reached_words(&reached))
+        }
+        _ => String::new(),
+    };
+    format!(
+        "{} of {} ({part} %; {low} to {high} % with 95 % confidence) satisfy what is required, {required}{worst}",
+        judged.satisfied,
+        counted(judged.runs)
+    )
+}
+
+/// Why a campaign says nothing of a requirement.
+pub(crate) fn not_judged_words(why: NotJudged) -> &'static str {
+    match why {
+        NotJudged::NoStep => "the scenario has no such step of the reference",
+        NotJudged::OtherBand => {
+            "the scenario measures settling in another band: state its `settling_band_percent` as required"
+        }
+    }
 }
 
 /// The spread of each metric, event by event.

@@ -46,6 +46,8 @@ pub(super) struct CampaignStep {
     pub(super) overshoot_percent: Option<f64>,
     /// s; infinite where it does not settle.
     pub(super) settling_time_s: f64,
+    /// From 10 to 90 percent, s; infinite where it does not rise so far.
+    pub(super) rise_time_s: f64,
     /// The band of the settling time, percent of the step.
     pub(super) band_percent: f64,
 }
@@ -110,7 +112,7 @@ fn steps(loaded: &Loaded, plan: &Plan, rows: &[Row]) -> Vec<CampaignStep> {
     let scenario = loaded.project.scenarios.iter().find(|one| one.name == plan.scenario());
     let band_percent = scenario.map_or(f64::NAN, |one| one.settling_band_percent);
     let place = |name: &str| METRIC_NAMES.iter().position(|known| *known == name).unwrap_or_default();
-    let [overshoot, settling] = ["overshoot_percent", "settling_time_s"].map(place);
+    let [overshoot, settling, rise] = ["overshoot_percent", "settling_time_s", "rise_time_s"].map(place);
     let completed = rows.iter().filter_map(|row| Some((row.run, row.ran()?)));
     completed
         .filter(|(_, ran)| ran.ended_s.is_none())
@@ -120,6 +122,7 @@ fn steps(loaded: &Loaded, plan: &Plan, rows: &[Row]) -> Vec<CampaignStep> {
             run,
             overshoot_percent: numbers[overshoot],
             settling_time_s: numbers[settling].unwrap_or(f64::INFINITY),
+            rise_time_s: numbers[rise].unwrap_or(f64::INFINITY),
             band_percent,
         })
         .collect()

@@ -7,10 +7,9 @@ use crate::quantity::DisplayUnit;
 use crate::setup::Setup;
 use crate::simulate::{
     Cause, DIVERGED, NamedRun, OVERSHOOT, SETTLING, ScenarioRun, SimulateError, TrackingWish, Window,
-    cause_words, cells_of, simulate_project,
+    cause_words, cells_of, simulate_project, time_requirements,
 };
 use crate::source::Source;
-use crate::specification::wishes;
 use phea_dynamics::watch::{Stopped, Watch};
 
 /// Name of the controller that the project gives.
@@ -60,7 +59,10 @@ pub(super) fn driven(
         }
         sides.push(DrivenSide { name, runs });
     }
-    Ok(Some(MachineChapter { sides, wish: TrackingWish::of(&wishes(project)?) }))
+    Ok(Some(MachineChapter {
+        sides,
+        wish: time_requirements(project)?.first().map(|required| required.wish),
+    }))
 }
 
 impl MachineChapter {

@@ -1,12 +1,13 @@
 //! The key `machine` of an answer.
 
-use super::{Agreement, Leg, StepSize, Trial, TrialRun, TrialStep, agreement_word};
+use super::{Agreement, HeldRequirement, Leg, StepSize, Trial, TrialRun, TrialStep, agreement_word};
 use crate::answer::Object;
 
 /// A trial in JSON.
 pub(crate) fn body(trial: &Trial) -> Object {
     Object::new()
         .with("verdict", agreement_word(trial.agreement()))
+        .maybe("requirements", trial.satisfies().map(satisfied_word))
         .each("runs", &trial.runs, row)
         .with("not_driven", trial.not_driven.as_slice())
 }
@@ -29,12 +30,36 @@ fn row(run: &TrialRun) -> Object {
         .each("steps", &run.legs, |(leg, of_leg)| {
             Object::new().with("step", leg_word(*leg)).and(step(of_leg))
         })
+        .each("requirements", &run.requirements, held)
+}
+
+/// The worst of the steps of a run against what is required in time.
+fn held(held: &HeldRequirement) -> Object {
+    let HeldRequirement { number, wish, reached, is_satisfied } = held;
+    let required = Object::new()
+        .maybe("overshoot_percent", wish.overshoot_percent)
+        .maybe("settling_time_s", wish.settling_time_s)
+        .maybe("rise_time_s", wish.rise_time_s)
+        .with("settling_band_percent", wish.band_percent);
+    Object::new()
+        .with("specification", *number)
+        .with("verdict", satisfied_word(*is_satisfied))
+        .with("required", required)
+        .with("overshoot_percent", reached.overshoot_percent)
+        .with("settling_time_s", reached.settling_time_s)
+        .with("rise_time_s", reached.rise_time_s)
+}
+
+/// The word for steps that satisfy what is required in time, or not.
+pub(super) fn satisfied_word(is_satisfied: bool) -> &'static str {
+    if is_satisfied { "satisfies" } else { "misses" }
 }
 
 fn size_word(size: StepSize) -> &'static str {
     match size {
         StepSize::Tenth => "tenth_of_supply_force",
         StepSize::Largest => "largest_unsaturated",
+        StepSize::Required => "required",
     }
 }
 

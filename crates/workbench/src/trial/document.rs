@@ -1,9 +1,11 @@
 //! The trial of a verdict on the machine, for people.
 
+use super::answer::satisfied_word;
 use super::{Agreement, StepResponse, StepSize, Trial, TrialRun, TrialStep, agreement_word, percent_words};
 use crate::document::{Cell, Document, Table};
 use crate::figure::{FamilySteps, Figure, TimeSeries, Words};
 use crate::quantity::{DisplayUnit, FORCE, display};
+use phea_qft::verification::Verdict;
 
 /// A trial, with its figure if that has a name and a title.
 pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Document {
@@ -23,6 +25,7 @@ pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Docume
             .with(trial.runs.iter().map(cells)),
     );
     out.sentences(reasons(trial));
+    out.append(required(trial));
     out.figures(figure_words.and_then(|words| figure(trial, words)));
     out
 }
@@ -47,6 +50,28 @@ fn cells(run: &TrialRun) -> [Cell; 8] {
         run.remaining_amplitude_n
             .map_or(Cell::Missing, |amplitude| format!("±{}", display(amplitude, &FORCE, 2)).into()),
     ]
+}
+
+/// What is required in time, run by run; empty where nothing is.
+fn required(trial: &Trial) -> Document {
+    let mut out = Document::default();
+    let Some(satisfies) = trial.satisfies() else { return out };
+    let mut rows = Table::new(["run", "required", "", "reached"]);
+    for (run, held) in trial.runs.iter().flat_map(|run| run.requirements.iter().map(move |held| (run, held)))
+    {
+        let verdict = if held.is_satisfied { Verdict::Met } else { Verdict::Violated };
+        rows.row([
+            run.what.as_str().into(),
+            held.wish.words().into(),
+            Cell::from(satisfied_word(held.is_satisfied)).marked(verdict),
+            held.wish.reached_words(&held.reached).into(),
+        ]);
+    }
+    let verdict = if satisfies { Verdict::Met } else { Verdict::Violated };
+    out.verdict(verdict.into(), format!("Required in time: {}", satisfied_word(satisfies)), vec![]);
+    out.explanation("The worst of the three steps of each run.");
+    out.table(rows);
+    out
 }
 
 /// From one reference to the other.
@@ -81,7 +106,7 @@ fn figure(trial: &Trial, [name, title]: [&str; 2]) -> Option<Figure> {
         (!times_s.is_empty()).then(|| TimeSeries { name: name.to_string(), times_s, values })
     };
     let nominal = series("linear loop, nominal plant", &first.linear_response);
-    let drawn = runs.iter().filter(|run| run.size == StepSize::Tenth || run.agreement != Agreement::Agrees);
+    let drawn = runs.iter().filter(|run| run.size != StepSize::Largest || run.agreement != Agreement::Agrees);
     let named = drawn.filter_map(|run| series(&run.what, &run.machine_response)).collect();
     let quantity = "Force, part of the step".to_string();
     let chart = FamilySteps { quantity, nominal, named, ..FamilySteps::default() };

@@ -248,7 +248,8 @@ fn wishes(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
         "not settled" => "does not settle".to_string(),
         words => format!("takes {words} to settle"),
     });
-    let told: Vec<String> = overshoot.into_iter().chain(settling).collect();
+    let rise = missed(StepProperty::Rise).map(|words| format!("takes {words} to rise"));
+    let told: Vec<String> = [overshoot, settling, rise].into_iter().flatten().collect();
     (!told.is_empty()).then(|| {
         let worst = format!("at worst a step under the {} controller {}.", side.name, told.join(" and "));
         match side.view.is_some_and(violates_tracking) {

@@ -77,8 +77,7 @@ impl Side<'_> {
 
     /// Whether all steps meet the wish; `None` if none can be judged.
     pub(super) fn keeps(&self, wish: &TrackingWish) -> Option<bool> {
-        let properties = [StepProperty::Overshoot, StepProperty::Settling];
-        let all = properties.into_iter().filter_map(|property| steps(self, wish, property));
+        let all = StepProperty::ALL.into_iter().filter_map(|property| steps(self, wish, property));
         all.map(|steps| steps.are_kept()).reduce(|one, other| one && other)
     }
 

@@ -17,6 +17,14 @@ pub(super) enum StepProperty {
     Overshoot,
     /// s; infinite where it does not settle.
     Settling,
+    /// From 10 to 90 percent, s; infinite where it does not rise so far.
+    Rise,
+}
+
+impl StepProperty {
+    /// All of them.
+    pub(super) const ALL: [StepProperty; 3] =
+        [StepProperty::Overshoot, StepProperty::Settling, StepProperty::Rise];
 }
 
 /// Where steps come from.
@@ -54,6 +62,7 @@ pub(super) fn steps(side: &Side<'_>, wish: &TrackingWish, property: StepProperty
     let most = match property {
         StepProperty::Overshoot => wish.overshoot_percent?,
         StepProperty::Settling => wish.settling_time_s?,
+        StepProperty::Rise => wish.rise_time_s?,
     };
     let mut steps: Vec<OneStep> = Vec::new();
     for run in side.runs.into_iter().flatten() {
@@ -75,6 +84,7 @@ pub(super) fn steps(side: &Side<'_>, wish: &TrackingWish, property: StepProperty
             StepProperty::Overshoot => step.overshoot_percent?,
             StepProperty::Settling if step.band_percent == wish.band_percent => step.settling_time_s,
             StepProperty::Settling => return None,
+            StepProperty::Rise => step.rise_time_s,
         };
         Some(OneStep { origin: StepOrigin::Campaign, value, place: format!("campaign, run {}", step.run) })
     }));
@@ -85,6 +95,7 @@ fn of_window(metrics: &Metrics, wish: &TrackingWish, property: StepProperty) -> 
     let overshoot = metrics.overshoot_percent.ok()?;
     match property {
         StepProperty::Overshoot => Some(overshoot),
+        StepProperty::Rise => Some(metrics.rise_time_s.unwrap_or(f64::INFINITY)),
         StepProperty::Settling if metrics.settling_band_percent != wish.band_percent => None,
         StepProperty::Settling => match metrics.settling_time_s {
             Ok(time_s) => Some(time_s),
@@ -105,18 +116,23 @@ fn of_machine(run: &TrialRun, wish: &TrackingWish, property: StepProperty) -> Op
             known.unwrap_or(metrics.overshoot_percent)
         }
         StepProperty::Settling => metrics.settling.time_s().unwrap_or(f64::INFINITY),
+        StepProperty::Rise => metrics.rise_time_10_90_s.unwrap_or(f64::INFINITY),
     })
 }
 
 /// The worst linear step of the family, and of how many.
 fn of_family(side: &Side<'_>, property: StepProperty) -> (Option<OneStep>, usize) {
     let Some(view) = side.view else { return (None, 0) };
-    let Some(TimeOutcome::Searched { plants, overshoot, settling }) =
+    let Some(TimeOutcome::Searched { plants, overshoot, settling, rise }) =
         view.in_time.first().map(|finding| &finding.outcome)
     else {
         return (None, 0);
     };
-    let worst = if property == StepProperty::Overshoot { overshoot } else { settling };
+    let worst = match property {
+        StepProperty::Overshoot => overshoot,
+        StepProperty::Settling => settling,
+        StepProperty::Rise => rise,
+    };
     let one = |worst: &WorstStep| {
         let plant = match view.names.headings().len() {
             0 => String::new(),
@@ -153,7 +169,8 @@ impl AllSteps {
             StepProperty::Overshoot if value < 0.01 => "no overshoot".to_string(),
             StepProperty::Overshoot => format!("{} %", significant(value, 3)),
             StepProperty::Settling if value == f64::INFINITY => "not settled".to_string(),
-            StepProperty::Settling => format!("{} s", significant(value, 3)),
+            StepProperty::Rise if value == f64::INFINITY => "not risen to 90 %".to_string(),
+            StepProperty::Settling | StepProperty::Rise => format!("{} s", significant(value, 3)),
         }
     }
 

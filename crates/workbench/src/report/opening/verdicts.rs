@@ -114,8 +114,11 @@ fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
     }));
     rows.extend(row("every scenario driven to its end", sides, |side| Some(driven(side.runs?))));
     let Some(wish) = contents.driven.and_then(|driven| driven.wish.as_ref()) else { return rows };
-    let required =
-        [(StepProperty::Overshoot, wish.overshoot_words()), (StepProperty::Settling, wish.settling_words())];
+    let required = [
+        (StepProperty::Overshoot, wish.overshoot_words()),
+        (StepProperty::Settling, wish.settling_words()),
+        (StepProperty::Rise, wish.rise_words()),
+    ];
     for (property, words) in required {
         let Some(words) = words else { continue };
         let all: Vec<Option<AllSteps>> = sides.iter().map(|side| steps(side, wish, property)).collect();

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{CertificateError, CertificateRational, meaning};
 
-use crate::project::SPECIFICATION_KINDS;
+use crate::project::{SPECIFICATION_KINDS, SpecificationKind};
 use crate::specification::closed_loop_key;
 
 #[derive(Serialize, Deserialize)]
@@ -220,7 +220,11 @@ fn limited(
     limit: StatedLimit,
     band: &[FrequencyEnd; 2],
 ) -> Result<LimitedLoop, CertificateError> {
-    let found = SPECIFICATION_KINDS.iter().find(|(key, _)| *key == closed_loop).map(|(_, known)| *known);
+    let known = SPECIFICATION_KINDS.iter().find(|(key, _)| *key == closed_loop).map(|(_, known)| *known);
+    let found = match known {
+        Some(SpecificationKind::ClosedLoop(known)) => Some(known),
+        Some(SpecificationKind::Step) | None => None,
+    };
     Ok(LimitedLoop {
         closed_loop: found.ok_or_else(|| meaning(format!("`{closed_loop}` is not a closed loop")))?,
         side: match side {

@@ -1,0 +1,134 @@
+//! The part of the runs of a campaign that satisfies what is required in time.
+
+use super::plan::Plan;
+use super::row::{METRIC_NAMES, Ran, Row};
+use crate::simulate::{COMPLETED, Cause, ReachedStep, TimeRequirement, TrackingWish, Window};
+
+/// A requirement in time, and how many runs satisfy it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CampaignRequirement {
+    /// Number of its specification in the file, from 1.
+    pub number: usize,
+    /// What is required of every step of the reference.
+    pub wish: TrackingWish,
+    /// How many runs satisfy it, or why that is not known.
+    pub judged: Result<SatisfiedRuns, NotJudged>,
+}
+
+/// How many runs satisfy a requirement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SatisfiedRuns {
+    /// Runs all of whose steps do.
+    pub satisfied: usize,
+    /// Runs that were driven; one that was not completed does not satisfy it.
+    pub runs: usize,
+    /// The run that is furthest from it, and what its worst step reaches.
+    pub worst: Option<(u64, ReachedStep)>,
+}
+
+/// Why a campaign says nothing of a requirement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotJudged {
+    /// The scenario has no step of the reference, or none of the required size.
+    NoStep,
+    /// The scenario measures settling in another band.
+    OtherBand,
+}
+
+/// Standard normal quantile of 97.5 percent.
+const TWO_SIDED_95: f64 = 1.959_963_984_540_054;
+/// Relative deviation of a step of the scenario from the required size that counts as none.
+const SAME: f64 = 1e-6;
+
+impl SatisfiedRuns {
+    /// Bounds of the probability p that a drawn run satisfies the requirement, with 95 percent
+    /// confidence, by Wilson's interval: the p with
+    ///
+    /// ```text
+    /// |k/n - p| <= z sqrt(p (1 - p)/n),     z = 1.96
+    /// ```
+    ///
+    /// from 0 to 1; all of it without a run.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_engineering::campaign::SatisfiedRuns;
+    /// let runs = SatisfiedRuns { satisfied: 300, runs: 300, worst: None };
+    /// let [low, high] = runs.confidence_95();
+    /// assert!((low - 1.0/(1.0 + 1.96_f64.powi(2)/300.0)).abs() < 1e-5 && high == 1.0);
+    /// ```
+    pub fn confidence_95(&self) -> [f64; 2] {
+        if self.runs == 0 {
+            return [0.0, 1.0];
+        }
+        let (count, part) = (self.runs as f64, self.satisfied as f64 / self.runs as f64);
+        let square = TWO_SIDED_95 * TWO_SIDED_95 / count;
+        let middle = (part + 0.5 * square) / (1.0 + square);
+        let half = (square * (part * (1.0 - part) + 0.25 * square)).sqrt() / (1.0 + square);
+        [
+            if self.satisfied == 0 { 0.0 } else { middle - half },
+            if self.satisfied == self.runs { 1.0 } else { middle + half },
+        ]
+    }
+}
+
+/// Every requirement that is part of the verdict, over the runs that were driven.
+pub(super) fn required(plan: &Plan, rows: &[Row]) -> Vec<CampaignRequirement> {
+    let of = |one: &TimeRequirement| CampaignRequirement {
+        number: one.number,
+        wish: one.wish,
+        judged: judged(plan, rows, one),
+    };
+    plan.requirements.iter().filter(|one| one.follows).map(of).collect()
+}
+
+fn judged(plan: &Plan, rows: &[Row], one: &TimeRequirement) -> Result<SatisfiedRuns, NotJudged> {
+    let concerned: Vec<usize> =
+        (0..plan.windows().len()).filter(|window| concerns(one, &plan.windows()[*window])).collect();
+    if concerned.is_empty() {
+        return Err(NotJudged::NoStep);
+    }
+    let same_band = plan.scenario.settling_band_percent.total_cmp(&one.wish.band_percent).is_eq();
+    if one.wish.settling_time_s.is_some() && !same_band {
+        return Err(NotJudged::OtherBand);
+    }
+    let mut found = SatisfiedRuns { satisfied: 0, runs: 0, worst: None };
+    let mut most = f64::NEG_INFINITY;
+    for (run, ran) in rows.iter().filter_map(|row| Some((row.run, row.ran()?))) {
+        let reached = reached(ran, &concerned);
+        let excess = one.wish.excess(&reached);
+        found.runs += 1;
+        found.satisfied += usize::from(one.wish.is_satisfied(&reached));
+        if excess > most {
+            most = excess;
+            found.worst = Some((run, reached));
+        }
+    }
+    Ok(found)
+}
+
+/// Whether a window is a step for which the requirement holds.
+fn concerns(one: &TimeRequirement, window: &Window) -> bool {
+    let Cause::ReferenceStep { from_n, to_n } = window.cause else { return false };
+    let is = |stated: Option<f64>, value: f64| {
+        stated.is_none_or(|stated| (stated - value).abs() <= SAME * (stated.abs() + to_n.abs()))
+    };
+    is(one.steps.amplitude_n, to_n - from_n) && is(one.steps.initial_force_n, from_n)
+}
+
+/// The worst of the steps of a run, each property by itself; infinite where it was not completed.
+fn reached(ran: &Ran, windows: &[usize]) -> ReachedStep {
+    let place = |name: &str| METRIC_NAMES.iter().position(|known| *known == name).unwrap_or_default();
+    let most = |name: &str| {
+        let values = windows.iter().map(|window| {
+            let number = ran.metrics.get(*window).and_then(|numbers| numbers[place(name)]);
+            number.filter(|_| ran.status == COMPLETED).unwrap_or(f64::INFINITY)
+        });
+        values.fold(0.0, f64::max)
+    };
+    ReachedStep {
+        overshoot_percent: most("overshoot_percent"),
+        settling_time_s: most("settling_time_s"),
+        rise_time_s: most("rise_time_s"),
+    }
+}

@@ -1,0 +1,79 @@
+//! The requirements in time of a project: of specifications of the kind `step`, and of limits of
+//! tracking that are stated in time.
+
+use super::TrackingWish;
+use crate::project::{DeclaredSpecification, Project};
+use crate::specification::{SpecificationError, closed_loops, wishes};
+
+/// A requirement in time of a specification.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeRequirement {
+    /// Number of its specification in the file, from 1.
+    pub number: usize,
+    /// Index of that among the limits on closed loops; `None` where it limits none.
+    pub limits: Option<usize>,
+    /// What is required of every step.
+    pub wish: TrackingWish,
+    /// Whether the limits follow from it: then it is part of the verdict. Stated limits are only
+    /// compared with it.
+    pub follows: bool,
+    /// The step of the nonlinear rig for which it holds.
+    pub steps: RequiredSteps,
+}
+
+/// The step for which a requirement holds on the nonlinear rig.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RequiredSteps {
+    /// Size, N, with its sign; `None`: a tenth of the force that the supply can produce.
+    pub amplitude_n: Option<f64>,
+    /// Force before the step, N; `None`: that of the operating point.
+    pub initial_force_n: Option<f64>,
+}
+
+impl RequiredSteps {
+    /// Whether it is stated at all.
+    pub fn are_stated(&self) -> bool {
+        *self != RequiredSteps::default()
+    }
+}
+
+/// The requirements in time of a project, one for each specification that states any: those of
+/// the kind `step` first, then those of limits of tracking.
+///
+/// # Errors
+/// [`SpecificationError`] for a wish without a limit, or a limit whose step response has no end.
+///
+/// # Example
+/// ```
+/// use phea_project::source::Memory;
+/// let text = "schema = 1\n[plant]\nnumerator = \"1\"\ndenominator = \"s\"\n\
+///             [[specification]]\nkind = \"step\"\novershoot_percent = 2\nsettling_time = \"0.25 s\"\n";
+/// let source = Memory::default().with("servo.toml", text);
+/// let project = phea_project::read(&source, "servo.toml", &[], &[])?.project;
+/// let [required] = phea_engineering::simulate::time_requirements(&project)?[..] else { panic!() };
+/// assert_eq!((required.wish.overshoot_percent, required.wish.settling_time_s), (Some(2.0), Some(0.25)));
+/// assert_eq!(required.wish.band_percent, 2.0); // where no band is stated
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn time_requirements(project: &Project) -> Result<Vec<TimeRequirement>, SpecificationError> {
+    let steps = project.specifications.iter().enumerate().filter(|(_, one)| one.closed_loop().is_none());
+    let of_step = |(index, declared): (usize, &DeclaredSpecification)| {
+        let DeclaredSpecification { step, .. } = declared;
+        TimeRequirement {
+            number: index + 1,
+            limits: None,
+            wish: TrackingWish::of_step(step),
+            follows: true,
+            steps: RequiredSteps { amplitude_n: step.amplitude, initial_force_n: step.initial_force },
+        }
+    };
+    let wishes = wishes(project)?;
+    let of_limits = |(limits, (number, ..)): (usize, (usize, _, _))| {
+        let wish = TrackingWish::of_specification(&wishes, number)?;
+        let mut own = wishes.iter().filter(|wish| wish.number == number);
+        let follows = own.all(|wish| wish.follows);
+        Some(TimeRequirement { number, limits: Some(limits), wish, follows, steps: RequiredSteps::default() })
+    };
+    let tracking = closed_loops(project).enumerate().filter_map(of_limits);
+    Ok(steps.map(of_step).chain(tracking).collect())
+}

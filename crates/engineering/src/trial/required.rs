@@ -1,0 +1,82 @@
+//! What is required in time, held against the steps of one machine that was driven.
+
+use phea_dynamics::time_response::{StepBaseline, step_metrics};
+
+use super::run::{BAND_PERCENT, Leg};
+use super::steps::Steps;
+use crate::simulate::{ReachedStep, RequiredSteps, ScenarioRun, TimeRequirement, TrackingWish};
+
+/// A requirement in time, and the worst that the steps of a run do of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeldRequirement {
+    /// Number of its specification in the file, from 1.
+    pub number: usize,
+    /// What is required.
+    pub wish: TrackingWish,
+    /// The worst of all steps, each property by itself; infinite where the run ended before.
+    pub reached: ReachedStep,
+    /// Whether every step satisfies it.
+    pub is_satisfied: bool,
+}
+
+/// Every requirement that is part of the verdict and holds for these steps.
+pub(super) fn held(
+    requirements: &[TimeRequirement],
+    steps: &Steps,
+    (required, run): (RequiredSteps, &ScenarioRun),
+) -> Vec<HeldRequirement> {
+    let concerned = requirements.iter().filter(|one| one.follows && holds_for(one, required));
+    let of = |one: &TimeRequirement| {
+        let legs = Leg::ALL.map(|leg| reached(&one.wish, steps, run, leg));
+        let reached = worst(legs);
+        HeldRequirement {
+            number: one.number,
+            wish: one.wish,
+            reached,
+            is_satisfied: one.wish.is_satisfied(&reached),
+        }
+    };
+    concerned.map(of).collect()
+}
+
+/// A requirement with a step of its own holds for that alone.
+fn holds_for(requirement: &TimeRequirement, steps: RequiredSteps) -> bool {
+    !requirement.steps.are_stated() || requirement.steps == steps
+}
+
+/// What one step does, in the band of the requirement.
+fn reached(wish: &TrackingWish, steps: &Steps, run: &ScenarioRun, leg: Leg) -> ReachedStep {
+    let never = ReachedStep {
+        overshoot_percent: f64::INFINITY,
+        settling_time_s: f64::INFINITY,
+        rise_time_s: f64::INFINITY,
+    };
+    if run.stopped().is_some() {
+        return never;
+    }
+    // of the solution itself, and not of its rows
+    let known = steps.step(run, leg);
+    let response = steps.response(run, leg);
+    let baseline = StepBaseline::to_value(1.0);
+    let Ok(rows) = step_metrics(&response.times_s, &response.values, baseline, wish.band_percent) else {
+        return never;
+    };
+    let settles = match wish.band_percent.total_cmp(&BAND_PERCENT).is_eq() {
+        true => known.settling_time_s,
+        false => rows.settling.time_s().filter(|time_s| steps.settles_early(*time_s)),
+    };
+    ReachedStep {
+        overshoot_percent: known.overshoot_percent.unwrap_or(rows.overshoot_percent),
+        settling_time_s: settles.unwrap_or(f64::INFINITY),
+        rise_time_s: rows.rise_time_10_90_s.unwrap_or(f64::INFINITY),
+    }
+}
+
+fn worst(legs: [ReachedStep; 3]) -> ReachedStep {
+    let most = |of: fn(&ReachedStep) -> f64| legs.iter().map(of).fold(0.0, f64::max);
+    ReachedStep {
+        overshoot_percent: most(|one| one.overshoot_percent),
+        settling_time_s: most(|one| one.settling_time_s),
+        rise_time_s: most(|one| one.rise_time_s),
+    }
+}

@@ -1,0 +1,160 @@
+//! Specifications of the kind `step`: what is required in time by itself, of every plant and in
+//! every run.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
+
+use crate::ask::{self, number};
+use phea_workbench::campaign::{Effort, RequestedRuns, SatisfiedRuns, Shard};
+use phea_workbench::command::{CampaignRequest, CampaignRuns, Request};
+use serde_json::Value;
+
+const STABILITY: &str = "[[specification]]\nkind = \"robust_stability\"\nlimit = 10\nfrequencies = [1]\n";
+
+/// k/s under a gain of 1, with these specifications.
+fn project(specifications: &str, controller: &str) -> String {
+    format!(
+        "schema = 1\ntitle = \"time\"\n[plant]\nnumerator = \"k\"\ndenominator = \"s\"\n\
+         [uncertainty]\nk = {{ nominal = 2, minimum = 1, maximum = 4, points = 3 }}\n\
+         [controller]\nnumerator = \"1\"\ndenominator = \"1\"\n{controller}\n{specifications}"
+    )
+}
+
+fn answer(text: &str, request: &Request) -> (Value, String) {
+    let source = phea_workbench::source::Memory::default().with("rig.toml", text);
+    let loaded = phea_workbench::project::read(&source, "rig.toml", &[], &[])
+        .unwrap_or_else(|report| panic!("{report}"));
+    let answer = phea_workbench::command::answer(&source, &loaded, &[], request).unwrap();
+    (serde_json::from_str(&answer.json).unwrap(), answer.text)
+}
+
+fn verify(text: &str) -> (Value, String) {
+    answer(text, &Request::Verify { proof: false, on_machine: false })
+}
+
+fn refusal(text: &str) -> String {
+    let source = phea_workbench::source::Memory::default().with("rig.toml", text);
+    phea_workbench::project::read(&source, "rig.toml", &[], &[]).unwrap_err().to_string()
+}
+
+/// k/s closed is a lag of 1/k: risen from 10 to 90 % in ln(9)/k, settled to 5 % after ln(20)/k, and
+/// never beyond its reference. The plant is the slowest. No prefilter is given: it is 1.
+#[test]
+fn a_lag_rises_and_settles_in_closed_form() {
+    for (rise_s, verdict) in [(2.0, "violated"), (2.5, "met")] {
+        let step = format!(
+            "[[specification]]\nkind = \"step\"\nrise_time = \"{rise_s} s\"\nsettling_time = \"3.1 s\"\n\
+             settling_band_percent = 5\novershoot_percent = 0\n"
+        );
+        let (object, words) = verify(&project(&format!("{step}{STABILITY}"), ""));
+        assert_eq!(object["verdict"], verdict, "{words}");
+        assert_eq!(object["evidence"], "search");
+        let found = &object["specifications"][0];
+        assert_eq!((found["kind"].as_str(), found["verdict"].as_str()), (Some("step"), Some(verdict)));
+        assert_eq!(object["specifications"][1]["kind"], "robust_stability");
+        ask::near(number(found, "worst_rise_time_s"), 9.0_f64.ln(), 1e-3);
+        ask::near(number(found, "worst_settling_time_s"), 20.0_f64.ln(), 3e-3);
+        assert!(number(found, "worst_overshoot_percent") < 0.01);
+        assert_eq!(found["plant"]["k"], 1.0);
+        let required = "no overshoot, settled within 5 % in 3.1 s, risen from 10 to 90 % in";
+        assert!(words.contains(required), "{words}");
+    }
+}
+
+/// A step that is required alone is judged like one beside limits, sampled or not.
+#[test]
+fn a_step_needs_no_limit_beside_it() {
+    let step = "[[specification]]\nkind = \"step\"\nsettling_time = \"4 s\"\n";
+    for controller in ["", "sample_time = \"1 ms\""] {
+        let (object, words) = verify(&project(step, controller));
+        assert_eq!(object["verdict"], "met", "{words}");
+        let settled = number(&object, "specifications.0.worst_settling_time_s");
+        assert!((settled - 50.0_f64.ln()).abs() < 0.01, "{settled}");
+    }
+    let unstable = project(step, "").replace("minimum = 1,", "minimum = -1,");
+    let (object, words) = verify(&unstable);
+    assert_eq!(object["verdict"], "violated", "{words}");
+    assert_eq!(object["specifications"][0]["verdict"], Value::Null);
+}
+
+#[test]
+fn what_belongs_to_a_step_and_what_does_not_is_told() {
+    let of = |specification: &str| refusal(&project(specification, ""));
+    let nothing = of("[[specification]]\nkind = \"step\"\namplitude = \"1 kN\"\n");
+    assert!(nothing.contains("nothing is required of the step"), "{nothing}");
+    let band = of("[[specification]]\nkind = \"step\"\novershoot_percent = 2\nsettling_band_percent = 1\n");
+    assert!(band.contains("`settling_band_percent` needs `settling_time`"), "{band}");
+    let limit = of("[[specification]]\nkind = \"step\"\novershoot_percent = 2\nlimit = 2\n");
+    assert!(limit.contains("`limit` belongs to the limit of a closed loop"), "{limit}");
+    let misplaced = of(&format!("{STABILITY}rise_time = \"1 s\"\n"));
+    assert!(misplaced.contains("`rise_time` belongs to `kind = \"step\"`"), "{misplaced}");
+}
+
+/// The ends of Wilson's interval are where |k/n - p| = z sqrt(p (1 - p)/n).
+#[test]
+fn the_interval_of_a_share_satisfies_its_equation() {
+    let z = 1.959_963_984_540_054_f64;
+    for (satisfied, runs) in [(1, 7), (56, 60), (9_700, 10_000)] {
+        let share = satisfied as f64 / runs as f64;
+        for p in (SatisfiedRuns { satisfied, runs, worst: None }).confidence_95() {
+            ask::near((share - p).abs(), z * (p * (1.0 - p) / runs as f64).sqrt(), 1e-9);
+        }
+    }
+    assert_eq!(SatisfiedRuns { satisfied: 0, runs: 0, worst: None }.confidence_95(), [0.0, 1.0]);
+    assert_eq!(SatisfiedRuns { satisfied: 0, runs: 5, worst: None }.confidence_95()[0], 0.0);
+    assert_eq!(SatisfiedRuns { satisfied: 5, runs: 5, worst: None }.confidence_95()[1], 1.0);
+}
+
+/// The example rig under its controller with a step required of it.
+fn rig(step: &str) -> String {
+    let text = include_str!("../../../examples/benchmark/campaign.toml");
+    format!("{text}\n[[specification]]\nkind = \"step\"\n{step}")
+}
+
+/// A campaign counts the runs whose steps satisfy what is required: all with a loose requirement,
+/// none with one that nothing satisfies, and those in the table of quantiles in between.
+#[test]
+fn a_campaign_counts_the_runs_that_satisfy() {
+    let of = |step: &str| {
+        let runs = RequestedRuns { runs: 20, shard: Shard::default(), effort: Effort::default() };
+        let asked = CampaignRequest { seed: 1, asked: CampaignRuns::All(runs), files: false };
+        let request = Request::Campaign(asked);
+        answer(&rig(step), &request).0
+    };
+    let loose = of("overshoot_percent = 90\n");
+    assert_eq!(
+        (&loose["requirements"][0]["satisfied"], &loose["requirements"][0]["runs"]),
+        (&20.into(), &20.into())
+    );
+    let tight = of("rise_time = \"1 us\"\n");
+    assert_eq!(tight["requirements"][0]["satisfied"], 0);
+    assert_eq!(tight["requirements"][0]["confidence_95"][0], 0.0);
+    let other = of("settling_time = \"1 s\"\nsettling_band_percent = 0.37\n");
+    assert!(other["requirements"][0]["satisfied"].is_null());
+    assert!(other["requirements"][0]["satisfied_reason"].as_str().unwrap().contains("another band"));
+}
+
+/// The nonlinear rig is driven by the step that is required, and every run is held against it.
+#[test]
+fn every_run_is_held_against_the_required_step() {
+    let request = Request::Verify { proof: false, on_machine: true };
+    let of = |step: &str| answer(&rig(step), &request).0;
+    for (most_s, verdict) in [(30.0, "satisfies"), (1e-4, "misses")] {
+        let object =
+            of(&format!("settling_time = {most_s}\namplitude = \"300 N\"\ninitial_force = \"100 N\"\n"));
+        let machine = &object["machine"];
+        assert_eq!(machine["requirements"], verdict);
+        let runs = machine["runs"].as_array().unwrap();
+        let driven: Vec<&Value> = runs.iter().filter(|run| run["step"] == "required").collect();
+        assert!(!driven.is_empty());
+        for run in driven {
+            assert_eq!(run["reference_n"], serde_json::json!([100.0, 400.0]));
+            assert_eq!(run["requirements"][0]["verdict"], verdict);
+            let worst = number(run, "machine.settling_time_s");
+            ask::near(number(&run["requirements"][0], "settling_time_s"), worst, 1e-12);
+        }
+        // a step of another size is not what was required
+        let largest = runs.iter().filter(|run| run["step"] == "largest_unsaturated");
+        assert!(largest.into_iter().all(|run| run["requirements"].as_array().unwrap().is_empty()));
+    }
+}
