@@ -5,6 +5,7 @@ mod accumulator;
 mod assembly;
 mod cross_port;
 mod gas;
+mod ideal_valve;
 mod in_loop;
 mod largest_flow;
 mod lines;
@@ -28,7 +29,7 @@ use phea_hydraulics::operating_point::{
 use phea_hydraulics::plant::{LinearLoad, LinearPlant, LinearSeries, PlantInMotion, VelocitySensor};
 use phea_hydraulics::servovalve::SpoolDirection;
 use phea_hydraulics::two_pressure::{
-    TwoPressureLinearParameters, TwoPressureModel, reduce, two_pressure_linear_parameters,
+    TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
 };
 
 use crate::project::{self, Project};
@@ -40,6 +41,9 @@ pub(crate) use assembly::{ExpansionPressures, VolumetricExpansion, hose, stiffen
 pub use assembly::{actuator, components};
 pub use cross_port::{CrossPortAtPoint, cross_port_at_point};
 pub(crate) use gas::components_at_setting;
+pub use ideal_valve::is_ideal;
+use ideal_valve::{in_the_limit, shut};
+pub(crate) use ideal_valve::{reduced, stand_in_coefficient, two_pressures};
 pub use in_loop::FeedForwardPath;
 pub(crate) use in_loop::as_response;
 pub(crate) use in_loop::{limits_load_motion, velocity_gain};
@@ -199,7 +203,7 @@ impl Rig {
 
     /// K_qU that follows from the rig, with the slopes of one side of a spool at null.
     pub(crate) fn flow_gain(&self, side: SpoolDirection) -> f64 {
-        reduce(&two_pressure_linear_parameters(&self.model, &self.point, side)).flow_gain
+        reduced(&two_pressures(&self.model, &self.point, side)).flow_gain
     }
 
     /// The stiffness in N/m of a force sensor together with a series element, where there is one.
@@ -236,10 +240,11 @@ impl Rig {
         let friction = components.friction.viscous();
         let model = TwoPressureModel::new(&at_valve, pressures, StiffeningMember::Nominal, friction);
         let side = place::spool_side(project, &numbers);
-        let two_pressure = two_pressure_linear_parameters(&model, &point, side);
-        let derived = reduce(&two_pressure);
+        let leaking = two_pressure_linear_parameters(&model, &point, side);
+        let two_pressure = in_the_limit(&leaking, &model, &point);
+        let derived = reduced(&two_pressure);
         let parameters = parameters::resolve(project, &derived);
-        let linear = linear(&two_pressure, stated(&parameters));
+        let linear = parameters::replaced(&derived, stated(&parameters));
         let (internal_leakage, dynamic_feedback) = components.cross_admittance(pressures);
         let load = load_at(&declared.load, &numbers, components, &point);
         let yielding = supply.and_then(|found| yielding_supply(declared, &numbers, &balance, &found, side));
@@ -252,7 +257,7 @@ impl Rig {
         let area_stiffness = components.cylinder.area_stiffness(point.position, pressures);
         let plant = LinearPlant { dynamic_feedback, series, area_stiffness, ..plant };
         let plant = match yielding {
-            Some(supply) if !(one_pressure && unseen) => with_supply(plant, supply, &two_pressure),
+            Some(of) if !(one_pressure && unseen) => with_supply(plant, shut(of, &model, &point), &leaking),
             _ => plant,
         };
         let plant = with_gas(plant, components, &two_pressure, pressures);

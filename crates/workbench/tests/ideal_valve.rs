@@ -2,11 +2,12 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
-use crate::ask::HOSE;
+use crate::ask::{self, HOSE, derived};
 use phea_workbench::project;
 use phea_workbench::rig::Rig;
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
+use serde_json::Value;
 
 const EDGES: &str =
     "valve.flow_coefficients={ supply_to_a = 3e-7, a_to_tank = 3e-7, supply_to_b = 3e-7, b_to_tank = 3e-7 }";
@@ -43,7 +44,7 @@ fn an_ideal_valve_is_the_limit_of_equal_leakage() {
             let near = rig([leakage; 4], &pressures).unwrap();
             let coefficient = near.linear.flow_pressure_coefficient;
             assert!((coefficient / before - 0.01).abs() < 1e-3 || before.is_infinite());
-            assert!(ideal.linear.flow_pressure_coefficient < 0.011 * coefficient && coefficient > 0.0);
+            assert!(ideal.linear.flow_pressure_coefficient == 0.0 && coefficient > 0.0);
             assert!((near.linear.flow_gain / ideal.linear.flow_gain - 1.0).abs() < leakage / 1e-12);
             assert!((near.point.pressure_a / ideal.point.pressure_a - 1.0).abs() < 1e-12);
             before = coefficient;
@@ -56,6 +57,56 @@ fn an_ideal_valve_is_the_limit_of_equal_leakage() {
             assert!((sum / (supply + tank) - 1.0).abs() < 1e-6, "{sum}");
             assert!((ideal.point.pressure_a / near.point.pressure_a - 1.0).abs() < 1e-6);
         }
+    }
+}
+
+/// The settings of an ideal valve in a project without stated linear parameters.
+fn ideal_project() -> String {
+    let (start, rest) = HOSE.split_once("[uncertainty]").unwrap();
+    let (_, end) = rest.split_once("[[specification]]").unwrap();
+    let stated = ["flow_gain = 5.62e-5", "flow_pressure_coefficient = 6.42e-13"];
+    let start = stated.iter().fold(start.to_string(), |text, one| text.replace(one, ""));
+    format!("{start}[[specification]]{end}")
+}
+
+/// Everything printed of an ideal valve is the limit: zero where the leakage is a factor, infinite
+/// where something is divided by it, and no number of its stand-in.
+#[test]
+fn no_command_prints_the_stand_in_of_an_ideal_valve() {
+    let text = ideal_project();
+    let range = "uncertainty={ \"supply.pressure\" = { nominal = \"70 bar\", minimum = \"60 bar\", maximum = \"80 bar\" } }";
+    let differential = text.replace("rod_diameter = \"22 mm\"", "rod_diameters = [\"22 mm\", \"36 mm\"]");
+    let cases = [
+        (&text, vec![]),
+        (&text, vec!["operating_point.load_force=4e3"]),
+        (&text, vec![range]),
+        (&differential, vec!["supply.model=pump_limited"]),
+    ];
+    for (text, more) in cases {
+        let settings = [vec![EDGES, "valve.leakage_coefficients=[0, 0, 0, 0]"], more].concat();
+        let check = ask::check(text, &settings);
+        for name in ["linear.flow_pressure_coefficient", "valve.flow_pressure_a", "dynamics.hydraulic_pole"] {
+            assert_eq!(derived(&check, name), 0.0, "{name} {settings:?}");
+        }
+        let rows = check["derived"].as_array().unwrap();
+        let gain = rows.iter().find(|row| row["name"] == "valve.pressure_gain").unwrap();
+        assert!(gain["value"].is_null() && gain["reason"].as_str().unwrap().starts_with("infinite"));
+        let linear = ask::linearize(text, &settings);
+        assert_eq!(linear["plant"]["command"]["poles"][0].to_string(), "[0.0,0.0]");
+        for number in [check, linear, ask::size_for_length(text, &settings, "1.5 m")].iter().flat_map(numbers)
+        {
+            assert!(number == 0.0 || number.abs() > 1e-17, "{number:e} {settings:?}");
+        }
+    }
+}
+
+/// All numbers of an answer.
+fn numbers(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Number(number) => vec![number.as_f64().unwrap()],
+        Value::Array(all) => all.iter().flat_map(numbers).collect(),
+        Value::Object(all) => all.values().flat_map(numbers).collect(),
+        _ => vec![],
     }
 }
 

@@ -24,7 +24,10 @@ pub(super) fn dynamics(rig: &Rig, list: &mut List) {
         (false, _) => "Dynamics, with the values in use",
     });
     list.add("dynamics.equivalent_stiffness", "K_eq", linear.equivalent_stiffness(), "N/m", springs);
-    let equation = "s_1 = -(K_c + G) K_{eq}/A_u^2";
+    let equation = match factors.hydraulic_rate == 0.0 {
+        true => "s_1 = -(K_c + G) K_{eq}/A_u^2, nothing leaks: an infinite time constant",
+        false => "s_1 = -(K_c + G) K_{eq}/A_u^2",
+    };
     list.add("dynamics.hydraulic_pole", "s_1", -factors.hydraulic_rate, "rad/s", equation);
     let equation = "dF_e/dt per volt = K_{qU} K_{eq}/A_u";
     list.add("dynamics.force_rate_gain", "K_qU K_eq/A_u", factors.hydraulic_gain, "N/(s.V)", equation);

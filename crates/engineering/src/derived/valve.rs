@@ -5,13 +5,11 @@ use phea_hydraulics::servovalve::{
     ChamberCoefficients, SpoolDirection, flow_coefficient_from_rating, leakage_coefficient_from_rating,
     velocity_gain,
 };
-use phea_hydraulics::two_pressure::{
-    TwoPressureLinearParameters, TwoPressureModel, reduce, two_pressure_linear_parameters,
-};
+use phea_hydraulics::two_pressure::{TwoPressureLinearParameters, TwoPressureModel};
 
 use super::list::List;
 use crate::project::{self, NullLeakage, Project, RatedFlow, ValveCoefficients};
-use crate::rig::Rig;
+use crate::rig::{Rig, is_ideal, reduced, two_pressures};
 use crate::setup::Setup;
 
 /// Unit of the coefficients of the edges.
@@ -78,7 +76,7 @@ pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
             "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U to 0 from below",
         ),
     ] {
-        let parameters = reduce(&two_pressure_linear_parameters(&own, &rig.point, direction));
+        let parameters = reduced(&two_pressures(&own, &rig.point, direction));
         let name = format!("valve.flow_pressure_coefficient_{name}");
         list.add(name, "K_c", parameters.flow_pressure_coefficient, "m3/(s.Pa)", equation);
     }
@@ -86,9 +84,19 @@ pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
     greatest_leakage(project, list);
     let chambers = without_case(rig);
     chamber_slopes(&chambers, list);
-    let alone = reduce(&TwoPressureLinearParameters { chambers, ..rig.two_pressure });
-    let pressure_gain = alone.flow_gain / alone.flow_pressure_coefficient;
-    list.add("valve.pressure_gain", "K_pU", pressure_gain, "Pa/V", "K_{pU} = K_{qU}/K_c");
+    pressure_gain(&TwoPressureLinearParameters { chambers, ..rig.two_pressure }, list);
+}
+
+/// K_pU of the valve without anything else that leaks.
+fn pressure_gain(valve: &TwoPressureLinearParameters, list: &mut List) {
+    let alone = reduced(valve);
+    let (name, equation) = ("valve.pressure_gain", "K_{pU} = K_{qU}/K_c");
+    if alone.flow_pressure_coefficient == 0.0 {
+        list.absent(name, "K_pU", "Pa/V", equation, "infinite, since the valve does not leak");
+    } else {
+        let pressure_gain = alone.flow_gain / alone.flow_pressure_coefficient;
+        list.add(name, "K_pU", pressure_gain, "Pa/V", equation);
+    }
 }
 
 /// K_qU of the operating point on either side of a spool at null.
@@ -132,7 +140,7 @@ fn greatest_leakage(project: &Project, list: &mut List) {
     for (name, direction) in
         [("extending", SpoolDirection::Extending), ("retracting", SpoolDirection::Retracting)]
     {
-        let parameters = reduce(&two_pressure_linear_parameters(&own, &rig.point, direction));
+        let parameters = reduced(&two_pressures(&own, &rig.point, direction));
         list.add(
             format!("valve.flow_pressure_coefficient_{name}_maximum"),
             "K_c",
@@ -184,7 +192,8 @@ fn edges(declared: &project::Valve, supply: &project::DeclaredSupply, rig: &Rig,
     for ((name, symbol, _), value) in EDGES.into_iter().zip(valve.flow_coefficients.to_array()) {
         list.add(format!("valve.flow_coefficient_{name}"), symbol, value, COEFFICIENT, flow_origin);
     }
-    for ((name, _, symbol), value) in EDGES.into_iter().zip(valve.leakage_coefficients.to_array()) {
+    let leaking = if is_ideal(valve) { [0.0; 4] } else { valve.leakage_coefficients.to_array() };
+    for ((name, _, symbol), value) in EDGES.into_iter().zip(leaking) {
         list.add(format!("valve.leakage_coefficient_{name}"), symbol, value, COEFFICIENT, leakage_origin);
     }
     let mean = |edges: [f64; 4]| edges.iter().sum::<f64>() / 4.0;

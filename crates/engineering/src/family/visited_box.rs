@@ -10,6 +10,7 @@ use super::hill::{Hill, SAME, SEED};
 use super::hydraulic::is_linear;
 use super::visited::Visited;
 use super::{ProjectFamilyError, family, null_sides};
+use crate::rig::stand_in_coefficient;
 use crate::setup::Setup;
 use crate::source::Memory;
 
@@ -102,7 +103,18 @@ pub fn visited_box(setup: &Setup<'_>) -> Result<Option<Vec<VisitedRange>>, Proje
             let extreme = |sign: f64| extreme(&family, expression, sign, points.iter().zip(&numbers));
             VisitedRange { name, symbol, unit, minimum: extreme(-1.0), maximum: extreme(1.0) }
         };
-    Ok(Some(PARAMETERS.iter().zip(&expressions).map(range).collect()))
+    let ranges = PARAMETERS.iter().zip(&expressions).map(range);
+    let stand_in = setup.rig()?.actuator.components();
+    Ok(Some(ranges.map(|range| in_the_limit(range, stand_in_coefficient(stand_in))).collect()))
+}
+
+/// A range of K_c without what the stand-in for an ideal valve leaks, which is at most this.
+fn in_the_limit(range: VisitedRange, most: Option<f64>) -> VisitedRange {
+    let limit = |end: Extreme| match most {
+        Some(most) if range.symbol == "K_c" && end.value <= most => Extreme { value: 0.0, at: vec![] },
+        _ => end,
+    };
+    VisitedRange { minimum: limit(range.minimum), maximum: limit(range.maximum), ..range }
 }
 
 /// The most of a result over a family with sign 1, the least with sign -1; `points` are some of its

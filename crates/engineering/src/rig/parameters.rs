@@ -47,6 +47,20 @@ pub(super) fn parameter_field<'a, S>(
     }
 }
 
+/// These parameters with the stated ones in their place, in order.
+pub(super) fn replaced<'n, S: Copy>(
+    derived: &LinearParameters<S>,
+    stated: impl Iterator<Item = (&'n str, S)>,
+) -> LinearParameters<S> {
+    let mut linear = *derived;
+    for (name, value) in stated {
+        if let Some(slot) = parameter_field(&mut linear, name) {
+            *slot = value;
+        }
+    }
+    linear
+}
+
 pub(super) fn resolve(project: &Project, derived: &LinearParameters) -> Vec<ResolvedParameter> {
     LINEAR_PARAMETERS
         .iter()

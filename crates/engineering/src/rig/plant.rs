@@ -11,7 +11,7 @@ use phea_hydraulics::servovalve::ChamberCoefficients;
 use phea_hydraulics::two_pressure::{TwoPressureLinearParameters, reduce};
 
 use super::numbers::Numbers;
-use super::parameters::{ParameterOrigin, ResolvedParameter, parameter_field};
+use super::parameters::{ParameterOrigin, ResolvedParameter, replaced};
 use super::place::shortened;
 use crate::project::{self, DeclaredAdjustment};
 
@@ -165,13 +165,7 @@ pub fn linear<'n, S: Scalar>(
     chambers: &TwoPressureLinearParameters<S>,
     stated: impl Iterator<Item = (&'n str, S)>,
 ) -> LinearParameters<S> {
-    let mut linear = reduce(chambers);
-    for (name, value) in stated {
-        if let Some(slot) = parameter_field(&mut linear, name) {
-            *slot = value;
-        }
-    }
-    linear
+    replaced(&reduce(chambers), stated)
 }
 
 /// The plant of these chambers with the stated parameters.
