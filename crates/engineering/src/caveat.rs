@@ -208,9 +208,9 @@ fn supply(setup: &Setup<'_>) -> Option<Caveat> {
         return None;
     }
     let found = setup.rig().ok()?.supply?;
-    let flow = |value: f64| DisplayUnit::LITRE_PER_MINUTE.text(value, 3);
+    let flow = |value: f64| project.units.flow.text(value, 3);
     let (taken, gives_words) = (flow(found.taken), flow(gives));
-    let pressure = DisplayUnit::BAR.text(found.supply.pressure, 4);
+    let pressure = project.units.pressure.text(found.supply.pressure, 4);
     let rests = found.taken < gives;
     let sentence = match rests {
         true => format!(
@@ -234,7 +234,7 @@ fn accumulator(setup: &Setup<'_>) -> Option<Caveat> {
     let declared = setup.project.actuator.as_ref()?;
     let ChargedRange { least, greatest } = charged_range(setup.rig().ok()?)?;
     let [of_a, of_b] = accumulator_place(declared);
-    let unit = setup.project.motion().unit(DisplayUnit::KILONEWTON);
+    let unit = setup.project.units.force;
     let newton = |point: OperatingPoint| unit.text(point.hydraulic_force, 3);
     let shut = shut_gas(setup).ok().flatten();
     let (place, beyond) = match (least, greatest) {

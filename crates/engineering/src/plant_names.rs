@@ -4,7 +4,7 @@ use phea_qft::family::Family;
 use phea_qft::verification::PlantPoint;
 
 use crate::project::Project;
-use crate::quantity::{Dimension, RATIO, display};
+use crate::quantity::{Dimension, RATIO, display, parse};
 
 /// What the numbers of a plant are called.
 #[derive(Clone, Debug)]
@@ -74,7 +74,7 @@ impl PlantNames {
             };
         };
         let parts: Vec<String> = numbers
-            .map(|(name, dimension, value)| format!("{name} {}", display(value, dimension, 4)))
+            .map(|(name, dimension, value)| format!("{name} {}", place_words(name, value, dimension)))
             .collect();
         if parts.is_empty() { "the nominal plant".to_string() } else { parts.join(", ") }
     }
@@ -83,7 +83,9 @@ impl PlantNames {
     /// [`PlantNames::headings`].
     pub fn cells(&self, plant: &PlantPoint) -> Vec<String> {
         match self.numbers(plant) {
-            Some(numbers) => numbers.map(|(_, dimension, value)| display(value, dimension, 4)).collect(),
+            Some(numbers) => {
+                numbers.map(|(name, dimension, value)| place_words(name, value, dimension)).collect()
+            }
             None => vec![self.text(plant)],
         }
     }
@@ -108,4 +110,23 @@ impl PlantNames {
             }
         }
     }
+}
+
+/// Digits of a coefficient of a linear model.
+const DIGITS: usize = 4;
+/// Relative accuracy to which a number of the project reads back: a spool is at one side of null by
+/// a hundred-millionth of its range.
+const READS_BACK: f64 = 1e-9;
+
+/// The value of a parameter; of a number of the project, such as `operating_point.velocity`, with
+/// as many digits as it takes to read back as the same plant: its coefficients may jump there.
+fn place_words(name: &str, value: f64, dimension: &'static Dimension) -> String {
+    if !name.contains('.') {
+        return display(value, dimension, DIGITS);
+    }
+    let is_same = |text: &String| {
+        parse(text, dimension).is_ok_and(|read| (read - value).abs() <= READS_BACK * value.abs())
+    };
+    let mut texts = (DIGITS..=17).map(|digits| display(value, dimension, digits));
+    texts.find(is_same).unwrap_or_else(|| display(value, dimension, DIGITS))
 }

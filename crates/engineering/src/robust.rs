@@ -17,7 +17,7 @@ use phea_qft::verification::{PlantPoint, TOLERANCE_DB};
 use crate::caveat::{Caveat, caveats};
 use crate::family::{ProjectFamilyError, family};
 use crate::plant_names::PlantNames;
-use crate::quantity::MotionKind;
+use crate::quantity::Units;
 use crate::setup::{ControlError, Setup, velocity_noise};
 use crate::simulate::{TimeRequirement, time_requirements};
 use crate::source::Source;
@@ -53,7 +53,7 @@ pub struct RobustProblem {
     /// A margin of minus this much still counts as met, dB.
     pub tolerance_db: f64,
     /// How the rig moves.
-    pub motion: MotionKind,
+    pub units: Units,
     /// Declared effects that none of this includes.
     pub caveats: Vec<Caveat>,
 }
@@ -145,7 +145,7 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
         },
         velocity_noise: velocity_noise(setup.project),
         tolerance_db: setup.project.tolerance_db().unwrap_or(TOLERANCE_DB),
-        motion: setup.project.motion(),
+        units: setup.project.units,
         caveats: caveats(setup),
     })
 }

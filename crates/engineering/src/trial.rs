@@ -17,7 +17,7 @@ pub use crate::linear_step::StepResponse;
 pub use required::HeldRequirement;
 pub(crate) use rigs::waves_alone;
 pub use rigs::with_waves;
-pub use run::{Agreement, Leg, StepSize, TrialRun, TrialStep, agreement_word};
+pub use run::{Agreement, BAND_PERCENT, Leg, StepSize, TrialRun, TrialStep, agreement_word};
 use run::{DrivenSteps, TriedMachine};
 
 use crate::audit::ProjectAudit;

@@ -9,7 +9,7 @@ use super::scene::Fill;
 use super::series::series_stroke;
 use super::ticks::plain;
 use super::{Figure, Words};
-use phea_quantity::{DisplayUnit, MotionKind};
+use phea_quantity::{DisplayUnit, Units};
 
 /// What stiffness is drawn over.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -47,9 +47,9 @@ pub struct StiffnessDiagram {
     pub operating_point: Option<f64>,
     /// What the bands mean, such as `stiffening 4 to 5`.
     pub band_label: String,
-    /// How the rig moves: of one that turns, positions are in rad, forces in N m and stiffnesses in
-    /// N m/rad.
-    pub motion: MotionKind,
+    /// The units of positions and forces, with how the rig moves: of one that turns, positions are
+    /// in rad, forces in N m and stiffnesses in N m/rad.
+    pub units: Units,
 }
 
 impl StiffnessDiagram {
@@ -57,10 +57,9 @@ impl StiffnessDiagram {
     /// of twelve apart.
     pub fn draw(&self, words: &Words) -> Figure {
         let (place, title) = match self.over {
-            StiffnessOver::Stroke => (DisplayUnit::MILLIMETRE, "Piston position x_p"),
-            StiffnessOver::Force => (DisplayUnit::KILONEWTON, "Hydraulic force F_H"),
+            StiffnessOver::Stroke => (self.units.position, "Piston position x_p"),
+            StiffnessOver::Force => (self.units.force, "Hydraulic force F_H"),
         };
-        let place = self.motion.unit(place);
         let places = self.curves.iter().flat_map(|curve| curve.places.iter());
         let (left, right) = extent(places.map(|v| place.of(*v)));
         let mut marks = Vec::new();
@@ -80,7 +79,7 @@ impl StiffnessDiagram {
     }
 
     fn unit(&self) -> DisplayUnit {
-        self.motion.unit(DisplayUnit::MEGANEWTON_PER_METRE)
+        self.units.motion.unit(DisplayUnit::MEGANEWTON_PER_METRE)
     }
 
     fn axis(&self) -> Axis {

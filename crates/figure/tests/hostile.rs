@@ -161,7 +161,11 @@ fn stiffness_curves() {
             over: if r.unit() < 0.5 { StiffnessOver::Force } else { StiffnessOver::Stroke },
             operating_point: r.maybe(Random::number),
             band_label: r.name(),
-            motion: if r.unit() < 0.5 { MotionKind::Rotary } else { MotionKind::Linear },
+            units: phea_quantity::Units::customary(if r.unit() < 0.5 {
+                MotionKind::Rotary
+            } else {
+                MotionKind::Linear
+            }),
         };
         chart.draw(&r.words())
     });

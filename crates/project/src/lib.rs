@@ -134,7 +134,7 @@ pub use visitor::word_of;
 pub use written_units::WrittenUnits;
 
 use phea_dynamics::portable;
-use phea_quantity::{MotionKind, RATIO};
+use phea_quantity::{MotionKind, RATIO, Units};
 
 /// A commented project to start from.
 pub const STARTER: &str = include_str!("starter.toml");
@@ -146,6 +146,9 @@ pub struct Project {
     /// The folder to which paths of other files are relative: the project file's own path up to its
     /// name. Not a key.
     pub folder: String,
+    /// The units in which its quantities are shown: those in which its text writes them, otherwise
+    /// the customary ones. Not a key.
+    pub units: Units,
     /// One line for people.
     pub title: String,
     /// The hydraulic actuator and what it works against.

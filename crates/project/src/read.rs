@@ -13,7 +13,9 @@ use super::printer::Printer;
 use super::reader::Reader;
 use super::text::{Findings, Place, RawFinding};
 use super::tree::{self, TreeNode};
-use super::{DIRECTION, DeclaredActuator, Loaded, Project, UncertaintyDirection, setting, validate};
+use super::{
+    DIRECTION, DeclaredActuator, Loaded, Project, UncertaintyDirection, WrittenUnits, setting, validate,
+};
 use crate::catalogue_entry::Catalogue;
 use crate::source::Source;
 use phea_quantity::spelling::nearest;
@@ -115,7 +117,9 @@ pub(super) fn read_bytes(
     }
     let mut reader = Reader::new(&root, project_text, &catalogue, &mut findings).knowing(keys);
     let folder = path.rfind(['/', '\\']).map_or(String::new(), |last| path[..=last].to_string());
-    let project = Project { folder, ..project(&mut reader, &root) };
+    let project = project(&mut reader, &root);
+    let units = WrittenUnits::written(&bytes, settings).units(project.motion());
+    let project = Project { folder, units, ..project };
     if let Some(late) = late {
         validate::late(late, &mut reader);
     }

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::Loaded;
-use phea_quantity::{DIMENSIONS, Dimension, UnitScale, parse};
+use phea_quantity::{
+    DIMENSIONS, Dimension, DisplayUnit, FLOW, FORCE, LENGTH, MotionKind, PRESSURE, UnitScale, Units, parse,
+};
 
 /// The units that a project file and its settings use.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -17,12 +19,27 @@ pub struct WrittenUnits {
 enum UnitFamily {
     /// Elastic moduli, which have the dimension of a pressure.
     Modulus,
+    /// Friction of seals, which is a small part of the forces of a rig.
+    Friction,
+    /// Positions and strokes, next to the lengths and bores of lines.
+    Position,
     Other,
 }
 
 impl UnitFamily {
     fn of(name: &str) -> UnitFamily {
-        if name.contains("modulus") { UnitFamily::Modulus } else { UnitFamily::Other }
+        let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
+        match () {
+            () if has(&["modulus"]) => UnitFamily::Modulus,
+            () if has(&["coulomb", "static"]) => UnitFamily::Friction,
+            () if has(&["position", "stroke", "distance"]) => UnitFamily::Position,
+            () => UnitFamily::Other,
+        }
+    }
+
+    /// The family whose units it takes where it has none of its own.
+    fn otherwise(self) -> UnitFamily {
+        if self == UnitFamily::Modulus { self } else { UnitFamily::Other }
     }
 }
 
@@ -47,26 +64,54 @@ impl WrittenUnits {
     /// # Ok::<(), phea_project::Refusal>(())
     /// ```
     pub fn of(loaded: &Loaded) -> WrittenUnits {
+        WrittenUnits::written(&loaded.bytes, &loaded.settings)
+    }
+
+    /// Those of the bytes of a file and of settings.
+    pub(super) fn written(bytes: &[u8], settings: &[String]) -> WrittenUnits {
         let mut units = WrittenUnits::default();
-        units.take_in(&String::from_utf8_lossy(&loaded.bytes));
-        for setting in &loaded.settings {
+        units.take_in(&String::from_utf8_lossy(bytes));
+        for setting in settings {
             let (key, value) = setting.split_once('=').unwrap_or_default();
             units.count(key, value.trim_matches(['"', '\'']));
         }
         units
     }
 
-    /// A number in the unit in which the project writes such numbers, most often; the SI unit where
-    /// it writes none, or where the number would be far from one.
+    /// One unit for each quantity of the project.
+    pub(super) fn units(&self, motion: MotionKind) -> Units {
+        let customary = Units::customary(motion);
+        let unit = |family, of: &'static Dimension, customary| {
+            let dimension = motion.dimension(of);
+            let known = self.most(dimension.si, family).and_then(|symbol| Units::known(symbol, dimension));
+            known.unwrap_or(customary)
+        };
+        Units {
+            motion,
+            force: unit(UnitFamily::Other, &FORCE, customary.force),
+            position: unit(UnitFamily::Position, &LENGTH, customary.position),
+            pressure: unit(UnitFamily::Other, &PRESSURE, customary.pressure),
+            flow: unit(UnitFamily::Other, &FLOW, customary.flow),
+        }
+    }
+
+    /// The unit that is written most often; of several that are used as often, the first.
+    fn most(&self, si: &'static str, family: UnitFamily) -> Option<&str> {
+        let used = self.used.get(&(si, family)).or_else(|| self.used.get(&(si, family.otherwise())))?;
+        used.iter().rev().max_by_key(|(_, count)| *count).map(|(unit, _)| unit.as_str())
+    }
+
+    /// A number in the unit in which the project writes such numbers, most often; where it writes
+    /// none, in the customary one, or in the SI unit where there is none, or where the number would
+    /// be far from one.
     pub fn shown(&self, name: &str, value: f64, si: &'static str) -> (f64, String) {
-        let used = self.used.get(&(si, UnitFamily::of(name)));
-        // of several that are used as often, the first
-        let most = used.and_then(|used| used.iter().rev().max_by_key(|(_, count)| *count));
         let dimension = DIMENSIONS.iter().find(|dimension| dimension.si == si);
-        let in_si = most.zip(dimension).and_then(|((unit, _), dimension)| {
-            Some((UnitScale::new(unit, dimension).ok()?.read("1")?, unit))
-        });
-        let shown = in_si.map(|(one, unit)| (value / one, unit.clone()));
+        let family = UnitFamily::of(name);
+        let unit = self.most(si, family).or_else(|| customary(si, family));
+        let in_si = unit
+            .zip(dimension)
+            .and_then(|(unit, dimension)| Some((UnitScale::new(unit, dimension).ok()?.read("1")?, unit)));
+        let shown = in_si.map(|(one, unit)| (value / one, unit.to_string()));
         let is_handy = |(number, _): &(f64, String)| *number == 0.0 || HANDY.contains(&number.abs());
         shown.filter(is_handy).unwrap_or_else(|| (value, si.to_string()))
     }
@@ -112,9 +157,22 @@ impl WrittenUnits {
     }
 }
 
+/// The unit of [`Units::customary`] for numbers of an SI unit.
+fn customary(si: &'static str, family: UnitFamily) -> Option<&'static str> {
+    let linear = Units::customary(MotionKind::Linear);
+    let known = [
+        (FORCE.si, UnitFamily::Other, linear.force),
+        (LENGTH.si, UnitFamily::Position, linear.position),
+        (PRESSURE.si, UnitFamily::Other, linear.pressure),
+        (FLOW.si, UnitFamily::Other, linear.flow),
+    ];
+    let is_of = |(of, whose, _): &&(&str, UnitFamily, DisplayUnit)| *of == si && *whose == family;
+    known.iter().find(is_of).map(|(_, _, unit)| unit.symbol)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::WrittenUnits;
+    use super::{MotionKind, WrittenUnits};
 
     /// The expansion of a hose and an area have one dimension, and each its own unit.
     #[test]
@@ -125,5 +183,22 @@ mod tests {
         assert_eq!(units.shown("cylinder.area_a", 3e-3, "m2"), (3e-3, "m2".to_string()));
         units.take_in("area_a = \"31 cm2\"");
         assert_eq!(units.shown("cylinder.area_a", 3e-3, "m2").1, "cm2");
+    }
+
+    /// Friction and the lengths of lines leave the units of forces and positions alone; a project
+    /// that writes none is shown in the customary ones.
+    #[test]
+    fn a_quantity_has_the_unit_of_its_own_numbers() {
+        let units = |text: &str, motion| {
+            let units = WrittenUnits::written(text.as_bytes(), &[]).units(motion);
+            [units.force, units.position, units.pressure, units.flow].map(|unit| unit.symbol)
+        };
+        let text =
+            "coulomb = \"80 N\"\nstatic = \"120 N\"\nforce = \"4 kN\"\nlength = \"2 m\"\nstroke = \"80 mm\"";
+        assert_eq!(units(text, MotionKind::Linear), ["kN", "mm", "bar", "L/min"]);
+        let text = "load_force = \"300 N\"\npressure = \"7 MPa\"\nflow = \"2 gpm\"";
+        assert_eq!(units(text, MotionKind::Linear), ["N", "mm", "MPa", "gpm"]);
+        assert_eq!(units("", MotionKind::Linear), ["kN", "mm", "bar", "L/min"]);
+        assert_eq!(units("force = \"2 kN.m\"", MotionKind::Rotary), ["kN.m", "deg", "bar", "L/min"]);
     }
 }

@@ -49,9 +49,11 @@ pub struct SpecificationFinding {
     /// The worst margin over the band and the family; `None` where there is nothing by which to
     /// judge a specification.
     pub worst: Option<WorstCase>,
-    /// The worst interior minimum of the margin, where the worst one lies at an end of the band.
+    /// The worst minimum that the margin of one plant has inside the band, where the worst one lies
+    /// at an end of it: the margin of the family may fall further towards that end.
     pub interior: Option<WorstCase>,
-    /// Bands in which some plant violates it, with the worst case of each.
+    /// Bands in which some plant that was examined violates it, with the worst case of each: others
+    /// of a box may do so a little beyond.
     pub violations: Vec<ViolatedBand>,
     /// The worst margin of the family at each design frequency.
     pub at_design_frequencies: Vec<WorstCase>,

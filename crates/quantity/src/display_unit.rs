@@ -1,5 +1,6 @@
 //! Units that figures and sentences show; values come in SI.
 
+use super::shortest::shortest;
 use super::significant;
 
 /// A unit on an axis.
@@ -82,6 +83,18 @@ impl DisplayUnit {
     /// The same, followed by the symbol.
     pub fn text(self, value: f64, digits: usize) -> String {
         self.with_symbol(self.number(value, digits))
+    }
+
+    /// The same without digits that are zero at the end: for values that someone wrote.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_quantity::DisplayUnit;
+    /// assert_eq!(DisplayUnit::KILONEWTON.short(4000.0, 4), "4 kN");
+    /// assert_eq!(DisplayUnit::KILONEWTON.short(80.0, 4), "0.08 kN");
+    /// ```
+    pub fn short(self, value: f64, digits: usize) -> String {
+        self.with_symbol(shortest(self.of(value), digits))
     }
 
     /// Numbers followed by the symbol; a ratio has no symbol.

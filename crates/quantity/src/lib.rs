@@ -15,9 +15,11 @@ mod price;
 mod print;
 mod scale;
 mod separators;
+mod shortest;
 mod significant;
 pub mod spelling;
 mod unit;
+mod units;
 
 pub use celsius::ZERO_CELSIUS;
 pub use dimension::*;
@@ -31,3 +33,4 @@ pub use print::print_bare;
 pub use print::{display, fitting, print};
 pub use scale::UnitScale;
 pub use significant::significant;
+pub use units::Units;

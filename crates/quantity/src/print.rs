@@ -3,6 +3,7 @@
 use super::dimension::Dimension;
 use super::display_unit::DisplayUnit;
 use super::parse::parse;
+use super::shortest::{plain, rounded};
 
 /// The shortest TOML text that reads back as exactly `value`: `"70 bar"` with its quotes if an
 /// engineering unit can express it, otherwise a bare SI number.
@@ -95,16 +96,4 @@ fn exactly(value: f64, unit: &str, dimension: &Dimension) -> Option<String> {
         }
     }
     None
-}
-
-fn rounded(value: f64, digits: usize) -> f64 {
-    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
-}
-
-fn plain(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_string();
-    }
-    let ordinary = value.abs() >= 1e-4 && value.abs() < 1e7;
-    if ordinary { format!("{value}") } else { format!("{value:e}") }
 }

@@ -264,7 +264,7 @@ fn rig_part(
     }
     chapters.extend(refused.map(sizing::refused));
     let appendix = vec![
-        stiffness::chapter(actuator, rig, &linearization),
+        stiffness::chapter(actuator, rig, &linearization, project.units),
         Chapter::of("derived", "Derived quantities", derived::document(&derived, &WrittenUnits::of(loaded))),
         models::chapter(setup, &linearization)?,
         impedance::chapter(setup, &linearization)?,

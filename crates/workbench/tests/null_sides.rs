@@ -10,7 +10,9 @@ use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::verification::{PlantPoint, Verdict};
 use phea_workbench::audit::{ProjectAudit, audit_project};
 use phea_workbench::family::{family, visited_box};
+use phea_workbench::plant_names::PlantNames;
 use phea_workbench::project::{self, Project};
+use phea_workbench::quantity::{VELOCITY, parse};
 use phea_workbench::rig::Rig;
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
@@ -179,4 +181,26 @@ fn the_box_that_is_printed_has_both_sides() {
     assert!((gain.minimum.value / below.min(above) - 1.0).abs() < 1e-12);
     assert!((gain.maximum.value / below.max(above) - 1.0).abs() < 1e-12);
     assert!(gain.minimum.at.iter().any(|(name, _)| name == SIDE));
+}
+
+/// The members of a family next to null read back from what is printed as the same plants: with
+/// four digits half of them would be on the other side, where K_qU differs by a quarter.
+#[test]
+fn a_place_next_to_null_reads_back_on_its_own_side() {
+    let region = "[family.operating_region]\nvelocity = [\"-1.1 mm/s\", \"0.7 mm/s\"]\n";
+    let project = loaded(region, &["operating_point.load_force=2.3456 kN"]);
+    let family = family_of(&project);
+    let names: Vec<&str> = family.plant().parameters().iter().map(|one| one.name.as_str()).collect();
+    assert_eq!(names, ["operating_point.velocity"]);
+    let printed = PlantNames::of_parameters(&project, names.into_iter());
+    assert!(family.members().len() > 1, "{:?}", family.members());
+    for values in family.members() {
+        let cells = printed.cells(&PlantPoint::Parameters(values.clone()));
+        let read = parse(&cells[0], &VELOCITY).unwrap();
+        let [own, again] = [values[0], read].map(|value| response(family.plant(), &[value], 3.0));
+        let apart = (own[0] - again[0]).hypot(own[1] - again[1]) / own[0].hypot(own[1]);
+        assert!(apart < 1e-3, "{cells:?} for {values:?}: {apart}");
+    }
+    let corner = printed.cells(&PlantPoint::Parameters(vec![-1.1e-3]));
+    assert_eq!(corner, ["-1.1 mm/s"]);
 }

@@ -61,7 +61,7 @@ fn every_event_has_its_row_and_what_was_published() {
         "2 kN at 4 s",
         "-1 kN at 5 s",
         "-4 kN at 6 s",
-        "0 N at 7 s",
+        "0 kN at 7 s",
     ];
     for height in heights {
         // overshoot, rise, settling, error and command, but no load that moves
@@ -109,7 +109,7 @@ fn a_campaign_has_its_chapter() {
     let quantiles: Vec<f64> = overshoot[1..6].iter().map(|cell| number(cell)).collect();
     assert!(quantiles.is_sorted() && number(&overshoot[6]) >= quantiles[4], "{overshoot:?}");
     // the run that is worst in most comes first
-    let peak = row(chapter, "disturbance peak (N)");
+    let peak = row(chapter, "disturbance peak (kN)");
     let worst = peak[6].split_once('(').unwrap().1.trim_end_matches(')').to_string();
     let of = &row(chapter, &worst)[1];
     assert!(of.contains("load motion at 3 s: disturbance peak") && of.contains("control rms"), "{of}");

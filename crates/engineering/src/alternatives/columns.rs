@@ -143,7 +143,7 @@ impl JudgedAlternative {
                 Err(reason) => Err(reason.clone()),
             };
             let part = ColumnPart::Scenario(scenario.name.clone());
-            driven(run).into_iter().map(move |column| (part.clone(), column))
+            driven(run, self.loaded.project.units.force).into_iter().map(move |column| (part.clone(), column))
         });
         columns.collect()
     }
@@ -160,17 +160,17 @@ pub(super) fn column(
 }
 
 /// The columns of a scenario: of each metric the greatest of all its events.
-fn driven(run: Result<&ScenarioRun, String>) -> [AlternativeColumn; 6] {
+fn driven(run: Result<&ScenarioRun, String>, force: DisplayUnit) -> [AlternativeColumn; 6] {
     let of = |metric: fn(&Metrics) -> crate::simulate::Measured| match &run {
         Ok(run) => greatest(run, metric),
         Err(reason) => Err(reason.clone()),
     };
     let energy = run.as_ref().map_err(Clone::clone).and_then(|run| energy_from_supply(run));
-    let (second, newton, volt) = (DisplayUnit::SECOND, DisplayUnit::NEWTON, DisplayUnit::VOLT);
+    let (second, volt) = (DisplayUnit::SECOND, DisplayUnit::VOLT);
     [
         column("overshoot_percent", "overshoot", PERCENT, 3, of(|metrics| metrics.overshoot_percent)),
         column("settling_time_s", "settling", second, 3, of(|metrics| metrics.settling_time_s)),
-        column("disturbance_peak_n", "disturbance", newton, 4, of(|metrics| metrics.disturbance_peak_n)),
+        column("disturbance_peak_n", "disturbance", force, 4, of(|metrics| metrics.disturbance_peak_n)),
         column("control_peak_v", "control peak", volt, 3, of(|metrics| metrics.control_peak_v)),
         column("control_rms_v", "control rms", volt, 3, of(|metrics| metrics.control_rms_v)),
         column("energy_from_supply_j", "energy from supply", DisplayUnit::JOULE, 3, energy),

@@ -6,7 +6,7 @@ use phea_qft::family::Family;
 use phea_qft::verification::{PlantPoint, Verdict};
 
 use crate::plant_names::PlantNames;
-use crate::quantity::{MotionKind, VELOCITY, display, significant};
+use crate::quantity::{Units, VELOCITY, display, significant};
 use crate::robust::RobustProblem;
 
 /// The noise of the measured velocity of the load with the effects that it has in a sampled loop.
@@ -15,7 +15,7 @@ pub struct VelocityNoise {
     /// Noise and rounding of the velocity together, m/s rms.
     pub rms_m_per_s: f64,
     /// How the rig moves.
-    pub motion: MotionKind,
+    pub units: Units,
     /// The largest effects in the family, or why they are not known.
     pub effect: Result<VelocityNoiseEffect, String>,
 }
@@ -48,12 +48,12 @@ impl VelocityNoise {
                 found.map(|found| named(&found, problem)).map_err(|error| words(&error))
             }),
         };
-        Some(VelocityNoise { rms_m_per_s, motion: problem.motion, effect })
+        Some(VelocityNoise { rms_m_per_s, units: problem.units, effect })
     }
 
     /// In a sentence.
     pub fn sentence(&self, names: &PlantNames) -> String {
-        let rms = display(self.rms_m_per_s, self.motion.dimension(&VELOCITY), 3);
+        let rms = display(self.rms_m_per_s, self.units.motion.dimension(&VELOCITY), 3);
         match &self.effect {
             Ok(effect) => {
                 let of = |plant: &PlantPoint| match names.headings().is_empty() {
@@ -61,10 +61,10 @@ impl VelocityNoise {
                     false => format!(" ({})", names.text(plant)),
                 };
                 format!(
-                    "the noise of the measured load velocity, {rms} rms, moves the command at the valve by {} mV rms{} and the force by {} N rms{}",
+                    "the noise of the measured load velocity, {rms} rms, moves the command at the valve by {} mV rms{} and the force by {} rms{}",
                     significant(1e3 * effect.command_rms_v, 3),
                     of(&effect.command_plant),
-                    significant(effect.force_rms_n, 3),
+                    self.units.force.text(effect.force_rms_n, 3),
                     of(&effect.force_plant),
                 )
             }

@@ -13,7 +13,7 @@ use super::range::VariedRange;
 use super::row::CampaignColumns;
 use super::varied::ranges;
 use crate::project::{Loaded, MotionShape, Project, Scenario, Signal, print};
-use crate::quantity::MotionKind;
+use crate::quantity::{MotionKind, Units};
 use crate::setup::Setup;
 use crate::simulate::{
     ControlledMachine, LineWatch, ScenarioDrive, SimulateError, TimeRequirement, Window, driven,
@@ -143,7 +143,7 @@ impl Plan {
                 .collect(),
             windows,
             open_loop: scenario.is_open_loop(),
-            motion: project.motion(),
+            units: project.units,
         };
         let look = look(&bench);
         Ok(Plan {
@@ -187,7 +187,12 @@ impl Plan {
 
     /// How the rig moves.
     pub fn motion(&self) -> MotionKind {
-        self.columns.motion
+        self.columns.units.motion
+    }
+
+    /// The units in which its quantities are shown.
+    pub fn units(&self) -> Units {
+        self.columns.units
     }
 
     /// Where the random numbers come from.

@@ -3,7 +3,7 @@
 use phea_hydraulics::machine::INDICATORS;
 use sha2::{Digest, Sha256};
 
-use phea_quantity::MotionKind;
+use phea_quantity::Units;
 
 use super::csv::{Csv, quoted};
 use super::shortest_number;
@@ -163,7 +163,7 @@ pub(super) struct CampaignColumns {
     /// Times of the bands, s.
     pub(super) times_s: Vec<f64>,
     /// By which columns of forces and positions, or of torques and angles, are called.
-    pub(super) motion: MotionKind,
+    pub(super) units: Units,
 }
 
 impl CampaignColumns {
@@ -173,15 +173,19 @@ impl CampaignColumns {
         csv.cells(&[&"run,campaign,status,reason,ended_s,steps,occurrences"]);
         let paths = self.paths.iter().map(String::as_str);
         for name in paths.chain(LUMP_COLUMNS) {
-            csv.cells(&[&self.motion.name(name)]);
+            csv.cells(&[&self.units.motion.name(name)]);
         }
         for (number, window) in self.windows.iter().enumerate() {
             for metric in meaningful(window, self.open_loop) {
-                csv.cells(&[&format!("event{}_{}", number + 1, self.motion.name(METRIC_NAMES[metric]))]);
+                csv.cells(&[&format!(
+                    "event{}_{}",
+                    number + 1,
+                    self.units.motion.name(METRIC_NAMES[metric])
+                )]);
             }
         }
         for time_s in &self.times_s {
-            csv.cells(&[&format!("{}_at_{time_s}_s", self.motion.name("force_n"))]);
+            csv.cells(&[&format!("{}_at_{time_s}_s", self.units.motion.name("force_n"))]);
         }
         csv.row(&[&"check"]);
         csv.text().to_string()
@@ -356,7 +360,7 @@ mod tests {
             ],
             open_loop: false,
             times_s: vec![0.0, 1.5, 3.0],
-            motion: MotionKind::Linear,
+            units: Units::default(),
         }
     }
 

@@ -15,7 +15,7 @@ use phea_machine::{Control, Sampled};
 use super::SimulateError;
 use super::line_limits::LineLimits;
 use crate::project::{self, FrictionLaw, Project, Scenario};
-use crate::quantity::MotionKind;
+use crate::quantity::Units;
 use crate::rig::{Numbers, Rig, lines, power_unit, velocity_gain};
 use crate::setup::Setup;
 
@@ -43,7 +43,7 @@ pub struct ControlledMachine {
     /// Pa absolute, below which the oil cavitates.
     pub vapour_pressure_pa: f64,
     /// How the rig moves.
-    pub motion: MotionKind,
+    pub units: Units,
 }
 
 impl ControlledMachine {
@@ -125,7 +125,7 @@ impl ControlledMachine {
                 .actuator
                 .as_ref()
                 .map_or(0.0, |actuator| actuator.fluid.vapour_pressure),
-            motion: project.motion(),
+            units: project.units,
         }
     }
 

@@ -6,7 +6,7 @@ use phea_hydraulics::machine::SIGNALS;
 use phea_hydraulics::series::ForceFrom;
 
 use super::ControlledMachine;
-use crate::quantity::{DisplayUnit, FORCE, LENGTH, PRESSURE, VOLTAGE, display, significant};
+use crate::quantity::{DisplayUnit, LENGTH, Units, VOLTAGE, display, significant};
 
 /// A limit of the rig, and how far a run exceeds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -285,12 +285,12 @@ impl WatchedLimit {
 }
 
 /// In a sentence.
-pub fn words(exceeded: &Exceeded) -> String {
+pub fn words(exceeded: &Exceeded, units: Units) -> String {
     let in_unit = |value: f64| match exceeded.limit {
-        RigLimit::SensorCapacity | RigLimit::StallForce => display(value, &FORCE, 4),
+        RigLimit::SensorCapacity | RigLimit::StallForce => units.force.short(value, 4),
         RigLimit::NominalVoltage => display(value, &VOLTAGE, 4),
         RigLimit::VapourPressure | RigLimit::WorkingPressure | RigLimit::BurstPressure => {
-            display(value, &PRESSURE, 4)
+            units.pressure.short(value, 4)
         }
         RigLimit::LaminarFlow => significant(value.abs(), 4),
     };

@@ -39,7 +39,7 @@ impl<'a> RunTable<'a> {
         bench: &ControlledMachine,
     ) -> Result<RunTable<'a>, WriteError> {
         let columns = Columns::new(&SignalParts::of(bench));
-        let names: Vec<_> = columns.names().into_iter().map(|name| bench.motion.name(name)).collect();
+        let names: Vec<_> = columns.names().into_iter().map(|name| bench.units.motion.name(name)).collect();
         let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
         let path = destination.path_of(name);
         let table = NumberTable::new(destination.begin(name)?, format, &names);

@@ -14,7 +14,7 @@ use phea_hydraulics::machine::{InitialCondition, Machine};
 
 use super::SimulateError;
 use super::bench::{options, settings};
-use crate::quantity::MotionKind;
+use crate::quantity::Units;
 use crate::rig::Rig;
 use crate::setup::Setup;
 use phea_dynamics::watch::{Progress, Watch};
@@ -46,7 +46,7 @@ pub struct FrequencyRequest {
 #[derive(Clone, Debug, PartialEq)]
 pub struct MachineResponses {
     /// How the rig moves.
-    pub motion: MotionKind,
+    pub units: Units,
     /// Equilibrium position of the piston, m.
     pub position_m: f64,
     /// Force on the load, N.
@@ -133,8 +133,8 @@ pub fn frequency_response(
     };
     let position_m = rested.rig.point.position;
     let (force_n, command_v) = (rested.force_n, rested.rest.command);
-    let motion = setup.project.motion();
-    Ok(MachineResponses { motion, position_m, force_n, command_v, open_loop, closed_loop, stopped })
+    let units = setup.project.units;
+    Ok(MachineResponses { units, position_m, force_n, command_v, open_loop, closed_loop, stopped })
 }
 
 fn rested(setup: &Setup<'_>) -> Result<RestedMachine, SimulateError> {

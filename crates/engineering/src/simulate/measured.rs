@@ -16,7 +16,7 @@ use super::motion_file::rising;
 use super::parts::SignalParts;
 use super::plausible;
 use crate::project::{Findings, MeasuredFile, MeasuredSignal, Project, Refusal, Scenario};
-use crate::quantity::{DisplayUnit, TIME};
+use crate::quantity::{DisplayUnit, TIME, Units};
 use crate::source;
 use crate::table::{Column, Measurand, MeasuredTable, Sought, TIMES};
 
@@ -56,20 +56,20 @@ pub struct Overlay {
 }
 
 impl Overlay {
-    /// The unit in which people read the signal.
-    pub fn display_unit(&self) -> DisplayUnit {
-        self.ending().map_or(DisplayUnit::VOLT, |(_, unit)| unit)
+    /// The unit in which people read the signal, in a project with these.
+    pub fn display_unit(&self, units: Units) -> DisplayUnit {
+        self.ending(units).map_or(DisplayUnit::VOLT, |(_, unit)| unit)
     }
 
     /// The signal without its unit, in words.
     pub fn quantity(&self) -> String {
-        let name = self.ending().and_then(|(ending, _)| self.signal.strip_suffix(ending));
+        let name = self.ending(Units::default()).and_then(|(ending, _)| self.signal.strip_suffix(ending));
         name.unwrap_or(self.signal).replace('_', " ")
     }
 
-    fn ending(&self) -> Option<(&'static str, DisplayUnit)> {
+    fn ending(&self, units: Units) -> Option<(&'static str, DisplayUnit)> {
         let all = [
-            ("_m3_per_s", DisplayUnit::LITRE_PER_MINUTE),
+            ("_m3_per_s", units.flow),
             ("_rad_per_s", DisplayUnit::RADIAN_PER_SECOND),
             ("_rad", DisplayUnit::DEGREE),
             ("_n_m", DisplayUnit::NEWTON_METRE),
@@ -77,9 +77,9 @@ impl Overlay {
             ("_ratio", DisplayUnit::ONE),
             ("_w", DisplayUnit::WATT),
             ("_m_per_s", DisplayUnit::METRE_PER_SECOND),
-            ("_pa", DisplayUnit::BAR),
-            ("_n", DisplayUnit::NEWTON),
-            ("_m", DisplayUnit::MILLIMETRE),
+            ("_pa", units.pressure),
+            ("_n", units.force),
+            ("_m", units.position),
             ("_v", DisplayUnit::VOLT),
         ];
         all.into_iter().find(|(ending, _)| self.signal.ends_with(ending))

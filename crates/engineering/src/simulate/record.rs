@@ -4,7 +4,7 @@ use phea_hydraulics::machine::SIGNALS;
 
 use super::columns::{self, LOOP_SIGNALS};
 use super::parts::SignalParts;
-use phea_quantity::MotionKind;
+use phea_quantity::Units;
 
 /// Largest number of samples of a run that its record keeps.
 const MOST_KEPT: usize = 100_000;
@@ -49,8 +49,9 @@ pub struct Record {
     pub of_loop: Vec<[f64; LOOP_SIGNALS.len()]>,
     /// Number of samples from one of these to the next.
     pub looks_apart: u64,
-    /// How the rig moves: of one that turns, positions are in rad and forces in N m.
-    pub motion: MotionKind,
+    /// The units in which it is shown, with how the rig moves: of one that turns, positions are in
+    /// rad and forces in N m.
+    pub units: Units,
     /// Which parts the rig has.
     pub parts: SignalParts,
 }
@@ -66,7 +67,7 @@ impl Default for Record {
             signals: vec![],
             of_loop: vec![],
             looks_apart: 1,
-            motion: MotionKind::Linear,
+            units: Units::default(),
             parts: SignalParts::default(),
         }
     }

@@ -259,7 +259,7 @@ pub(super) fn run<'t>(
     let memory = memory.into_inner();
     let memory = matches!(bench.control, Control::Sampled(_)).then_some(&memory);
     let end = saved::of_end(bench, course, (outcome.status, &outcome.end, scenario.duration), memory);
-    let record = Record { motion: bench.motion, parts: SignalParts::of(bench), ..seen.record };
+    let record = Record { units: bench.units, parts: SignalParts::of(bench), ..seen.record };
     let amplification = amplification(&outcome, &samples.borrow());
     let run = ScenarioRun {
         name: scenario.name.clone(),

@@ -90,7 +90,7 @@ pub(super) fn of_end(
     if status != Status::Completed {
         return Err("it was not completed");
     }
-    if bench.motion.is_rotary() {
+    if bench.units.motion.is_rotary() {
         return Err("the states of a motor are not saved yet");
     }
     if bench.machine.has_linkage() {

@@ -10,7 +10,7 @@ use phea_qft::verification::Verdict;
 use super::run::{Agreement, BAND_PERCENT, Leg, StepSize, TrialStep};
 use super::steps::Steps;
 use crate::audit::ProjectAudit;
-use crate::quantity::{DisplayUnit, FORCE, significant};
+use crate::quantity::{DisplayUnit, significant};
 use crate::robust::RobustProblem;
 use crate::simulate::{DIVERGED, ScenarioRun, SimulateError, TimeRequirement, UNDETERMINED};
 
@@ -97,7 +97,7 @@ pub(super) fn judge(
         };
         return (broken, words);
     }
-    let (whole, linear) = (driven.whole(), driven.linear);
+    let (whole, linear, force) = (driven.whole(), driven.linear, driven.run.record.units.force);
     if whole.settling_time_s.is_none() {
         let settles = !driven.grows && linear.is_none_or(|step| step.settling_time_s.is_some());
         return match settles {
@@ -118,7 +118,10 @@ pub(super) fn judge(
         return (broken, format!("{told}: more than the limit on |L/(1+L)| lets a loop overshoot"));
     }
     if let Some(range) = driven.remains().filter(|range| width(*range) > STILL * driven.steps.size()) {
-        return (Agreement::Differs, format!("{told}, and does not come to rest: {}", range_words(range)));
+        return (
+            Agreement::Differs,
+            format!("{told}, and does not come to rest: {}", range_words(range, force)),
+        );
     }
     if more.abs() > OVERSHOOT_ROOM_PERCENT {
         return (Agreement::Differs, told);
@@ -155,7 +158,8 @@ fn missed_in_time(machine: &TrialStep, linear: Option<TrialStep>, problem: &Robu
 }
 
 fn unsettled(driven: &Driven<'_>) -> String {
-    let words = driven.remains().map_or(String::new(), |range| format!(": {}", range_words(range)));
+    let force = driven.run.record.units.force;
+    let words = driven.remains().map_or(String::new(), |range| format!(": {}", range_words(range, force)));
     format!("the force does not settle{}{words}", leg_words(driven.worst()))
 }
 
@@ -181,8 +185,8 @@ fn leg_words(leg: Leg) -> &'static str {
     }
 }
 
-fn range_words([low, high]: [f64; 2]) -> String {
-    let newton = |force| crate::quantity::display(force, &FORCE, 3);
+fn range_words([low, high]: [f64; 2], unit: DisplayUnit) -> String {
+    let newton = |force| unit.text(force, 3);
     format!("at the end it swings between {} and {}", newton(low), newton(high))
 }
 

@@ -10,7 +10,7 @@ use crate::audit::ProjectAudit;
 use crate::linear_step::StepResponse;
 use crate::plant_names::NamedPlant;
 use crate::project::{LineMotion, Project};
-use crate::quantity::significant;
+use crate::quantity::{Units, significant};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::simulate::{RequiredSteps, RunOutput, ScenarioRun, SimulateError, simulate_into};
@@ -93,6 +93,8 @@ pub struct TrialRun {
     /// What is required in time of these steps, and whether they satisfy it; empty if it did not
     /// start.
     pub requirements: Vec<HeldRequirement>,
+    /// The units in which it is shown.
+    pub units: Units,
     /// The linear loop's response; empty if it is absent.
     pub linear_response: StepResponse,
     /// The machine's in its worst step; empty where it did not start.
@@ -127,7 +129,7 @@ impl TrialRun {
 }
 
 /// Percent of the step within which the force counts as settled.
-pub(super) const BAND_PERCENT: f64 = 2.0;
+pub const BAND_PERCENT: f64 = 2.0;
 /// Duration of a step in settling times of the linear loop, and its bounds in s.
 const SETTLING_TIMES: f64 = 5.0;
 const HOLD_S: [f64; 2] = [0.5, 20.0];
@@ -297,6 +299,7 @@ impl<'a> TriedMachine<'a> {
             worst: Leg::There,
             remaining_amplitude_n: None,
             requirements: vec![],
+            units: self.tried.project.units,
             linear_response: response.clone(),
             machine_response: StepResponse::default(),
             agreement: Agreement::Differs,

@@ -288,7 +288,7 @@ fn cost(
 
 fn words_of(measure: &ComparedMeasure, value: f64) -> String {
     match measure.key {
-        "disturbance_peak_n" => DisplayUnit::NEWTON.text(value, 3),
+        "disturbance_peak_n" => measure.unit.text(value, 3),
         "control_rms_v" => DisplayUnit::VOLT.text(value, 3),
         "delay_margin_s" => DisplayUnit::MILLISECOND.text(value, 3),
         "parts_price" => measure.unit.text(value, 4),

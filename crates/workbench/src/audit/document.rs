@@ -33,7 +33,7 @@ pub(crate) fn document(view: &ProjectAudit, figures: Vec<Figure>) -> Document {
     out.verdict(verdict.into(), format!("Verdict: {}", verdict_words(verdict)), summary(view));
     out.section("Specifications", specifications(view));
     out.section("Worst plants", plants(view));
-    out.section("Where it is violated", violations(view));
+    out.section("Where examined plants violate it", violations(view));
     out.figures_below("Closed loops of the family", figures);
     out.heading("What this rests on");
     out.sentences(basis(view));
@@ -104,11 +104,12 @@ fn specifications(view: &ProjectAudit) -> Table {
         row.extend(margin_at(finding.worst.as_ref()));
         row.extend(margin_at(worst_at_design(finding)));
         rows.row(row);
-        // a worst margin at an end of the band is of little interest
+        // a worst margin at an end of the band is of little interest; the margin of the family need
+        // not have its least where that of one plant has
         let interior = finding.interior.as_ref().filter(|interior| finding.worst.as_ref() != Some(*interior));
         if let Some(interior) = interior {
             let [margin, frequency] = margin_at(Some(interior));
-            let inside = "  inside its band".into();
+            let inside = "  a plant's own least within the band".into();
             let [one, limits, verdict, design, place] = [(); 5].map(|()| Cell::empty());
             rows.row([one, inside, limits, verdict, margin, frequency, design, place]);
         }

@@ -8,6 +8,7 @@ use super::{QUANTILES, Spread};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::Loaded;
+use crate::quantity::{DisplayUnit, Units};
 use crate::simulate::{self, ScenarioRun, cause_words, metric_of};
 
 /// Largest number of rejected and ended runs that are listed.
@@ -16,9 +17,15 @@ const TOLD: usize = 6;
 const LUMP_WORDS: [&str; 3] = ["K_H (N/m)", "K_qU (m3/(s.V))", "K_c (m3/(s.Pa))"];
 
 /// A metric in words, with its unit.
-fn metric_words(metric: usize) -> String {
+fn metric_words(metric: usize, units: Units) -> String {
     let known = METRIC_NAMES.get(metric).and_then(|key| metric_of(key));
-    known.map_or(String::new(), |metric| format!("{} ({})", metric.word, metric.unit))
+    known.map_or(String::new(), |metric| metric.shown_in(units).title(metric.word))
+}
+
+/// The unit of a metric.
+fn unit_of(metric: usize, units: Units) -> DisplayUnit {
+    let known = METRIC_NAMES.get(metric).and_then(|key| metric_of(key));
+    known.map_or(DisplayUnit::ONE, |metric| metric.shown_in(units))
 }
 
 /// One of [`LUMP_NAMES`] as it is written in equations, with its unit.
@@ -126,24 +133,25 @@ pub(crate) fn metrics(plan: &Plan, summary: &Summary) -> Table {
     let quantiles = QUANTILES.map(|percent| format!("{percent} %"));
     let heads = std::iter::once("metric".to_string()).chain(quantiles).chain(["worst (run)".to_string()]);
     let mut rows = Table::grouped_by("event", heads);
+    let units = plan.units();
     for (window, spreads) in plan.windows().iter().zip(&summary.metrics) {
-        rows.group(cause_words(window));
+        rows.group(cause_words(window, units));
         for metric in meaningful(window, plan.is_open_loop()) {
             let missing = without(metric, spreads[metric], summary.driven());
             let missing = missing.map_or(String::new(), |text| format!("; {text}"));
-            let name = Cell::from(format!("{}{missing}", metric_words(metric)));
-            rows.row(std::iter::once(name).chain(spread_cells(spreads[metric])));
+            let name = Cell::from(format!("{}{missing}", metric_words(metric, units)));
+            rows.row(std::iter::once(name).chain(spread_cells(spreads[metric], unit_of(metric, units))));
         }
     }
     rows
 }
 
 /// Quantiles, and the worst with its run; empty if no run has such a number.
-fn spread_cells(spread: Option<Spread>) -> Vec<Cell> {
+fn spread_cells(spread: Option<Spread>, unit: DisplayUnit) -> Vec<Cell> {
     let Some(spread) = spread else { return vec![Cell::Missing; QUANTILES.len() + 1] };
     let (value, run) = spread.worst;
-    let worst = format!("{} ({run})", significant(value, 4)).into();
-    spread.quantiles.iter().map(|value| Cell::number(*value, 4)).chain([worst]).collect()
+    let worst = format!("{} ({run})", significant(unit.of(value), 4)).into();
+    spread.quantiles.iter().map(|value| Cell::number(unit.of(*value), 4)).chain([worst]).collect()
 }
 
 /// The parameters of the linear models that were visited, next to the box for which the controller

@@ -6,7 +6,7 @@ use super::Summary;
 use super::{CampaignError, Effort, Shard};
 use super::{METRIC_NAMES, Row};
 use crate::answer::{OutputFile, part_files};
-use crate::figure::{DisplayUnit, FanChart, Figure, TimeBand, TimeSeries, Words};
+use crate::figure::{FanChart, Figure, TimeBand, TimeSeries, Words};
 use crate::simulate::{Cause, Window, around, cause_words};
 
 /// The bands over the whole scenario, and around each event; empty if no run was driven.
@@ -28,7 +28,7 @@ pub(crate) fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<Figure>, Ca
     for (index, window) in windows.filter(|(_, window)| window.start_s < end) {
         let words = Words::new(
             format!("campaign-bands-event-{}", index + 1),
-            format!("Enlarged: {}", cause_words(window)),
+            format!("Enlarged: {}", cause_words(window, plan.units())),
             format!(
                 "The bands around what begins it, and the run with the worst {}.",
                 worst_metric(window, plan.is_open_loop())[1]
@@ -97,7 +97,7 @@ fn picture(
     let event = |window: &Window| (window.start_s, window.cause.label().to_string());
     FanChart {
         quantity: "Force F_e".to_string(),
-        unit: plan.motion().unit(DisplayUnit::KILONEWTON),
+        unit: plan.units().force,
         bands: vec![
             TimeBand { name: "90 % of the runs".to_string(), lower: series(0), upper: series(4) },
             TimeBand { name: "50 % of the runs".to_string(), lower: series(1), upper: series(3) },

@@ -137,13 +137,15 @@ const TOLD_EVENTS: usize = 2;
 /// How many were completed, and the range of most of them in the first events.
 fn words(runs: u64, plan: &Plan, summary: &Summary) -> String {
     let mut told = vec![format!("{} of {runs} runs completed", summary.statuses[0])];
+    let units = plan.units();
     let windows = plan.windows().iter().zip(&summary.metrics);
     let of_window = |(window, spreads): (&Window, &[Option<Spread>; METRIC_NAMES.len()])| {
         let place = |name: &&str| METRIC_NAMES.iter().position(|known| known == name);
         let metric = TOLD_FIRST.iter().filter_map(place).find(|metric| spreads[*metric].is_some())?;
-        let [low, .., high] = spreads[metric]?.quantiles.map(|value| significant(value, DIGITS));
         let told = metric_of(METRIC_NAMES.get(metric)?)?;
-        Some(format!("{}: {} {low} to {high} {}", cause_words(window), told.word, told.unit))
+        let unit = told.shown_in(units);
+        let [low, .., high] = spreads[metric]?.quantiles.map(|value| unit.number(value, DIGITS));
+        Some(format!("{}: {} {low} to {high} {}", cause_words(window, units), told.word, unit.symbol))
     };
     told.extend(windows.filter_map(of_window).take(TOLD_EVENTS));
     let [least, .., most] = QUANTILES;
@@ -204,7 +206,7 @@ fn worst_in(plan: &Plan, worst: &WorstRun) -> String {
     let of_window = |(index, window)| {
         let of = worst.of.iter().filter(|(place, _)| *place == index).map(|(_, name)| metric(*name));
         let of: Vec<&str> = of.collect();
-        (!of.is_empty()).then(|| format!("{}: {}", cause_words(window), of.join(", ")))
+        (!of.is_empty()).then(|| format!("{}: {}", cause_words(window, plan.units()), of.join(", ")))
     };
     plan.windows().iter().enumerate().filter_map(of_window).collect::<Vec<_>>().join("; ")
 }

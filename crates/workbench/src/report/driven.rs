@@ -3,7 +3,6 @@
 use crate::answer::significant;
 use crate::error::CommandError;
 use crate::project::Project;
-use crate::quantity::DisplayUnit;
 use crate::setup::Setup;
 use crate::simulate::{
     Cause, DIVERGED, NamedRun, OVERSHOOT, SETTLING, ScenarioRun, SimulateError, TrackingWish, Window,
@@ -115,20 +114,21 @@ fn told(runs: &[ScenarioRun]) -> Option<String> {
     }
     let windows = || runs.iter().flat_map(|run| &run.windows);
     let is_step = |window: &Window| matches!(window.cause, Cause::ReferenceStep { .. });
+    let units = runs.first()?.record.units;
     let step = windows().find(|(window, _)| is_step(window)).map(|(window, metrics)| {
-        let cells = cells_of(metrics);
+        let cells = cells_of(metrics, units);
         let settling = match metrics.settling_time_s {
             Ok(_) => format!("settling {}", cells[SETTLING].text()),
             Err(_) => cells[SETTLING].text(),
         };
-        format!("{}: {} overshoot, {settling}", cause_words(window), cells[OVERSHOOT].text())
+        format!("{}: {} overshoot, {settling}", cause_words(window, units), cells[OVERSHOOT].text())
     });
     let greatest = runs.iter().flat_map(disturbances).max_by(|one, other| one.2.total_cmp(&other.2));
     let disturbed = greatest.map(|(run, window, peak_n)| {
-        let peak = run.record.motion.unit(DisplayUnit::KILONEWTON).text(peak_n, 3);
+        let peak = run.record.units.force.text(peak_n, 3);
         let is_first = runs.first().is_some_and(|first| first.name == run.name);
         let scenario = if is_first { String::new() } else { format!("{}, ", run.name) };
-        format!("{scenario}{}: {peak} of disturbance", cause_words(&window))
+        format!("{scenario}{}: {peak} of disturbance", cause_words(&window, units))
     });
     let told: Vec<String> = step.into_iter().chain(disturbed).collect();
     (!told.is_empty()).then(|| told.join("; "))

@@ -1,7 +1,7 @@
 //! The inputs of a scenario, in sentences.
 
 use crate::project::{Amplitudes, Multisine, Scenario, Signal};
-use crate::quantity::{Dimension, DisplayUnit, FORCE, RATIO, TIME, TORQUE, VOLTAGE, display};
+use crate::quantity::{DisplayUnit, TIME, Units, display};
 
 /// Digits of a number in a sentence.
 const DIGITS: usize = 4;
@@ -10,50 +10,53 @@ const TOLD: usize = 4;
 
 /// The initial state and the inputs of a scenario, if these are more than steps of the reference;
 /// the load turns behind a linkage, or moves with the rod.
-pub(super) fn sentences(scenario: &Scenario, turns: bool) -> Vec<String> {
+pub(super) fn sentences(scenario: &Scenario, units: Units, turns: bool) -> Vec<String> {
     let mut told = Vec::new();
     if let Some(file) = scenario.start.as_ref().and_then(|start| start.file.as_ref()) {
         told.push(format!("It goes on from the state in {file}."));
     }
     if scenario.reference.iter().any(|signal| signal.steps().is_empty()) {
-        told.push(format!("The reference is {}.", parts(&scenario.reference, &FORCE)));
+        told.push(format!("The reference is {}.", parts(&scenario.reference, units.force)));
     }
     if scenario.is_open_loop() {
-        let command = parts(&scenario.command, &VOLTAGE);
+        let command = parts(&scenario.command, DisplayUnit::VOLT);
         told.push(format!("It runs open loop: no controller acts, and the command is {command}."));
     }
     if !scenario.external_force.is_empty() {
         let external = &scenario.external_force;
         told.push(match turns {
-            false => format!("An external force acts on the load: {}.", parts(external, &FORCE)),
-            true => format!("An external torque acts on the joint: {}.", parts(external, &TORQUE)),
+            false => format!("An external force acts on the load: {}.", parts(external, units.force)),
+            true => format!(
+                "An external torque acts on the joint: {}.",
+                parts(external, DisplayUnit::NEWTON_METRE)
+            ),
         });
     }
     if !scenario.setting_change.is_empty() {
-        let change = parts(&scenario.setting_change, &RATIO);
+        let change = parts(&scenario.setting_change, DisplayUnit::ONE);
         told.push(format!("The setting of the accumulators moves from where it rests: {change}."));
     }
     told
 }
 
 /// All parts, joined.
-fn parts(signals: &[Signal], dimension: &'static Dimension) -> String {
+fn parts(signals: &[Signal], unit: DisplayUnit) -> String {
     let steps: Vec<String> = signals
         .iter()
         .flat_map(Signal::steps)
-        .map(|(at, to)| format!("{} from {}", display(to, dimension, DIGITS), display(at, &TIME, DIGITS)))
+        .map(|(at, to)| format!("{} from {}", unit.short(to, DIGITS), display(at, &TIME, DIGITS)))
         .collect();
     let mut all = Vec::new();
     if !steps.is_empty() {
         all.push(format!("steps ({})", steps.join(", ")));
     }
     let others = signals.iter().filter(|signal| signal.steps().is_empty());
-    all.extend(others.map(|signal| part(signal, dimension)));
+    all.extend(others.map(|signal| part(signal, unit)));
     all.join(", plus ")
 }
 
-fn part(signal: &Signal, dimension: &'static Dimension) -> String {
-    let number = |value: &f64| display(*value, dimension, DIGITS);
+fn part(signal: &Signal, unit: DisplayUnit) -> String {
+    let number = |value: &f64| unit.short(*value, DIGITS);
     let time = |value: f64| display(value, &TIME, DIGITS);
     let what = match signal {
         Signal::Step { .. } | Signal::Steps { .. } => String::new(),
@@ -65,7 +68,7 @@ fn part(signal: &Signal, dimension: &'static Dimension) -> String {
             let band = [frequency, final_frequency].map(hertz).join(" to ");
             format!("a chirp of {} from {band}", number(amplitude))
         }
-        Signal::Multisine(sines) => multisine(sines, dimension),
+        Signal::Multisine(sines) => multisine(sines, unit),
         Signal::File { file, .. } => format!("the file {file}"),
     };
     let start = time(signal.begins_s());
@@ -79,13 +82,13 @@ fn hertz(value: &f64) -> String {
     DisplayUnit::HERTZ.text(*value, DIGITS)
 }
 
-fn multisine(sines: &Multisine, dimension: &'static Dimension) -> String {
+fn multisine(sines: &Multisine, unit: DisplayUnit) -> String {
     let frequencies = match sines.frequencies.as_slice() {
         [first, .., last] if sines.frequencies.len() > TOLD => [first, last].map(hertz).join(" to "),
         few => few.iter().map(hertz).collect::<Vec<_>>().join(", "),
     };
     let amplitudes = match &sines.amplitudes {
-        Amplitudes::Equal(amplitude) => format!(" of {} each", display(*amplitude, dimension, DIGITS)),
+        Amplitudes::Equal(amplitude) => format!(" of {} each", unit.short(*amplitude, DIGITS)),
         Amplitudes::Each(_) => String::new(),
     };
     let phases = if sines.phases.is_empty() { "Schroeder's phases" } else { "stated phases" };

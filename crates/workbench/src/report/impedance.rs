@@ -25,7 +25,7 @@ pub(super) fn chapter(
     let project = setup.project;
     let forces = load_motion::forces(project, &views(linearization))?;
     let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
-    let motion = project.motion();
+    let units = project.units;
     let mut out = Document::default();
     out.equations(vec!["Z = -F_e/(s X_L)".to_string()]);
     let met = match project.actuator.as_ref().and_then(|actuator| actuator.series.as_ref()) {
@@ -61,14 +61,13 @@ pub(super) fn chapter(
     }
     out.heading("The load moves");
     out.figures([load_motion::figure(project, &forces)]);
-    out.explanation(format!(
-        "Largest change of the force: {}.",
-        peaks(&forces, motion.unit(DisplayUnit::KILONEWTON))
-    ));
+    out.explanation(format!("Largest change of the force: {}.", peaks(&forces, units.force)));
     let of = what_moves(project, forces.iter().any(|moved| moved.moves_ground));
-    let step = motion.unit(DisplayUnit::MILLIMETRE).text(1e-3, 3);
-    let remaining: Vec<String> =
-        views(linearization).iter().map(|(name, view)| format!("{name} {}", remains(view))).collect();
+    let step = units.position.text(1e-3, 3);
+    let remaining: Vec<String> = views(linearization)
+        .iter()
+        .map(|(name, view)| format!("{name} {}", remains(view, units.force)))
+        .collect();
     out.explanation(format!("Proposition 6.2: with leakage or feedback the zero at the origin makes the force return. After a step of {of} by {step} there remains, {}.", remaining.join(", ")));
     out.heading("Asymptotes");
     out.table(asymptotes(linearization));
@@ -83,9 +82,9 @@ fn peaks(forces: &[Moved], unit: DisplayUnit) -> String {
     forces.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-fn remains(view: &PortView) -> String {
+fn remains(view: &PortView, unit: DisplayUnit) -> String {
     match view.final_force_n {
-        Some(force) => format!("{} N", significant(force, 3)),
+        Some(force) => unit.text(force, 3),
         None => "no final value (unstable)".to_string(),
     }
 }

@@ -140,11 +140,11 @@ pub(super) fn what_moves(project: &Project, is_ground: bool) -> &'static str {
 /// The figure of these forces.
 pub(super) fn figure(project: &Project, forces: &[Moved]) -> Figure {
     let (distance, duration) = motion(project);
-    let unit = project.motion().unit(DisplayUnit::KILONEWTON);
+    let unit = project.units.force;
     let moved = what_moves(project, forces.iter().any(|moved| moved.moves_ground));
     let caption = format!(
         "Change of the force while {moved} moves {} in {} s (a smooth step of fifth order), linear and with no limit on the command. {}",
-        project.motion().unit(DisplayUnit::MILLIMETRE).text(distance, 3),
+        project.units.position.text(distance, 3),
         significant(duration, 3),
         end(forces, unit)
     );

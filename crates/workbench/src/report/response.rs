@@ -8,7 +8,6 @@ use crate::document::{Document, StatusMark, Table};
 use crate::figure::{DisplayUnit, Figure, SettlingBand, Words};
 use crate::linear_loop::{LinearLoop, LoopStability, StepView, settling_words};
 use crate::over_time::ForceStep;
-use crate::quantity::MotionKind;
 use crate::setup::Setup;
 
 /// Height of the drawn step where the project's scenarios give none, N.
@@ -29,7 +28,7 @@ pub(super) fn chapter(
     out.left_out(setup);
     match &linear_loop.step {
         Ok(view) => {
-            out.figures([figure(view, reference_n.unwrap_or(REFERENCE), setup.project.motion())]);
+            out.figures([figure(view, reference_n.unwrap_or(REFERENCE), setup.project.units.force)]);
             out.table(metrics(view));
         }
         Err(reason) => out.verdict(StatusMark::Bad, format!("No step response: {reason}"), vec![]),
@@ -46,8 +45,7 @@ pub(super) fn chapter(
     Chapter::of(anchor, title, out)
 }
 
-fn figure(view: &StepView, reference: f64, motion: MotionKind) -> Figure {
-    let unit = motion.unit(DisplayUnit::KILONEWTON);
+fn figure(view: &StepView, reference: f64, unit: DisplayUnit) -> Figure {
     let sized = |values: &[f64]| values.iter().map(|value| value * reference).collect::<Vec<f64>>();
     let band = view.metrics.settling_band_percent;
     let words = |time_s| format!("t_s({} %) = {} s", significant(band, 2), significant(time_s, 3));

@@ -110,8 +110,9 @@ fn vary(
 fn event_table(varied: &[VariedQuantity], event: usize) -> Option<Table> {
     let seen = |varied: &VariedQuantity| Some(*varied.run.as_ref().ok()?.windows.get(event)?);
     let windows: Vec<(Window, Metrics)> = varied.iter().filter_map(seen).collect();
+    let units = varied.iter().find_map(|varied| Some(varied.run.as_ref().ok()?.record.units))?;
     let shown = told(windows.iter());
-    let event = cause_words(&windows.first()?.0);
+    let event = cause_words(&windows.first()?.0, units);
     let heads = std::iter::once(event.as_str()).chain(shown.iter().map(|place| METRICS[*place].word));
     let mut rows = Table::grouped_by("quantity", heads);
     let mut quantity = "";
@@ -121,7 +122,7 @@ fn event_table(varied: &[VariedQuantity], event: usize) -> Option<Table> {
             rows.group(varied.quantity);
         }
         let as_declared = if varied.factor == 1.0 { ", as declared" } else { "" };
-        rows.row(metrics_row(format!("{}{as_declared}", varied.value), &shown, &metrics, None));
+        rows.row(metrics_row(format!("{}{as_declared}", varied.value), &shown, (&metrics, units), None));
     }
     Some(rows)
 }

@@ -7,6 +7,7 @@ use super::driving;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::figure::Figure;
 use crate::project::{Project, Scenario};
+use crate::quantity::Units;
 use crate::simulate::{
     METRICS, Metrics, NamedRun, TrackingWish, Window, adjustment_sentence, cause_words, cells_of, close_ups,
     coarse_sentence, gas_sentence, headline, measured, measured_together, metrics_row, occurrence_sentences,
@@ -77,7 +78,8 @@ fn scenario(
     let mut out = Document::default();
     out.heading(runs.first().map(|named| named.run.name.as_str()).unwrap_or_default());
     out.explanations(runs.iter().map(|named| format!("{}{}.", of(named, runs), headline(named.run))));
-    out.explanations(driving::sentences(declared, runs.iter().any(|named| turns(&named.run.record))));
+    let units = runs.first().map_or(Units::default(), |named| named.run.record.units);
+    out.explanations(driving::sentences(declared, units, runs.iter().any(|named| turns(&named.run.record))));
     out.figures(figures);
     out.append(metrics(runs, declared, wish));
     let names = runs.iter().map(|named| (Some(named.name).filter(|_| runs.len() > 1), named.run));
@@ -125,13 +127,18 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, wish: Option<&TrackingWis
             let heads = std::iter::once("").chain(shown.iter().map(|place| METRICS[*place].word));
             let mut rows = Table::grouped_by("event", heads);
             for (index, (window, _)) in first.windows.iter().enumerate() {
-                rows.group(cause_words(window));
+                rows.group(cause_words(window, first.record.units));
                 for named in several {
                     if let Some((_, metrics)) = named.run.windows.get(index) {
-                        rows.row(metrics_row(named.name.to_string(), &shown, metrics, wish));
+                        rows.row(metrics_row(
+                            named.name.to_string(),
+                            &shown,
+                            (metrics, named.run.record.units),
+                            wish,
+                        ));
                     }
                 }
-                if let Some((source, cells)) = published(declared, window) {
+                if let Some((source, cells)) = published(declared, window, first.record.units) {
                     rows.row(published_row(source, &shown, cells));
                 }
             }
@@ -158,6 +165,6 @@ fn wished(wish: &TrackingWish) -> Option<String> {
 
 /// The metrics that some of these windows can have.
 pub(super) fn told<'a>(windows: impl Iterator<Item = &'a (Window, Metrics)>) -> Vec<usize> {
-    let cells: Vec<_> = windows.map(|(_, metrics)| cells_of(metrics)).collect();
+    let cells: Vec<_> = windows.map(|(_, metrics)| cells_of(metrics, Units::default())).collect();
     (0..METRICS.len()).filter(|place| cells.iter().any(|cells| cells[*place] != Cell::Missing)).collect()
 }

@@ -12,19 +12,25 @@ use crate::linearize::{
     stiffness_over_force, stiffness_sentence,
 };
 use crate::project::DeclaredActuator;
+use crate::quantity::Units;
 use crate::rig::Rig;
 use crate::sizing::model_name;
 
 /// Positions of a curve over the stroke.
 const POSITIONS: u32 = 120;
 
-pub(super) fn chapter(actuator: &DeclaredActuator, rig: &Rig, linearization: &Linearization) -> Chapter {
+pub(super) fn chapter(
+    actuator: &DeclaredActuator,
+    rig: &Rig,
+    linearization: &Linearization,
+    units: Units,
+) -> Chapter {
     let declared = model_name(rig.actuator.components().stiffness_model);
     let mut out = Document::default();
     out.explanation(stiffness_sentence(linearization));
     out.explanation(format!("This project declares `{declared}`. {}", models_sentence(actuator)));
-    out.figures(rig.actuator.components().cylinder.stroke.length().map(|stroke| figure(rig, stroke)));
-    out.figures(stiffness_over_force(rig).map(|found| over_force(rig, found)));
+    out.figures(rig.actuator.components().cylinder.stroke.length().map(|stroke| figure(rig, stroke, units)));
+    out.figures(stiffness_over_force(rig).map(|found| over_force(rig, found, units)));
     Chapter::of("stiffness", "Stiffness over the stroke", out)
 }
 
@@ -41,7 +47,7 @@ fn models_sentence(actuator: &DeclaredActuator) -> String {
     format!("{told}.")
 }
 
-fn figure(rig: &Rig, stroke: f64) -> Figure {
+fn figure(rig: &Rig, stroke: f64, units: Units) -> Figure {
     let declared = rig.actuator.components().stiffness_model;
     let other = match declared {
         StiffnessModel::Uniform => StiffnessModel::ByVolume,
@@ -53,7 +59,7 @@ fn figure(rig: &Rig, stroke: f64) -> Figure {
         curves,
         operating_point: Some(rig.point.position),
         band_label: "dynamic stiffening from least to greatest".to_string(),
-        motion: rig.motion,
+        units,
         ..StiffnessDiagram::default()
     };
     let told = "Hydraulic stiffness against piston position: the declared model with its band of dynamic stiffening, and the other model";
@@ -67,7 +73,7 @@ fn figure(rig: &Rig, stroke: f64) -> Figure {
 }
 
 /// Gas under pressure: the stiffness over the forces that the rig holds.
-fn over_force(rig: &Rig, found: StiffnessOverForce) -> Figure {
+fn over_force(rig: &Rig, found: StiffnessOverForce, units: Units) -> Figure {
     let StiffnessOverForce { forces, at_rest, at_settings } = found;
     let curve = |name: String, stiffness_n_per_m: Vec<f64>| StiffnessCurve {
         name,
@@ -82,7 +88,7 @@ fn over_force(rig: &Rig, found: StiffnessOverForce) -> Figure {
         curves: std::iter::once(curve(name.to_string(), at_rest)).chain(others).collect(),
         over: StiffnessOver::Force,
         operating_point: Some(rig.point.hydraulic_force),
-        motion: rig.motion,
+        units,
         ..StiffnessDiagram::default()
     };
     let caption = "Hydraulic stiffness for slow motions against the force that is held at standstill, at the position of the operating point: with more force the gas of chamber A becomes stiffer and that of chamber B softer. The curves end where the gas at a chamber is shut off, or at the nominal voltage.";

@@ -11,7 +11,7 @@ use super::{
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::{Loaded, Scenario, Signal};
-use crate::quantity::{DisplayUnit, FORCE, PRESSURE, TIME, VOLTAGE, ZERO_CELSIUS, display};
+use crate::quantity::{DisplayUnit, TIME, Units, VOLTAGE, ZERO_CELSIUS, display};
 
 /// Number of occurrences that are listed one by one; more are counted.
 const TOLD: usize = 8;
@@ -22,7 +22,7 @@ pub(crate) fn document(loaded: &Loaded, runs: &[ScenarioRun]) -> Document {
     for run in runs {
         out.heading(headline(run));
         out.tables([windows(run, None, None), measured(&[(None, run)])]);
-        let checked = run.check.iter().flat_map(check::sentences);
+        let checked = run.check.iter().flat_map(|found| check::sentences(found, run.record.units));
         let adjusted = adjustment_sentence(run);
         let told = coarse_sentence(run).into_iter().chain(checked).chain(adjusted).chain(gas_sentence(run));
         out.sentences(told.chain(occurrence_sentences(run)));
@@ -82,7 +82,7 @@ const RARE: [&str; 2] = ["tracking error peak", "force peak"];
 /// The metrics of each event of a run, judged by the wish. Next to published values only metrics
 /// that some event has are shown.
 pub(crate) fn windows(run: &ScenarioRun, wish: Option<&TrackingWish>, declared: Option<&Scenario>) -> Table {
-    let cells: Vec<_> = run.windows.iter().map(|(_, metrics)| cells_of(metrics)).collect();
+    let cells: Vec<_> = run.windows.iter().map(|(_, metrics)| cells_of(metrics, run.record.units)).collect();
     let always = |name: &str| declared.is_none() && !run.open_loop && !RARE.contains(&name);
     let has = |place: &usize| cells.iter().any(|cells| cells[*place] != Cell::Missing);
     let shown: Vec<usize> =
@@ -92,10 +92,11 @@ pub(crate) fn windows(run: &ScenarioRun, wish: Option<&TrackingWish>, declared: 
         "disturbance peak" => "disturbance".to_string(),
         name => name.to_string(),
     };
+    let units = run.record.units;
     let mut rows = Table::new(std::iter::once("event".to_string()).chain(shown.iter().map(head)));
     for (window, metrics) in &run.windows {
-        rows.row(metrics_row(cause_words(window), &shown, metrics, wish));
-        if let Some((source, cells)) = declared.and_then(|declared| published(declared, window)) {
+        rows.row(metrics_row(cause_words(window, units), &shown, (metrics, units), wish));
+        if let Some((source, cells)) = declared.and_then(|declared| published(declared, window, units)) {
             rows.row(published_row(source, &shown, cells));
         }
     }
@@ -106,10 +107,10 @@ pub(crate) fn windows(run: &ScenarioRun, wish: Option<&TrackingWish>, declared: 
 pub(crate) fn metrics_row(
     name: String,
     shown: &[usize],
-    metrics: &Metrics,
+    (metrics, units): (&Metrics, Units),
     wish: Option<&TrackingWish>,
 ) -> Vec<Cell> {
-    let mut cells = cells_of(metrics);
+    let mut cells = cells_of(metrics, units);
     for (place, held) in [
         (OVERSHOOT, wish.and_then(|wish| wish.overshoot(metrics))),
         (SETTLING, wish.and_then(|wish| wish.settling(metrics))),
@@ -133,6 +134,7 @@ pub(crate) fn published_row(source: &str, shown: &[usize], mut cells: [Cell; MET
 pub(crate) fn published<'a>(
     declared: &'a Scenario,
     window: &Window,
+    units: Units,
 ) -> Option<(&'a str, [Cell; METRICS.len()])> {
     let begins = |step: &&Signal| matches!(step, Signal::Step { at, .. } if *at == window.start_s);
     let step = declared.reference.iter().find(begins)?;
@@ -140,7 +142,7 @@ pub(crate) fn published<'a>(
     let known = [(OVERSHOOT, published.overshoot_percent), (SETTLING, published.settling_time)];
     let mut cells: [Cell; METRICS.len()] = Default::default();
     for (place, value) in known {
-        cells[place] = value.map_or(Cell::Missing, |value| METRICS[place].cell(value));
+        cells[place] = value.map_or(Cell::Missing, |value| METRICS[place].cell(value, units));
     }
     let any = known.iter().any(|(_, value)| value.is_some());
     any.then_some((published.source.as_deref().unwrap_or("published"), cells))
@@ -158,7 +160,7 @@ pub(crate) fn measured(runs: &[(Option<&'static str>, &ScenarioRun)]) -> Table {
     for index in 0..signals {
         for (name, run) in runs {
             let Some(overlay) = run.measured.get(index) else { continue };
-            let mut row = measured_cells(overlay).to_vec();
+            let mut row = measured_cells(overlay, run.record.units).to_vec();
             if several {
                 row.insert(2, name.unwrap_or_default().into());
             }
@@ -168,7 +170,7 @@ pub(crate) fn measured(runs: &[(Option<&'static str>, &ScenarioRun)]) -> Table {
     rows
 }
 
-fn measured_cells(overlay: &Overlay) -> [Cell; 5] {
+fn measured_cells(overlay: &Overlay, units: Units) -> [Cell; 5] {
     let percent = |ratio: f64| Cell::quantity(100.0 * ratio, 3, DisplayUnit { symbol: "%", in_si: 1.0 });
     let rows = match overlay.rows_outside {
         0 => overlay.times_s.len().to_string(),
@@ -178,16 +180,16 @@ fn measured_cells(overlay: &Overlay) -> [Cell; 5] {
         overlay.signal.into(),
         format!("{} `{}`", overlay.file, overlay.column).into(),
         overlay.nrmse.map_or(Cell::Missing, percent),
-        overlay.rmse.map_or(Cell::Missing, |rmse| Cell::quantity(rmse, 3, overlay.display_unit())),
+        overlay.rmse.map_or(Cell::Missing, |rmse| Cell::quantity(rmse, 3, overlay.display_unit(units))),
         rows.into(),
     ]
 }
 
 /// What began a window.
-pub(crate) fn cause_words(window: &Window) -> String {
+pub(crate) fn cause_words(window: &Window, units: Units) -> String {
     let at = display(window.start_s, &TIME, 4);
     match window.cause {
-        Cause::ReferenceStep { to_n, .. } => format!("step to {} at {at}", display(to_n, &FORCE, 4)),
+        Cause::ReferenceStep { to_n, .. } => format!("step to {} at {at}", units.force.short(to_n, 4)),
         Cause::ReferenceMotion { kind } => format!("{kind} at {at}"),
         Cause::CommandStep { to_v, .. } => format!("command to {} at {at}", display(to_v, &VOLTAGE, 4)),
         Cause::CommandMotion { kind } => format!("{kind} of the command at {at}"),
@@ -232,7 +234,7 @@ pub(crate) fn adjustment_sentence(run: &ScenarioRun) -> Option<String> {
 /// How far the gas at the chambers is compressed and heated.
 pub(crate) fn gas_sentence(run: &ScenarioRun) -> Option<String> {
     let of = |gas: &GasRange| {
-        let pressure = display(gas.peak_pa, &PRESSURE, 4);
+        let pressure = run.record.units.pressure.short(gas.peak_pa, 4);
         let heat = match (gas.temperature_ratios, gas.wall_celsius) {
             (None, _) => String::new(),
             (Some(ratios), Some(wall)) => {
@@ -253,15 +255,15 @@ pub(crate) fn gas_sentence(run: &ScenarioRun) -> Option<String> {
 
 /// The events of a run, a sentence each.
 pub(crate) fn occurrence_sentences(run: &ScenarioRun) -> Vec<String> {
-    let found = &run.occurrences;
+    let (found, units) = (&run.occurrences, run.record.units);
     let mut sentences: Vec<String> = found.iter().take(TOLD).map(occurrence_words).collect();
     if found.len() > TOLD {
         sentences.push(format!("and {} more changes of this kind, listed in the JSON", found.len() - TOLD));
     }
-    sentences.extend(run.divergence.as_ref().map(divergence_words));
+    sentences.extend(run.divergence.as_ref().map(|found| divergence_words(found, units)));
     sentences.extend(doubts(run));
-    sentences.extend(run.beyond_expansion.iter().map(beyond_words));
-    sentences.extend(run.exceeded.iter().map(exceeded_words));
+    sentences.extend(run.beyond_expansion.iter().map(|beyond| beyond_words(beyond, units)));
+    sentences.extend(run.exceeded.iter().map(|exceeded| exceeded_words(exceeded, units)));
     sentences.extend(outside_words(run));
     sentences
 }
@@ -272,8 +274,8 @@ fn outside_words(run: &ScenarioRun) -> Option<String> {
     Some(format!("from {from} s on the equations do not hold: what follows no longer describes a machine"))
 }
 
-fn beyond_words(beyond: &BeyondExpansion) -> String {
-    let [peak, stated] = [beyond.peak_pa, beyond.stated_pa].map(|pressure| display(pressure, &PRESSURE, 4));
+fn beyond_words(beyond: &BeyondExpansion, units: Units) -> String {
+    let [peak, stated] = [beyond.peak_pa, beyond.stated_pa].map(|pressure| units.pressure.short(pressure, 4));
     let chamber = beyond.chamber.to_ascii_uppercase();
     format!(
         "chamber {chamber} comes to {peak}; the expansion of its hose is stated at {stated}, and extrapolated along its slope"
@@ -341,6 +343,7 @@ fn occurrence_words(occurrence: &Occurrence) -> String {
 /// The tables of `compare`: a row for each metric, a column for each project; projects that were
 /// not begun are named.
 pub(crate) fn comparison(comparison: &ScenarioComparison<'_>, asked: &[Loaded]) -> Document {
+    let units = units_of(comparison);
     let mut out = Document::default();
     for (number, (loaded, runs)) in comparison.projects.iter().enumerate() {
         out.line(format!("{}  {} ({})", letter(number), loaded.project.title, loaded.path));
@@ -356,10 +359,11 @@ pub(crate) fn comparison(comparison: &ScenarioComparison<'_>, asked: &[Loaded]) 
     for name in comparison.scenarios() {
         let columns: Vec<Option<&ScenarioRun>> = comparison.runs_of(name).collect();
         out.heading(name);
-        out.table(side_by_side(&columns));
+        out.table(side_by_side(&columns, units));
         for (number, run) in columns.iter().enumerate() {
-            let exceeded = run.iter().flat_map(|run| &run.exceeded).map(exceeded_words);
-            let diverges = run.and_then(|run| run.divergence.as_ref()).map(divergence_words);
+            let exceeded = run.iter().flat_map(|run| &run.exceeded).map(|found| exceeded_words(found, units));
+            let diverges =
+                run.and_then(|run| run.divergence.as_ref()).map(|found| divergence_words(found, units));
             let doubts = run.iter().flat_map(|run| doubts(run));
             let outside = run.and_then(outside_words);
             for sentence in diverges.into_iter().chain(doubts).chain(exceeded).chain(outside) {
@@ -370,11 +374,16 @@ pub(crate) fn comparison(comparison: &ScenarioComparison<'_>, asked: &[Loaded]) 
     out
 }
 
+/// The units of a comparison: those of its first project.
+pub(crate) fn units_of(comparison: &ScenarioComparison<'_>) -> Units {
+    comparison.projects.first().map_or(Units::default(), |(loaded, _)| loaded.project.units)
+}
+
 fn letter(number: usize) -> String {
     char::from_u32('A' as u32 + number as u32 % 26).unwrap_or('?').to_string()
 }
 
-fn side_by_side(columns: &[Option<&ScenarioRun>]) -> Table {
+fn side_by_side(columns: &[Option<&ScenarioRun>], units: Units) -> Table {
     let letters = (0..columns.len()).map(letter);
     let mut rows = Table::grouped_by("event", std::iter::once("metric".to_string()).chain(letters));
     let most = columns.iter().flatten().map(|run| run.windows.len()).max().unwrap_or(0);
@@ -382,9 +391,9 @@ fn side_by_side(columns: &[Option<&ScenarioRun>]) -> Table {
         let windows: Vec<Option<&(Window, Metrics)>> =
             columns.iter().map(|run| run.and_then(|run| run.windows.get(index))).collect();
         let Some((first, _)) = windows.iter().flatten().next() else { continue };
-        rows.group(cause_words(first));
+        rows.group(cause_words(first, units));
         let cells: Vec<_> =
-            windows.iter().map(|window| window.map(|(_, metrics)| cells_of(metrics))).collect();
+            windows.iter().map(|window| window.map(|(_, metrics)| cells_of(metrics, units))).collect();
         for (place, metric) in METRICS.iter().enumerate() {
             let of = |cells: &Option<[Cell; METRICS.len()]>| cells.as_ref().map(|cells| cells[place].clone());
             let values: Vec<Cell> = cells.iter().map(|cells| of(cells).unwrap_or_default()).collect();

@@ -6,7 +6,7 @@ use crate::answer::{OutputFile, picture_files, significant};
 use crate::figure::axis::extent;
 use crate::figure::{CurveChart, CurvePanel, CurveStyle, DisplayUnit, Figure, SettlingBand, Words};
 use crate::over_time::{ForceStep, Trace, behind, chart, named, panel, trace};
-use crate::quantity::MotionKind;
+use crate::quantity::Units;
 use phea_hydraulics::machine::{GAS_PRESSURE_SIGNALS, HEAT_SIGNALS};
 
 /// Largest number of events that are all enlarged; if there are more, all that are not steps, and
@@ -31,7 +31,7 @@ pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
         );
         let words = Words::new(
             format!("simulation-{number}-event-{}", index + 1),
-            format!("Enlarged: {}", cause_words(window)),
+            format!("Enlarged: {}", cause_words(window, run.record.units)),
             caption,
         );
         figures.push(close_up(&words, run, window, span_of(run, window, end)));
@@ -60,7 +60,7 @@ fn overlaid(run: &ScenarioRun, number: usize, span_s: [f64; 2]) -> Option<Figure
     let panels = run.measured.iter().map(|overlay| {
         let simulated = over_time(&run.record, run.record.signal(overlay.signal));
         let measured = trace(&overlay.times_s, &overlay.measured);
-        panel(&overlay.quantity(), overlay.display_unit(), height, vec![simulated, measured])
+        panel(&overlay.quantity(), overlay.display_unit(run.record.units), height, vec![simulated, measured])
     });
     let panels: Vec<CurvePanel> = panels.collect();
     let words = Words::new(
@@ -91,7 +91,7 @@ fn overview(words: &Words, run: &ScenarioRun, span_s: [f64; 2]) -> Figure {
 pub(super) fn close_up(words: &Words, run: &ScenarioRun, window: &Window, span_s: [f64; 2]) -> Figure {
     let record = &run.record;
     let forces = ["force_n", "hydraulic_force_n"].map(|name| over_time(record, record.signal(name)));
-    let forces = panel("Forces F_e, F_H", record.motion.unit(DisplayUnit::KILONEWTON), 150.0, forces.into());
+    let forces = panel("Forces F_e, F_H", record.units.force, 150.0, forces.into());
     let forces = named(forces, ["measured force", "hydraulic force"]);
     let mut panels = vec![voltages(record), pressures(record), forces, measured(record, 150.0)];
     panels.extend(prefiltered(record));
@@ -117,7 +117,7 @@ const LEAVES: f64 = 0.5;
 /// The measured force with its reference, before and after the prefilter; a prefiltered reference
 /// that would spoil the scale is left to a panel of its own.
 fn measured(record: &Record, height: f64) -> CurvePanel {
-    let unit = record.motion.unit(DisplayUnit::KILONEWTON);
+    let unit = record.units.force;
     let mut series = vec![over_time(record, record.signal("force_n"))];
     let mut names = vec!["measured force"];
     if fits(record) {
@@ -134,7 +134,7 @@ fn measured(record: &Record, height: f64) -> CurvePanel {
 
 /// The prefiltered reference by itself, where it does not fit the scale of the force.
 fn prefiltered(record: &Record) -> Option<CurvePanel> {
-    let unit = record.motion.unit(DisplayUnit::KILONEWTON);
+    let unit = record.units.force;
     let series = over_time(record, record.filtered_reference_n.clone());
     (!fits(record)).then(|| named(panel("F F_ref", unit, 90.0, vec![series]), ["prefiltered reference"]))
 }
@@ -156,7 +156,7 @@ pub(super) fn tracking_error(record: &Record) -> Vec<f64> {
 
 fn error_panel(record: &Record) -> Option<CurvePanel> {
     let error = tracking_error(record);
-    let unit = record.motion.unit(DisplayUnit::KILONEWTON);
+    let unit = record.units.force;
     (!error.is_empty()).then(|| {
         named(panel("F_ref - F_e", unit, 90.0, vec![over_time(record, error)]), ["error"]).with_zero_line()
     })
@@ -188,7 +188,7 @@ fn from_outside(record: &Record) -> Option<CurvePanel> {
         (!record.external_force_n.is_empty()).then(|| over_time(record, record.external_force_n.clone()))?;
     Some(match turns(record) {
         false => {
-            let force = panel("Force F_x", record.motion.unit(DisplayUnit::KILONEWTON), 90.0, vec![series]);
+            let force = panel("Force F_x", record.units.force, 90.0, vec![series]);
             named(force, [external_words(record)])
         }
         true => named(
@@ -226,7 +226,7 @@ fn gas(record: &Record) -> Vec<CurvePanel> {
         Some(_) => vec![],
     });
     let panels = [
-        ("Gas p_g", DisplayUnit::BAR, GAS_PRESSURE_SIGNALS.map(|name| record.signal(name))),
+        ("Gas p_g", record.units.pressure, GAS_PRESSURE_SIGNALS.map(|name| record.signal(name))),
         ("Gas T", DisplayUnit::DEGREE_CELSIUS, GAS_TEMPERATURES.map(|name| record.signal(name))),
         ("Gas T/T_w", DisplayUnit::ONE, unstated),
     ];
@@ -248,14 +248,14 @@ fn voltages(record: &Record) -> CurvePanel {
 
 fn pressures(record: &Record) -> CurvePanel {
     let series = ["pressure_a_pa", "pressure_b_pa"].map(|name| over_time(record, record.signal(name)));
-    named(panel("Pressure", DisplayUnit::BAR, 110.0, series.into()), ["p_A", "p_B"])
+    named(panel("Pressure", record.units.pressure, 110.0, series.into()), ["p_A", "p_B"])
 }
 
 fn positions(record: &Record) -> CurvePanel {
     let series = ["position_m", "load_position_m"].map(|name| over_time(record, record.signal(name)));
-    let quantity = if record.motion.is_rotary() { "Angle" } else { "Position" };
-    let positions = panel(quantity, record.motion.unit(DisplayUnit::MILLIMETRE), 90.0, series.into());
-    named(positions, [if record.motion.is_rotary() { "shaft" } else { "piston" }, load_words(record)])
+    let quantity = if record.units.motion.is_rotary() { "Angle" } else { "Position" };
+    let positions = panel(quantity, record.units.position, 90.0, series.into());
+    named(positions, [if record.units.motion.is_rotary() { "shaft" } else { "piston" }, load_words(record)])
 }
 
 /// Panels of one run, with its events.
@@ -337,12 +337,12 @@ fn step(run: &ScenarioRun, window: &Window, (number, event): (usize, usize)) -> 
         force: &of(&record.signal("force_n")),
         filtered_reference: &of(&record.filtered_reference_n),
         command: &of(&record.control_v),
-        unit: record.motion.unit(DisplayUnit::KILONEWTON),
+        unit: record.units.force,
         settling_band: (to_n != 0.0).then_some(SettlingBand { level: to_n, percent }),
         settled: settling
             .map(|time_s| (window.start_s + time_s, format!("t_s = {} s", significant(time_s, 3)))),
     };
-    let title = format!("Step response: {}", cause_words(window));
+    let title = format!("Step response: {}", cause_words(window, record.units));
     let caption = "Measured force, reference before and after the prefilter, and the command; the band is that of the settling time.";
     Some(shown.chart().draw(&Words::new(format!("simulation-{number}-step-{event}"), title, caption)))
 }
@@ -373,9 +373,11 @@ pub(crate) fn laid_over(
     let end = ends.fold(0.0, f64::max);
     let words = |suffix: String, title: String| Words::new(format!("{file}{suffix}"), title, caption);
     let mut figures = vec![side_by_side(&words(String::new(), title.to_string()), titles, runs, [0.0, end])];
+    let units = units_of(runs);
     let windows = runs.first().map(|run| run.windows.as_slice()).unwrap_or_default();
     for (index, window) in enlarged(windows, end) {
-        let words = words(format!("-event-{}", index + 1), format!("Enlarged: {}", cause_words(window)));
+        let words =
+            words(format!("-event-{}", index + 1), format!("Enlarged: {}", cause_words(window, units)));
         figures.push(side_by_side(
             &words,
             titles,
@@ -392,15 +394,20 @@ fn side_by_side(words: &Words, titles: &[String], runs: &[&ScenarioRun], span_s:
     };
     let reference = runs.iter().find_map(|run| asked_for(&run.record));
     let windows = runs.first().map(|run| run.windows.as_slice()).unwrap_or_default();
-    let motion = runs.first().map_or(MotionKind::Linear, |run| run.record.motion);
-    let unit = motion.unit(DisplayUnit::KILONEWTON);
+    let units = units_of(runs);
+    let unit = units.force;
     let forces = panel("Force F_e", unit, 230.0, each(|record| record.signal("force_n")));
     let panels = vec![
         behind(forces, unit, CurveStyle::Reference, reference),
         panel("Command U_C", DisplayUnit::VOLT, 130.0, each(|record| record.control_v.clone())),
-        panel("p_A - p_B", DisplayUnit::BAR, 130.0, each(load_pressure)),
+        panel("p_A - p_B", units.pressure, 130.0, each(load_pressure)),
     ];
     chart(panels, titles.to_vec(), &instants(windows, span_s), span_s).draw(words)
+}
+
+/// The units in which several runs are drawn: those of the first.
+fn units_of(runs: &[&ScenarioRun]) -> Units {
+    runs.first().map_or(Units::default(), |run| run.record.units)
 }
 
 /// The difference of the pressures of both chambers.

@@ -3,7 +3,7 @@
 use super::{Metrics, NOT_SETTLED};
 use crate::answer::Object;
 use crate::document::Cell;
-use crate::quantity::DisplayUnit;
+use crate::quantity::{DisplayUnit, Units};
 
 /// How a metric is printed.
 #[derive(Clone, Copy, Debug)]
@@ -13,7 +13,7 @@ pub(crate) struct Metric {
     /// For people.
     pub(crate) word: &'static str,
     /// Its unit, that of the answer.
-    pub(crate) unit: &'static str,
+    unit: &'static str,
     digits: usize,
 }
 
@@ -45,18 +45,26 @@ pub(crate) fn metric_of(key: &str) -> Option<&'static Metric> {
 
 impl Metric {
     /// A value of it.
-    pub(crate) fn cell(&self, value: f64) -> Cell {
+    pub(crate) fn cell(&self, value: f64, units: Units) -> Cell {
         let small = ["steady_state_error_n", "disturbance_peak_n"].contains(&self.key);
-        let unit = DisplayUnit { symbol: self.unit, in_si: 1.0 };
-        Cell::quantity(if small { small_as_zero(value) } else { value }, self.digits, unit)
+        let value = if small { small_as_zero(value) } else { value };
+        Cell::quantity(value, self.digits, self.shown_in(units))
+    }
+
+    /// The unit in which people read it.
+    pub(crate) fn shown_in(&self, units: Units) -> DisplayUnit {
+        match self.unit {
+            "N" => units.force,
+            symbol => DisplayUnit { symbol, in_si: 1.0 },
+        }
     }
 }
 
 /// Each metric with its unit.
-pub(crate) fn cells_of(metrics: &Metrics) -> [Cell; METRICS.len()] {
+pub(crate) fn cells_of(metrics: &Metrics, units: Units) -> [Cell; METRICS.len()] {
     let named = metrics.named();
     std::array::from_fn(|place| match named[place].1 {
-        Ok(value) => METRICS[place].cell(value),
+        Ok(value) => METRICS[place].cell(value, units),
         Err(NOT_SETTLED) if place == SETTLING => "not settled".into(),
         Err(_) => Cell::Missing,
     })

@@ -2,7 +2,7 @@
 
 use super::{Divergence, Pass, PassAgreement, PassSpread, Repetition, ScenarioRun, metric_of};
 use crate::answer::{Object, significant};
-use crate::quantity::{DisplayUnit, FORCE, VOLTAGE, display};
+use crate::quantity::{DisplayUnit, Units, VOLTAGE, display};
 use phea_dynamics::simulation::GrowthCause;
 
 /// The object `repetition` of a scenario.
@@ -68,7 +68,7 @@ pub(super) fn divergence_row(divergence: &Divergence) -> Object {
 }
 
 /// How a run diverges.
-pub(super) fn divergence_words(divergence: &Divergence) -> String {
+pub(super) fn divergence_words(divergence: &Divergence, units: Units) -> String {
     let since = DisplayUnit::SECOND.number(divergence.since_s(), 4);
     match *divergence {
         Divergence::CommandBeyondRange { range_v, .. } => format!(
@@ -82,8 +82,8 @@ pub(super) fn divergence_words(divergence: &Divergence) -> String {
         ),
         Divergence::ForceBeyondReference { force_n, reference_n, .. } => format!(
             "the force comes to {} at {since} s, more than ten times the largest reference of {}, and nothing else moves the load",
-            display(force_n, &FORCE, 4),
-            display(reference_n, &FORCE, 4)
+            units.force.short(force_n, 4),
+            units.force.short(reference_n, 4)
         ),
     }
 }
@@ -111,8 +111,9 @@ pub(super) fn sentences(run: &ScenarioRun) -> Vec<String> {
 
 fn agreement_words(run: &ScenarioRun, repetition: &Repetition) -> String {
     let tolerance = significant(run.tolerance, 2);
-    let apart =
-        repetition.spread.map_or("they have no number in common".to_string(), |spread| apart(&spread));
+    let apart = repetition
+        .spread
+        .map_or("they have no number in common".to_string(), |spread| apart(&spread, run.record.units));
     match repetition.agreement {
         PassAgreement::Agreed => format!(
             "so the run was repeated until its metrics agreed to a thousandth, at a tolerance of {tolerance}; of the last two passes, \
@@ -141,12 +142,12 @@ fn agreement_words(run: &ScenarioRun, repetition: &Repetition) -> String {
 }
 
 /// What differs most, in words.
-fn apart(spread: &PassSpread) -> String {
+fn apart(spread: &PassSpread, units: Units) -> String {
     let name = metric_of(spread.name).map_or("force", |metric| metric.word);
-    let unit = metric_of(spread.name).map_or("N", |metric| metric.unit);
+    let unit = metric_of(spread.name).map_or(units.force, |metric| metric.shown_in(units));
     let event = spread.window.map_or(String::new(), |window| format!(" of event {}", window + 1));
     let number = |value: Result<f64, &'static str>| match value {
-        Ok(value) => format!("{} {unit}", significant(value, 5)),
+        Ok(value) => unit.text(value, 5),
         Err(_) => "none".to_string(),
     };
     let [before, after] = spread.values.map(number);

@@ -9,7 +9,7 @@ use super::span::{are_alike, span_of, span_of_events};
 use super::{Cause, Record, ScenarioRun, TrackingWish, Window, cause_words};
 use crate::figure::{CurveChart, CurvePanel, CurveRange, CurveStyle, DisplayUnit, Figure, Words};
 use crate::over_time::{Trace, behind, chart, has, panel, trace};
-use crate::quantity::MotionKind;
+use crate::quantity::Units;
 
 /// A run with the name of its controller.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +40,7 @@ pub(crate) fn together(runs: &[NamedRun<'_>], number: usize, wish: Option<&Track
         }
         let words = Words::new(
             format!("simulation-{number}-event-{}", index + 1),
-            format!("Enlarged: {}", cause_words(window)),
+            format!("Enlarged: {}", cause_words(window, units(runs))),
             format!("What the event does to force, command and load pressure, {}.", whose(runs)),
         );
         let shown = ([190.0, 110.0], moves_load(window));
@@ -75,7 +75,11 @@ pub(crate) fn close_ups(named: NamedRun<'_>, number: usize) -> Vec<Figure> {
     let figure = |(index, window): (usize, &Window)| {
         let words = Words::new(
             format!("simulation-{number}-{name}-event-{}", index + 1),
-            format!("Inside the machine, {name} controller: {}, {}", run.name, cause_words(window)),
+            format!(
+                "Inside the machine, {name} controller: {}, {}",
+                run.name,
+                cause_words(window, run.record.units)
+            ),
             "Voltages, pressures of both chambers, hydraulic and measured force, measured force.",
         );
         close_up(&words, run, window, span_of(run, window, end))
@@ -96,7 +100,7 @@ pub(crate) fn measured_together(runs: &[NamedRun<'_>], number: usize) -> Option<
         let measured = trace(&overlay.times_s, &overlay.measured);
         let series = simulated.chain([measured]).collect();
         let reference = asked_for(&first.run.record).filter(|_| overlay.signal == "force_n");
-        let unit = overlay.display_unit();
+        let unit = overlay.display_unit(first.run.record.units);
         behind(panel(&overlay.quantity(), unit, height, series), unit, CurveStyle::Reference, reference)
     });
     let panels: Vec<CurvePanel> = panels.collect();
@@ -151,17 +155,17 @@ fn drawn(
     };
     panels.extend(errors(runs, span_s));
     panels.push(commands(runs, low));
-    panels.push(panel("p_A - p_B", DisplayUnit::BAR, low, each(runs, load_pressure)));
+    panels.push(panel("p_A - p_B", units(runs).pressure, low, each(runs, load_pressure)));
     if positions {
         let piston = each(runs, |record| record.signal("position_m"));
-        panels.push(panel("Piston", motion(runs).unit(DisplayUnit::MILLIMETRE), 90.0, piston));
+        panels.push(panel("Piston", units(runs).position, 90.0, piston));
     }
     with_events(runs, panels, span_s).draw(words)
 }
 
 /// Reference less force, where the reference moves.
 fn errors(runs: &[NamedRun<'_>], span_s: [f64; 2]) -> Option<CurvePanel> {
-    let unit = motion(runs).unit(DisplayUnit::KILONEWTON);
+    let unit = units(runs).force;
     moves_reference(runs, span_s)
         .then(|| panel("F_ref - F_e", unit, 90.0, each(runs, tracking_error)).with_zero_line())
 }
@@ -185,9 +189,9 @@ fn each(runs: &[NamedRun<'_>], values: impl Fn(&Record) -> Vec<f64>) -> Vec<Trac
     runs.iter().map(|named| over_time(&named.run.record, values(&named.run.record))).collect()
 }
 
-/// How the rigs of these runs move.
-fn motion(runs: &[NamedRun<'_>]) -> MotionKind {
-    runs.first().map_or(MotionKind::Linear, |named| named.run.record.motion)
+/// The units in which these runs are drawn.
+fn units(runs: &[NamedRun<'_>]) -> Units {
+    runs.first().map_or(Units::default(), |named| named.run.record.units)
 }
 
 /// The force as measured on the rig, if it was measured.
@@ -204,7 +208,7 @@ fn forces(runs: &[NamedRun<'_>], height: f64, span_s: [f64; 2], wish: Option<&Tr
     let wished = wish.map(|wish| wish.lines(windows.iter().map(|(window, _)| window), span_s));
     let wished = wished.into_iter().flatten();
     let wished = wished.map(|line| line.iter().map(|[time_s, value]| (*time_s, *value)).collect());
-    let unit = motion(runs).unit(DisplayUnit::KILONEWTON);
+    let unit = units(runs).force;
     let panel = behind(panel("Force F_e", unit, height, curves), unit, CurveStyle::Limit, wished);
     behind(panel, unit, CurveStyle::Reference, first.and_then(|run| asked_for(&run.record)))
 }
@@ -219,7 +223,7 @@ fn forces_enlarged(
 ) -> Vec<CurvePanel> {
     let whole = forces(runs, tall, span_s, wish);
     let near = near_reference(runs, span_s, wish).filter(|_| has(&whole, CurveStyle::Limit));
-    let unit = motion(runs).unit(DisplayUnit::KILONEWTON);
+    let unit = units(runs).force;
     let enlarged = near.map(|ends| CurvePanel {
         title: unit.title("F_e enlarged"),
         range: CurveRange::Between(ends.map(|end| unit.of(end))),

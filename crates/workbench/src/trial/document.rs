@@ -1,10 +1,13 @@
 //! The trial of a verdict on the machine, for people.
 
 use super::answer::satisfied_word;
-use super::{Agreement, StepResponse, StepSize, Trial, TrialRun, TrialStep, agreement_word, percent_words};
+use super::{
+    Agreement, BAND_PERCENT, StepResponse, StepSize, Trial, TrialRun, TrialStep, agreement_word,
+    percent_words,
+};
 use crate::document::{Cell, Document, Table};
 use crate::figure::{FamilySteps, Figure, TimeSeries, Words};
-use crate::quantity::{DisplayUnit, FORCE, display};
+use crate::quantity::DisplayUnit;
 use phea_qft::verification::Verdict;
 
 /// A trial, with its figure if that has a name and a title.
@@ -18,10 +21,11 @@ pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Docume
         Agreement::Contradicts => "contradicts the verdict",
     };
     out.explanation(format!(
-        "The machine {did}. The nonlinear rig under this controller: steps of the reference there, back and there again, by a tenth of the force that the supply can produce and then as large as the command allows, compared with those of the linear loop. Of the three steps the worst numbers are given; a force within 2 % of the step has settled."
+        "The machine {did}. The nonlinear rig under this controller: steps of the reference there, back and there again, by a tenth of the force that the supply can produce and then as large as the command allows, compared with those of the linear loop. Of the three steps the worst numbers are given; a force within {BAND_PERCENT} % of the step has settled."
     ));
+    let settles = format!("settles in ({BAND_PERCENT} %)");
     out.table(
-        Table::new(["machine", "step", "", "overshoot", "linear", "settles in", "linear", "remains"])
+        Table::new(["machine", "step", "", "overshoot", "linear", &settles, "linear", "remains"])
             .with(trial.runs.iter().map(cells)),
     );
     out.sentences(reasons(trial));
@@ -47,8 +51,7 @@ fn cells(run: &TrialRun) -> [Cell; 8] {
         overshoot(linear),
         settling(machine),
         settling(linear),
-        run.remaining_amplitude_n
-            .map_or(Cell::Missing, |amplitude| format!("±{}", display(amplitude, &FORCE, 2)).into()),
+        run.remaining_amplitude_n.map_or(Cell::Missing, |amplitude| remaining_words(run, amplitude).into()),
     ]
 }
 
@@ -76,8 +79,18 @@ fn required(trial: &Trial) -> Document {
 
 /// From one reference to the other.
 fn step_words(run: &TrialRun) -> String {
-    let [from, to] = run.reference_n.map(|force| display(force, &FORCE, 3));
+    let [from, to] = run.reference_n.map(|force| run.units.force.short(force, 3));
     format!("{from} to {to}")
+}
+
+/// Fraction of the step below which an oscillation counts as none.
+const NOTHING: f64 = 1e-4;
+
+/// The amplitude of an oscillation that remains.
+fn remaining_words(run: &TrialRun, amplitude_n: f64) -> String {
+    let [from, to] = run.reference_n;
+    let is_nothing = amplitude_n < NOTHING * (to - from).abs();
+    format!("±{}", run.units.force.short(if is_nothing { 0.0 } else { amplitude_n }, 2))
 }
 
 /// Why a machine does not behave like the linear loop, and which plants were not driven.

@@ -7,8 +7,7 @@ use super::{Repair, RepairStatus};
 use crate::audit::{ProjectAudit, frequency_words, margin_words, stability_sentence};
 use crate::design::{NEAREST_PROJECT, ProjectDesign};
 use crate::project::{DeclaredLine, Project};
-use crate::quantity::significant;
-use crate::quantity::{DisplayUnit, FORCE, display};
+use crate::quantity::{DisplayUnit, significant};
 use crate::trial::{Agreement, TrialRun, agreement_word};
 
 /// What was added, the result, and what would help if it failed.
@@ -192,7 +191,7 @@ pub(super) fn left<'a>(runs: impl Iterator<Item = &'a TrialRun>) -> Vec<String> 
 /// What to change, by the events of the run.
 fn advice(run: &TrialRun) -> String {
     let [from, to] = run.reference_n;
-    let step = display((to - from).abs(), &FORCE, 3);
+    let step = run.units.force.short((to - from).abs(), 3);
     let met = |names: &[&str]| run.met.iter().any(|one| names.iter().any(|name| one.starts_with(name)));
     if run.machine.is_none() {
         return "no linear plant has this; the machine must first find an equilibrium, at a reference and a position that it can hold".to_string();

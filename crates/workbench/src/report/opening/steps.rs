@@ -68,7 +68,7 @@ pub(super) fn steps(side: &Side<'_>, wish: &TrackingWish, property: StepProperty
     for run in side.runs.into_iter().flatten() {
         let of = |(window, metrics)| {
             let value = of_window(metrics, wish, property)?;
-            let place = format!("{}, {}", run.name, cause_words(window));
+            let place = format!("{}, {}", run.name, cause_words(window, run.record.units));
             Some(OneStep { origin: StepOrigin::Scenario, value, place })
         };
         steps.extend(run.windows.iter().map(|(window, metrics)| (window, metrics)).filter_map(of));

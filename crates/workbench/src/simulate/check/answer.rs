@@ -2,6 +2,7 @@
 
 use super::{Difference, ToleranceCheck};
 use crate::answer::{Object, significant};
+use crate::quantity::Units;
 
 /// The object `check` of a scenario.
 pub(crate) fn row(check: &ToleranceCheck) -> Object {
@@ -30,7 +31,7 @@ pub(crate) fn row(check: &ToleranceCheck) -> Object {
 }
 
 /// The findings of a check, a sentence each.
-pub(crate) fn sentences(check: &ToleranceCheck) -> Vec<String> {
+pub(crate) fn sentences(check: &ToleranceCheck, units: Units) -> Vec<String> {
     let tolerance = significant(check.tolerance, 3);
     let mut told = Vec::new();
     if let Some(stopped) = check.stopped {
@@ -41,11 +42,11 @@ pub(crate) fn sentences(check: &ToleranceCheck) -> Vec<String> {
     }
     let Some(force) = &check.force else { return told };
     told.push(format!(
-        "checked at the tolerance {tolerance}: the force differs by {} N at {} s, {} of its peak{}",
-        significant(force.difference, 2),
+        "checked at the tolerance {tolerance}: the force differs by {} at {} s, {} of its peak{}",
+        units.force.text(force.difference, 2),
         significant(force.time_s, 6),
         significant(force.part_of_peak(), 2),
-        of_disturbance(check)
+        of_disturbance(check, units)
     ));
     if check.is_doubtful() {
         told.push(
@@ -58,7 +59,7 @@ pub(crate) fn sentences(check: &ToleranceCheck) -> Vec<String> {
 }
 
 /// The difference of the disturbance peak, where the load moves.
-fn of_disturbance(check: &ToleranceCheck) -> String {
+fn of_disturbance(check: &ToleranceCheck, units: Units) -> String {
     let found = check.metrics.iter().find_map(|metrics| metrics.of("disturbance_peak_n")?.ok());
-    found.map_or(String::new(), |found| format!("; the disturbance peak by {} N", significant(found, 2)))
+    found.map_or(String::new(), |found| format!("; the disturbance peak by {}", units.force.text(found, 2)))
 }

@@ -5,23 +5,24 @@ use phea_dynamics::portable;
 use super::{MachineResponse, MachineResponses, ResponsePoint};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
-use crate::quantity::{FORCE, LENGTH, VOLTAGE, display};
+use crate::quantity::{DisplayUnit, VOLTAGE, display};
 
 /// The tables and sentences of a frequency response.
 pub(crate) fn document(found: &MachineResponses) -> Document {
-    let position = display(found.position_m, found.motion.dimension(&LENGTH), 4);
-    let (force, command) =
-        (display(found.force_n, found.motion.dimension(&FORCE), 4), display(found.command_v, &VOLTAGE, 4));
+    let units = found.units;
+    let [position, force] = [(units.position, found.position_m), (units.force, found.force_n)]
+        .map(|(unit, value)| unit.short(value, 4));
+    let command = display(found.command_v, &VOLTAGE, 4);
     let mut out = Document::default();
     out.line(format!("Around rest at {position}, {force} on the load, a command of {command}."));
-    let mut section = |title: &str, found: &MachineResponse, unit: &str| {
+    let mut section = |title: &str, found: &MachineResponse, unit: DisplayUnit| {
         out.heading(title);
         out.table(response(found, unit));
         out.sentences(found.points.iter().filter_map(remark));
     };
-    section("Open loop, from command to force, dB re 1 N/V", &found.open_loop, "V");
+    section("Open loop, from command to force, dB re 1 N/V", &found.open_loop, DisplayUnit::VOLT);
     match &found.closed_loop {
-        Ok(closed) => section("Closed loop, from reference to force", closed, "N"),
+        Ok(closed) => section("Closed loop, from reference to force", closed, units.force),
         Err(reason) => out.heading(format!("No closed loop: {reason}.")),
     }
     if found.stopped {
@@ -30,9 +31,9 @@ pub(crate) fn document(found: &MachineResponses) -> Document {
     out
 }
 
-fn response(response: &MachineResponse, unit: &str) -> Table {
+fn response(response: &MachineResponse, unit: DisplayUnit) -> Table {
     let with_machine = response.points.iter().any(|point| point.linearised_machine.is_some());
-    let amplitude = format!("amplitude, {unit}");
+    let amplitude = format!("amplitude, {}", unit.symbol);
     let mut heads = vec!["rad/s", &amplitude, "machine, dB", "phase, deg", "minus linear plant, dB", "deg"];
     if with_machine {
         heads.extend(["minus linearised machine, dB", "deg"]);
@@ -46,7 +47,7 @@ fn response(response: &MachineResponse, unit: &str) -> Table {
         last = Some(degrees);
         let mut cells = vec![
             Cell::number(point.frequency_rad_per_s, 4),
-            Cell::number(point.amplitude, 3),
+            Cell::number(unit.of(point.amplitude), 3),
             Cell::decimal(decibels, 2),
             Cell::decimal(degrees, 1),
         ];
