@@ -2,6 +2,7 @@
 
 mod alternatives;
 mod campaign;
+mod check;
 mod friction;
 mod identify;
 mod line_test;
@@ -30,23 +31,19 @@ pub use schema::{SCHEMA_FILE, schema};
 pub use simulate::{FrequencyOptions, SimulateRequest};
 
 use phea_dynamics::watch::Stopped;
-use phea_qft::family::Family;
 use phea_qft::verification::Verdict;
 
 use crate::alternatives::{AlternativesOptions as AskedOfAlternatives, judge};
 use crate::answer::{Answer, Object};
 use crate::audit::{self, CERTIFICATE_FILE, audit_project, certificate_of, prove_audit};
 use crate::bench;
-use crate::caveat::caveats;
-use crate::derived::{self, derive};
 use crate::design::{self, design_and_repair, design_project};
 use crate::document::Document;
-use crate::family::{family, visited_box};
 use crate::identify::in_use;
 use crate::line_test::line_runs;
 use crate::linearize::SweepRequest;
 use crate::option::OptionError;
-use crate::project::{Loaded, WrittenUnits, refused};
+use crate::project::Loaded;
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::report_beside;
 use crate::rig::RigError;
@@ -56,9 +53,10 @@ use crate::shaping::{self, RequestedChange, Shaped, shape};
 use crate::simulate::compare_projects;
 use crate::sizing::{self, Candidate, Question, SizingError, size, sizing_problem};
 use crate::source::{Destination, HeldFiles, Source};
-use crate::specification::{self, crossed_limits, wishes};
+use crate::specification::crossed_limits;
 use crate::trial::{Agreement, Trial, tried};
-use alternatives::{alternatives_answer, read_alternatives};
+use alternatives::alternatives_answer;
+use check::check;
 use linearize::{linearize_answer, swept_answer};
 use simulate::simulate_answer;
 use unprinted::Unprinted;
@@ -251,59 +249,6 @@ fn answer_as_read(
         }
     }?;
     Ok(answer.print(request.name(), std::slice::from_ref(loaded)))
-}
-
-fn check(source: &dyn Source, loaded: &Loaded, catalogues: &[String]) -> Result<Unprinted, CommandError> {
-    let setup = Setup::new(&loaded.project)?;
-    let derived = match derive(&setup) {
-        Ok(derived) => derived,
-        // A plant given as a transfer function has nothing to derive; it is valid all the same.
-        Err(RigError::NoActuator) => vec![],
-        Err(error) => return Err(error.into()),
-    };
-    let of_alternatives = read_alternatives(source, loaded, catalogues)?;
-    let crossed = crossed_limits(&loaded.project)?.map(|crossed| {
-        let line = refused(source, loaded, &crossed.at()).diagnostics.first().map_or(0, |found| found.line);
-        format!("{crossed} (line {line}): no loop is between them")
-    });
-    let wishes = wishes(&loaded.project)?;
-    let visited = visited_box(&setup)?;
-    let told: Vec<String> = told_first(&setup).into_iter().chain(crossed).chain(of_alternatives).collect();
-    let mut document = Document::default();
-    document.warnings(told.clone());
-    if !derived.is_empty() {
-        document.append(derived::document(&derived, &WrittenUnits::of(loaded)));
-        document.gap();
-    }
-    if let Some(ranges) = visited.as_ref().filter(|_| !derived.is_empty()) {
-        document.append(derived::visited(&loaded.project, ranges));
-        document.gap();
-    }
-    document.append(specification::document(&wishes));
-    document.line(match derived.is_empty() {
-        true => format!("The project is valid. {}", without_derived(source, &setup)?),
-        false => "The project is valid.".to_string(),
-    });
-    let files = derived::files(&derived);
-    let body = derived::body(loaded, &derived, visited.as_deref(), &wishes, told);
-    Ok(Unprinted { document, body, files, affirmative: true })
-}
-
-/// Effects that no verdict on the linear loop includes, and parameters of the rig outside its own
-/// family.
-fn told_first(setup: &Setup<'_>) -> Vec<String> {
-    let outside = setup
-        .outside()
-        .map(|(_, words)| format!("the family does not contain the rig as it is derived ({words})"));
-    outside.into_iter().chain(caveats(setup).into_iter().map(|caveat| caveat.sentence)).collect()
-}
-
-/// A project without an actuator has only its family, which must be valid.
-fn without_derived(source: &dyn Source, setup: &Setup<'_>) -> Result<&'static str, CommandError> {
-    Ok(match family(setup, source)? {
-        Family::Measured(_) => "Its plants were measured, and nothing is derived from them.",
-        Family::Uncertain(_) => "Its plant is a transfer function, from which nothing is derived.",
-    })
 }
 
 fn question(gain: Option<&str>, length: Option<&str>) -> Result<Question, CommandError> {

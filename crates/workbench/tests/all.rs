@@ -24,6 +24,7 @@ mod family_hydraulic;
 mod family_measured;
 mod feed_forward;
 mod field_records;
+mod foreseen;
 mod frequency_response;
 mod friction_coverage;
 mod friction_identification;

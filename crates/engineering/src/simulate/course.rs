@@ -89,6 +89,16 @@ pub fn driven(
     bench: &ControlledMachine,
     scenario: &Scenario,
 ) -> Result<ScenarioDrive, SimulateError> {
+    driven_by(source, project, Some(bench), scenario)
+}
+
+/// The same; without a machine a saved state, which has to fit one, is not read.
+pub(super) fn driven_by(
+    source: &dyn Source,
+    project: &Project,
+    bench: Option<&ControlledMachine>,
+    scenario: &Scenario,
+) -> Result<ScenarioDrive, SimulateError> {
     let named = |error: ProfileError| SimulateError::Profile { name: scenario.name.clone(), error };
     let reference = signal::profile(source, project, &scenario.name, &scenario.reference, &FORCES)?;
     let motion = match &scenario.load_motion {
@@ -104,9 +114,10 @@ pub fn driven(
     let windows = windows(scenario, about_joint, [&reference, &command, &external_force, &setting_change]);
     let file = scenario.start.as_ref().and_then(|start| start.file.as_ref());
     let begins = setting_change.value(0.0);
-    let read =
-        |file: &String| saved::read(source, project, file, (bench, begins)).map_err(SimulateError::Motion);
-    let saved = file.map(read).transpose()?;
+    let read = |(file, bench): (&String, &ControlledMachine)| {
+        saved::read(source, project, file, (bench, begins)).map_err(SimulateError::Motion)
+    };
+    let saved = file.zip(bench).map(read).transpose()?;
     Ok(ScenarioDrive { reference, command, external_force, setting_change, motion, windows, saved })
 }
 

@@ -1,0 +1,194 @@
+//! What is known of the scenarios of a project before any of them is run: files that cannot be
+//! read, and references and motions that the rig cannot follow.
+
+use phea_dynamics::simulation::Profile;
+use phea_hydraulics::actuator::Components;
+
+use super::bench::ControlledMachine;
+use super::course::driven_by;
+use super::{SimulateError, measured};
+use crate::project::{DeclaredActuator, Findings, LateError, Load, MotionShape, Project, Scenario, Signal};
+use crate::quantity::{FORCE, LENGTH, PRESSURE, TIME, display};
+use crate::rig::{Numbers, components};
+use crate::setup::Setup;
+use crate::source::Source;
+
+/// Files that the project names and that cannot be read, each at its key.
+pub fn unreadable(source: &dyn Source, project: &Project) -> Vec<LateError> {
+    let scenarios = project.scenarios.iter().enumerate().flat_map(|(index, one)| files_of(index, one));
+    let family = project.family.iter().flat_map(|family| &family.measured);
+    let family = family.map(|file| ("family.measured".to_string(), file.as_str()));
+    scenarios.chain(family).filter_map(|(path, file)| missing(source, project, path, file)).collect()
+}
+
+/// Recordings that `[identify]` names and that are not there, or not yet, each at its key.
+fn absent_recordings(source: &dyn Source, project: &Project) -> Vec<LateError> {
+    let all = project.identify.iter().flat_map(|identify| &identify.recordings).enumerate();
+    let path = |index: usize| format!("identify.recording[{index}].file");
+    all.filter_map(|(index, one)| missing(source, project, path(index), &one.file)).collect()
+}
+
+/// The error of a file that cannot be read.
+fn missing(source: &dyn Source, project: &Project, path: String, file: &str) -> Option<LateError> {
+    let mut findings = Findings::default();
+    findings.bytes_of(source, &project.path_of(file));
+    let refusal = findings.or_refused(()).err()?;
+    let message = refusal.diagnostics.first().map(|found| found.message.clone())?;
+    Some(LateError { path, message, help: "paths are relative to the project file".to_string() })
+}
+
+/// The files of a scenario with their keys.
+fn files_of(index: usize, scenario: &Scenario) -> Vec<(String, &str)> {
+    let own = format!("scenario[{index}]");
+    let signals = [
+        ("reference", &scenario.reference),
+        ("command", &scenario.command),
+        ("external_force", &scenario.external_force),
+        ("setting_change", &scenario.setting_change),
+    ];
+    let mut files = Vec::new();
+    for (name, signals) in signals {
+        for (number, signal) in signals.iter().enumerate() {
+            if let Signal::File { file, .. } = signal {
+                files.push((format!("{own}.{name}[{number}].file"), file.as_str()));
+            }
+        }
+    }
+    if let Some(MotionShape::File { file }) = scenario.load_motion.as_ref().map(|motion| &motion.shape) {
+        files.push((format!("{own}.load_motion.file"), file.as_str()));
+    }
+    let start = scenario.start.as_ref().and_then(|start| start.file.as_deref());
+    files.extend(start.map(|file| (format!("{own}.start.file"), file)));
+    let measured = scenario.measured.iter().enumerate();
+    files.extend(measured.map(|(number, one)| (format!("{own}.measured[{number}].file"), one.file.as_str())));
+    files
+}
+
+/// What no controller can bring about, each at its key: references beyond the force at which the
+/// piston stalls or beyond the capacity of the force sensor, and prescribed motions beyond the
+/// stroke; and recordings that no command uses and that are not there.
+///
+/// # Errors
+/// [`SimulateError`] for a file that is malformed, and for signals that are no functions of time.
+pub fn foreseen(source: &dyn Source, setup: &Setup<'_>) -> Result<Vec<LateError>, SimulateError> {
+    let project = setup.project;
+    let Some(actuator) = &project.actuator else { return Ok(vec![]) };
+    let Ok(rig) = setup.rig() else { return Ok(vec![]) };
+    let limits = ForceLimits::of(project, actuator);
+    let mut found = absent_recordings(source, project);
+    for (index, scenario) in project.scenarios.iter().enumerate() {
+        let bench = ControlledMachine::of_scenario(setup, scenario).ok();
+        let driven = driven_by(source, project, bench.as_ref(), scenario)?;
+        measured::measurements(source, project, scenario).map_err(SimulateError::Motion)?;
+        let path = |key: &str| format!("scenario[{index}].{key}");
+        if !scenario.is_open_loop() {
+            let ends = ends(&driven.reference, scenario.duration);
+            let messages = limits.exceeded_by(ends).into_iter();
+            found.extend(messages.map(|message| remark(path("reference"), scenario, &message)));
+        }
+        let starts = scenario.start.as_ref().and_then(|start| start.position);
+        let position = starts.unwrap_or(rig.point.position);
+        let begun_elsewhere = scenario.start.as_ref().is_some_and(|start| start.file.is_some());
+        if actuator.load == Load::Prescribed && actuator.linkage.is_none() && !begun_elsewhere {
+            let moved = ends(&driven.motion, scenario.duration);
+            let message = beyond_stroke(project, actuator, position, moved);
+            found.extend(message.map(|message| remark(path("load_motion"), scenario, &message)));
+        }
+    }
+    Ok(found)
+}
+
+fn remark(path: String, scenario: &Scenario, message: &str) -> LateError {
+    LateError { path, message: format!("scenario \"{}\": {message}", scenario.name), help: String::new() }
+}
+
+/// Instants at which a signal is evaluated in addition to its breaks.
+const SAMPLES: u32 = 20_000;
+
+/// The least and the greatest value of a signal with their times in s.
+fn ends(profile: &Profile, end_s: f64) -> [(f64, f64); 2] {
+    let evenly = (0..=SAMPLES).map(|sample| end_s * f64::from(sample) / f64::from(SAMPLES));
+    let breaks = profile.breaks().into_iter().filter(|time| (0.0..=end_s).contains(time));
+    let mut found = [(0.0, profile.value(0.0)); 2];
+    for time_s in evenly.chain(breaks) {
+        let value = profile.value(time_s);
+        if value < found[0].1 {
+            found[0] = (time_s, value);
+        }
+        if value > found[1].1 {
+            found[1] = (time_s, value);
+        }
+    }
+    found
+}
+
+/// Forces that a rig reaches, and those that its sensor withstands.
+struct ForceLimits<'a> {
+    project: &'a Project,
+    /// Pa and N: the supply as declared and, where it is uncertain, the lowest of the family.
+    stall: Vec<(f64, [f64; 2])>,
+    capacity: Option<f64>,
+}
+
+impl<'a> ForceLimits<'a> {
+    fn of(project: &'a Project, actuator: &'a DeclaredActuator) -> ForceLimits<'a> {
+        let Components { cylinder, supply, .. } = components(actuator, &Numbers::declared());
+        let range = project.uncertainty.iter().find(|one| one.name == "supply.pressure");
+        let lowest = range.map(|range| range.minimum).filter(|lowest| *lowest < supply.pressure);
+        let pressures = std::iter::once(supply.pressure).chain(lowest);
+        let stall = |pressure: f64| {
+            let supply = phea_hydraulics::servovalve::Supply { pressure, ..supply };
+            (pressure, cylinder.stall_forces(&supply))
+        };
+        let capacity = actuator.force_sensor.capacity;
+        ForceLimits { project, stall: pressures.map(stall).collect(), capacity }
+    }
+
+    /// What a reference between these ends exceeds, in words.
+    fn exceeded_by(&self, [least, most]: [(f64, f64); 2]) -> Vec<String> {
+        let force = |value: f64| display(value, self.project.motion().dimension(&FORCE), 4);
+        let reached = |(time_s, value): (f64, f64)| {
+            format!("the reference goes to {} at {}", force(value), display(time_s, &TIME, 4))
+        };
+        let mut found = Vec::new();
+        for (end, side) in [(least, 0), (most, 1)] {
+            let sign = if side == 0 { -1.0 } else { 1.0 };
+            let beyond = |(_, stall): &&(f64, [f64; 2])| sign * end.1 > sign * stall[side];
+            // the declared supply comes first: the lowest of the family adds nothing to it
+            if let Some((pressure, stall)) = self.stall.iter().find(beyond) {
+                found.push(format!(
+                    "{}, and at a supply of {} the piston stalls at {}: no controller reaches it",
+                    reached(end),
+                    display(*pressure, &PRESSURE, 4),
+                    force(stall[side])
+                ));
+            }
+            if let Some(capacity) = self.capacity.filter(|capacity| sign * end.1 > *capacity) {
+                let capacity = force(capacity);
+                found.push(format!("{}, beyond the sensor's `capacity` of {capacity}", reached(end)));
+            }
+        }
+        found
+    }
+}
+
+/// A prescribed motion that takes the piston, which starts there in m, out of its stroke.
+fn beyond_stroke(
+    project: &Project,
+    actuator: &DeclaredActuator,
+    position: f64,
+    moved: [(f64, f64); 2],
+) -> Option<String> {
+    let stroke = actuator.stroke()?;
+    let length = |value: f64| display(value, project.motion().dimension(&LENGTH), 4);
+    let outside = |(_, by): &&(f64, f64)| !(0.0..=stroke).contains(&(position + by)) && *by != 0.0;
+    let (time_s, by) = moved.iter().find(outside)?;
+    Some(format!(
+        "the load moves by {} until {} and takes the piston from {} to {}, beyond its stroke of {}",
+        length(*by),
+        display(*time_s, &TIME, 4),
+        length(position),
+        length(position + by),
+        length(stroke)
+    ))
+}

@@ -1,0 +1,98 @@
+//! `check`: what follows from a project, and what is wrong with it before anything is run.
+
+use phea_qft::family::Family;
+
+use super::CommandError;
+use super::alternatives::read_alternatives;
+use super::unprinted::Unprinted;
+use crate::caveat::caveats;
+use crate::derived::{self, derive};
+use crate::document::Document;
+use crate::family::{family, visited_box};
+use crate::project::{LateError, Loaded, Severity, WrittenUnits, refused};
+use crate::rig::RigError;
+use crate::setup::Setup;
+use crate::simulate::{foreseen, unreadable};
+use crate::source::Source;
+use crate::specification::{self, crossed_limits, wishes};
+
+/// Every derived quantity, the box of the family and the requirements in time.
+///
+/// # Errors
+/// [`CommandError`] for a rig, a family or a scenario that is none.
+pub(super) fn check(
+    source: &dyn Source,
+    loaded: &Loaded,
+    catalogues: &[String],
+) -> Result<Unprinted, CommandError> {
+    let setup = Setup::new(&loaded.project)?;
+    let derived = match derive(&setup) {
+        Ok(derived) => derived,
+        // A plant given as a transfer function has nothing to derive; it is valid all the same.
+        Err(RigError::NoActuator) => vec![],
+        Err(error) => return Err(error.into()),
+    };
+    let of_alternatives = read_alternatives(source, loaded, catalogues)?;
+    let crossed = crossed_limits(&loaded.project)?.map(|crossed| {
+        let line = refused(source, loaded, &crossed.at()).diagnostics.first().map_or(0, |found| found.line);
+        format!("{crossed} (line {line}): no loop is between them")
+    });
+    let of_scenarios = scenarios(source, loaded, &setup)?;
+    let wishes = wishes(&loaded.project)?;
+    let visited = visited_box(&setup)?;
+    let told: Vec<String> =
+        told_first(&setup).into_iter().chain(crossed).chain(of_alternatives).chain(of_scenarios).collect();
+    let mut document = Document::default();
+    document.warnings(told.clone());
+    if !derived.is_empty() {
+        document.append(derived::document(&derived, &WrittenUnits::of(loaded)));
+        document.gap();
+    }
+    if let Some(ranges) = visited.as_ref().filter(|_| !derived.is_empty()) {
+        document.append(derived::visited(&loaded.project, ranges));
+        document.gap();
+    }
+    document.append(specification::document(&wishes));
+    document.line(match derived.is_empty() {
+        true => format!("The project is valid. {}", without_derived(source, &setup)?),
+        false => "The project is valid.".to_string(),
+    });
+    let files = derived::files(&derived);
+    let body = derived::body(loaded, &derived, visited.as_deref(), &wishes, told);
+    Ok(Unprinted { document, body, files, affirmative: true })
+}
+
+/// What the scenarios ask of the rig and it cannot do, each with its line.
+///
+/// # Errors
+/// [`CommandError`] for a file that the project names and that is missing or malformed.
+fn scenarios(source: &dyn Source, loaded: &Loaded, setup: &Setup<'_>) -> Result<Vec<String>, CommandError> {
+    if let Some(missing) = unreadable(source, &loaded.project).first() {
+        let mut refusal = refused(source, loaded, missing);
+        refusal.diagnostics.retain(|found| found.severity == Severity::Error);
+        return Err(CommandError::Refused(refusal));
+    }
+    let line = |at: &LateError| {
+        let found = refused(source, loaded, at).diagnostics;
+        found.iter().find(|found| found.message == at.message).map_or(0, |found| found.line)
+    };
+    let told = foreseen(source, setup)?;
+    Ok(told.iter().map(|at| format!("{} (line {})", at.message, line(at))).collect())
+}
+
+/// Effects that no verdict on the linear loop includes, and parameters of the rig outside its own
+/// family.
+fn told_first(setup: &Setup<'_>) -> Vec<String> {
+    let outside = setup
+        .outside()
+        .map(|(_, words)| format!("the family does not contain the rig as it is derived ({words})"));
+    outside.into_iter().chain(caveats(setup).into_iter().map(|caveat| caveat.sentence)).collect()
+}
+
+/// A project without an actuator has only its family, which must be valid.
+fn without_derived(source: &dyn Source, setup: &Setup<'_>) -> Result<&'static str, CommandError> {
+    Ok(match family(setup, source)? {
+        Family::Measured(_) => "Its plants were measured, and nothing is derived from them.",
+        Family::Uncertain(_) => "Its plant is a transfer function, from which nothing is derived.",
+    })
+}
