@@ -5,6 +5,7 @@
 
 mod converter;
 mod element;
+mod inner_feedback;
 mod integral;
 mod rate_sensor;
 mod sampled;
@@ -15,6 +16,7 @@ pub(crate) use integral::integral_row;
 
 pub use converter::{CoefficientFormat, CoefficientTooLarge, Converter, ConverterError};
 pub use element::{Compensator, Element, Stage};
+pub use inner_feedback::InnerFeedback;
 pub use rate_sensor::{RateFilter, RateSensor};
 pub use sampled::{ControllerOutput, ControllerState, SampledController};
 pub use section::Section;
@@ -38,6 +40,9 @@ pub struct Timing {
     pub rate_feed_forward: f64,
     /// H_v: filter and dead time of the sensor of that rate, before the samples.
     pub rate_sensor: RateSensor,
+    /// H of a second signal that is fed back, sampled and delayed as the command is: U = G (F R -
+    /// Y) - H P. A continuous loop has it in its plant.
+    pub inner_feedback: InnerFeedback,
 }
 
 impl Timing {

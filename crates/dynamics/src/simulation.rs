@@ -165,6 +165,16 @@ pub trait Plant<S: Scalar> {
         S::from(1.0)
     }
 
+    /// A second signal that a controller feeds back: the pressure of a load, in Pa.
+    fn inner_measurement<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T]) -> T {
+        T::from(0.0)
+    }
+
+    /// Typical magnitude of [`Plant::inner_measurement`], in its unit.
+    fn inner_measurement_scale(&self) -> S {
+        S::from(1.0)
+    }
+
     /// What a virtual impedance acts on: the position of a load, in m.
     fn position<T: Scalar + From<S>>(&self, _state: &[T], _inputs: &[T]) -> T {
         T::from(0.0)

@@ -3,6 +3,7 @@
 //! A simulation includes the whole machine. What the linear plant cannot represent is stated before
 //! the verdict; where a specification depends on it, the verdict is not proven.
 
+mod fed;
 mod moved_roots;
 mod null_sides;
 
@@ -10,14 +11,13 @@ use phea_hydraulics::cross_port::Restrictor;
 use phea_hydraulics::operating_point::OperatingPoint;
 use phea_hydraulics::series::MOST_SEGMENTS;
 
+use fed::{fed_in_loop, feed_forward, impedance, measured_without_pressures, pressures_in_loop};
 use moved_roots::moved_roots;
 
 use crate::family::{ShutGas, shut_gas};
 use crate::project::{CrossPortKind, DeclaredSeries, LineMotion, Load, Project, Pump, SupplyModel};
 use crate::quantity::{DisplayUnit, PRESSURE, display, significant};
-use crate::rig::{
-    ChargedRange, accumulator_place, charged_range, cross_port_at_point, limits_load_motion, waves_right_to,
-};
+use crate::rig::{ChargedRange, accumulator_place, charged_range, cross_port_at_point, waves_right_to};
 use crate::setup::Setup;
 
 /// A declared effect that the linear loop does not include.
@@ -49,6 +49,7 @@ pub fn of_models(setup: &Setup<'_>) -> Vec<String> {
         .chain(fed_between_chambers(project))
         .chain(of_gas(project))
         .chain(fed_in_loop(setup))
+        .chain(pressures_in_loop(project))
         .chain(beside_spring(project))
         .chain(standing(project))
         .chain(null_sides::null_sides(setup))
@@ -142,7 +143,8 @@ fn beside_spring(project: &Project) -> Option<String> {
 /// What no linear model counts.
 fn apart_from_lines(setup: &Setup<'_>) -> impl Iterator<Item = Caveat> {
     let project = setup.project;
-    [load(project), stages(project), feed_forward(project), impedance(setup)].into_iter().flatten()
+    let fed = [feed_forward(project), measured_without_pressures(project), impedance(setup)];
+    [load(project), stages(project)].into_iter().chain(fed).flatten()
 }
 
 /// A telescopic piston is that of each operating point.
@@ -425,76 +427,4 @@ fn constant_supply(project: &Project) -> Option<String> {
 /// Whether the plants of the family are responses that were measured.
 fn is_measured(project: &Project) -> bool {
     project.family.as_ref().is_some_and(|family| !family.measured.is_empty())
-}
-
-/// The load's velocity on the command: a feedback if the load can move under force, otherwise a
-/// path of the load motion. The loop of a rig includes both.
-fn feed_forward(project: &Project) -> Option<Caveat> {
-    let controller = project.controller.as_ref()?;
-    let declared = controller.load_velocity_feed_forward?;
-    let actuator = project.actuator.as_ref();
-    let yields = actuator.is_some_and(|actuator| actuator.load != Load::Prescribed);
-    let why = match actuator {
-        None => "a [plant] declares no load",
-        Some(_) if is_measured(project) => "the plants of the family were measured without it",
-        Some(_) => return None,
-    };
-    let what = match yields || actuator.is_none() {
-        true => "this is the loop without it, and only a simulation is of the loop with it",
-        false => "of all specifications load_motion alone depends on it, and only a simulation has it",
-    };
-    (declared.gain != Some(0.0)).then(|| Caveat {
-        sentence: format!(
-            "the load velocity that [controller] feeds forward is not counted, as {why}: {what}"
-        ),
-        unproven: yields || limits_load_motion(project),
-    })
-}
-
-/// A virtual impedance: what the specifications of its loop refer to, or that measured plants lack
-/// it.
-fn impedance(setup: &Setup<'_>) -> Option<Caveat> {
-    let project = setup.project;
-    setup.virtual_impedance?;
-    let yields = project.actuator.as_ref().is_some_and(|actuator| actuator.load != Load::Prescribed);
-    if is_measured(project) {
-        let what = match yields {
-            true => "this is the loop without it, and only a simulation is of the loop with it",
-            false => "of all specifications load_motion alone depends on it, and only a simulation has it",
-        };
-        let sentence = format!(
-            "controller.impedance is not counted, as the plants of the family were measured without the position of the load: {what}"
-        );
-        return Some(Caveat { sentence, unproven: yields || limits_load_motion(project) });
-    }
-    let sentence = match yields {
-        true => {
-            "controller.impedance is counted, and the load can move under force: loop and specifications are of y = F_e + Z_v (x_L - x_0), \
-             which the loop makes follow the reference; load_motion limits by how much y misses it, and only a simulation shows the force \
-             itself"
-        }
-        false => {
-            "controller.impedance is counted: load_motion limits y = F_e + Z_v (x_L - x_0) per motion, by which the force misses the impedance \
-             that is asked for; all other specifications are those of the force"
-        }
-    };
-    Some(Caveat { sentence: sentence.to_string(), unproven: false })
-}
-
-/// The feed-forward of the load velocity, which the models of a linearisation do not include
-/// because they describe the rig without its controller.
-fn fed_in_loop(setup: &Setup<'_>) -> Option<String> {
-    let controller = setup.project.controller.as_ref()?;
-    let declared = controller.load_velocity_feed_forward?;
-    let why = match controller.sample_time {
-        None if controller.delay > 0.0 => "as controller.delay delays it",
-        None if setup.velocity_sensor.delay_s > 0.0 => "velocity_sensor.delay delays it",
-        None => "they have no controller",
-        Some(_) => "the controller samples it",
-    };
-    (declared.gain != Some(0.0) && feed_forward(setup.project).is_none()).then(|| {
-        format!(
-            "these models leave out the load velocity that [controller] feeds forward, since {why}: verify, design and simulate include it"
-        )
-    })
 }

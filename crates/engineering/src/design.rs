@@ -335,6 +335,7 @@ fn continuous_as_sampled(
     let at_once = Timing {
         rate_feed_forward: timing.rate_feed_forward,
         rate_sensor: RateSensor { delay_s: 0.0, ..timing.rate_sensor },
+        inner_feedback: timing.inner_feedback,
         ..Timing::default()
     };
     let problem = DesignProblem { timing: at_once, ..sampled.clone() };

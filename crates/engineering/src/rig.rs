@@ -44,9 +44,10 @@ pub(crate) use gas::components_at_setting;
 pub use ideal_valve::is_ideal;
 use ideal_valve::{in_the_limit, shut};
 pub(crate) use ideal_valve::{reduced, stand_in_coefficient, two_pressures};
-pub use in_loop::FeedForwardPath;
-pub(crate) use in_loop::as_response;
-pub(crate) use in_loop::{limits_load_motion, velocity_gain};
+pub use in_loop::{FeedForwardPath, PressureFeedbackPath};
+pub(crate) use in_loop::{
+    inner_feedback, limits_load_motion, pressure_ratio, velocity_gain, with_controller_of,
+};
 pub use largest_flow::{FlowLimit, LargestFlow, largest_flow};
 pub use lines::{in_motion, line_model, lines};
 pub use numbers::Numbers;
@@ -103,6 +104,9 @@ pub struct Rig {
     pub in_motion: Option<PlantInMotion>,
     /// The feed-forward of the load velocity in the linear loop, which [`Rig::in_loop`] includes.
     pub fed: Option<FeedForwardPath>,
+    /// The feedback of the chambers' pressures, which [`Rig::in_loop`] includes where it is not
+    /// sampled.
+    pub fed_back: Option<PressureFeedbackPath>,
     /// The virtual impedance of the loop, which [`Rig::in_loop`] includes.
     pub virtual_impedance: Option<VirtualImpedance>,
 }
@@ -280,6 +284,7 @@ impl Rig {
             plant,
             in_motion,
             fed: FeedForwardPath::of(project, &linear, velocity_sensor),
+            fed_back: PressureFeedbackPath::of(project, components),
             virtual_impedance,
         })
     }

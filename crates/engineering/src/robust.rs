@@ -155,8 +155,13 @@ pub(crate) const LINES_IN_MOTION: &str = "lines in motion";
 
 fn without_polynomials(setup: &Setup<'_>, family: &Family) -> Option<&'static str> {
     let Family::Uncertain(family) = family else { return None };
-    let moves = setup.rig().is_ok_and(|rig| rig.in_motion.is_some());
-    let why = if moves { LINES_IN_MOTION } else { "the load's velocity fed forward late" };
+    let rig = setup.rig().ok()?;
+    let late = rig.fed_back.is_some_and(|back| !back.sampled && back.delay_s > 0.0);
+    let why = match (rig.in_motion.is_some(), late) {
+        (true, _) => LINES_IN_MOTION,
+        (false, true) => "pressures fed back late",
+        (false, false) => "the load's velocity fed forward late",
+    };
     (!family.plant().is_rational()).then_some(why)
 }
 

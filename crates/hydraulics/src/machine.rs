@@ -124,6 +124,8 @@ pub struct Machine<S = f64> {
     linkage: Option<Linkage<S>>,
     load: LoadModel<S>,
     velocity_gain: S,
+    /// phi of the pressure signal p_A - phi p_B.
+    pressure_ratio: S,
     external_force: bool,
     vapour_pressure: S,
     layout: Layout,
@@ -178,6 +180,7 @@ impl Machine {
             linkage: components.linkage,
             load: options.load,
             velocity_gain: options.velocity_gain,
+            pressure_ratio: options.pressure_ratio,
             external_force: options.external_force,
             vapour_pressure: options.vapour_pressure_absolute - ATMOSPHERIC_PRESSURE_ABSOLUTE,
             layout: Layout::default(),
@@ -276,7 +279,7 @@ phea_dynamics::parameters! {
         valve, spool, tare_reference_drop, supply, power_unit, cylinder, chambers, accumulators,
         necks, thermal_time_constants, gas_pressure_limits, adjustments, moving_setting: kept,
         cross_port, lines, friction, sensor_stiffness, series, linkage, load, velocity_gain,
-        external_force: kept, vapour_pressure, layout: kept,
+        pressure_ratio, external_force: kept, vapour_pressure, layout: kept,
     }
 }
 
@@ -370,6 +373,16 @@ impl<S: Scalar> Plant<S> for Machine<S> {
 
     fn disturbance_scale(&self) -> S {
         self.typical_state().velocity
+    }
+
+    #[inline(always)]
+    fn inner_measurement<T: Scalar + From<S>>(&self, state: &[T], _inputs: &[T]) -> T {
+        let state = self.layout.read(state);
+        state.pressure_a - constant::<S, T>(self.pressure_ratio) * state.pressure_b
+    }
+
+    fn inner_measurement_scale(&self) -> S {
+        self.typical_state().pressure_a
     }
 
     #[inline(always)]

@@ -5,20 +5,25 @@
 //! D F_h = N_u U_sp - N_v s X                                             chambers: ChamberDynamics
 //! (M s^2 + f_v s + k_A) X = F_h - F_e, F_e = K_S (X - X_L)               piston and force sensor, thesis (6.6)
 //! X_L = X_0,   or   (m s^2 + c s + k) X_L = F_e + (c s + k) X_0          load: LinearLoad
-//! U_C -> U_C + K_x (1 + e) H_v s X_L                                     what is fed forward of the load's velocity
+//! U_C -> U_C + K_x (1 + e) H_v s X_L - H (p_A - phi p_B)                 what is fed forward of the load's velocity, and back of
+//!                                                                        the pressures: PressureFeedback
 //! F_e -> F_e + Z_v X_L                                                   what a virtual impedance adds to the output
 //! ```
 //!
 //! These are the equations of [`crate::machine`] differentiated, with friction as one slope f_v.
 //! The supply is at a constant pressure, or has one of its own: [`YieldingSupply`].
 
+mod chambers;
 mod in_motion;
 mod load;
+mod pressure_feedback;
 mod series;
 mod supply;
 mod virtual_impedance;
+pub use chambers::ChamberDynamics;
 pub use in_motion::{BehindLines, PlantInMotion};
 pub use load::LinearLoad;
+pub use pressure_feedback::PressureFeedback;
 pub use series::{LinearElement, LinearSeries, LinearSpring, SeriesOutput};
 pub use supply::YieldingSupply;
 
@@ -26,7 +31,8 @@ use phea_dynamics::controller::{RateFilter, VirtualImpedance};
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RateNumerators, RationalCoefficients};
 
-use supply::Coupled;
+use chambers::{ChamberPolynomials, Reading};
+use pressure_feedback::ValveAndChambers;
 
 use crate::accumulator::GasBranch;
 use crate::cross_port::DynamicFeedback;
@@ -72,6 +78,8 @@ pub struct LinearPlant<S = f64> {
     pub velocity_sensor: VelocitySensor<S>,
     /// Z_v of an outer loop, with which the output is y = F_e + Z_v X_L; `None` for the force.
     pub virtual_impedance: Option<VirtualImpedance>,
+    /// Feedback of the chambers' pressures to the command, at once; `None` without one.
+    pub pressure_feedback: Option<PressureFeedback>,
 }
 
 /// The sensor of the load's velocity, without its dead time.
@@ -107,73 +115,6 @@ impl<S: Scalar> VelocitySensor<S> {
     }
 }
 
-/// How pressures build up. Units: m2, m3/(s V), m3/(s Pa), N/m, m3/Pa.
-///
-/// ```text
-/// load pressure    D = A^2 s + (K_c + G) K_H,   N_u = A K_H K_qU,   N_v = A^2 K_H             thesis (6.5) with (4.20)
-/// two pressures    Y_A = C_A s + K_cA,   Y_B = C_B s + K_cB,   D = Y_A Y_B + G (Y_A + Y_B)
-///                  N_u = A_A K_qA Y_B + A_B K_qB Y_A + G (A_A - A_B) (K_qA - K_qB)
-///                  N_v = A_A^2 Y_B + A_B^2 Y_A + G (A_A - A_B)^2
-/// ```
-///
-/// Both are the same where both chambers are: equal areas, compliances and flow-pressure
-/// coefficients. Dynamic pressure feedback adds g C_cp s/(C_cp s + g) to G.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ChamberDynamics<S = f64> {
-    /// One load pressure, of a cylinder whose chambers are equal.
-    LoadPressure {
-        /// Useful area A.
-        useful_area: S,
-        /// Flow gain K_qU.
-        flow_gain: S,
-        /// Flow-pressure coefficient K_c of the valve.
-        flow_pressure_coefficient: S,
-        /// Hydraulic stiffness K_H.
-        hydraulic_stiffness: S,
-    },
-    /// A pressure a chamber.
-    TwoPressures {
-        /// Areas A_A and A_B.
-        areas: [S; 2],
-        /// Compliances C_A and C_B.
-        compliances: [S; 2],
-        /// Flow gains K_qA and K_qB.
-        flow_gains: [S; 2],
-        /// Flow-pressure coefficients K_cA and K_cB.
-        flow_pressures: [S; 2],
-    },
-}
-
-/// D, N_u and N_v: polynomials, highest power first, or their values.
-struct ChamberPolynomials<T> {
-    own: T,
-    driven: T,
-    displaced: T,
-}
-
-/// Both chambers where nothing flows between them, and the same joined to one pressure: with an
-/// admittance Y between them, of which the determinant of their equations is linear,
-///
-/// ```text
-/// D = D_apart + Y D_joined,   N_u and N_v likewise
-/// ```
-struct ChamberPair<T> {
-    apart: ChamberPolynomials<T>,
-    joined: ChamberPolynomials<T>,
-}
-
-impl<T> ChamberPair<T> {
-    /// Each of D, N_u and N_v apart and joined, combined.
-    fn combined(&self, with: impl Fn(&T, &T) -> T) -> ChamberPolynomials<T> {
-        let ChamberPair { apart, joined } = self;
-        ChamberPolynomials {
-            own: with(&apart.own, &joined.own),
-            driven: with(&apart.driven, &joined.driven),
-            displaced: with(&apart.displaced, &joined.displaced),
-        }
-    }
-}
-
 /// Paths over their divisors: F_e (sensed - fed) = command U_C + ground X_0 and v_L
 /// (sensed - fed) = s (driven U_C + held R X_0), `fed` being the feedback through the velocity of a
 /// load that can move and R what ties this load to its ground.
@@ -184,130 +125,6 @@ struct Paths<T> {
     fed: Option<T>,
     driven: T,
     held: T,
-}
-
-impl<S: Scalar> ChamberDynamics<S> {
-    fn chambers(&self) -> ChamberPair<Vec<S>> {
-        match *self {
-            ChamberDynamics::LoadPressure {
-                useful_area: area,
-                flow_gain,
-                flow_pressure_coefficient,
-                hydraulic_stiffness: stiffness,
-            } => ChamberPair {
-                apart: ChamberPolynomials {
-                    own: vec![area.squared(), flow_pressure_coefficient * stiffness],
-                    driven: vec![area * stiffness * flow_gain],
-                    displaced: vec![area.squared() * stiffness],
-                },
-                joined: ChamberPolynomials { own: vec![stiffness], driven: vec![], displaced: vec![] },
-            },
-            ChamberDynamics::TwoPressures { areas, compliances, flow_gains, flow_pressures } => {
-                let [area_a, area_b] = areas;
-                let [gain_a, gain_b] = flow_gains;
-                let [a, b] = [0, 1].map(|side| [compliances[side], flow_pressures[side]]);
-                let difference = area_a - area_b;
-                ChamberPair {
-                    apart: ChamberPolynomials {
-                        own: product(&a, &b),
-                        driven: sum(&scaled(area_a * gain_a, &b), &scaled(area_b * gain_b, &a)),
-                        displaced: sum(&scaled(area_a.squared(), &b), &scaled(area_b.squared(), &a)),
-                    },
-                    joined: ChamberPolynomials {
-                        own: sum(&a, &b),
-                        driven: vec![difference * (gain_a - gain_b)],
-                        displaced: vec![difference.squared()],
-                    },
-                }
-            }
-        }
-    }
-}
-
-impl<S: Scalar> ChamberDynamics<S> {
-    /// The same with gas of its own dynamics, of either form, each chamber multiplied by the
-    /// denominator of its gas.
-    fn beside(&self, gas: [Option<GasBranch<S>>; 2]) -> ChamberPair<Vec<S>> {
-        let [one, other] = [self.side(0), self.side(1)];
-        let [(a, passed_a), (b, passed_b)] = [one.beside(gas[0]), other.beside(gas[1])];
-        let [squared_a, squared_b] = [one.area.squared(), other.area.squared()];
-        let [driven_a, driven_b] = [one.area * one.flow_gain, other.area * other.flow_gain];
-        let (by_a, by_b) = (product(&a, &passed_b), product(&b, &passed_a));
-        let both = product(&passed_a, &passed_b);
-        let difference = one.area - other.area;
-        ChamberPair {
-            apart: ChamberPolynomials {
-                own: product(&a, &b),
-                driven: sum(&scaled(driven_a, &by_b), &scaled(driven_b, &by_a)),
-                displaced: sum(&scaled(squared_a, &by_b), &scaled(squared_b, &by_a)),
-            },
-            joined: ChamberPolynomials {
-                own: sum(&by_a, &by_b),
-                driven: scaled(difference * (one.flow_gain - other.flow_gain), &both),
-                displaced: scaled(difference.squared(), &both),
-            },
-        }
-    }
-
-    /// The same with a supply that yields, of either form.
-    fn behind(&self, supply: &YieldingSupply<S>, gas: [Option<GasBranch<S>>; 2]) -> ChamberPair<Vec<S>> {
-        let [one, other] = [self.side(0), self.side(1)];
-        let [(a, passed_a), (b, passed_b)] = [one.beside(gas[0]), other.beside(gas[1])];
-        let [of_a, of_b] = supply.edges;
-        let coupled = Coupled {
-            own: [a, b, vec![supply.compliance, supply.conductance + of_a + of_b]],
-            passed: gas.iter().any(Option::is_some).then_some([passed_a, passed_b]),
-            edges: [vec![of_a], vec![of_b]],
-            gains: [vec![one.flow_gain], vec![other.flow_gain], vec![supply.flow_gain]],
-        };
-        coupled.chambers([one.area, other.area])
-    }
-
-    /// One chamber, 0 or 1. One load pressure is that of two equal chambers:
-    ///
-    /// ```text
-    /// C = 2 A^2/K_H,   K_q = K_qU,   2 K_c
-    /// ```
-    fn side(&self, side: usize) -> Chamber<S> {
-        match *self {
-            ChamberDynamics::LoadPressure {
-                useful_area: area,
-                flow_gain,
-                flow_pressure_coefficient,
-                hydraulic_stiffness,
-            } => Chamber {
-                area,
-                compliance: S::from(2.0) * area * area / hydraulic_stiffness,
-                flow_gain,
-                flow_pressure: S::from(2.0) * flow_pressure_coefficient,
-            },
-            ChamberDynamics::TwoPressures { areas, compliances, flow_gains, flow_pressures } => Chamber {
-                area: areas[side],
-                compliance: compliances[side],
-                flow_gain: flow_gains[side],
-                flow_pressure: flow_pressures[side],
-            },
-        }
-    }
-}
-
-/// Area, compliance, flow gain and flow-pressure coefficient of a chamber.
-struct Chamber<S> {
-    area: S,
-    compliance: S,
-    flow_gain: S,
-    flow_pressure: S,
-}
-
-impl<S: Scalar> Chamber<S> {
-    /// Its admittance C s + K_c with that of the gas, times the denominator of that, and this
-    /// denominator.
-    fn beside(&self, gas: Option<GasBranch<S>>) -> (Vec<S>, Vec<S>) {
-        let own = vec![self.compliance, self.flow_pressure];
-        let Some(gas) = gas else { return (own, vec![S::from(1.0)]) };
-        let [numerator, denominator] = gas.admittance();
-        (sum(&product(&own, &denominator), &numerator), denominator)
-    }
 }
 
 impl<S: Scalar> LinearPlant<S> {
@@ -340,6 +157,7 @@ impl<S: Scalar> LinearPlant<S> {
             load_velocity_feed_forward: None,
             velocity_sensor: VelocitySensor::default(),
             virtual_impedance: None,
+            pressure_feedback: None,
         }
     }
 
@@ -373,16 +191,18 @@ impl<S: Scalar> LinearPlant<S> {
             load_velocity_feed_forward: None,
             velocity_sensor: VelocitySensor::default(),
             virtual_impedance: None,
+            pressure_feedback: None,
         }
     }
 
-    /// D, N_u and N_v with what flows from chamber to chamber; dynamic pressure feedback multiplies
-    /// all three by C_cp s + g, the denominator of its admittance, and gas by that of its own.
-    fn chamber_polynomials(&self) -> ChamberPolynomials<Vec<S>> {
+    /// D, N_u and N_v of a reading with what flows from chamber to chamber; dynamic pressure
+    /// feedback multiplies all three by C_cp s + g, the denominator of its admittance, and gas by
+    /// that of its own.
+    fn chamber_polynomials(&self, reading: &Reading<S>) -> ChamberPolynomials<Vec<S>> {
         let chambers = match (&self.supply, self.gas) {
-            (None, [None, None]) => self.chambers.chambers(),
-            (None, gas) => self.chambers.beside(gas),
-            (Some(supply), gas) => self.chambers.behind(supply, gas),
+            (None, [None, None]) => self.chambers.chambers(reading),
+            (None, gas) => self.chambers.beside(gas, reading),
+            (Some(supply), gas) => self.chambers.behind(supply, gas).chambers(self.chambers.areas(), reading),
         };
         let leakage = self.internal_leakage;
         match self.dynamic_feedback {
@@ -445,20 +265,24 @@ impl<S: Scalar> LinearPlant<S> {
     }
 
     fn with_position(&self) -> PlantCoefficients<S> {
-        let (one, square) = (S::from(1.0), self.valve_natural_frequency.squared());
-        let damping = S::from(2.0) * self.valve_damping_ratio * self.valve_natural_frequency;
-        let spool = [one, damping, square];
-        let sensor = self.sensor_stiffness;
-        let chambers = self.chamber_polynomials();
-        let ChamberPolynomials { own, driven, displaced } = &chambers;
+        let valve = self.valve_and_chambers();
+        let ChamberPolynomials { own, displaced, .. } = &valve.chambers;
         let moved = shifted(&sum(&product(&[self.moving_mass, self.viscous_friction], own), displaced));
         let moved = match self.area_stiffness {
             Some(stiffness) => sum(&moved, &scaled(stiffness, own)),
             None => moved,
         };
+        self.against_load(valve, moved)
+    }
+
+    /// Valve and chambers with this Q against the load.
+    fn against_load(&self, valve: ValveAndChambers<S>, moved: Vec<S>) -> PlantCoefficients<S> {
+        let ValveAndChambers { chambers, spool, square } = valve;
+        let ChamberPolynomials { driven, .. } = &chambers;
+        let sensor = self.sensor_stiffness;
         if let Some(series) = &self.series {
             let driven = scaled(sensor * square, driven);
-            return self.coefficients_through(series, &chambers, [moved, driven, spool.to_vec()]);
+            return self.coefficients_through(series, &chambers, [moved, driven, spool]);
         }
         let ChamberPolynomials { own, driven, .. } = chambers;
         let shows = &self.velocity_sensor;

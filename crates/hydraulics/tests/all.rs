@@ -24,6 +24,7 @@ mod operating_point;
 mod passive_parts;
 mod plant;
 mod plant_in_motion;
+mod pressure_feedback;
 mod rich_machines;
 mod series;
 mod servovalve;

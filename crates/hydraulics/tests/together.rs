@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)] // helpers of tests
 
 use num_complex::Complex64;
+use phea_dynamics::controller::InnerFeedback;
 use phea_dynamics::portable::pow;
 use phea_dynamics::random::{share, stream};
 use phea_hydraulics::accumulator::{Accumulator, AdjustedPart, Adjustment, GasValve, Neck};
@@ -17,7 +18,7 @@ use phea_hydraulics::linkage::Linkage;
 use phea_hydraulics::machine::{InitialCondition, LoadModel, Machine, MachineOptions, PowerUnit};
 use phea_hydraulics::operating_point::{Condition, operating_point};
 use phea_hydraulics::plant::{
-    BehindLines, LinearLoad, LinearPlant, LinearSeries, PlantInMotion, SeriesOutput,
+    BehindLines, LinearLoad, LinearPlant, LinearSeries, PlantInMotion, PressureFeedback, SeriesOutput,
 };
 use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line};
 use phea_hydraulics::series::SeriesElement;
@@ -34,7 +35,7 @@ use super::transmission::transmission;
 const RIGS: u64 = 200;
 
 /// Parts by name, each with those further down that no rig has with it.
-const PARTS: [(&str, &[&str]); 29] = [
+const PARTS: [(&str, &[&str]); 30] = [
     ("polytropic gas", &[]),
     ("gas with heat", &[]),
     ("neck", &[]),
@@ -62,6 +63,7 @@ const PARTS: [(&str, &[&str]); 29] = [
     ("pump", &[]),
     ("air", &[]),
     ("feed-forward", &[]),
+    ("pressure feedback", &[]),
     ("prescribed load", &["sprung load"]),
     ("sprung load", &[]),
 ];
@@ -364,6 +366,20 @@ fn linear_load(load: &LoadModel, linkage: Option<&Linkage>, force: f64, angle: f
     (own, end.map_or(1.0, |end| 1.0 / end.lever_arm))
 }
 
+/// Of the pressure difference, the load pressure or another reading, with each filter or without.
+fn pressure_feedback(draw: &mut Draw, actuator: &Actuator) -> Option<PressureFeedback> {
+    if !draw.part("pressure feedback", 0.6) {
+        return None;
+    }
+    let Cylinder { area_a, area_b, .. } = actuator.components().cylinder;
+    let ratio = [1.0, area_b / area_a, draw.spread(0.1, 3.0)][(3.0 * share(&mut draw.state)) as usize];
+    let corners = [draw.spread(0.1, 300.0), draw.spread(30.0, 3e4)];
+    let [high_pass_rad_per_s, low_pass_rad_per_s] =
+        corners.map(|corner| (share(&mut draw.state) < 0.6).then_some(corner));
+    let filter = InnerFeedback { gain: draw.spread(1e-9, 1e-5), high_pass_rad_per_s, low_pass_rad_per_s };
+    Some(PressureFeedback { filter, ratio })
+}
+
 fn drawn(number: u64, kinds: &[Linkage; 4]) -> Drawn {
     let mut draw = Draw::new(90, number);
     let (rig, of_gas) = parts(&mut draw, number, kinds);
@@ -390,6 +406,7 @@ fn drawn(number: u64, kinds: &[Linkage; 4]) -> Drawn {
         load_velocity_feed_forward: draw
             .part("feed-forward", 0.5)
             .then(|| draw.spread(0.01, if turns { 1.0 } else { 30.0 })),
+        pressure_feedback: pressure_feedback(&mut draw, &actuator),
         ..plant
     };
     for ((of_gas, gas), pressure) in of_gas.into_iter().zip(rig.accumulators).zip(pressures) {
@@ -397,6 +414,20 @@ fn drawn(number: u64, kinds: &[Linkage; 4]) -> Drawn {
         draw.parts.extend(of_gas.parts.into_iter().filter(|_| in_use));
     }
     Drawn { machine, rest, turned, plant, behind, parts: draw.parts }
+}
+
+/// Signals by command and by motion with the pressures A and B, the last two, fed back.
+fn closed(
+    feedback: Option<PressureFeedback>,
+    s: Complex64,
+    [force, felt, velocity, of_a, of_b]: [[Complex64; 2]; 5],
+) -> [[Complex64; 2]; 3] {
+    let Some(PressureFeedback { filter, ratio }) = feedback else { return [force, felt, velocity] };
+    let back = [0, 1].map(|path| filter.response(s) * (of_a[path] - ratio * of_b[path]));
+    [force, felt, velocity].map(|[command, motion]| {
+        let command = command / (1.0 + back[0]);
+        [command, motion - command * back[1]]
+    })
 }
 
 /// The largest relative gap between plant and machine over frequency: in the force measured, as
@@ -410,15 +441,16 @@ fn apart(rig: &Drawn) -> f64 {
         None => PlantInMotion::lumped(&plant),
     });
     let polynomials = plants.map(|plant| plant.coefficients());
-    let signals = slopes(machine, rest, &["force_n", "load_force_n", "load_velocity_m_per_s"]);
+    let names = ["force_n", "load_force_n", "load_velocity_m_per_s", "pressure_a_pa", "pressure_b_pa"];
+    let signals = slopes(machine, rest, &names);
     let gain = plant.load_velocity_feed_forward.unwrap_or(0.0);
     let mut worst = 0.0_f64;
     for step in 0..13 {
         let frequency = 1e-2 * pow(1e6, f64::from(step) / 12.0);
         let s = Complex64::new(0.0, frequency);
         let amplitudes = amplitudes(machine, rest, (gain, *turned), frequency);
-        let [force, felt, velocity] =
-            [0, 1, 2].map(|signal| amplitudes.each_ref().map(|of| signal_of(of, &signals[signal])));
+        let of = [0, 1, 2, 3, 4].map(|one| amplitudes.each_ref().map(|of| signal_of(of, &signals[one])));
+        let [force, felt, velocity] = closed(plant.pressure_feedback, s, of);
         let mut told = vec![(moving[0].response(s), force), (moving[1].response(s), felt)];
         told.extend((plant.load != LinearLoad::Prescribed).then(|| (moving[0].load_velocity(s), velocity)));
         let of_polynomials = polynomials.iter().zip([force, felt]).filter(|_| behind.is_none());
@@ -464,6 +496,5 @@ fn it_is_the_machine_for_small_motions() {
             assert_eq!(met > 0, can, "{name} with {other}: {met}");
         }
     }
-    let largest = found.iter().map(Vec::len).max();
-    assert!(largest > Some(12), "{largest:?}");
+    assert!(found.iter().any(|of| of.len() > 12));
 }

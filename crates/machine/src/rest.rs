@@ -60,7 +60,7 @@ pub struct Rest {
 /// let controller = Controller { feedback: Compensator::new(vec![law]), ..Controller::default() };
 /// let sensed = Sensed::new(machine.clone(), &TransferFunction::gain_only(1.0))?;
 /// let closed = CommandedPlant::in_loop(sensed, &controller, 0.0)?;
-/// let guess = [beginning.state.clone(), closed.controller_at_rest(2e3, 3e3, beginning.command)].concat();
+/// let guess = [beginning.state.clone(), closed.controller_at_rest(2e3, [3e3, 0.0], beginning.command)].concat();
 /// let standing = HeldInputs { reference_n: 2e3, command_v: 0.0, external_n: 0.0, setting_change: 0.0 };
 /// let rest = at_rest(&Control::Continuous(Box::new(closed)), &guess, &beginning, standing)?;
 /// assert!((rest.measured_n - 2e3).abs() < 1e-3 && (force(&machine, &rest.start) - 2e3).abs() < 1e-3);

@@ -2,10 +2,12 @@
 
 mod element;
 mod impedance;
+mod pressure_feedback;
 mod rational_function;
 
 pub use element::{DeclaredElement, ElementKind};
 pub use impedance::{DeclaredImpedance, ImpedanceForm};
+pub use pressure_feedback::{DeclaredPressureFeedback, PressureSignal};
 pub use rational_function::RationalFunction;
 
 use super::key::{key, plain};
@@ -84,6 +86,8 @@ pub struct DeclaredController {
     pub load_velocity_feed_forward: Option<FeedForward>,
     /// The impedance that it gives the load; absent: none.
     pub impedance: Option<DeclaredImpedance>,
+    /// The feedback of the chambers' pressures; absent: none.
+    pub pressure_feedback: Option<DeclaredPressureFeedback>,
 }
 
 /// What the controller adds to its command for a measured velocity of the load.
@@ -196,6 +200,8 @@ impl DeclaredController {
         v.table(k, &mut self.load_velocity_feed_forward, FeedForward::visit);
         let k = plain("impedance", "The impedance that the loop gives the load.");
         v.table(k, &mut self.impedance, DeclaredImpedance::visit);
+        let k = plain("pressure_feedback", "What is subtracted from the command for the pressures: damping.");
+        v.table(k, &mut self.pressure_feedback, DeclaredPressureFeedback::visit);
     }
 }
 

@@ -17,6 +17,7 @@ mod measured;
 mod motor;
 mod order;
 mod plausible;
+mod pressure_feedback;
 mod rig;
 mod series;
 mod signal;
@@ -60,6 +61,7 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     specification::specifications(project, &mut check);
     linear_loop::controllers(project, &mut check);
     impedance::impedance(project, &mut check);
+    pressure_feedback::pressure_feedback(project, &mut check);
     design::design(project, &mut check);
     order::bench(&project.bench, &mut check);
     if let Some(identified) = &project.identify {

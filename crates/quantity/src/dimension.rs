@@ -152,6 +152,9 @@ dimensions! {
     VOLTAGE_RATE = "a voltage rate", whole(0, 0, -1, 1, 0), [], "V/s", r#"2000, "2000 V/s", "2 V/ms""#;
     /// V·s/m, from a velocity to a command.
     VOLTAGE_PER_VELOCITY = "a gain in V.s/m", whole(0, -1, 1, 1, 0), [], "V.s/m", r#"28, "28 V.s/m", "28 V/(m/s)""#;
+    /// V/Pa, from a pressure to a command.
+    VOLTAGE_PER_PRESSURE = "a gain in V/Pa", whole(-1, 1, 2, 1, 0), ["V/bar"], "V/Pa",
+        r#""0.02 V/bar", "2e-7 V/Pa""#;
     /// s/m, damping of a contact relative to its elastic force.
     INVERSE_VELOCITY = "an inverse velocity", whole(0, -1, 1, 0, 0), [], "s/m", r#"0.5, "0.5 s/m""#;
     /// kg/m, of a hose's wall.

@@ -52,6 +52,7 @@ mod output_names;
 mod parts;
 mod plant_of_verdicts;
 mod predicted_step;
+mod pressure_feedback;
 mod proof;
 mod proof_region;
 mod recorded_tables;

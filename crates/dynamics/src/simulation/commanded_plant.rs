@@ -3,18 +3,19 @@
 
 use super::realization::Realization;
 use super::{Plant, Sliding, System};
-use crate::controller::{AntiWindup, Controller, integral_row};
+use crate::controller::{AntiWindup, Controller, InnerFeedback, integral_row};
 use crate::linear::{LinearError, StateSpace, TransferFunction};
 use crate::scalar::Scalar;
 
 /// A plant with what commands it.
 ///
 /// ```text
-/// in a loop   u = G (F r - y) + k d,    |u| <= limit,    delayed;    inputs r and those of the plant; states of plant, G, F
-/// on hold     u is an input, held between samples;                   inputs u, r and those of the plant; states of plant, F
+/// in a loop   u = G (F r - y) + k d - H p,    |u| <= limit,    delayed;    inputs r and those of the plant; states of plant, G, H, F
+/// on hold     u is an input, held between samples;                         inputs u, r and those of the plant; states of plant, F
 /// ```
 ///
-/// In a loop, the plant's disturbance d (a load's velocity) may be fed forward. A limited command
+/// In a loop, the plant's disturbance d (a load's velocity) may be fed forward, and its inner
+/// measurement p (a pressure) fed back by the controller's [`InnerFeedback`]. A limited command
 /// stops the integral part as the controller's [`AntiWindup`] says: clamping holds the states of G
 /// while the error drives the command further out, back calculation drives them with the error that
 /// would have given the limited command. Clamping takes hold over the first ten-thousandth beyond
@@ -42,6 +43,8 @@ struct ContinuousLaw {
     limit: f64,
     anti_windup: AntiWindup,
     feed_forward: f64,
+    /// H; `None` where no inner measurement is fed back.
+    inner: Option<Realization>,
     delay_s: f64,
 }
 
@@ -93,7 +96,10 @@ impl<P> CommandedPlant<P> {
         }
         let limit = controller.command_limit.unwrap_or(f64::INFINITY);
         let delay_s = controller.timing.delay_s;
-        let law = ContinuousLaw { feedback, integral, limit, anti_windup, feed_forward, delay_s };
+        let inner = controller.timing.inner_feedback;
+        let realized = |inner: InnerFeedback| Realization::new(&inner.transfer_function()?);
+        let inner = (!inner.is_zero()).then(|| realized(inner)).transpose()?;
+        let law = ContinuousLaw { feedback, integral, limit, anti_windup, feed_forward, inner, delay_s };
         Ok(CommandedPlant { plant, law: Some(law), prefilter })
     }
 
@@ -135,7 +141,7 @@ impl<P> CommandedPlant<P> {
 
     /// How many states controller and prefilter have.
     pub fn controller_states(&self) -> usize {
-        self.feedback_states() + self.prefilter.states
+        self.feedback_states() + self.inner_states() + self.prefilter.states
     }
 
     #[inline(always)]
@@ -143,8 +149,25 @@ impl<P> CommandedPlant<P> {
         self.law.as_ref().map_or(0, |law| law.feedback.states)
     }
 
-    /// States of G and F, in this order, that hold a command at constant reference and measurement,
-    /// or come nearest to it. On hold those of F.
+    #[inline(always)]
+    fn inner_states(&self) -> usize {
+        self.law.as_ref().and_then(|law| law.inner.as_ref()).map_or(0, |inner| inner.states)
+    }
+
+    /// Each part of the states, or of their rates: those of plant, G, H and F.
+    #[inline(always)]
+    fn parts<'t, S: Scalar, T>(&self, state: &'t [T]) -> [&'t [T]; 4]
+    where
+        P: Plant<S>,
+    {
+        let (of_plant, of_controller) = state.split_at(self.plant.states());
+        let (of_feedback, others) = of_controller.split_at(self.feedback_states());
+        let (of_inner, of_prefilter) = others.split_at(self.inner_states());
+        [of_plant, of_feedback, of_inner, of_prefilter]
+    }
+
+    /// States of G, H and F, in this order, that hold a command at constant reference, measurement
+    /// and inner measurement, or come nearest to it. On hold those of F.
     ///
     /// # Example
     /// An integrator holds any command while there is no error.
@@ -156,15 +179,25 @@ impl<P> CommandedPlant<P> {
     /// let controller = Controller { feedback, prefilter, ..Controller::default() };
     /// let closed = CommandedPlant::in_loop((), &controller, 0.0)?;
     /// assert_eq!(closed.controller_states(), 2);
-    /// let states = closed.controller_at_rest(3.0, 3.0, 0.5);
+    /// let states = closed.controller_at_rest(3.0, [3.0, 0.0], 0.5);
     /// assert!((2.0 * states[0] - 0.5).abs() < 1e-12 || (states[0] - 0.5).abs() < 1e-12);
     /// # Ok::<(), phea_dynamics::linear::LinearError>(())
     /// ```
-    pub fn controller_at_rest(&self, reference: f64, measurement: f64, command: f64) -> Vec<f64> {
+    pub fn controller_at_rest(
+        &self,
+        reference: f64,
+        [measurement, inner]: [f64; 2],
+        command: f64,
+    ) -> Vec<f64> {
         let of_prefilter = self.prefilter.at_rest(reference, None);
         let error = self.prefilter.output(&of_prefilter, reference) - measurement;
-        let law = self.law.as_ref();
-        let mut states = law.map_or(vec![], |law| law.feedback.at_rest(error, Some(command)));
+        let mut states = vec![];
+        if let Some(law) = &self.law {
+            let of_inner = law.inner.as_ref().map_or(vec![], |path| path.at_rest(inner, None));
+            let subtracted = law.inner.as_ref().map_or(0.0, |path| path.output(&of_inner, inner));
+            states.extend(law.feedback.at_rest(error, Some(command + subtracted)));
+            states.extend(of_inner);
+        }
         states.extend(of_prefilter);
         states
     }
@@ -191,8 +224,7 @@ impl<P> CommandedPlant<P> {
     where
         P: Plant<S>,
     {
-        let (of_plant, of_controller) = state.split_at(self.plant.states());
-        let (of_feedback, of_prefilter) = of_controller.split_at(self.feedback_states());
+        let [of_plant, of_feedback, of_inner, of_prefilter] = self.parts::<S, T>(state);
         let own = self.own::<S, T>(inputs);
         let filtered_reference = self.prefilter.output(of_prefilter, inputs[self.leading_inputs() - 1]);
         let measurement = self.plant.measurement(of_plant, own);
@@ -204,6 +236,9 @@ impl<P> CommandedPlant<P> {
         let mut wanted = law.feedback.output(of_feedback, error);
         if law.feed_forward != 0.0 {
             wanted = wanted + self.plant.disturbance(of_plant, own).times(law.feed_forward);
+        }
+        if let Some(inner) = &law.inner {
+            wanted = wanted - inner.output(of_inner, self.plant.inner_measurement(of_plant, own));
         }
         let command = wanted.minimum(T::from(law.limit)).maximum(T::from(-law.limit));
         LoopSignals { filtered_reference, measurement, error, wanted, command }
@@ -234,7 +269,7 @@ impl<P> CommandedPlant<P> {
     /// let law = Element::ProportionalIntegral { proportional_gain: 2.0, integral_gain: 3.0 };
     /// let controller = Controller { feedback: Compensator::new(vec![law]), ..Controller::default() };
     /// let closed = CommandedPlant::in_loop(Still, &controller, 0.0)?;
-    /// let held = closed.controller_at_rest(0.0, 0.0, 0.6);
+    /// let held = closed.controller_at_rest(0.0, [0.0; 2], 0.6);
     /// assert!((closed.integral_part(&held) - 0.6).abs() < 1e-12);
     /// # Ok::<(), phea_dynamics::linear::LinearError>(())
     /// ```
@@ -290,7 +325,7 @@ pub struct LoopSignals<T> {
 impl<S: Scalar, P: Plant<S>> System<S> for CommandedPlant<P> {
     #[inline(always)]
     fn states(&self) -> usize {
-        self.plant.states() + self.feedback_states() + self.prefilter.states
+        self.plant.states() + self.controller_states()
     }
 
     #[inline(always)]
@@ -302,6 +337,8 @@ impl<S: Scalar, P: Plant<S>> System<S> for CommandedPlant<P> {
         let mut scales = self.plant.scales();
         if let Some(law) = &self.law {
             scales.extend(law.feedback.scales(self.plant.command_scale()));
+            let inner = law.inner.iter();
+            scales.extend(inner.flat_map(|inner| inner.scales(self.plant.command_scale())));
         }
         scales.extend(self.prefilter.scales(self.plant.measurement_scale()));
         scales
@@ -310,15 +347,19 @@ impl<S: Scalar, P: Plant<S>> System<S> for CommandedPlant<P> {
     #[inline(always)]
     fn rates<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T], rates: &mut [T]) {
         let leading = self.leading_inputs();
-        let (of_plant, of_controller) = state.split_at(self.plant.states());
-        let (of_feedback, of_prefilter) = of_controller.split_at(self.feedback_states());
+        let [of_plant, of_feedback, of_inner, of_prefilter] = self.parts::<S, T>(state);
         let (plant_rates, controller_rates) = rates.split_at_mut(of_plant.len());
-        let (feedback_rates, prefilter_rates) = controller_rates.split_at_mut(of_feedback.len());
+        let (feedback_rates, other_rates) = controller_rates.split_at_mut(of_feedback.len());
+        let (inner_rates, prefilter_rates) = other_rates.split_at_mut(of_inner.len());
         let mut command = inputs[0];
         if let Some(law) = &self.law {
             let signals = self.signals::<S, T>(state, inputs);
             command = if self.is_delayed() { inputs[1 + self.plant.inputs()] } else { signals.command };
             law.rates(of_feedback, &signals, feedback_rates);
+            if let Some(inner) = law.inner.as_ref().filter(|inner| inner.states > 0) {
+                let own = self.own::<S, T>(inputs);
+                inner.rates(of_inner, self.plant.inner_measurement(of_plant, own), inner_rates);
+            }
         }
         self.plant.rates(of_plant, command, self.own::<S, T>(inputs), plant_rates);
         self.prefilter.rates(of_prefilter, inputs[leading - 1], prefilter_rates);

@@ -321,6 +321,16 @@ impl<S: Scalar, P: Plant<S>> Plant<S> for Sensed<P> {
         self.plant.disturbance_scale()
     }
 
+    #[inline(always)]
+    fn inner_measurement<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> T {
+        let (own_state, own_inputs) = self.of_plant::<S, T>(state, inputs);
+        self.plant.inner_measurement(own_state, own_inputs)
+    }
+
+    fn inner_measurement_scale(&self) -> S {
+        self.plant.inner_measurement_scale()
+    }
+
     fn delays(&self) -> Vec<S> {
         let own = self.is_late().then(|| S::from(self.delay_s));
         let of_rate = self.rate.iter().map(|rate| rate.delay_s).filter(|delay_s| *delay_s > 0.0);

@@ -14,6 +14,7 @@ use super::row::CampaignColumns;
 use super::varied::ranges;
 use crate::project::{Loaded, MotionShape, Project, Scenario, Signal, print};
 use crate::quantity::{MotionKind, Units};
+use crate::rig::with_controller_of;
 use crate::setup::Setup;
 use crate::simulate::{
     ControlledMachine, LineWatch, ScenarioDrive, SimulateError, TimeRequirement, Window, driven,
@@ -283,7 +284,7 @@ impl Plan {
             .filter(|(range, _)| !range.path.starts_with("start."))
             .map(|(range, value)| (range.path.as_str(), *value))
             .collect();
-        self.project.with_numbers(&numbers)
+        with_controller_of(self.project.clone(), &self.bench.rig).with_numbers(&numbers)
     }
 
     /// The scenario with the drawn start in it.

@@ -79,7 +79,7 @@ pub(super) fn in_motion(
     let open = visited.open(project, declared);
     let (place, plant) = open.plant(values, visited.moved, visited.equal);
     let moving = rig::in_motion(&declared.line, &place.components, &place.point, &place.chambers, &plant)?;
-    Ok(rig::as_response(visited.rig.fed, moving, &plant))
+    Ok(visited.rig.as_response(moving, &plant))
 }
 
 /// A rig with some of its numbers open.
@@ -159,8 +159,8 @@ impl Open<'_> {
         (position, steady, Balance::at(components, position))
     }
 
-    /// The rig with these values, and its plant with lumped lines as the loop sees it. Feed-forward
-    /// and virtual impedance are those of the declared rig.
+    /// The rig with these values, and its plant with lumped lines as the loop sees it. What is fed
+    /// forward and back and the virtual impedance are those of the declared rig.
     pub(super) fn plant<S: Scalar>(
         &self,
         values: &[S],
@@ -208,7 +208,7 @@ impl Open<'_> {
             area_stiffness,
             ..plant
         };
-        (place, self.rig.fed.map_or(plant, |fed| fed.at_once(plant)))
+        (place, self.rig.with_inner_paths(plant))
     }
 
     /// The rig with these values; its pressures are those of the declared rig if nothing changes

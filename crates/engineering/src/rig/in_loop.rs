@@ -1,25 +1,28 @@
-//! The plant as it appears to the loop: with the feed-forward of the load velocity, and with what a
-//! virtual impedance adds to its output.
+//! The plant as it appears to the loop: with the feed-forward of the load velocity, with the
+//! feedback of the chambers' pressures, and with what a virtual impedance adds to its output.
 
 use phea_dynamics::closed_loop::ClosedLoop;
-use phea_dynamics::controller::{RateFilter, RateSensor};
+use phea_dynamics::controller::{InnerFeedback, RateFilter, RateSensor};
 use phea_dynamics::scalar::Scalar;
+use phea_hydraulics::actuator::Components;
+use phea_hydraulics::cylinder::Cylinder;
 use phea_hydraulics::linear::LinearParameters;
-use phea_hydraulics::plant::{LinearPlant, PlantInMotion, VelocitySensor};
+use phea_hydraulics::plant::{LinearPlant, PlantInMotion, PressureFeedback, VelocitySensor};
 
 use super::Rig;
 use super::numbers::Numbers;
-use crate::project::{DeclaredActuator, Load, Project};
+use crate::project::{DeclaredActuator, DeclaredPressureFeedback, Load, PressureSignal, Project};
 
 /// The error of the velocity sensor's gain.
 const GAIN_ERROR: &str = "velocity_sensor.gain_error";
 
 impl Rig {
-    /// The same rig with its virtual impedance, whose plant gives out y = F_e + Z_v X_L, and with
-    /// the velocity of its load fed forward. Without delay it is in `plant` and
-    /// `in_motion`. With delay and a load that can move it has no polynomials and is in `in_motion`
-    /// alone, which then exists for lumped lines too. A sampled feed-forward is not part of the
-    /// plant, nor a delayed one on the path of a prescribed motion: the loop includes them.
+    /// The same rig with its virtual impedance, whose plant gives out y = F_e + Z_v X_L, with the
+    /// velocity of its load fed forward, and with its pressures fed back. Without delay these are
+    /// in `plant` and `in_motion`. With delay and a load that can move, or pressures, it has no
+    /// polynomials and is in `in_motion` alone, which then exists for lumped lines too. What is
+    /// sampled is not part of the plant, nor a delayed feed-forward on the path of a prescribed
+    /// motion: the loop includes them.
     ///
     /// # Example
     /// For a prescribed load only the path of its motion changes.
@@ -41,11 +44,40 @@ impl Rig {
     pub fn in_loop(&self) -> Rig {
         let plant = LinearPlant { virtual_impedance: self.virtual_impedance, ..self.plant };
         let moving = self.in_motion.map(|moving| moving.beside(self.virtual_impedance));
-        Rig {
-            plant: self.fed.map_or(plant, |fed| fed.at_once(plant)),
-            in_motion: as_response(self.fed, moving, &plant),
-            ..self.clone()
-        }
+        let plant = self.with_inner_paths(plant);
+        Rig { in_motion: self.as_response(moving, &plant), plant, ..self.clone() }
+    }
+
+    /// A plant with what is fed forward and back in it without delay.
+    pub(crate) fn with_inner_paths<S: Scalar>(&self, plant: LinearPlant<S>) -> LinearPlant<S> {
+        let plant = self.fed.map_or(plant, |fed| fed.at_once(plant));
+        LinearPlant { pressure_feedback: self.fed_back.and_then(|back| back.at_once()), ..plant }
+    }
+
+    /// The plant without polynomials as it appears to the loop: with these lines in motion, or with
+    /// lumped lines and the delayed velocity of a load that can move or delayed pressures; `None`
+    /// where there are polynomials.
+    pub(crate) fn as_response(
+        &self,
+        moving: Option<PlantInMotion>,
+        lumped: &LinearPlant,
+    ) -> Option<PlantInMotion> {
+        let fed = match self.fed {
+            Some(FeedForwardPath::InPlant { gain, filter, delay }) => Some((gain, filter, delay)),
+            Some(FeedForwardPath::InLoop { .. }) | None => None,
+        };
+        let back = self.fed_back.filter(|back| !back.sampled);
+        let is_late =
+            fed.is_some_and(|(_, _, delay)| delay > 0.0) || back.is_some_and(|back| back.delay_s > 0.0);
+        let plant = moving.or_else(|| is_late.then(|| PlantInMotion::lumped(lumped)))?;
+        let plant = match fed {
+            Some((gain, filter, delay)) => plant.fed_forward(Some(gain)).filtered(filter).late(delay),
+            None => plant,
+        };
+        Some(match back {
+            Some(back) => plant.fed_back(Some(back.feedback), back.delay_s),
+            None => plant,
+        })
     }
 
     /// Gain of the load's velocity on the command in V s/m, zero where nothing is fed forward.
@@ -127,17 +159,65 @@ impl FeedForwardPath {
     }
 }
 
-/// The plant without polynomials as it appears to the loop: with these lines in motion, or with
-/// lumped lines and the delayed velocity of a load that can move; `None` where there are
-/// polynomials.
-pub(crate) fn as_response(
-    fed: Option<FeedForwardPath>,
-    moving: Option<PlantInMotion>,
-    lumped: &LinearPlant,
-) -> Option<PlantInMotion> {
-    let Some(FeedForwardPath::InPlant { gain, filter, delay }) = fed else { return moving };
-    let plant = moving.or_else(|| (delay > 0.0).then(|| PlantInMotion::lumped(lumped)))?;
-    Some(plant.fed_forward(Some(gain)).filtered(filter).late(delay))
+/// The feedback of the chambers' pressures in the linear loop, and where it acts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PressureFeedbackPath {
+    /// H and phi.
+    pub feedback: PressureFeedback,
+    /// Delay of the loop in s.
+    pub delay_s: f64,
+    /// Whether it is sampled with the controller: then the loop around the plant has it.
+    pub sampled: bool,
+}
+
+impl PressureFeedbackPath {
+    /// The feedback in the loop of a project; `None` where nothing is fed back.
+    pub(super) fn of(project: &Project, components: &Components) -> Option<PressureFeedbackPath> {
+        let controller = project.controller.as_ref()?;
+        let declared = controller.pressure_feedback.filter(|declared| declared.gain != 0.0)?;
+        let ratio = pressure_ratio(&declared, components);
+        let feedback = PressureFeedback { filter: inner_feedback(&declared), ratio };
+        let (delay_s, sampled) = (controller.delay, controller.sample_time.is_some());
+        Some(PressureFeedbackPath { feedback, delay_s, sampled })
+    }
+
+    /// What acts in the plant without delay.
+    fn at_once(&self) -> Option<PressureFeedback> {
+        (!self.sampled && self.delay_s == 0.0).then_some(self.feedback)
+    }
+}
+
+/// H of a declared pressure feedback.
+pub(crate) fn inner_feedback(declared: &DeclaredPressureFeedback) -> InnerFeedback {
+    InnerFeedback {
+        gain: declared.gain,
+        high_pass_rad_per_s: declared.high_pass,
+        low_pass_rad_per_s: declared.low_pass,
+    }
+}
+
+/// phi of its signal p_A - phi p_B.
+pub(crate) fn pressure_ratio(declared: &DeclaredPressureFeedback, components: &Components) -> f64 {
+    let Cylinder { area_a, area_b, .. } = components.cylinder;
+    match declared.signal {
+        PressureSignal::PressureDifference => 1.0,
+        PressureSignal::LoadPressure => declared.area_ratio.unwrap_or(area_b / area_a),
+    }
+}
+
+/// A project whose controller keeps what it takes from the declared rig, whatever rig it then
+/// commands: the gain of a feed-forward, and the ratio of areas of a load pressure.
+pub(crate) fn with_controller_of(mut project: Project, rig: &Rig) -> Project {
+    let Some(controller) = project.controller.as_mut() else { return project };
+    if let Some(fed) = &mut controller.load_velocity_feed_forward {
+        fed.gain = Some(rig.feed_forward());
+    }
+    if let (Some(declared), Some(back)) = (&mut controller.pressure_feedback, rig.fed_back)
+        && declared.signal == PressureSignal::LoadPressure
+    {
+        declared.area_ratio = Some(back.feedback.ratio);
+    }
+    project
 }
 
 /// Shown velocity of the load over the true one; `None` where its gain has no error.

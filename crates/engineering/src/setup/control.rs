@@ -10,6 +10,7 @@ use phea_qft::design::quantization::{Converter, Quantization, QuantizationError}
 use crate::project::{
     self, ElementKind, Formula, FormulaError, ImpedanceForm, Project, Rational, RationalFunction, Transfer,
 };
+use crate::rig::inner_feedback;
 
 /// Why a declared controller or prefilter is not a transfer function.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -88,6 +89,7 @@ pub(super) fn timing(project: &Project) -> Timing {
         continuous_prefilter: project.prefilter.as_ref().is_some_and(|prefilter| prefilter.continuous),
         rate_feed_forward: 0.0,
         rate_sensor: RateSensor::default(),
+        inner_feedback: declared.pressure_feedback.as_ref().map(inner_feedback).unwrap_or_default(),
     }
 }
 

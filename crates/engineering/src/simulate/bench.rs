@@ -16,7 +16,7 @@ use super::SimulateError;
 use super::line_limits::LineLimits;
 use crate::project::{self, FrictionLaw, Project, Scenario};
 use crate::quantity::Units;
-use crate::rig::{Numbers, Rig, lines, power_unit, velocity_gain};
+use crate::rig::{Numbers, Rig, lines, power_unit, pressure_ratio, velocity_gain};
 use crate::setup::Setup;
 
 /// A machine with its controller.
@@ -222,6 +222,7 @@ pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions,
         Some(FrictionLaw::Stribeck { regular_velocity, .. }) => *regular_velocity,
         Some(FrictionLaw::Viscous | FrictionLaw::LuGre { .. }) | None => None,
     };
+    let fed_back = project.controller.as_ref().and_then(|controller| controller.pressure_feedback);
     Ok(MachineOptions {
         spool: SpoolImperfection {
             null_bias: declared.valve.null_bias,
@@ -234,6 +235,7 @@ pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions,
         power_unit: power_unit(declared, &Numbers::declared()),
         load: load(&declared.load)?,
         velocity_gain: velocity_gain(declared, &Numbers::declared()).unwrap_or(1.0),
+        pressure_ratio: fed_back.map_or(1.0, |fed_back| pressure_ratio(&fed_back, actuator.components())),
         external_force: false,
         moving_setting: false,
         vapour_pressure_absolute: declared.fluid.vapour_pressure,

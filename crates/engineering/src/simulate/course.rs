@@ -280,7 +280,9 @@ fn loop_start(bench: &ControlledMachine, beginning: &InitialCondition, held_at: 
     let measured = bench.machine.measurement(&beginning.state, &beginning.all_inputs());
     let reference = held_at.unwrap_or(0.0);
     let mut sensor = bench.control.sensed().sensor_at_rest(measured);
-    let mut control = bench.control.commanded().controller_at_rest(reference, measured, beginning.command);
+    let inner = bench.machine.inner_measurement(&beginning.state, &beginning.all_inputs());
+    let commanded = bench.control.commanded();
+    let mut control = commanded.controller_at_rest(reference, [measured, inner], beginning.command);
     if held_at.is_none() {
         sensor.fill(0.0);
         control.fill(0.0);

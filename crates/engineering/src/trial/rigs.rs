@@ -16,7 +16,7 @@ use crate::project::{
     Component, DeclaredActuator, DeclaredLine, DeclaredSeries, LINEAR_PARAMETERS, LineMotion, Linear,
     Project, ValveCoefficients,
 };
-use crate::rig::Rig;
+use crate::rig::{Rig, with_controller_of};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
@@ -149,11 +149,7 @@ pub fn with_waves(project: &Project) -> Option<Project> {
 /// derived ones, which no machine has. `None` if it has no additional waves.
 pub(crate) fn waves_alone(setup: &Setup<'_>) -> Option<Project> {
     let rig = setup.rig().ok()?;
-    let mut alone = with_waves(setup.project)?;
-    let fed = alone.controller.as_mut().and_then(|given| given.load_velocity_feed_forward.as_mut());
-    if let Some(fed) = fed {
-        fed.gain = Some(rig.feed_forward());
-    }
+    let alone = with_controller_of(with_waves(setup.project)?, rig);
     let operating_point = setup.project.resolved_operating_point();
     Some(Project { linear: Linear::default(), operating_point, ..alone.without_uncertainty() })
 }
@@ -175,12 +171,7 @@ fn quarter_wave(rig: &Rig) -> Option<f64> {
 fn made(setup: &Setup<'_>, declared: &Rig, names: &[&str], values: &[f64]) -> Result<Project, String> {
     let project = setup.project;
     let is_linear = |name: &str| LINEAR_PARAMETERS.iter().any(|parameter| parameter.key.name == name);
-    let mut rig = project.clone();
-    // what is fed forward is that of the declared rig
-    let gain = declared.feed_forward();
-    if let Some(given) = rig.controller.as_mut().and_then(|given| given.load_velocity_feed_forward.as_mut()) {
-        given.gain = Some(gain);
-    }
+    let mut rig = with_controller_of(project.clone(), declared);
     let stated = names.iter().copied().zip(values.iter().copied()).filter(|(name, _)| !is_linear(name));
     for (name, value) in stated {
         if name == "operating_point.velocity" && value != 0.0 {

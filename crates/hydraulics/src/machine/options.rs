@@ -26,6 +26,8 @@ pub struct MachineOptions {
     /// Velocity of the load as its sensor shows it, over the true one: 1 + e, e the error of its
     /// gain.
     pub velocity_gain: f64,
+    /// phi of the pressure signal p_A - phi p_B that a controller may feed back.
+    pub pressure_ratio: f64,
     /// Whether a force from outside acts on the load, as an input of the machine; it needs a load
     /// that has a mass.
     pub external_force: bool,
@@ -56,6 +58,7 @@ impl Default for MachineOptions {
             power_unit: PowerUnit::Constant,
             load: LoadModel::Prescribed,
             velocity_gain: 1.0,
+            pressure_ratio: 1.0,
             external_force: false,
             moving_setting: false,
             vapour_pressure_absolute: VAPOUR_PRESSURE_ABSOLUTE,
@@ -86,6 +89,7 @@ impl MachineOptions {
         }
         problems.component("load", self.load.problems());
         problems.positive("velocity_sensor.gain", self.velocity_gain);
+        problems.not_negative("controller.pressure_feedback.ratio", self.pressure_ratio);
         problems.not_negative("fluid.vapour_pressure_absolute", self.vapour_pressure_absolute);
         problems.into_vec()
     }

@@ -4,11 +4,9 @@ use num_complex::Complex64;
 use phea_dynamics::analytic::Analytic;
 use phea_dynamics::controller::{RateFilter, VirtualImpedance};
 
+use super::chambers::{Chamber, ChamberPair, ChamberPolynomials, Reading};
 use super::supply::{Coupled, Over};
-use super::{
-    Chamber, ChamberPair, ChamberPolynomials, LinearLoad, LinearPlant, LinearSeries, Paths, VelocitySensor,
-    YieldingSupply,
-};
+use super::{LinearLoad, LinearPlant, LinearSeries, Paths, PressureFeedback, VelocitySensor, YieldingSupply};
 use crate::accumulator::GasBranch;
 use crate::cross_port::DynamicFeedback;
 use crate::line::{DynamicLine, Segments, TransferMatrix};
@@ -58,6 +56,8 @@ pub struct PlantInMotion {
     alike: bool,
     /// Delay of the load's velocity that is fed forward, s: of its sensor and of the loop.
     lateness: f64,
+    /// Delay of the pressures that are fed back, s: of the loop.
+    feedback_delay_s: f64,
 }
 
 /// The chambers of a plant. Units: m3/Pa.
@@ -132,8 +132,19 @@ impl PlantInMotion {
         PlantInMotion { lateness, ..self }
     }
 
+    /// The same with the chambers' pressures fed back, delayed by a time in s: H e^(-s tau) for H.
+    #[must_use]
+    pub fn fed_back(
+        self,
+        pressure_feedback: Option<PressureFeedback>,
+        feedback_delay_s: f64,
+    ) -> PlantInMotion {
+        let plant = LinearPlant { pressure_feedback, ..self.plant };
+        PlantInMotion { plant, feedback_delay_s, ..self }
+    }
+
     /// The plant with its lumped lines as they are: for a load velocity that is fed forward late,
-    /// of which there is no quotient of polynomials.
+    /// or pressures that are fed back late, of which there is no quotient of polynomials.
     pub fn lumped(plant: &LinearPlant) -> PlantInMotion {
         let compliances = [0, 1].map(|side| plant.chambers.side(side).compliance);
         let none = DynamicLine::Segments(Segments::lumped(0.0));
@@ -157,7 +168,7 @@ impl PlantInMotion {
         };
         let sides = [side(0), side(1)];
         let alike = sides[0].line == sides[1].line;
-        PlantInMotion { plant: *plant, sides, alike, lateness: 0.0 }
+        PlantInMotion { plant: *plant, sides, alike, lateness: 0.0, feedback_delay_s: 0.0 }
     }
 
     /// F_e/U_C in N/V and F_e/X_0 in N/m at s in rad/s, or over a set of such, by the equations of
@@ -196,16 +207,16 @@ impl PlantInMotion {
     }
 
     fn paths_of_force<A: Analytic>(&self, s: A) -> Paths<A> {
-        let chambers = self.chambers(s);
+        let frequency = self.plant.valve_natural_frequency;
+        let square = frequency * frequency;
+        let turned = s.scaled(2.0 * self.plant.valve_damping_ratio * frequency);
+        let spool = A::from(square) / (s * s + turned + A::from(square));
+        let chambers = self.with_feedback(s, spool);
         let ChamberPolynomials { own, driven, displaced } = chambers;
         let sensor = self.plant.sensor_stiffness;
         let rubbed = s.scaled(self.plant.moving_mass) + A::from(self.plant.viscous_friction);
         let moved = s * (rubbed * own + displaced);
         let moved = self.plant.area_stiffness.map_or(moved, |stiffness| moved + own.scaled(stiffness));
-        let frequency = self.plant.valve_natural_frequency;
-        let square = frequency * frequency;
-        let turned = s.scaled(2.0 * self.plant.valve_damping_ratio * frequency);
-        let spool = A::from(square) / (s * s + turned + A::from(square));
         let driven = (spool * driven).scaled(sensor);
         let fed = match self.fed_gain() {
             Some(gain) => {
@@ -240,39 +251,73 @@ impl PlantInMotion {
         }
     }
 
-    /// D, N_u and N_v at s, multiplied by the transmission of both lines, so that nothing is
-    /// divided by a quantity that vanishes at a resonance.
-    fn chambers<A: Analytic>(&self, s: A) -> ChamberPolynomials<A> {
+    /// D, N_u and N_v at s with the pressures fed back behind a spool S, see [`PressureFeedback`]:
+    /// D + S H N_p, N_u and N_v + S H m.
+    fn with_feedback<A: Analytic>(&self, s: A, spool: A) -> ChamberPolynomials<A> {
+        let across = self.across(s);
+        let at = self.at_chambers(s);
+        let areas = self.sides.map(|side| side.area);
+        let read = |reading: &Reading<f64>| {
+            let combined = |apart: &A, joined: &A| *apart + across * *joined;
+            match &self.plant.supply {
+                None => self.chambers(&at, reading).combined(combined),
+                Some(supply) => self
+                    .behind(supply, &at, s)
+                    .chambers(areas, reading)
+                    .combined(|apart, joined| Over(combined(&apart.0, &joined.0)))
+                    .unwrapped(),
+            }
+        };
+        let chambers = read(&Reading::of_force(areas));
+        let Some(feedback) = &self.plant.pressure_feedback else { return chambers };
+        let turned = match &self.plant.supply {
+            None => {
+                let [gain_a, gain_b] = self.sides.map(|side| side.flow_gain);
+                at[1].passed.scaled(areas[1] * gain_a) - at[0].passed.scaled(areas[0] * gain_b)
+            }
+            Some(supply) => self.behind(supply, &at, s).turned(areas).0,
+        };
+        let turned = turned.scaled(areas[1] - feedback.ratio * areas[0]);
+        let signal = read(&Reading::of_signal(feedback.ratio, areas)).driven;
+        let back = spool * feedback.filter.response(s);
+        let back = match self.feedback_delay_s > 0.0 {
+            true => back * s.scaled(-self.feedback_delay_s).exponential(),
+            false => back,
+        };
+        ChamberPolynomials {
+            own: chambers.own + back * signal,
+            driven: chambers.driven,
+            displaced: chambers.displaced + back * turned,
+        }
+    }
+
+    fn at_chambers<A: Analytic>(&self, s: A) -> [AtChamber<A>; 2] {
         let [one, other] = &self.sides;
         let line = one.line.transfer_matrix(s);
         let across = if self.alike { line } else { other.line.transfer_matrix(s) };
-        let at = [one.at_chamber(line, s), other.at_chamber(across, s)];
-        let [area_a, area_b] = self.sides.map(|side| side.area);
-        let [gain_a, gain_b] = self.sides.map(|side| side.flow_gain);
-        let across = self.across(s);
-        if let Some(supply) = &self.plant.supply {
-            let chambers = self.behind(supply, &at, s).chambers([area_a, area_b]);
-            return chambers.combined(|apart, joined| Over(apart.0 + across * joined.0)).unwrapped();
-        }
+        [one.at_chamber(line, s), other.at_chamber(across, s)]
+    }
+
+    /// D, N_u and N_v of a reading at s on a constant supply, multiplied by the transmission of
+    /// both lines, so that nothing is divided by a quantity that vanishes at a resonance.
+    fn chambers<A: Analytic>(&self, at: &[AtChamber<A>; 2], reading: &Reading<f64>) -> ChamberPair<A> {
         let [one, other] = at;
+        let [gain_a, gain_b] = self.sides.map(|side| side.flow_gain);
+        let Reading { weights: [read_a, read_b], displaced: [displaced_a, displaced_b], .. } = *reading;
         let (a, b) = (one.admittance, other.admittance);
-        let passed = one.passed * other.passed;
-        let difference = area_a - area_b;
         let crossed = other.passed.scaled(gain_a) - one.passed.scaled(gain_b);
-        let chambers = ChamberPair {
+        ChamberPair {
             apart: ChamberPolynomials {
                 own: a * b,
-                driven: b.scaled(area_a * gain_a) + a.scaled(area_b * gain_b),
-                displaced: (b * one.passed).scaled(area_a * area_a)
-                    + (a * other.passed).scaled(area_b * area_b),
+                driven: b.scaled(read_a * gain_a) + a.scaled(read_b * gain_b),
+                displaced: (b * one.passed).scaled(displaced_a) + (a * other.passed).scaled(displaced_b),
             },
             joined: ChamberPolynomials {
                 own: a * other.passed + b * one.passed,
-                driven: crossed.scaled(difference),
-                displaced: passed.scaled(difference * difference),
+                driven: crossed.scaled(reading.difference),
+                displaced: (one.passed * other.passed).scaled(reading.displaced_difference),
             },
-        };
-        chambers.combined(|apart, joined| *apart + across * *joined)
+        }
     }
 
     /// Admittance from chamber to chamber.
@@ -312,9 +357,9 @@ impl PlantInMotion {
         }
     }
 
-    /// Whether nothing in it except the feed-forward supplies energy, so that without it none of
-    /// its poles lies in the right half plane: its lines are passive, and so are valve, leakage,
-    /// friction and load where none of their coefficients is negative.
+    /// Whether nothing in it except what is fed forward and back supplies energy, so that without
+    /// these none of its poles lies in the right half plane: its lines are passive, and so are
+    /// valve, leakage, friction and load where none of their coefficients is negative.
     pub fn is_passive(&self) -> bool {
         let load = self.plant.load.terms().map_or([0.0; 3], |load| load.own());
         let series = self.plant.series.iter().flat_map(LinearSeries::numbers);

@@ -4,8 +4,9 @@ use phea_dynamics::analytic::Analytic;
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RateNumerators, RationalCoefficients};
 
+use super::chambers::ChamberPolynomials;
 use super::supply::{Admittance, Over};
-use super::{ChamberPolynomials, LinearPlant, Paths};
+use super::{LinearPlant, Paths};
 use crate::actuator::Components;
 use crate::line::StiffeningMember;
 use crate::linear::polynomial::{product, scaled, shifted, sum};

@@ -1,7 +1,7 @@
 use phea_dynamics::analytic::Analytic;
 use phea_dynamics::scalar::Scalar;
 
-use super::{ChamberPair, ChamberPolynomials};
+use super::chambers::{ChamberPair, ChamberPolynomials, Reading};
 use crate::linear::polynomial::{product, scaled, sum};
 use crate::operating_point::{Balance, SettledSupply};
 use crate::orifice::{regular_root, regular_root_slope};
@@ -129,7 +129,7 @@ impl<T> Coupled<T> {
     /// [-s_A -s_B   c   ] [p_S]   [-K_qS]       [  0 ]
     /// joined: p_A = p_B,   [a + b, -s; -s, c] with s = s_A + s_B,   D = (a + b) c - s^2
     /// ```
-    pub(super) fn chambers<S: Scalar>(&self, [area_a, area_b]: [S; 2]) -> ChamberPair<T>
+    pub(super) fn chambers<S: Scalar>(&self, [area_a, area_b]: [S; 2], reading: &Reading<S>) -> ChamberPair<T>
     where
         T: Admittance<S>,
     {
@@ -147,13 +147,13 @@ impl<T> Coupled<T> {
         let (from_a, from_b) = (times(0, b.times(of_a)), times(1, a.times(of_b)));
         let own = a.times(&bc).plus(&minus(&of_a.times(&from_a)));
         let (bc, ac) = (times(0, bc), times(1, ac));
-        let force = |a: &T, b: &T| a.by(area_a).plus(&b.by(-area_b));
-        let [by_a, by_b, by_supply] = [force(&bc, &ab), force(&ab, &ac), force(&from_a, &from_b)];
+        let [read_a, read_b] = reading.weights;
+        let read = |a: &T, b: &T| a.by(read_a).plus(&b.by(-read_b));
+        let [by_a, by_b, by_supply] = [read(&bc, &ab), read(&ab, &ac), read(&from_a, &from_b)];
         let [gain_a, gain_b, gain_supply] = &self.gains;
         let taken = by_b.times(gain_b).plus(&by_supply.times(gain_supply));
         let of_both = of_a.plus(of_b);
         let given = gain_a.plus(&minus(gain_b)).times(c).plus(&minus(&of_both.times(gain_supply)));
-        let difference = area_a - area_b;
         let together = self.together::<S>();
         ChamberPair {
             apart: ChamberPolynomials {
@@ -163,9 +163,31 @@ impl<T> Coupled<T> {
             },
             joined: ChamberPolynomials {
                 own: together.times(c).plus(&minus(&both(of_both.times(&of_both)))),
-                driven: both(given).by(difference),
-                displaced: both(c.by(difference * difference)),
+                driven: both(given).by(reading.difference),
+                displaced: both(c.by(reading.displaced_difference)),
             },
+        }
+    }
+
+    /// det [A K] of areas and gains, expanded by what is left of the equations without two of them:
+    /// by it the pressures tell more than the force does, see
+    /// [`PressureFeedback`](super::PressureFeedback).
+    ///
+    /// ```text
+    /// c (A_B K_qA - A_A K_qB) - s_B A_A K_qS - s_A A_B K_qS
+    /// ```
+    pub(super) fn turned<S: Scalar>(&self, [area_a, area_b]: [S; 2]) -> T
+    where
+        T: Admittance<S>,
+    {
+        let [gain_a, gain_b, gain_supply] = &self.gains;
+        let [of_a, of_b] = &self.edges;
+        let across = gain_a.by(area_b).plus(&gain_b.by(-area_a));
+        let taken = of_b.by(area_a).plus(&of_a.by(area_b)).times(gain_supply);
+        let turned = self.own[2].times(&across).plus(&taken.by(S::from(-1.0)));
+        match &self.passed {
+            None => turned,
+            Some([passed_a, passed_b]) => turned.times(passed_a).times(passed_b),
         }
     }
 }

@@ -22,6 +22,7 @@ pub(super) fn controllers(project: &Project, check: &mut Check<'_, '_>) {
             "saturation",
             "anti_windup",
             "impedance",
+            "pressure_feedback",
         ];
         let only_timing = timing.iter().any(|name| check.declared(&format!("controller.{name}")));
         transfer(&controller.transfer, "controller", controller.sample_time, only_timing, check);

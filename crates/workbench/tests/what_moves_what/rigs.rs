@@ -38,6 +38,12 @@ const SHOWN: &str = "velocity_sensor={ gain_error = \"2 %\", delay = \"1 ms\", f
 /// A virtual impedance.
 const IMPEDANCE: &str = "controller.impedance={ stiffness = \"100 kN/m\", damping = \"2 kN.s/m\", mass = \"20 kg\", filter_time = \"2 ms\" }";
 
+/// A cylinder of unequal areas.
+const UNEQUAL: &str = "cylinder={ piston_diameter = \"50 mm\", rod_diameters = [\"0 mm\", \"36 mm\"], stroke = \"500 mm\", moving_mass = \"13.1 kg\" }";
+
+/// Pressures that are fed back.
+const FED_BACK: &str = "controller.pressure_feedback={ gain = \"0.02 V/bar\", area_ratio = 0.9, high_pass = \"1 Hz\", low_pass = \"100 Hz\" }";
+
 /// The same loop by zeros, poles and gain.
 fn factored(hose: &str) -> String {
     hose.replace(
@@ -80,6 +86,7 @@ pub(super) fn rigs() -> Vec<(String, Vec<&'static str>)> {
         (hose(), [&sampled[..], &[SHOWN]].concat()),
         (hose(), [&SPRUNG[..], &["controller.load_velocity_feed_forward={ gain = 20 }", SHOWN]].concat()),
         (hose(), vec![IMPEDANCE]),
+        (hose(), vec![FED_BACK]),
         (hose(), CONVERTERS.to_vec()),
         (factored, vec![]),
         (pipe(), [&WALL[..], &["load.relative_damping=0.1"]].concat()),
@@ -89,6 +96,7 @@ pub(super) fn rigs() -> Vec<(String, Vec<&'static str>)> {
         ),
         (hose(), vec!["series={ stiffness = \"2 MN/m\", damping = 100 }", "line.working_pressure=250 bar"]),
         (ASYMMETRIC.to_string(), vec!["cylinder.friction.regular_velocity=1 mm/s"]),
+        (hose(), vec![UNEQUAL, "controller.pressure_feedback={ gain = \"0.02 V/bar\" }"]),
         (VOLUMES.split("[uncertainty]").next().unwrap().to_string(), vec!["load.mass=10"]),
         (
             pipe(),
@@ -232,7 +240,7 @@ fn without_uncertainty(text: &str) -> String {
 }
 
 /// Values of what may be absent, or is not a number.
-const STATED: [(&str, &str); 84] = [
+const STATED: [(&str, &str); 88] = [
     ("cross_port.mass", "1 kg"),
     ("cross_port.price", "100 EUR"),
     ("line.accumulator.mass", "1 kg"),
@@ -286,6 +294,10 @@ const STATED: [(&str, &str); 84] = [
     ("controller.impedance.damping", "2.1 kN.s/m"),
     ("controller.impedance.mass", "21 kg"),
     ("controller.impedance.filter_time", "2.1 ms"),
+    ("controller.pressure_feedback.gain", "0.03 V/bar"),
+    ("controller.pressure_feedback.area_ratio", "0.8"),
+    ("controller.pressure_feedback.high_pass", "2 Hz"),
+    ("controller.pressure_feedback.low_pass", "90 Hz"),
     ("controller.quantization.command_bits", "9"),
     ("controller.quantization.command_range", "[\"-9 V\", \"9 V\"]"),
     ("controller.quantization.measurement_bits", "9"),

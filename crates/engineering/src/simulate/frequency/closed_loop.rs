@@ -8,7 +8,7 @@ use num_complex::Complex64;
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
-use phea_dynamics::simulation::{CommandedPlant, Input, Profile, Sensed, SimulationSettings};
+use phea_dynamics::simulation::{CommandedPlant, Input, Plant, Profile, Sensed, SimulationSettings};
 use phea_hydraulics::machine::Machine;
 use phea_machine::{Control, ControllerSamples, Digital, Sampled, Waking};
 use phea_qft::closed_loop::{Compensation, Member};
@@ -110,6 +110,14 @@ impl LoopParts<'_> {
         })
     }
 
+    /// What the controller measures at rest: the force in N, and the pressures that it feeds back,
+    /// in Pa.
+    fn measured(&self) -> [f64; 2] {
+        let rest = &self.rested.rest;
+        let inner = Plant::<f64>::inner_measurement(&self.rested.machine, &rest.state, &rest.all_inputs());
+        [self.measured_n, inner]
+    }
+
     fn continuous(
         &self,
         (control, closed): (&Control, &CommandedPlant<Sensed<Machine>>),
@@ -119,7 +127,7 @@ impl LoopParts<'_> {
         let rest = &self.rested.rest;
         let mut state = rest.state.clone();
         state.extend(closed.plant().sensor_at_rest(self.rested.force_n));
-        state.extend(closed.controller_at_rest(self.reference_n, self.measured_n, rest.command));
+        state.extend(closed.controller_at_rest(self.reference_n, self.measured(), rest.command));
         control.rest_at(&mut state, rest.inputs[0]);
         let waves = control.under_way(&state, &[self.reference_n], rest);
         let inputs = [&[self.reference_n], &rest.inputs[..], &waves].concat();
@@ -161,7 +169,7 @@ impl LoopParts<'_> {
         let (held, rest) = (&quiet.held, &self.rested.rest);
         let mut state = rest.state.clone();
         state.extend(held.plant().sensor_at_rest(self.rested.force_n));
-        state.extend(held.controller_at_rest(self.reference_n, self.measured_n, rest.command));
+        state.extend(held.controller_at_rest(self.reference_n, self.measured(), rest.command));
         let control = Control::Sampled(Box::new(quiet.clone()));
         control.rest_at(&mut state, rest.inputs[0]);
         let waves = control.under_way(&state, &[rest.command, self.reference_n], rest);

@@ -24,6 +24,8 @@ const SMALL_TURN: f64 = 0.5;
 const LARGE_STEP: f64 = 1.05;
 /// A smaller feedback cannot reach one within a step.
 const SMALL_FED: f64 = 0.25;
+/// A pressure signal that differs from the load pressure by less, relative to it, is that.
+const SAME_READING: f64 = 1e-9;
 
 impl RespondingPlant for PlantInMotion {
     fn response(&self, frequency_rad_per_s: f64) -> [Complex64; 2] {
@@ -90,8 +92,15 @@ impl RespondingPlant for PlantInMotion {
     /// ```
     ///
     /// A limited supply is a third port, `power_per_volt`. The feed-forward of a load that can move
-    /// multiplies this by at most 1/(1 - (1 + e) K_x |H_v| |P Y_L|). A series element lies between
-    /// K_e and Y_L: `LinearSeries::beyond_sensor`.
+    /// multiplies this by at most 1/(1 - (1 + e) K_x |H_v| |P Y_L|), and feedback of the load
+    /// pressure F_h/A_A, of which no more is known than that
+    ///
+    /// ```text
+    /// F_h = (M s + f_v + k_A/s) v + F_e
+    /// ```
+    ///
+    /// by at most 1/(1 - |H| |F_h/U_C|/A_A); with another reading of the pressures there is no
+    /// bound. A series element lies between K_e and Y_L: `LinearSeries::beyond_sensor`.
     fn roll_off(&self, frequency_rad_per_s: f64) -> Option<f64> {
         let friction = self.plant.viscous_friction;
         let w = frequency_rad_per_s;
@@ -113,10 +122,18 @@ impl RespondingPlant for PlantInMotion {
         };
         let BeyondSensor { yielding, passed, output } = beyond?;
         let held = w / self.plant.sensor_stiffness - yielding;
-        let bound = (self.power_per_volt() / friction).sqrt() * spool / held;
+        let moving = (self.power_per_volt() / friction).sqrt() * spool;
+        let resisted =
+            w * self.plant.moving_mass + friction + self.plant.area_stiffness.unwrap_or(0.0) / w + 1.0 / held;
+        let back = self.plant.pressure_feedback.map_or(Some(0.0), |feedback| {
+            let [area_a, area_b] = self.sides.map(|side| side.area);
+            let of_load = (area_b - feedback.ratio * area_a).abs() < SAME_READING * area_b;
+            of_load.then_some(feedback.filter.bound(w) * moving * resisted / area_a)
+        })?;
+        let bound = moving / held / (1.0 - back);
         let peak = self.plant.velocity_sensor.filter.peak();
         let fed = self.fed_gain().map_or(0.0, |gain| gain.abs() * peak * bound * passed * speed);
-        let falls = spool > 0.0 && held > 0.0 && yielding >= 0.0 && fed < 0.5;
+        let falls = spool > 0.0 && held > 0.0 && yielding >= 0.0 && fed < 0.5 && back < 0.5;
         // y = F_e + Z_v X_L, and |X_L| of what reaches the load
         let beside = self.plant.virtual_impedance.map_or(0.0, |impedance| {
             let yields = self.plant.load != LinearLoad::Prescribed;
@@ -130,13 +147,20 @@ impl RespondingPlant for PlantInMotion {
         if !self.is_passive() {
             return None;
         }
-        if self.plant.load == LinearLoad::Prescribed || self.plant.load_velocity_feed_forward.is_none() {
+        let moves = self.plant.load != LinearLoad::Prescribed;
+        if self.plant.pressure_feedback.is_none()
+            && !(moves && self.plant.load_velocity_feed_forward.is_some())
+        {
             return Some(0);
         }
-        // 1 less the feedback of the load velocity, for a plant that is stable without it: Nyquist
+        // 1 less what is fed forward and back, for a plant that is stable without it: Nyquist
+        let alone = self.fed_forward(None).fed_back(None, 0.0);
         let difference = |frequency: f64| {
-            let Paths { sensed, fed, .. } = self.paths(Complex64::new(0.0, frequency));
-            (frequency, 1.0 - fed.map_or(Complex64::ZERO, |fed| fed / sensed))
+            let [own, alone] = [self, &alone].map(|plant| {
+                let Paths { sensed, fed, .. } = plant.paths(Complex64::new(0.0, frequency));
+                fed.map_or(sensed, |fed| sensed - fed)
+            });
+            (frequency, own / alone)
         };
         let [from, to] = self.range_rad_per_s();
         let mut ahead: Vec<(f64, Complex64)> =
@@ -191,7 +215,17 @@ impl RespondingPlant for PlantInMotion {
             Some([1.0 / gas.compliance, own + 1.0 / gas.compliance].map(|per| per * gas.valve.unwrap_or(0.0)))
         });
         let valves = valves.flatten().filter(|corner| *corner > 0.0);
-        let lags = || filter.into_iter().chain(lag).chain(heat.clone()).chain(valves.clone()).chain(resisted);
+        let fed_back = self.plant.pressure_feedback;
+        let fed_back = fed_back.iter().flat_map(|feedback| feedback.filter.corners_rad_per_s());
+        let lags = || {
+            fed_back
+                .clone()
+                .chain(filter)
+                .chain(lag)
+                .chain(heat.clone())
+                .chain(valves.clone())
+                .chain(resisted)
+        };
         let slowest = lags().fold(slowest, f64::min);
         let fastest = lags().fold(fastest, |fastest, lag| fastest.max(ABOVE_SPOOL * lag));
         [BELOW * slowest, fastest]
@@ -201,7 +235,8 @@ impl RespondingPlant for PlantInMotion {
         let delays = self.sides.iter().flat_map(|side| side.line.delays());
         let waves = 2.0 * delays.fold(0.0, f64::max);
         let fed = self.plant.load_velocity_feed_forward.map_or(0.0, |_| self.lateness);
-        waves + fed
+        let back = self.plant.pressure_feedback.map_or(0.0, |_| self.feedback_delay_s);
+        waves + fed.max(back)
     }
 }
 
@@ -209,7 +244,7 @@ impl PlantInMotion {
     /// Whether 1 less the feedback cannot have turned around zero between these two points: a delay
     /// turns it in proportion to the frequency, which counts where the feedback is large.
     fn is_near(&self, [here, next]: [(f64, Complex64); 2]) -> bool {
-        let turned = (next.0 - here.0) * self.lateness;
+        let turned = (next.0 - here.0) * self.lateness.max(self.feedback_delay_s);
         let fed = [here, next].map(|(_, difference)| (difference - 1.0).norm_sqr());
         let is_small = fed.iter().all(|fed| *fed < SMALL_FED * SMALL_FED);
         next.0 < LARGE_STEP * here.0 && (turned < SMALL_TURN || is_small)

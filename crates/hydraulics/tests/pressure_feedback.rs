@@ -1,0 +1,162 @@
+//! Feedback of the chambers' pressures: the damping that it adds in closed form, and what robust
+//! design takes from a plant without polynomials.
+
+#![allow(clippy::unwrap_used)] // helpers of tests
+
+use num_complex::Complex64;
+use phea_dynamics::analytic::Disc;
+use phea_dynamics::controller::InnerFeedback;
+use phea_dynamics::linear::{Polynomial, TransferFunction};
+use phea_dynamics::portable::{exp_complex, pow};
+use phea_dynamics::random::{share, stream};
+use phea_dynamics::uncertain_plant::RationalCoefficients;
+use phea_dynamics::uncertain_plant::responding::RespondingPlant;
+use phea_hydraulics::linear::LinearParameters;
+use phea_hydraulics::plant::{LinearLoad, LinearPlant, PlantInMotion, PressureFeedback};
+use phea_hydraulics::reference_rig::nominal_plant;
+
+use super::plant_in_motion::drawn;
+
+fn feedback(gain: f64) -> PressureFeedback {
+    PressureFeedback { filter: InnerFeedback { gain, ..InnerFeedback::default() }, ratio: 1.0 }
+}
+
+fn roots(path: &RationalCoefficients<f64>) -> Vec<Complex64> {
+    let [over, under] =
+        [&path.numerator, &path.denominator].map(|coefficients| Polynomial::new(coefficients.clone()));
+    TransferFunction::from_polynomials(&over, &under).unwrap().poles().to_vec()
+}
+
+/// Of a load that is held and a fast valve, the swinging pole w^2 = (K_S + K_H)/M is damped by what
+/// flows past the piston's swing, K_qU k p_L, as far as that is small:
+///
+/// ```text
+/// -2 Re s = f_v/M + (K_c + K_qU k) K_H^2/(A^2 (K_S + K_H))
+/// ```
+#[test]
+fn it_damps_as_leakage_does() {
+    let parameters = LinearParameters {
+        valve_natural_frequency: 1e7,
+        viscous_friction: 0.0,
+        flow_pressure_coefficient: 0.0,
+        ..nominal_plant()
+    };
+    let LinearParameters { useful_area, flow_gain, hydraulic_stiffness, sensor_stiffness, .. } = parameters;
+    for (gain, within) in [(1e-9, 1e-4), (1e-8, 1e-3), (1e-7, 1e-2)] {
+        let plain = LinearPlant::of_load_pressure(&parameters, 0.0, LinearLoad::Prescribed);
+        let plant = LinearPlant { pressure_feedback: Some(feedback(gain)), ..plain };
+        let swinging = roots(&plant.coefficients().command).into_iter();
+        let swinging = swinging.filter(|pole| pole.im > 0.0 && pole.norm_sqr() < 1e10).collect::<Vec<_>>();
+        let added = gain * flow_gain * hydraulic_stiffness * hydraulic_stiffness
+            / (useful_area * useful_area * (sensor_stiffness + hydraulic_stiffness));
+        assert_eq!(swinging.len(), 1);
+        assert!((-2.0 * swinging[0].re / added - 1.0).abs() < within, "{gain}: {swinging:?} {added}");
+    }
+}
+
+/// A high pass leaves the plant of rest as it is; without one the valve must hold k p_L against the
+/// leakage, and the gain at rest falls to K_c/(K_c + K_qU k) of what it was.
+#[test]
+fn a_high_pass_leaves_the_rest_alone() {
+    let parameters = nominal_plant();
+    let plain = LinearPlant::of_load_pressure(&parameters, 0.0, LinearLoad::Prescribed);
+    let at_rest = |feedback| {
+        let plant = LinearPlant { pressure_feedback: feedback, ..plain };
+        plant.coefficients().command.at_frequency(1e-7).re
+    };
+    let fixed = feedback(2e-7);
+    let high = InnerFeedback { high_pass_rad_per_s: Some(20.0), ..fixed.filter };
+    let passed = PressureFeedback { filter: high, ..fixed };
+    assert!((at_rest(Some(passed)) / at_rest(None) - 1.0).abs() < 1e-5);
+    let own = parameters.flow_pressure_coefficient;
+    let expected = own / (own + parameters.flow_gain * 2e-7);
+    assert!((at_rest(Some(fixed)) / at_rest(None) / expected - 1.0).abs() < 1e-5);
+}
+
+/// Both signs, with each filter or without, of any reading of the pressures.
+fn any(number: u64) -> PressureFeedback {
+    let mut state = stream(62, number);
+    let mut spread = |low: f64, high: f64| low * pow(high / low, share(&mut state));
+    let corners = [spread(0.1, 300.0), spread(30.0, 3e4)];
+    let gain = spread(1e-8, 3e-5) * if number % 4 == 3 { -1.0 } else { 1.0 };
+    let filter = InnerFeedback {
+        gain,
+        high_pass_rad_per_s: number.is_multiple_of(2).then_some(corners[0]),
+        low_pass_rad_per_s: number.is_multiple_of(3).then_some(corners[1]),
+    };
+    PressureFeedback { filter, ratio: spread(0.3, 2.0) }
+}
+
+/// Late by d, it is H e^(-s d) around the plant without it: what the machine's derivatives make of
+/// force and pressures is in `together`.
+#[test]
+fn a_delay_turns_what_is_fed_back() {
+    for number in 0..24 {
+        let (rig, back, delay) = (drawn(number), any(number), 2e-3);
+        let plain = PlantInMotion::new(&rig.plant, &rig.behind);
+        for frequency in [1.0, 30.0, 400.0, 3e3] {
+            let s = Complex64::new(0.0, frequency);
+            let at = |filter: InnerFeedback, delay: f64| {
+                plain.fed_back(Some(PressureFeedback { filter, ..back }), delay).response(s)
+            };
+            // the signal by the command follows from what a gain alone does
+            let unit = InnerFeedback { gain: 1e-7, ..InnerFeedback::default() };
+            let [[alone, _], [with, _]] = [plain.response(s), at(unit, 0.0)];
+            let signal = (alone / with - 1.0) / unit.gain;
+            let expected = alone / (1.0 + back.filter.response(s) * exp_complex(-s * delay) * signal);
+            let found = at(back.filter, delay)[0];
+            let error = (found / expected - 1.0).norm_sqr().sqrt();
+            assert!(error < 1e-6, "rig {number} at {frequency} rad/s: {error}");
+        }
+    }
+}
+
+/// Unstable poles counted by the turns of the response are those of the polynomials.
+#[test]
+fn unstable_poles_are_those_of_the_polynomials() {
+    let mut seen = [0; 3];
+    for number in 0..200 {
+        let plant = LinearPlant { pressure_feedback: Some(any(number)), ..drawn(number).plant };
+        let poles = roots(&plant.coefficients().command);
+        let fastest = poles.iter().map(|pole| pole.norm_sqr().sqrt()).fold(0.0, f64::max);
+        // a pole at the edge is one of either kind
+        if poles.iter().any(|pole| pole.re.abs() < 1e-9 * fastest) {
+            continue;
+        }
+        let unstable = poles.iter().filter(|pole| pole.re > 0.0).count();
+        let found = PlantInMotion::lumped(&plant).unstable_poles();
+        assert_eq!(found, Some(unstable), "rig {number}: {poles:?}");
+        seen[unstable.min(2)] += 1;
+    }
+    assert!(seen.iter().all(|count| *count > 5), "{seen:?}");
+}
+
+/// What encloses the response between two frequencies, and what bounds it above one, holds.
+#[test]
+fn enclosure_and_roll_off_hold() {
+    let mut bounded = 0;
+    for number in 0..36 {
+        let (rig, back) = (drawn(number), any(number));
+        let [area_a, area_b] = rig.plant.chambers.areas();
+        let ratio = if number.is_multiple_of(2) { area_b / area_a } else { back.ratio };
+        let moving = PlantInMotion::new(&rig.plant, &rig.behind)
+            .fed_back(Some(PressureFeedback { ratio, ..back }), 1e-3);
+        for from in [1.0, 30.0, 400.0, 3e3, 3e4, 1e6] {
+            let ends = [from, 1.01 * from];
+            let disc: Disc = moving.enclosure(ends);
+            for part in 0..5 {
+                let frequency = from * (1.0 + 0.01 * f64::from(part) / 4.0);
+                let [value, _] = moving.response(Complex64::new(0.0, frequency));
+                assert!(disc.contains(value), "rig {number} at {frequency} rad/s");
+            }
+            let Some(bound) = moving.roll_off(from) else { continue };
+            bounded += 1;
+            for more in [1.0, 1.3, 2.0, 5.0, 20.0, 100.0] {
+                let [value, _] = moving.response(Complex64::new(0.0, more * from));
+                let size = value.norm_sqr().sqrt() * more * more * more;
+                assert!(size <= bound * (1.0 + 1e-9), "rig {number} at {more} times {from} rad/s");
+            }
+        }
+    }
+    assert!(bounded > 15, "{bounded}");
+}

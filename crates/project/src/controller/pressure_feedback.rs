@@ -1,0 +1,49 @@
+//! `[controller.pressure_feedback]`.
+
+use crate::key::{key, plain};
+use crate::visitor::Visitor;
+use phea_quantity::{ANGULAR_FREQUENCY, RATIO, VOLTAGE_PER_PRESSURE};
+
+/// What the controller subtracts from its command for the pressures of the chambers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DeclaredPressureFeedback {
+    /// What is made of both pressures.
+    pub signal: PressureSignal,
+    /// A_B/A_A of a load pressure; absent: of the actuator.
+    pub area_ratio: Option<f64>,
+    /// V/Pa.
+    pub gain: f64,
+    /// rad/s; absent: the pressure at rest is fed back too.
+    pub high_pass: Option<f64>,
+    /// rad/s; absent: no low pass.
+    pub low_pass: Option<f64>,
+}
+
+/// What is made of the pressures of both chambers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PressureSignal {
+    /// p_A - p_B A_B/A_A: the force of the pressures over the area A_A.
+    #[default]
+    LoadPressure,
+    /// p_A - p_B.
+    PressureDifference,
+}
+
+impl DeclaredPressureFeedback {
+    pub(super) fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let words = &[
+            ("load_pressure", PressureSignal::LoadPressure),
+            ("pressure_difference", PressureSignal::PressureDifference),
+        ];
+        let k = plain("signal", "Load pressure p_A - p_B A_B/A_A, or difference p_A - p_B.");
+        v.choice(k, words, &mut self.signal, false);
+        let doc = "A_B/A_A that the controller has for a load pressure; absent: of the actuator.";
+        v.optional(key("area_ratio", &RATIO, doc).positive(), &mut self.area_ratio);
+        let k = key("gain", &VOLTAGE_PER_PRESSURE, "Command per pressure; positive adds damping.");
+        v.quantity(k, &mut self.gain);
+        let doc = "Corner of the high pass; absent: the pressure at rest is fed back too.";
+        v.optional(key("high_pass", &ANGULAR_FREQUENCY, doc).positive(), &mut self.high_pass);
+        let doc = "Corner of the low pass; absent: none.";
+        v.optional(key("low_pass", &ANGULAR_FREQUENCY, doc).positive(), &mut self.low_pass);
+    }
+}

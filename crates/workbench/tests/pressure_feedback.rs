@@ -1,0 +1,156 @@
+//! Pressures that are fed back: the loop that the linear plant closes is that of the machine.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
+
+use num_complex::Complex64;
+use phea_qft::stability::{StabilityStatus, member_stability};
+use phea_qft::verification::Verdict;
+use phea_workbench::audit::audit_project;
+use phea_workbench::project::{self, Project};
+use phea_workbench::robust::robust_problem;
+use phea_workbench::setup::Setup;
+use phea_workbench::simulate::{FrequencyRequest, MachineResponses, frequency_response, simulate_project};
+use phea_workbench::source::Memory;
+
+use super::ask::project_of;
+
+const BENCHMARK: &str = include_str!("../../../examples/benchmark/closed_loop.toml");
+const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
+
+/// Viscous friction and four equal edges: nothing has a kink, so that derivatives exist at null.
+const SMOOTH: [&str; 3] = [
+    "cylinder.friction={ model = \"viscous\", viscous = \"100 N.s/m\" }",
+    "valve.flow_coefficients=[3e-7, 3e-7, 3e-7, 3e-7]",
+    "valve.leakage_coefficients=[2.4e-9, 2.4e-9, 2.4e-9, 2.4e-9]",
+];
+const UNEQUAL: &str = "cylinder={ piston_diameter = \"50 mm\", rod_diameters = [\"0 mm\", \"36 mm\"], stroke = \"500 mm\", moving_mass = \"13.1 kg\" }";
+const SPRUNG: &str =
+    "load={ model = \"spring_mass_damper\", mass = 100, stiffness = \"200 kN/m\", damping = \"5000 N.s/m\" }";
+const WAVES: &str =
+    "line={ hose = \"eaton_synflex_3130_08\", length = \"1.5 m\", model = \"transmission_line\" }";
+const LATE: &str = "controller.delay=0.7 ms";
+const GENTLE: &str = "controller.numerator=0.0001*s + 0.0008";
+
+/// Load pressure, difference, and both filters.
+const FEEDBACKS: [&str; 3] = [
+    "controller.pressure_feedback={ gain = \"0.02 V/bar\", signal = \"load_pressure\" }",
+    "controller.pressure_feedback={ gain = \"0.05 V/bar\", signal = \"pressure_difference\", high_pass = \"3 Hz\" }",
+    "controller.pressure_feedback={ gain = \"0.1 V/bar\", high_pass = \"1 Hz\", low_pass = \"100 Hz\" }",
+];
+
+fn read(text: &str, settings: &[&str]) -> Project {
+    let source = Memory::default().with("rig.toml", text);
+    let settings: Vec<String> = settings.iter().map(|text| (*text).to_string()).collect();
+    project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}")).project
+}
+
+fn shaken(project: &Project) -> MachineResponses {
+    let request = FrequencyRequest {
+        frequencies_rad_per_s: vec![20.0, 300.0],
+        command_amplitude_v: Some(1e-4),
+        reference_amplitude_n: Some(1.0),
+    };
+    frequency_response(&Setup::new(project).unwrap(), &request, &mut |_| true).unwrap()
+}
+
+fn apart(one: Complex64, other: Complex64) -> f64 {
+    (one / other - 1.0).norm_sqr().sqrt()
+}
+
+/// The machine under its controller, by its exact derivatives to 1e-7 and by small sines, is the
+/// loop that the linear plant closes; the feedback moves that loop.
+fn check(settings: &[&str]) {
+    let settings = [&SMOOTH[..], &[GENTLE], settings].concat();
+    let plain = shaken(&read(BENCHMARK, &settings)).closed_loop.unwrap();
+    let mut moved = 0.0_f64;
+    for feedback in FEEDBACKS {
+        let project = read(BENCHMARK, &[&settings[..], &[feedback]].concat());
+        let closed = shaken(&project).closed_loop.unwrap();
+        for (point, plain) in closed.points.iter().zip(&plain.points) {
+            let linear = point.linear_plant;
+            if let Some(exact) = point.linearised_machine {
+                assert!(apart(exact, linear) < 1e-7, "{settings:?} {feedback}: {point:?}");
+            }
+            assert!(apart(point.machine, linear) < 2e-3, "{settings:?} {feedback}: {point:?}");
+            moved = moved.max(apart(linear, plain.linear_plant));
+        }
+    }
+    assert!(moved > 0.02, "{settings:?}: {moved}");
+}
+
+#[test]
+fn the_loop_is_that_of_the_machine() {
+    check(&[]);
+    check(&[UNEQUAL, SPRUNG]);
+}
+
+#[test]
+fn a_late_loop_is_that_of_the_machine() {
+    check(&[LATE]);
+    check(&[SPRUNG, WAVES, LATE]);
+}
+
+/// A machine that rests under a controller that does not integrate: what is fed back at rest is
+/// part of its command.
+#[test]
+fn it_rests_with_what_is_fed_back() {
+    let proportional = ["controller.numerator=0.0005", "controller.denominator=1"];
+    for feedback in FEEDBACKS {
+        let settings = [&SMOOTH[..], &proportional, &[UNEQUAL, feedback]].concat();
+        let settings =
+            [&settings[..], &["scenario.0.reference=[{ at = \"0 s\", force = \"1 kN\" }]"]].concat();
+        let from_rest: Vec<&str> = BENCHMARK.lines().filter(|line| !line.starts_with("start = ")).collect();
+        let project = read(&from_rest.join("\n"), &settings);
+        let run = simulate_project(&Memory::default(), &Setup::new(&project).unwrap(), &mut |_| true)
+            .unwrap()
+            .remove(0);
+        let of = |name: &str| run.record.signal(name)[0];
+        let (force, command) = (of("force_n"), of("command_v"));
+        let declared = project.controller.unwrap().pressure_feedback.unwrap();
+        let areas = [1.963_495_408_5e-3, 0.945_619_389e-3];
+        let ratio = match declared.signal {
+            project::PressureSignal::LoadPressure => areas[1] / areas[0],
+            project::PressureSignal::PressureDifference => 1.0,
+        };
+        let fed = if declared.high_pass.is_some() { 0.0 } else { declared.gain };
+        let expected = 0.0005 * (1e3 - force) - fed * (of("pressure_a_pa") - ratio * of("pressure_b_pa"));
+        assert!((command - expected).abs() < 1e-7, "{feedback}: {command} {expected}");
+    }
+}
+
+/// Enough of it the wrong way around makes the loop unstable, without delay as with it and with
+/// waves, and the machine swings up as the verdict says.
+#[test]
+fn it_is_part_of_the_stability_of_the_loop() {
+    let (start, rest) = HOSE.split_once("[uncertainty]").unwrap();
+    let (_, specifications) = rest.split_once("[[specification]]").unwrap();
+    let certain = format!("{start}[[specification]]{specifications}");
+    for line in [&[][..], &["controller.delay=0.2 ms"], &["line.model=transmission_line", GENTLE]] {
+        for (gain, stable) in [("0.005 V/bar", true), ("-1 V/bar", false)] {
+            let gain = format!("controller.pressure_feedback.gain={gain}");
+            let settings = [line, &[gain.as_str(), "controller.pressure_feedback.high_pass=2 Hz"]].concat();
+            let project = project_of(&certain, &settings);
+            let problem = robust_problem(&Memory::default(), &Setup::new(&project).unwrap()).unwrap();
+            let member = problem.nominal().unwrap().unwrap();
+            let found = member_stability(&member, &problem.compensation).status;
+            assert_eq!(found == StabilityStatus::Stable, stable, "{line:?} {gain}: {found:?}");
+            assert!(stable || matches!(found, StabilityStatus::Unstable(_)), "{line:?} {gain}: {found:?}");
+            assert!(problem.caveats.is_empty(), "{:?}", problem.caveats);
+        }
+    }
+}
+
+/// Over the box of the hose the verdict is that of the plants with their feedback.
+#[test]
+fn it_is_part_of_the_family() {
+    let margin = |settings: &[&str]| {
+        let project = project_of(HOSE, settings);
+        let view = audit_project(&Memory::default(), &Setup::new(&project).unwrap(), &mut |_| true).unwrap();
+        let worst = view.audit.specifications[0].worst.as_ref().unwrap().margin_db;
+        (view.audit.verdict, worst)
+    };
+    let (_, plain) = margin(&[]);
+    let (verdict, with) = margin(&["controller.pressure_feedback.gain=0.1 V/bar"]);
+    assert_ne!(verdict, Verdict::NotProven);
+    assert!((with - plain).abs() > 0.01, "{plain} {with}");
+}
