@@ -36,7 +36,7 @@ mod sums;
 mod tally;
 mod wish;
 pub use file_names::{file_names, state_names};
-pub use metrics::NOT_SETTLED;
+pub use metrics::{NOT_SETTLED, stays_settled};
 
 pub use adjusted::AdjustmentWork;
 pub use bench::ControlledMachine;

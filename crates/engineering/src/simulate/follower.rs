@@ -325,6 +325,14 @@ mod tests {
         assert!(response(4.0 * first_peak) < 0.99 && response(5.0 * first_peak) < 1.01);
         assert!(near(seen.settling_time_s.unwrap(), last), "{seen:?} {last}");
         assert!(seen.steady_state_error_n.unwrap().abs() < 1e-6);
+        // a force that enters the band in the last tenth of a window was not watched for long
+        // enough
+        let settled = |share: f64| {
+            let window = Window { end_s: 1.0 + last / share, ..window };
+            let driving = [&reference, &reference];
+            measured(&swing, [0.0; 2], driving, window, f64::INFINITY, 1e-3).settling_time_s
+        };
+        assert!(near(settled(0.85).unwrap(), last) && settled(0.95).is_err(), "{:?}", settled(0.85));
         assert_eq!(seen, found(1e-6 * 999.0));
         assert_eq!(seen, found(2.9));
     }

@@ -87,7 +87,8 @@ pub struct Metrics {
     pub overshoot_percent: Measured,
     /// From 10 % to 90 % of the step, each where the force first reaches it, s.
     pub rise_time_s: Measured,
-    /// From the start of the window until the force stays within the band around the reference, s.
+    /// From the start of the window until the force stays within the band around the reference, s:
+    /// for the last tenth of the window at least.
     pub settling_time_s: Measured,
     /// The band of the settling time: percent of the step, or of the reference that a load motion
     /// disturbs.
@@ -113,7 +114,16 @@ pub(super) const NO_MOTION: &str = "the load does not begin to move";
 pub(super) const NOT_REACHED: &str = "the force does not reach 90 % of the step";
 pub(super) const BEGUN_BEYOND: &str = "the force is already beyond 10 % of the step when it begins";
 /// Why there is no settling time for a step that was observed to its end.
-pub const NOT_SETTLED: &str = "outside the band at the end of the window";
+pub const NOT_SETTLED: &str = "outside the band in the last tenth of the window";
+/// Fraction of a window, at its end, in which a force that has settled stays within the band: one
+/// that oscillates is within it at the end of some windows too.
+const STAYS: f64 = 0.1;
+
+/// Whether a force that enters the band at this time stays there for long enough within a window of
+/// this length, s.
+pub fn stays_settled(settling_time_s: f64, window_s: f64) -> bool {
+    settling_time_s < (1.0 - STAYS) * window_s
+}
 pub(super) const MOVES: &str = "the reference moves";
 pub(super) const OPEN_LOOP: &str = "open loop: there is no reference";
 pub(super) const ASKED_FOR: &str = "the reference says which force there should be";

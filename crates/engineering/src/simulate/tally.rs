@@ -4,7 +4,7 @@ use phea_dynamics::simulation::Quartic;
 
 use super::metrics::{
     ASKED_FOR, BEGUN_BEYOND, MOVES, Measured, NO_MOTION, NO_REFERENCE, NO_STEP, NOT_REACHED, NOT_SETTLED,
-    OPEN_LOOP, STANDS_STILL, UNREACHED,
+    OPEN_LOOP, STANDS_STILL, UNREACHED, stays_settled,
 };
 use super::{Cause, Metrics, Window};
 
@@ -283,7 +283,11 @@ impl Tally {
                 Err(NO_REFERENCE)
             }
             _ if self.ends_outside => Err(NOT_SETTLED),
-            (_, outside_s) => Ok(outside_s.map_or(0.0, |outside_s| outside_s - self.window.start_s)),
+            (_, outside_s) => {
+                let settled_s = outside_s.map_or(0.0, |outside_s| outside_s - self.window.start_s);
+                let window_s = self.window.end_s - self.window.start_s;
+                if stays_settled(settled_s, window_s) { Ok(settled_s) } else { Err(NOT_SETTLED) }
+            }
         }
     }
 }

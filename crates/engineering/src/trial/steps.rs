@@ -10,7 +10,7 @@ use super::run::{BAND_PERCENT, Leg, TrialStep};
 use crate::linear_step::StepResponse;
 use crate::project::{Project, Scenario, Signal};
 use crate::rig::Rig;
-use crate::simulate::{RequiredSteps, ScenarioRun};
+use crate::simulate::{RequiredSteps, ScenarioRun, stays_settled};
 
 /// The first step over the force that the supply can produce.
 const STEP_SHARE: f64 = 0.1;
@@ -100,8 +100,7 @@ impl Steps {
 
     /// Properties of the response of what the loop controls: of the force, or with a virtual
     /// impedance and a load that yields of the force together with what the impedance makes of the
-    /// motion. A force that is still outside the band in the last fifth of the step is not settled:
-    /// an oscillation is within the band at some moment too.
+    /// motion. A force that is still outside the band in the last tenth of the step is not settled.
     pub(super) fn step(&self, driven: &ScenarioRun, leg: Leg) -> TrialStep {
         let step = self.measured(driven, leg);
         TrialStep {
@@ -112,7 +111,7 @@ impl Steps {
 
     /// Whether the force was watched for long enough after it settled.
     pub(super) fn settles_early(&self, settling_time_s: f64) -> bool {
-        settling_time_s < (1.0 - LATE_SHARE) * self.hold_s
+        stays_settled(settling_time_s, self.hold_s)
     }
 
     fn measured(&self, driven: &ScenarioRun, leg: Leg) -> TrialStep {
