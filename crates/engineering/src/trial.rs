@@ -105,8 +105,32 @@ pub fn tried(
             continue;
         }
         let Some(driven) = machine.driven(source, &mut within)? else { return Err(Stopped.into()) };
-        runs.extend(machine.judged(&driven, problem, view));
+        for mut run in machine.judged(&driven, problem, view) {
+            if rig.quarter_wave_rad_per_s.is_some() && run.agreement != Agreement::Agrees {
+                let lumped = lumped(source, &rigs, (&driven, &run, &runs), (problem, view), &mut within)?;
+                run.reason = machine.with_waves_named(&run, lumped.as_ref());
+            }
+            runs.push(run);
+        }
         declared.get_or_insert(driven);
     }
     Ok(Some(Trial { runs, not_driven }))
+}
+
+/// The run of the rig as declared, with lumped lines, through the steps of a run with waves in
+/// them: one that was driven already, or another; `None` where there is none.
+fn lumped(
+    source: &dyn Source,
+    rigs: &[rigs::Tried],
+    (driven, run, runs): (&[DrivenSteps], &TrialRun, &[TrialRun]),
+    (problem, view): (&RobustProblem, &ProjectAudit),
+    watch: Watch<'_>,
+) -> Result<Option<TrialRun>, TrialError> {
+    let Some(declared) = rigs.first() else { return Ok(None) };
+    let is_same = |one: &&TrialRun| one.machine_name() == declared.what && one.reference_n == run.reference_n;
+    if let Some(known) = runs.iter().find(is_same) {
+        return Ok(Some(known.clone()));
+    }
+    let Some(steps) = driven.iter().find(|steps| steps.size() == run.size) else { return Ok(None) };
+    TriedMachine::of(declared, problem)?.repeated(source, steps, (problem, view), watch)
 }

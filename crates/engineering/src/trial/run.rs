@@ -326,22 +326,48 @@ impl<'a> TriedMachine<'a> {
             requirements: held(&problem.in_time, steps, (*required, run)),
             machine_response: steps.response(run, driven.worst()),
             agreement,
-            reason: self.with_waves_named(reason, agreement),
+            reason,
             met: met(run),
             ..blank
         }
     }
 
-    /// The reason of a machine with waves that does not agree, with their frequency and the cure.
-    fn with_waves_named(&self, reason: String, agreement: Agreement) -> String {
-        match self.tried.quarter_wave_rad_per_s {
-            Some(quarter) if agreement != Agreement::Agrees => format!(
-                "{reason}. The lines are a quarter wave long at {} rad/s: a shorter line,{} or a loop with less gain from there on",
-                significant(quarter, 3),
-                damping_wall(&self.tried.project)
-            ),
-            _ => reason,
+    /// Drives it through the steps of another machine; `None` where the watcher stops it.
+    pub(super) fn repeated(
+        &self,
+        source: &dyn Source,
+        other: &DrivenSteps,
+        (problem, view): (&RobustProblem, &ProjectAudit),
+        watch: Watch<'_>,
+    ) -> Result<Option<TrialRun>, TrialError> {
+        let setup = Setup::new(&self.tried.project)?;
+        let Some(outcome) = self.driven_by((source, &setup), &other.steps, watch) else { return Ok(None) };
+        let DrivenSteps { size, required, steps, .. } = *other;
+        Ok(Some(self.judgement(&DrivenSteps { size, required, steps, outcome }, (problem, view))))
+    }
+
+    /// The reason of a run with waves that does not agree: with their frequency and the cure,
+    /// unless the rig with lumped lines agrees as little in the same steps.
+    pub(super) fn with_waves_named(&self, run: &TrialRun, lumped: Option<&TrialRun>) -> String {
+        let reason = &run.reason;
+        let Some(quarter) = self.tried.quarter_wave_rad_per_s else { return reason.clone() };
+        if lumped.is_some_and(|lumped| lumped.agreement >= run.agreement) {
+            return format!(
+                "{reason}. The same steps with lumped lines do not agree either: the waves are not the cause"
+            );
         }
+        format!(
+            "{reason}. The lines are a quarter wave long at {} rad/s: a shorter line,{} or a loop with less gain from there on",
+            significant(quarter, 3),
+            damping_wall(&self.tried.project)
+        )
+    }
+}
+
+impl DrivenSteps {
+    /// How large they are.
+    pub(super) fn size(&self) -> StepSize {
+        self.size
     }
 }
 
