@@ -4,6 +4,7 @@
 mod alone;
 mod dead_time;
 mod in_time;
+mod nominal;
 mod prefilter;
 mod proven;
 mod remark;
@@ -17,6 +18,7 @@ pub use words::{evidence_key, evidence_sentence, finding_sentence, place_words};
 pub(crate) use alone::{caveat as caveat_of_rig, unexamined as unexamined_rig};
 pub use dead_time::LoopDeadTime;
 pub use in_time::{TimeFinding, TimeOutcome, Unexamined, WorstStep};
+pub use nominal::NominalMargins;
 pub use prefilter::PrefilterGain;
 pub use proven::{prove_audit, standing_word, try_to_prove, why_not_proven};
 pub use remark::remark_sentences;
@@ -142,6 +144,9 @@ pub struct ProjectAudit {
     pub reached: Vec<Option<ReachedLimit>>,
     /// What the noise of a velocity that is fed forward does; `None` without one.
     pub velocity_noise: Option<VelocityNoise>,
+    /// Margins of the nominal loop; `None` for an unstable family, and without a nominal plant that
+    /// has polynomials.
+    pub nominal: Option<NominalMargins>,
     /// The requirements in time of its specifications.
     pub in_time: Vec<TimeFinding>,
     /// The prefilter, where it amplifies.
@@ -225,7 +230,10 @@ impl ProjectAudit {
         }
         let in_time = in_time::findings(problem, &audit);
         let velocity_noise = VelocityNoise::of(problem, audit.stability.verdict);
+        let is_unstable = audit.stability.verdict == Verdict::Violated;
+        let nominal = if is_unstable { None } else { nominal::nominal_margins(problem).ok().flatten() };
         ProjectAudit {
+            nominal,
             reached: audit.specifications.iter().map(|finding| reached(problem, finding)).collect(),
             audit,
             names: problem.names.clone(),

@@ -182,3 +182,22 @@ fn plants_are_named_with_the_units_of_their_numbers() {
                     operating_point.velocity 20 mm/s, other 3";
     assert_eq!(names.text(&plant), expected);
 }
+
+/// k/(s - 1) closed with gain 2 is stable for k above 1/2: from k = 4 its gain may fall to an
+/// eighth. An integrator may lose all of it, and has no such sentence.
+#[test]
+fn a_loop_around_an_unstable_plant_states_how_far_its_gain_may_fall() {
+    let unstable = INTEGRATOR
+        .replace("denominator = \"s\"", "denominator = \"s - 1\"")
+        .replace("k = { nominal = 1, minimum = 1, maximum = 2", "k = { nominal = 4, minimum = 4, maximum = 8")
+        .replace("numerator = \"1\"", "numerator = \"2\"");
+    let request = Request::Verify { proof: false, on_machine: false };
+    let said = answer(&unstable, &[], &[], &request);
+    let object: Value = serde_json::from_str(&said.json).unwrap();
+    // ORIGIN: analytic, 20 log10(1/8)
+    close(&object["gain_reduction_db"], -18.0618, 1e-5);
+    assert!(said.text.contains("becomes unstable where that falls by 18.1 dB"), "{}", said.text);
+    let said = answer(INTEGRATOR, &[], &[], &request);
+    assert!(!said.text.contains("needs its gain"), "{}", said.text);
+    assert_eq!(verify(INTEGRATOR, &[])["gain_reduction_db"], "-inf");
+}

@@ -1,12 +1,11 @@
 //! A controller with its audit and the figures that an engineer compares controllers by.
 
 use phea_dynamics::controller::Controller;
-use phea_dynamics::frequency::{decibels, margins};
-use phea_dynamics::linear::{LinearError, Polynomial, TimeDomain, TransferFunction};
+use phea_dynamics::frequency::decibels;
+use phea_dynamics::linear::{LinearError, TimeDomain};
 use phea_dynamics::portable;
-use phea_qft::closed_loop::Member;
-use phea_qft::verification::Verdict;
 
+pub use crate::audit::NominalMargins;
 use crate::audit::ProjectAudit;
 use crate::robust::RobustProblem;
 
@@ -44,19 +43,6 @@ pub struct LoopFigures {
     pub delay_margin_s: Option<f64>,
 }
 
-/// Margins of the nominal loop.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NominalMargins {
-    /// The factor by which the gain may grow, dB.
-    pub gain_margin_db: f64,
-    /// The factor to which it may fall, dB; minus infinity where it may vanish.
-    pub gain_reduction_db: f64,
-    /// Degrees.
-    pub phase_margin_deg: f64,
-    /// The highest frequency at which |L| = 1, rad/s; zero if |L| never is 1.
-    pub crossover_rad_per_s: f64,
-}
-
 impl AuditedController {
     /// A controller with the audit of its loop.
     ///
@@ -86,7 +72,6 @@ fn figures(
     let law = controller.feedback.transfer_function()?;
     let (zeros, poles) = (law.zeros().len() as i64, law.poles().len() as i64);
     let stability = &view.audit.stability;
-    let nominal = if stability.verdict == Verdict::Violated { None } else { nominal_margins(problem)? };
     let deployed = problem.compensation.feedback();
     let end = problem.compensation.highest_frequency_rad_per_s();
     Ok(LoopFigures {
@@ -97,36 +82,8 @@ fn figures(
             TimeDomain::Discrete { .. } => portable::magnitude(deployed.at_frequency(end)),
         }),
         prefilter_order: controller.prefilter.transfer_function()?.poles().len(),
-        nominal,
+        nominal: view.nominal,
         modulus_margin: stability.closest_approach.as_ref().map(|approach| approach.distance),
         delay_margin_s: view.audit.delay_margin.as_ref().map(|margin| margin.delay_s),
-    })
-}
-
-fn nominal_margins(problem: &RobustProblem) -> Result<Option<NominalMargins>, LinearError> {
-    let Some(plant) = nominal_plant(problem)? else { return Ok(None) };
-    let found = margins(&plant.series(problem.compensation.feedback())?);
-    let crossover = found.phase_margins.iter().map(|margin| margin.frequency_rad_per_s).fold(0.0, f64::max);
-    Ok(Some(NominalMargins {
-        gain_margin_db: decibels(found.gain_increase_factor()),
-        gain_reduction_db: decibels(found.gain_decrease_factor()),
-        phase_margin_deg: found.phase_margin_deg(),
-        crossover_rad_per_s: crossover,
-    }))
-}
-
-/// P H of the nominal plant with the delay of the loop, in z where it samples; `None` for one
-/// without polynomials.
-fn nominal_plant(problem: &RobustProblem) -> Result<Option<TransferFunction>, LinearError> {
-    Ok(match problem.nominal()? {
-        Some(Member::Continuous { plant, sensor, .. }) => {
-            let command = TransferFunction::from_polynomials(
-                &Polynomial::new(plant.command.numerator),
-                &Polynomial::new(plant.command.denominator),
-            )?;
-            Some(command.with_dead_time(plant.dead_time_s)?.series(&sensor)?)
-        }
-        Some(Member::Sampled { with_sensor, .. }) => Some(with_sensor),
-        Some(Member::Responding { .. } | Member::Measured { .. }) | None => None,
     })
 }

@@ -38,6 +38,8 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
     let timing = Object::new()
         .known("sample_time_s", view.sample_time_s, "the controller is continuous")
         .with("delay_s", view.delay_s);
+    let reduction = view.nominal.map(|margins| margins.gain_reduction_db);
+    let no_nominal = "no margin: the family is unstable, or its nominal plant has no polynomials";
     let no_margin = "no margin: not every plant is known to be stable";
     Object::new()
         .with("verdict", verdict_key(view.verdict()))
@@ -48,6 +50,7 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
         .maybe("proof", proof)
         .known("delay_margin_s", margin.map(|margin| margin.delay_s), no_margin)
         .maybe("delay_margin", delay_margin)
+        .known("gain_reduction_db", reduction, no_nominal)
         .with("members", view.members)
         .with("parameters", names.headings())
         .with("timing", timing)

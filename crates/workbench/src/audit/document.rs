@@ -4,7 +4,7 @@ use phea_dynamics::portable;
 use phea_qft::proof::{Proof, Standing};
 use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
-use super::{ProjectAudit, in_time};
+use super::{NominalMargins, ProjectAudit, in_time};
 use super::{
     closed_loop_symbol, evidence_sentence, finding_sentence, place_words, remark_sentences,
     stability_sentence, standing_word, verdict_words, why_not_proven, worst_at_design,
@@ -46,6 +46,7 @@ pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
     let mut sentences: Vec<String> = view.caveats.iter().map(|caveat| caveat.sentence.clone()).collect();
     sentences.push(stability_sentence(&view.audit.stability, &view.names));
     sentences.extend(delay_sentence(view));
+    sentences.extend(view.nominal.as_ref().and_then(NominalMargins::reduction_sentence));
     sentences.extend(view.velocity_noise.iter().map(|noise| noise.sentence(&view.names)));
     let stable = view.audit.stability.verdict != Verdict::Violated;
     let findings = view.audit.specifications.iter().enumerate();

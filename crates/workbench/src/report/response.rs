@@ -89,6 +89,10 @@ fn margins(margins: &Margins) -> Table {
     let gain = margins.gain_increase().map_or("infinite".to_string(), |margin| {
         format!("{} dB {}", significant(margin.db(), 3), at(margin.frequency_rad_per_s))
     });
+    let reduction = margins.gain_decrease().map(|margin| {
+        let text = format!("{} dB {}", significant(margin.db(), 3), at(margin.frequency_rad_per_s));
+        ["gain reduction".to_string(), text]
+    });
     let phase = margins.critical_phase().map_or("infinite".to_string(), |margin| {
         // Beyond a resonance it can be a phase lead that the loop does not tolerate; a bare minus
         // sign would suggest instability.
@@ -113,5 +117,6 @@ fn margins(margins: &Margins) -> Table {
         ],
         ["delay margin".to_string(), delay],
     ];
-    Table::new(["margin", "value"]).with(rows)
+    let [gain, others @ ..] = rows;
+    Table::new(["margin", "value"]).with(std::iter::once(gain).chain(reduction).chain(others))
 }

@@ -1,0 +1,68 @@
+//! Margins of the nominal loop.
+
+use phea_dynamics::frequency::{decibels, margins};
+use phea_dynamics::linear::{LinearError, Polynomial, TransferFunction};
+use phea_qft::closed_loop::Member;
+
+use crate::quantity::significant;
+use crate::robust::RobustProblem;
+
+/// Margins of the nominal loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NominalMargins {
+    /// The factor by which the gain may grow, dB.
+    pub gain_margin_db: f64,
+    /// The factor to which it may fall, dB; minus infinity where it may vanish.
+    pub gain_reduction_db: f64,
+    /// Degrees.
+    pub phase_margin_deg: f64,
+    /// The highest frequency at which |L| = 1, rad/s; zero if |L| never is 1.
+    pub crossover_rad_per_s: f64,
+}
+
+impl NominalMargins {
+    /// How far the gain may fall, in a sentence: a loop around an unstable plant needs it; `None`
+    /// where it may vanish.
+    pub fn reduction_sentence(&self) -> Option<String> {
+        let db = self.gain_reduction_db;
+        db.is_finite().then(|| {
+            format!(
+                "the nominal loop needs its gain: it becomes unstable where that falls by {} dB",
+                significant(-db, 3)
+            )
+        })
+    }
+}
+
+/// Of a loop whose family is not known to be unstable; `None` without a nominal plant that has
+/// polynomials.
+///
+/// # Errors
+/// [`LinearError`] for a nominal plant that is not a transfer function.
+pub(super) fn nominal_margins(problem: &RobustProblem) -> Result<Option<NominalMargins>, LinearError> {
+    let Some(plant) = nominal_plant(problem)? else { return Ok(None) };
+    let found = margins(&plant.series(problem.compensation.feedback())?);
+    let crossover = found.phase_margins.iter().map(|margin| margin.frequency_rad_per_s).fold(0.0, f64::max);
+    Ok(Some(NominalMargins {
+        gain_margin_db: decibels(found.gain_increase_factor()),
+        gain_reduction_db: decibels(found.gain_decrease_factor()),
+        phase_margin_deg: found.phase_margin_deg(),
+        crossover_rad_per_s: crossover,
+    }))
+}
+
+/// P H of the nominal plant with the delay of the loop, in z where it samples; `None` for one
+/// without polynomials.
+fn nominal_plant(problem: &RobustProblem) -> Result<Option<TransferFunction>, LinearError> {
+    Ok(match problem.nominal()? {
+        Some(Member::Continuous { plant, sensor, .. }) => {
+            let command = TransferFunction::from_polynomials(
+                &Polynomial::new(plant.command.numerator),
+                &Polynomial::new(plant.command.denominator),
+            )?;
+            Some(command.with_dead_time(plant.dead_time_s)?.series(&sensor)?)
+        }
+        Some(Member::Sampled { with_sensor, .. }) => Some(with_sensor),
+        Some(Member::Responding { .. } | Member::Measured { .. }) | None => None,
+    })
+}
