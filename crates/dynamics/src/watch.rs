@@ -52,6 +52,37 @@ pub fn part<'a>(
     move |progress| watch(Progress { stage, share: from + (to - from) * progress.share })
 }
 
+/// The watch of a part of a procedure, which takes it from one share of the whole to another and
+/// names its own stages.
+pub fn within<'a>(watch: Watch<'a>, [from, to]: [f64; 2]) -> impl FnMut(Progress) -> bool + use<'a> {
+    move |progress| watch(Progress { share: from + (to - from) * progress.share, ..progress })
+}
+
+/// A watch whose share never falls, since the number of steps of a search is only estimated.
+///
+/// # Example
+/// ```
+/// use phea_dynamics::watch::{Progress, rising};
+/// let mut shares = Vec::new();
+/// let mut show = |progress: Progress| {
+///     shares.push(progress.share);
+///     true
+/// };
+/// let mut told = rising(&mut show);
+/// for share in [0.1, 0.4, 0.2, 0.5, f64::NAN] {
+///     told(Progress { stage: "searching", share });
+/// }
+/// drop(told);
+/// assert_eq!(shares, [0.1, 0.4, 0.4, 0.5, 0.5]);
+/// ```
+pub fn rising<'a>(watch: Watch<'a>) -> impl FnMut(Progress) -> bool + use<'a> {
+    let mut most = 0.0_f64;
+    move |progress| {
+        most = most.max(progress.share.min(1.0));
+        watch(Progress { share: most, ..progress })
+    }
+}
+
 /// A watch that lets everything go on.
 pub fn unwatched(_: Progress) -> bool {
     true

@@ -35,7 +35,7 @@ use crate::robust::{RobustError, RobustProblem, robust_problem};
 use crate::setup::{ControlError, Setup, is_of_position};
 use crate::source::Source;
 use crate::trial::{Agreement, Trial, TrialError, tried};
-use phea_dynamics::watch::{Stopped, Watch, part};
+use phea_dynamics::watch::{Stopped, Watch, part, within};
 
 /// Name of the file with the project that a design makes.
 pub const DESIGNED_PROJECT: &str = "designed.toml";
@@ -51,7 +51,9 @@ pub const DESIGNED_CERTIFICATE: &str = "designed_certificate.json";
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DesignError {
     /// There is no specification for a controller.
-    #[error("the project states no [[specification]] to design a controller for")]
+    #[error(
+        "the project states no [[specification]] to design a controller for: add one, such as `kind = \"robust_stability\"` and `limit = 1.3`"
+    )]
     NoSpecification,
     /// The given controller is that of a position.
     #[error(
@@ -218,8 +220,8 @@ pub fn design_and_repair(
     seed: Option<u32>,
     watch: Watch<'_>,
 ) -> Result<ProjectDesign, DesignError> {
-    let (run, told) = designed(source, setup, seed, watch)?;
-    repair::repaired((source, setup), run, told, watch)
+    let (run, told) = designed(source, setup, seed, &mut within(&mut *watch, [0.0, 0.6]))?;
+    repair::repaired((source, setup), run, told, &mut within(watch, [0.6, 1.0]))
 }
 
 /// Designs a controller for the project, after the audit of the one that it gives.
@@ -260,27 +262,37 @@ fn designed(
     let published = match &setup.controller {
         None => None,
         Some(law) => {
-            let view = audit_problem(&given, watch)?;
+            let view = audit_problem(&given, &mut within(&mut *watch, [0.0, 0.05]))?;
             Some(AuditedController::new(law.clone(), given.clone(), view)?)
         }
     };
     let problem = design_problem(setup, &given);
     let options = design_options(setup, &given, seed)?;
-    let mut outcome = phea_qft::design::design(&problem, &options, watch)?;
+    let mut outcome = phea_qft::design::design(&problem, &options, &mut within(&mut *watch, [0.05, 0.6]))?;
     outcome.conclude()?;
-    let (DesignRun { problem, outcome }, proven) =
-        proven::proven((setup, &given), DesignRun { problem, outcome }, &options, watch)?;
+    let (DesignRun { problem, outcome }, proven) = proven::proven(
+        (setup, &given),
+        DesignRun { problem, outcome },
+        &options,
+        &mut within(&mut *watch, [0.6, 0.7]),
+    )?;
     let mut stopped = outcome.stopped;
     let explanations = outcome.findings.iter().map(Explanation::of).collect::<Vec<_>>();
     match outcome.design.clone() {
         Some(design) => {
-            let mut told = ProjectDesign::new(setup, &given, &problem, design, options, watch)?;
+            let mut told = {
+                let judging = &mut within(&mut *watch, [0.7, 0.8]);
+                ProjectDesign::new(setup, &given, &problem, design, options, judging)?
+            };
             if let Some(view) = proven {
                 told.designed.view = view;
             }
-            let continuous =
-                unless_stopped(&mut stopped, || continuous_as_sampled(setup, &problem, &told, &mut *watch))?;
-            let trial = unless_stopped(&mut stopped, || tried_design(source, project, &told, &mut *watch))?;
+            let continuous = unless_stopped(&mut stopped, || {
+                continuous_as_sampled(setup, &problem, &told, &mut within(&mut *watch, [0.8, 0.9]))
+            })?;
+            let trial = unless_stopped(&mut stopped, || {
+                tried_design(source, project, &told, &mut within(watch, [0.9, 1.0]))
+            })?;
             let run = DesignRun { problem, outcome };
             Ok((run, ProjectDesign { stopped, published, explanations, continuous, trial, ..told }))
         }

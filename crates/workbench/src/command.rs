@@ -30,7 +30,7 @@ pub use response::{ResponseRequest, response_watched};
 pub use schema::{SCHEMA_FILE, schema};
 pub use simulate::{FrequencyOptions, SimulateRequest};
 
-use phea_dynamics::watch::Stopped;
+use phea_dynamics::watch::{Stopped, rising, within};
 use phea_qft::verification::Verdict;
 
 use crate::alternatives::{AlternativesOptions as AskedOfAlternatives, judge};
@@ -143,6 +143,9 @@ impl Request {
 
 pub use phea_dynamics::watch::{Progress, Watch};
 
+/// Share of the progress in which the valve is identified from recordings, where it is.
+const IDENTIFYING: f64 = 0.3;
+
 /// Answers a request on a project; `catalogues` are the user's files and folders.
 ///
 /// # Errors
@@ -175,13 +178,16 @@ pub fn answer_into(
 ) -> Result<Answer, CommandError> {
     // these three know their own way: the bench tests the declared valve, whose recordings may not
     // be there yet
+    let mut rising = rising(watch);
     let identified = motor::refuse(loaded, request).and_then(|()| match request {
         Request::Bench | Request::Compare | Request::Campaign(_) => Ok(None),
-        _ => with_recordings(source, loaded, watch),
+        _ => with_recordings(source, loaded, &mut within(&mut rising, [0.0, IDENTIFYING])),
     });
     let answer = identified.and_then(|identified| {
+        let from = if identified.is_some() { IDENTIFYING } else { 0.0 };
         let loaded = identified.as_ref().unwrap_or(loaded);
-        answer_as_read(source, loaded, catalogues, request, destination, watch)
+        let mut rest = within(&mut rising, [from, 1.0]);
+        answer_as_read(source, loaded, catalogues, request, destination, &mut rest)
     });
     answer.map_err(|error| error.into_refusal(source, loaded))
 }
@@ -308,8 +314,11 @@ fn verify_answer(
     watch: Watch<'_>,
 ) -> Result<Unprinted, CommandError> {
     let setup = Setup::new(&loaded.project)?;
-    let mut view = audit_project(source, &setup, watch)?;
+    let parts = 1.0 + f64::from(u8::from(proof)) + f64::from(u8::from(on_machine));
+    let proven = (1.0 + f64::from(u8::from(proof))) / parts;
+    let mut view = audit_project(source, &setup, &mut within(&mut *watch, [0.0, 1.0 / parts]))?;
     if proof {
+        let watch = &mut within(&mut *watch, [1.0 / parts, proven]);
         prove_audit(&robust_problem(source, &setup)?, &mut view, watch)?;
     }
     let mut files = audit::files(&view);
@@ -319,6 +328,7 @@ fn verify_answer(
         let (document, body) = (audit::output(&view, None), audit::body(&view));
         return Ok(Unprinted { document, body, files, affirmative: is_met });
     }
+    let watch = &mut within(watch, [proven, 1.0]);
     let Some(trial) = tried(source, &setup, &robust_problem(source, &setup)?, &view, watch)? else {
         return Err(RigError::NoActuator.into());
     };
@@ -334,9 +344,9 @@ fn verify_answer(
 
 fn bench_answer(loaded: &Loaded, watch: Watch<'_>) -> Result<Unprinted, CommandError> {
     let setup = Setup::new(&loaded.project)?;
-    let runs = bench::bench(&setup, watch)?;
-    let lines = line_runs(&setup, watch)?;
-    let of_friction = bench::friction_runs(&setup, watch)?;
+    let runs = bench::bench(&setup, &mut within(&mut *watch, [0.0, 0.5]))?;
+    let lines = line_runs(&setup, &mut within(&mut *watch, [0.5, 0.75]))?;
+    let of_friction = bench::friction_runs(&setup, &mut within(watch, [0.75, 1.0]))?;
     let remarks = bench::remarks(&setup);
     let document = bench::document(loaded, &remarks, &runs, &of_friction, &lines);
     let files = bench::files(&runs, &of_friction).into_iter().chain(bench::line_files(&lines)).collect();
@@ -356,10 +366,13 @@ fn design_answer(
     if let Some(crossed) = crossed_limits(&loaded.project)? {
         return Err(crossed.into());
     }
+    let mut designing = within(&mut *watch, [0.0, if stages { 0.9 } else { 1.0 }]);
     let view = match repair {
-        true => design_and_repair(source, &setup, seed, watch)?,
-        false => design_project(source, &setup, seed, watch)?,
+        true => design_and_repair(source, &setup, seed, &mut designing)?,
+        false => design_project(source, &setup, seed, &mut designing)?,
     };
+    drop(designing);
+    let watch = &mut within(watch, [0.9, 1.0]);
     Ok(Unprinted {
         document: design::output(loaded, &view)?,
         body: design::body(&view)?,
@@ -420,11 +433,15 @@ fn report_answer(
         }
     };
     let judged = alternatives
-        .then(|| judge(source, loaded, catalogues, &AskedOfAlternatives::default(), watch))
+        .then(|| {
+            let watch = &mut within(&mut *watch, [0.0, 0.5]);
+            judge(source, loaded, catalogues, &AskedOfAlternatives::default(), watch)
+        })
         .transpose()?;
     if judged.as_ref().is_some_and(|judged| !judged.not_reached.is_empty()) {
         return Err(Stopped.into());
     }
+    let watch = &mut within(watch, [if alternatives { 0.5 } else { 0.0 }, 1.0]);
     let report = report_beside(source, loaded, (&setup, problem.as_ref()), judged.as_ref(), watch)?;
     let written = if files { report.files() } else { vec![report.page_file()] };
     let mut document = Document::default();

@@ -33,7 +33,7 @@ mod test_bench;
 pub use campaign::runs_within_budget;
 pub use opening::{Decided, Decision};
 
-use phea_dynamics::watch::Watch;
+use phea_dynamics::watch::{Watch, within};
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
 use crate::alternatives::Alternatives;
@@ -97,6 +97,13 @@ pub fn report(
     report_beside(source, loaded, (setup, problem), None, watch)
 }
 
+/// The chapters on recordings of the valve and of the friction.
+fn recordings(source: &dyn Source, loaded: &Loaded, watch: Watch<'_>) -> Result<Vec<Chapter>, CommandError> {
+    let of_valve = test_bench::chapter(source, loaded, &mut within(&mut *watch, [0.0, 0.6]))?;
+    let of_friction = recorded_friction::chapter(source, loaded, &mut within(watch, [0.6, 1.0]))?;
+    Ok(of_valve.into_iter().chain(of_friction).collect())
+}
+
 /// The same with the chapter on the alternatives of the project, if they were judged.
 ///
 /// # Errors
@@ -113,10 +120,10 @@ pub(crate) fn report_beside(
         return Err(CommandError::NothingToReport);
     }
     let mut rig = rig_part(setup, loaded, problem)?;
-    let judged = judged::judged(source, setup, watch)?;
+    let judged = judged::judged(source, setup, &mut within(&mut *watch, [0.0, 0.6]))?;
     let deployed = judged.as_ref().and_then(Judged::found).map(|view| view.deployed(project));
-    let driven = driven::driven(source, setup, deployed.as_ref(), watch)?;
-    let campaign = campaign::driven(source, loaded, watch)?;
+    let driven = driven::driven(source, setup, deployed.as_ref(), &mut within(&mut *watch, [0.6, 0.75]))?;
+    let campaign = campaign::driven(source, loaded, &mut within(&mut *watch, [0.75, 0.85]))?;
     let mut facts = rig.as_ref().map(|rig| rig.facts.clone()).unwrap_or_default();
     let mut results: Facts = driven.iter().flat_map(MachineChapter::facts).collect();
     results.extend(campaign.as_ref().and_then(|campaign| campaign.fact.clone()));
@@ -137,19 +144,19 @@ pub(crate) fn report_beside(
     let mut chapters: Vec<Chapter> =
         rig.as_mut().map(|rig| std::mem::take(&mut rig.chapters)).unwrap_or_default();
     let mut appendix: Vec<Chapter> = rig.map(|rig| rig.appendix).unwrap_or_default();
-    chapters.extend(test_bench::chapter(source, loaded, watch)?);
-    chapters.extend(recorded_friction::chapter(source, loaded, watch)?);
+    chapters.extend(recordings(source, loaded, &mut within(&mut *watch, [0.85, 0.9]))?);
     if let Some(driven) = &driven {
         chapters.push(simulation::chapter(project, driven));
         appendix.extend(simulation::inside(project, driven));
         let has_given = driven.sides.first().is_some_and(|side| side.name == driven::GIVEN);
         let varied = deployed.as_ref().filter(|_| !has_given).unwrap_or(project);
-        appendix.extend(sensitivity::chapter(source, varied, driven, watch)?);
+        appendix.extend(sensitivity::chapter(source, varied, driven, &mut within(&mut *watch, [0.9, 0.95]))?);
     }
     chapters.extend(campaign.map(|campaign| campaign.chapter));
     chapters.extend(alternatives::chapter(project, alternatives));
     let mut tables = Vec::new();
     if let Some(judged) = &judged {
+        let watch = &mut within(watch, [0.95, 1.0]);
         chapters.extend(family_origin::chapter(source, setup, judged, watch)?);
         chapters.extend(robust_chapters(project, judged)?);
         appendix.push(bounds::chapter(&judged.problem, &judged.bounds, charts.appendix));

@@ -68,6 +68,7 @@ mod report_typeset;
 mod required_step;
 mod response_identification;
 mod rest;
+mod rising_progress;
 mod sampled_notch;
 mod scenarios;
 mod sensor;
