@@ -5,6 +5,7 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use clap::error::ContextKind;
 use phea_workbench::answer::{Answer, OutputFile};
 use phea_workbench::audit::{CERTIFICATE_FILE, check_certificate, check_certificate_of};
 use phea_workbench::command::{
@@ -92,14 +93,40 @@ pub(crate) fn misused(error: &clap::Error) -> ExitCode {
     if !error.use_stderr() {
         return ended(say(&error.render().to_string()).map(|()| DONE));
     }
+    let number = misread_number(error);
     if std::env::args_os().any(|argument| argument == "--json") {
-        let text = error.to_string();
+        let text = number.unwrap_or_else(|| error.to_string());
         let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
         let said = say(&format!("{}\n", command::failure_json(None, None, message)));
         return ended(said.and(Err(Failure::wrong_input(text))));
     }
-    let _ = error.print();
+    match number {
+        Some(text) => complain(&text),
+        None => {
+            let _ = error.print();
+        }
+    }
     ExitCode::from(WRONG_INPUT)
+}
+
+/// The usage error of a value that is no number, with its cure; `None` of any other error.
+fn misread_number(error: &clap::Error) -> Option<String> {
+    let context = |kind: ContextKind| error.get(kind).map(ToString::to_string);
+    let reason = std::error::Error::source(error)?.to_string();
+    let (option, value) = (context(ContextKind::InvalidArg)?, context(ContextKind::InvalidValue)?);
+    let with_point = value.replace(',', ".");
+    let words = match (reason.as_str(), with_point.parse::<f64>()) {
+        ("invalid float literal", Ok(_)) => format!("a comma inside a number; write {with_point}"),
+        ("invalid digit found in string", Ok(number)) if number >= 0.0 => {
+            let [below, above] = [number.floor(), number.ceil()];
+            let cure = if below == above { format!("{below}") } else { format!("{below} or {above}") };
+            format!("a whole number is needed, without comma or point; write {cure}")
+        }
+        ("invalid digit found in string", _) => "a whole number is needed, such as 20".to_string(),
+        _ => return None,
+    };
+    let option = option.split(' ').next().unwrap_or_default();
+    Some(format!("error: {option} {value}: {words}"))
 }
 
 fn ended(outcome: Result<u8, Failure>) -> ExitCode {

@@ -114,6 +114,7 @@ const OUTCOMES: &[(&[&str], i32)] = &[
     (&["size", "hose.toml", "--gain", "nan"], 2),
     (&["size", "hose.toml", "--length", "3 bar"], 2),
     (&["size", "hose.toml", "--length", "1 m", "--gain", "1"], 2),
+    (&["campaign", "hose.toml", "--runs", "2,5"], 2),
     (&["size", "unsized.toml"], 2),
     (&["size", "plant.toml"], 2),
     (&["linearize", "plant.toml"], 2),

@@ -47,7 +47,9 @@ use phea_dynamics::watch::{Stopped, Watch, part};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AuditError {
     /// There is no controller.
-    #[error("the project gives no [controller] to be verified")]
+    #[error(
+        "the project gives no [controller] to be verified: add one, such as `numerator = \"2e-4 s + 3e-3\"` and `denominator = \"s\"`, or let `phea design` find it"
+    )]
     NoController,
     /// There is a controller without a transfer function.
     #[error(
@@ -55,7 +57,9 @@ pub enum AuditError {
     )]
     NoLaw,
     /// There is no specification to audit.
-    #[error("the project states no [[specification]] to verify the controller against")]
+    #[error(
+        "the project states no [[specification]] to verify the controller against: add one, such as `kind = \"robust_stability\"` and `limit = 1.3`"
+    )]
     NoSpecification,
     /// The project is not a problem of the robust method.
     #[error(transparent)]

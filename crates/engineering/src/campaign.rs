@@ -45,13 +45,17 @@ use crate::specification::SpecificationError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CampaignError {
     /// It declares none.
-    #[error("the project has no [campaign]: name the numbers that vary in [campaign.parameters]")]
+    #[error(
+        "the project has no [campaign]: name the numbers that vary in [campaign.parameters], such as `\"supply.pressure\" = {{ minimum = \"60 bar\", maximum = \"70 bar\" }}`"
+    )]
     Absent,
     /// It varies nothing.
     #[error("[campaign] varies nothing: name numbers in [campaign.parameters]")]
     Nothing,
     /// There is nothing to drive.
-    #[error("there is nothing to drive: the project has no [[scenario]]")]
+    #[error(
+        "there is nothing to drive: the project has no [[scenario]]: add one, such as `name = \"step\"`, `duration = \"2 s\"` and `reference = {{ at = \"1 s\", force = \"1 kN\" }}`"
+    )]
     NoScenario,
     /// The scenario that it names does not exist.
     #[error("[campaign] names a scenario \"{name}\" that the project does not have")]

@@ -103,11 +103,13 @@ pub enum SimulateError {
     #[error(transparent)]
     Control(#[from] ControlError),
     /// There is nothing to simulate.
-    #[error("there is nothing to simulate: the project has no [[scenario]]")]
+    #[error(
+        "there is nothing to simulate: the project has no [[scenario]]: add one, such as `name = \"step\"`, `duration = \"2 s\"` and `reference = {{ at = \"1 s\", force = \"1 kN\" }}`"
+    )]
     NoScenario,
     /// Nobody commands the valve.
     #[error(
-        "nothing commands the valve: [controller] gives no transfer function, and a scenario states no `command`"
+        "nothing commands the valve: [controller] gives no transfer function, and a scenario states no `command`: add a [controller], such as `numerator = \"2e-4 s + 3e-3\"` and `denominator = \"s\"`, or drive open loop with `command = {{ at = \"1 s\", voltage = \"1 V\" }}` in the scenario"
     )]
     NoController,
     /// Controller, prefilter or sensor cannot be simulated in time.

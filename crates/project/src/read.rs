@@ -214,6 +214,15 @@ fn directions(root: &TreeNode) -> impl Iterator<Item = &str> {
     })
 }
 
+/// The tables that an actuator cannot do without, each with keys that suffice.
+const LEAST: [(&str, &str); 5] = [
+    ("fluid", "bulk_modulus = \"1.45 GPa\", density = \"870 kg/m3\", kinematic_viscosity = \"46 cSt\""),
+    ("supply", "pressure = \"70 bar\", and `flow` where the pump is small"),
+    ("valve", "model = \"moog_760_c263a\" or another of the catalogue, or the numbers of a data sheet"),
+    ("line", "hose = \"eaton_synflex_3130_08\" with length = \"1.5 m\", or a `pipe`, or volume = \"50 mL\""),
+    ("force_sensor", "stiffness = \"20 MN/m\", and `capacity`; 1e9 N/m where nothing gives way"),
+];
+
 /// Either a complete actuator, or a plant, or measured plants.
 fn refuse_mixture(reader: &mut Reader<'_>, root: &TreeNode, is_plant: bool, is_measured: bool) {
     let tables = DeclaredActuator::tables();
@@ -247,13 +256,16 @@ fn refuse_mixture(reader: &mut Reader<'_>, root: &TreeNode, is_plant: bool, is_m
         return reader.findings.push(found.expected(expected));
     }
     for name in DeclaredActuator::REQUIRED.iter().filter(|name| root.get(name).is_none()) {
-        let message = format!("missing table [{name}]");
-        reader.lack(name, RawFinding::error(root.place, message).consequence());
+        let found = RawFinding::error(root.place, format!("missing table [{name}]")).consequence();
+        let least = LEAST.iter().find(|(table, _)| table == name);
+        reader.lack(name, found.maybe_help(least.map(|(table, keys)| format!("add [{table}]: {keys}"))));
     }
     match (root.get("cylinder"), root.get("motor")) {
         (None, None) => {
             let found = RawFinding::error(root.place, "missing table [cylinder]").consequence();
-            reader.lack("cylinder", found.help("or [motor], for a rotary actuator"));
+            let help = "add [cylinder]: piston_diameter = \"50 mm\", rod_diameter = \"22 mm\", stroke = \"500 mm\", moving_mass = \"13 kg\"; \
+                        or [motor], for a rotary actuator";
+            reader.lack("cylinder", found.help(help));
         }
         (Some(cylinder), Some(_)) => {
             reader.know("cylinder");

@@ -337,7 +337,9 @@ fn unknown_key(entry: &Entry, known: &[KeyEntry], frame: &mut Frame<'_>) -> RawF
     let missing = missing.map_or(String::new(), |name| format!(", and `{name}` is missing"));
     let message = format!("unknown key `{}`{place}{missing}", entry.key);
     let found = RawFinding::error(entry.key_place, message);
+    let near = near.or_else(|| word_of(&entry.key, &frame.asked));
     match (near, homes.as_slice()) {
+        _ if let Some(help) = of_one_side(&entry.key, frame) => found.help(help),
         (_, [first, ..]) if homes.len() > MOST_TABLES => {
             found.help(format!("it belongs to {} tables, such as {first}", homes.len()))
         }
@@ -349,6 +351,31 @@ fn unknown_key(entry: &Entry, known: &[KeyEntry], frame: &mut Frame<'_>) -> RawF
         (None, _) if frame.asked.len() <= 16 => found.help(format!("known here: {}", frame.asked.join(", "))),
         (None, _) => found,
     }
+}
+
+/// The only key that has this one as a word of its name: `bulk_modulus` of `modulus`.
+fn word_of(key: &str, asked: &[&'static str]) -> Option<&'static str> {
+    let inside = |name: &&str| name.split('_').any(|word| word == key);
+    let mut all = asked.iter().copied().filter(|name| inside(name));
+    all.next().filter(|_| all.next().is_none())
+}
+
+/// Where the value of one side belongs: to the table of that side, or into a pair.
+fn of_one_side(key: &str, frame: &Frame<'_>) -> Option<String> {
+    let cut = |side: &'static str| {
+        let (after, before) = (format!("_{side}"), format!("{side}_"));
+        Some((side, key.strip_suffix(after.as_str()).or_else(|| key.strip_prefix(before.as_str()))?))
+    };
+    let (side, name) = cut("a").or_else(|| cut("b"))?;
+    let has_sides = ["a", "b"].iter().all(|side| frame.asked.contains(side));
+    if has_sides && name == frame.path {
+        return Some(format!("line {} is [{name}.{side}]", side.to_uppercase()));
+    }
+    if has_sides && frame.asked.contains(&name) {
+        return Some(format!("that of side {} is `{name}` in [{}.{side}]", side.to_uppercase(), frame.path));
+    }
+    let pair = frame.asked.iter().find(|asked| asked.strip_suffix('s') == Some(name));
+    pair.map(|pair| format!("both sides are one pair: `{pair} = [A, B]`"))
 }
 
 /// Most tables that a sentence names.

@@ -197,7 +197,8 @@ impl Scenario {
         v.one_or_more(k, &mut self.external_force, Signal::visitor(SignalUnit::EXTERNAL_FORCE));
         let k = plain("setting_change", "By how much the setting of accumulators moves from rest.");
         v.one_or_more(k, &mut self.setting_change, Signal::visitor(SignalUnit::SETTING_CHANGE));
-        let k = key("settling_band_percent", &PERCENT, "Band of every settling time, in percent.");
+        let k =
+            key("settling_band_percent", &PERCENT, "Band of every settling time, in percent of the step.");
         v.quantity(k.positive().below(100.0).or(1.0), &mut self.settling_band_percent);
         let k = plain("measured", "What was measured on the rig, laid over the simulation.");
         v.tables(k, &mut self.measured, MeasuredFile::visit);

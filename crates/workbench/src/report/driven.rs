@@ -118,7 +118,7 @@ fn told(runs: &[ScenarioRun]) -> Option<String> {
     let step = windows().find(|(window, _)| is_step(window)).map(|(window, metrics)| {
         let cells = cells_of(metrics, units);
         let settling = match metrics.settling_time_s {
-            Ok(_) => format!("settling {}", cells[SETTLING].text()),
+            Ok(_) => format!("settling {} ({} %)", cells[SETTLING].text(), metrics.settling_band_percent),
             Err(_) => cells[SETTLING].text(),
         };
         format!("{}: {} overshoot, {settling}", cause_words(window, units), cells[OVERSHOOT].text())
