@@ -18,7 +18,7 @@ pub use converter::{CoefficientFormat, CoefficientTooLarge, Converter, Converter
 pub use element::{Compensator, Element, Stage};
 pub use inner_feedback::InnerFeedback;
 pub use rate_sensor::{RateFilter, RateSensor};
-pub use sampled::{ControllerOutput, ControllerState, SampledController};
+pub use sampled::{ControllerInput, ControllerOutput, ControllerState, SampledController};
 pub use section::Section;
 pub use virtual_impedance::VirtualImpedance;
 

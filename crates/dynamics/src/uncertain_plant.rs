@@ -7,7 +7,11 @@
 //! dual numbers or intervals, and so search and prove between the grid points.
 
 mod followed;
+mod numerators;
 pub mod responding;
+
+use numerators::RateLengths;
+pub use numerators::RateNumerators;
 
 use std::sync::Arc;
 
@@ -63,16 +67,6 @@ pub struct PlantCoefficients<S> {
     /// The rate that a controller may feed forward, where the command moves it too (for an
     /// actuator: velocity of a load that yields); `None` where it is that of the disturbance, s.
     pub rate: Option<RateNumerators<S>>,
-}
-
-/// Numerators of the paths to a rate, highest power first, over the denominator of the command's
-/// path to the output.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RateNumerators<S> {
-    /// From the command, before its dead time.
-    pub command: Vec<S>,
-    /// From the disturbance.
-    pub disturbance: Vec<S>,
 }
 
 /// Why an uncertain plant cannot be built.
@@ -155,7 +149,7 @@ struct RecordedPlant {
     followed: Option<Arc<Expression>>,
     command: (usize, usize),
     disturbance: Option<(usize, usize)>,
-    rate: Option<(usize, usize)>,
+    rate: Option<RateLengths>,
 }
 
 impl PartialEq for UncertainPlant {
@@ -223,7 +217,7 @@ impl UncertainPlant {
             let plant = equations(recorded);
             command = lengths(&plant.command);
             disturbance = plant.disturbance.as_ref().map(lengths);
-            rate = plant.rate.as_ref().map(|rate| (rate.command.len(), rate.disturbance.len()));
+            rate = plant.rate.as_ref().map(RateNumerators::lengths);
             flatten(plant)
         });
         check_lengths(command)?;
@@ -367,10 +361,7 @@ impl RecordedPlant {
         let command = rational(self.command);
         let disturbance = self.disturbance.map(&mut rational);
         let dead_time_s = flat.next().unwrap_or(S::from(0.0));
-        let rate = self.rate.map(|(command, disturbance)| RateNumerators {
-            command: flat.by_ref().take(command).collect(),
-            disturbance: flat.by_ref().take(disturbance).collect(),
-        });
+        let rate = self.rate.map(|lengths| RateNumerators::sorted(lengths, &mut flat));
         PlantCoefficients { command, disturbance, dead_time_s, rate }
     }
 }
@@ -435,8 +426,7 @@ fn flatten<S>(plant: PlantCoefficients<S>) -> Vec<S> {
     }
     flat.push(plant.dead_time_s);
     if let Some(rate) = plant.rate {
-        flat.extend(rate.command);
-        flat.extend(rate.disturbance);
+        flat.extend(rate.flat());
     }
     flat
 }
@@ -460,6 +450,7 @@ mod tests {
             rate: Some(RateNumerators {
                 command: vec![p[0] + p[0]],
                 disturbance: vec![3.0.into(), 0.0.into()],
+                inner: Some([vec![p[0], 1.0.into()], vec![4.0.into()]]),
             }),
         }
     }
@@ -476,7 +467,9 @@ mod tests {
             member.disturbance,
             Some(RationalCoefficients { numerator: vec![-3.0], denominator: vec![2.0] })
         );
-        assert_eq!(member.rate, Some(RateNumerators { command: vec![6.0], disturbance: vec![3.0, 0.0] }));
+        let inner = Some([vec![3.0, 1.0], vec![4.0]]);
+        let rate = RateNumerators { command: vec![6.0], disturbance: vec![3.0, 0.0], inner };
+        assert_eq!(member.rate, Some(rate));
         // ORIGIN: analytic, 3/(j pi) e^(-j pi/2) = -3/pi
         let response = plant.response(&[3.0], std::f64::consts::PI).unwrap();
         assert!((response - Complex64::new(-3.0 / std::f64::consts::PI, 0.0)).norm_sqr() < 1e-30);

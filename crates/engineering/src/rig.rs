@@ -223,7 +223,7 @@ impl Rig {
     pub fn of(
         project: &Project,
         declared: &project::DeclaredActuator,
-        velocity_sensor: RateSensor,
+        rate_sensor: RateSensor,
         virtual_impedance: Option<VirtualImpedance>,
     ) -> Result<Rig, RigError> {
         let actuator = assembly::actuator(declared)?;
@@ -255,18 +255,17 @@ impl Rig {
         let unseen = yielding.is_none_or(|supply| are_equal([supply.edges])) && !has_gas_states(declared);
         let equal = are_equal(sides(&two_pressure)) && unseen;
         let one_pressure = states_one_pressure(&parameters, &[]) || equal;
-        let pushed = load.map_or(LinearLoad::Prescribed, |load| load.linear());
         let series = LinearSeries::of_components(components, point.hydraulic_force);
+        let pushed = load.map_or(LinearLoad::Prescribed, |load| load.linear());
         let plant = plant(&two_pressure, &linear, one_pressure, internal_leakage, pushed);
         let area_stiffness = components.cylinder.area_stiffness(point.position, pressures);
-        let plant = LinearPlant { dynamic_feedback, series, area_stiffness, ..plant };
+        let velocity_sensor = VelocitySensor::shown_by(velocity_gain(declared, &numbers));
+        let plant = LinearPlant { dynamic_feedback, series, area_stiffness, velocity_sensor, ..plant };
         let plant = match yielding {
             Some(of) if !(one_pressure && unseen) => with_supply(plant, shut(of, &model, &point), &leaking),
             _ => plant,
         };
         let plant = with_gas(plant, components, &two_pressure, pressures);
-        let shown = VelocitySensor { gain: velocity_gain(declared, &numbers), ..plant.velocity_sensor };
-        let plant = LinearPlant { velocity_sensor: shown, ..plant };
         let in_motion = in_motion(&declared.line, components, &point, &two_pressure, &plant)?;
         Ok(Rig {
             motion: declared.motion(),
@@ -283,7 +282,7 @@ impl Rig {
             load,
             plant,
             in_motion,
-            fed: FeedForwardPath::of(project, &linear, velocity_sensor),
+            fed: FeedForwardPath::of(project, &linear, rate_sensor),
             fed_back: PressureFeedbackPath::of(project, components),
             virtual_impedance,
         })

@@ -80,6 +80,9 @@ pub struct LinearPlant<S = f64> {
     pub virtual_impedance: Option<VirtualImpedance>,
     /// Feedback of the chambers' pressures to the command, at once; `None` without one.
     pub pressure_feedback: Option<PressureFeedback>,
+    /// phi of a pressure signal p_A - phi p_B that a loop around the plant samples: its paths are
+    /// then among the coefficients. `None` where no loop does.
+    pub pressure_signal: Option<f64>,
 }
 
 /// The sensor of the load's velocity, without its dead time.
@@ -94,6 +97,13 @@ pub struct VelocitySensor<S = f64> {
 impl<S> Default for VelocitySensor<S> {
     fn default() -> VelocitySensor<S> {
         VelocitySensor { gain: None, filter: RateFilter::None }
+    }
+}
+
+impl<S> VelocitySensor<S> {
+    /// With this gain, and no filter within the plant.
+    pub fn shown_by(gain: Option<S>) -> VelocitySensor<S> {
+        VelocitySensor { gain, filter: RateFilter::None }
     }
 }
 
@@ -158,6 +168,7 @@ impl<S: Scalar> LinearPlant<S> {
             velocity_sensor: VelocitySensor::default(),
             virtual_impedance: None,
             pressure_feedback: None,
+            pressure_signal: None,
         }
     }
 
@@ -192,6 +203,7 @@ impl<S: Scalar> LinearPlant<S> {
             velocity_sensor: VelocitySensor::default(),
             virtual_impedance: None,
             pressure_feedback: None,
+            pressure_signal: None,
         }
     }
 
@@ -266,13 +278,21 @@ impl<S: Scalar> LinearPlant<S> {
 
     fn with_position(&self) -> PlantCoefficients<S> {
         let valve = self.valve_and_chambers();
-        let ChamberPolynomials { own, displaced, .. } = &valve.chambers;
+        let moved = self.resisted(&valve.chambers);
+        let plant = self.against_load(valve, moved);
+        match self.pressure_signal {
+            Some(ratio) => self.with_signal(plant, ratio),
+            None => plant,
+        }
+    }
+
+    /// Q of these chambers.
+    fn resisted(&self, ChamberPolynomials { own, displaced, .. }: &ChamberPolynomials<Vec<S>>) -> Vec<S> {
         let moved = shifted(&sum(&product(&[self.moving_mass, self.viscous_friction], own), displaced));
-        let moved = match self.area_stiffness {
+        match self.area_stiffness {
             Some(stiffness) => sum(&moved, &scaled(stiffness, own)),
             None => moved,
-        };
-        self.against_load(valve, moved)
+        }
     }
 
     /// Valve and chambers with this Q against the load.
@@ -304,6 +324,7 @@ impl<S: Scalar> LinearPlant<S> {
                 rate: shows.gain.map(|gain| RateNumerators {
                     command: vec![S::from(0.0)],
                     disturbance: shifted(&scaled(gain, &held)),
+                    inner: None,
                 }),
             },
             Some(terms) => {

@@ -5,14 +5,17 @@
 
 use num_complex::Complex64;
 use phea_dynamics::analytic::Disc;
-use phea_dynamics::controller::InnerFeedback;
+use phea_dynamics::controller::{InnerFeedback, VirtualImpedance};
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable::{exp_complex, pow};
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_hydraulics::linear::LinearParameters;
-use phea_hydraulics::plant::{LinearLoad, LinearPlant, PlantInMotion, PressureFeedback};
+use phea_hydraulics::plant::{
+    LinearElement, LinearLoad, LinearPlant, LinearSeries, LinearSpring, PlantInMotion, PressureFeedback,
+    SeriesOutput,
+};
 use phea_hydraulics::reference_rig::nominal_plant;
 
 use super::plant_in_motion::drawn;
@@ -107,6 +110,59 @@ fn a_delay_turns_what_is_fed_back() {
             let found = at(back.filter, delay)[0];
             let error = (found / expected - 1.0).norm_sqr().sqrt();
             assert!(error < 1e-6, "rig {number} at {frequency} rad/s: {error}");
+        }
+    }
+}
+
+/// What a loop around the plant samples of the pressures: closed around the plant without them, it
+/// is the plant that has the feedback within it, by command and by the motion of the load or its
+/// ground, as polynomials and behind lines in motion, with a series element and a virtual impedance
+/// too.
+#[test]
+fn the_signal_closes_to_the_feedback() {
+    let impedance = VirtualImpedance { stiffness: 1e5, damping: 2e3, mass: 0.0, filter_time_s: 2e-3 };
+    for number in 0..72 {
+        let (rig, back) = (drawn(number), any(number));
+        let output =
+            [SeriesOutput::Sensor, SeriesOutput::Deflection, SeriesOutput::OnLoad][number as usize % 3];
+        let spring = LinearSpring { stiffness: 8e5, damping: Some(300.0), mass: Some(4.0) };
+        let series = LinearSeries { element: LinearElement::Spring(spring), output };
+        let plain = LinearPlant {
+            series: (number % 2 == 1).then_some(series),
+            virtual_impedance: (number % 4 < 2).then_some(impedance),
+            ..rig.plant
+        };
+        let shown = LinearPlant { pressure_signal: Some(back.ratio), ..plain };
+        let moving = PlantInMotion::new(&plain, &rig.behind);
+        let coefficients = shown.coefficients();
+        let [by_command, by_motion] =
+            coefficients.rate.as_ref().unwrap().inner.clone().unwrap().map(|numerator| {
+                let denominator = coefficients.command.denominator.clone();
+                RationalCoefficients { numerator, denominator }
+            });
+        for frequency in [0.3, 10.0, 200.0, 1e3, 7e3] {
+            let s = Complex64::new(0.0, frequency);
+            let pairs = [
+                (
+                    PlantInMotion::lumped(&plain).response(s),
+                    [by_command.at_frequency(frequency), by_motion.at_frequency(frequency)],
+                    PlantInMotion::lumped(&plain).fed_back(Some(back), 0.0).response(s),
+                ),
+                (
+                    moving.response(s),
+                    moving.showing(Some(back.ratio)).inner(frequency),
+                    moving.fed_back(Some(back), 0.0).response(s),
+                ),
+            ];
+            for ([command, motion], [inner, pressed], within) in pairs {
+                let fed = back.filter.response(s);
+                let closed = command / (1.0 + fed * inner);
+                let found = [closed, motion - closed * fed * pressed];
+                for (found, within) in found.into_iter().zip(within) {
+                    let error = (found / within - 1.0).norm_sqr().sqrt();
+                    assert!(error < 1e-7, "rig {number} at {frequency} rad/s: {error}");
+                }
+            }
         }
     }
 }

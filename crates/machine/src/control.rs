@@ -47,6 +47,8 @@ pub struct Sampled {
     pub noise: f64,
     /// Root mean square of the noise of the velocity that is fed forward, m/s.
     pub velocity_noise: f64,
+    /// Root mean square of the noise of the pressure signal that is fed back, Pa.
+    pub pressure_noise: f64,
     /// Step to which that velocity is rounded, m/s; zero: not at all.
     pub velocity_resolution: f64,
     /// Seed of the random numbers of the noise.

@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use phea_dynamics::controller::ControllerState;
+use phea_dynamics::controller::{ControllerInput, ControllerState};
 use phea_dynamics::random;
 use phea_dynamics::simulation::{FrozenWatch, Plant, Sampler};
 
@@ -26,8 +26,13 @@ pub struct DigitalMemory {
 pub enum Waking {
     /// At rest.
     AtRest,
-    /// Holding a command at constant reference and measurement: these three.
-    Holding([f64; 3]),
+    /// Holding a command while what it reads is constant.
+    Holding {
+        /// What it reads.
+        read: ControllerInput,
+        /// V.
+        command_v: f64,
+    },
     /// Where another run ended.
     Resumed(DigitalMemory),
 }
@@ -37,7 +42,8 @@ pub enum Waking {
 /// ```text
 /// m = AD(y + n)                                    y the sensor's, n white noise, AD rounds and ends at its range
 /// v = q round((v_m + n_v)/q)                       v_m the velocity sensor's, n_v white noise, q its resolution
-/// u = DA(limit(G (F r - m) + k v))                 k v the feed-forward, DA rounds
+/// p = p_m + n_p                                    p_m the pressure signal, n_p white noise
+/// u = DA(limit(G (F r - m) + k v - H p))           k v the feed-forward, H p the pressure feedback, DA rounds
 /// ```
 pub struct Digital<'a> {
     sampled: &'a Sampled,
@@ -58,8 +64,8 @@ impl<'a> Digital<'a> {
         let controller = &sampled.controller;
         let (state, held, random) = match waking {
             Waking::AtRest => (controller.at_rest(), 0.0, sampled.seed),
-            Waking::Holding([reference, measurement, command]) => {
-                (controller.holding(*reference, *measurement, *command), *command, sampled.seed)
+            Waking::Holding { read, command_v } => {
+                (controller.holding_with(read, *command_v), *command_v, sampled.seed)
             }
             Waking::Resumed(memory) => {
                 // a state from a file has as many memories as its controller
@@ -106,8 +112,8 @@ impl Sampler for Digital<'_> {
     }
 
     fn command(&mut self, time_s: f64, state: &[f64], inputs: &[f64]) -> f64 {
-        let Sampled { held, controller, noise, feed_forward, command_limit, .. } = self.sampled;
-        let [reference, mut measurement] = held.sampled(state, inputs);
+        let Sampled { held, controller, noise, pressure_noise, feed_forward, .. } = self.sampled;
+        let [reference, mut measurement, mut inner] = held.sampled(state, inputs);
         if *noise > 0.0 {
             measurement += noise * random::normal(&mut self.random);
         }
@@ -116,27 +122,30 @@ impl Sampler for Digital<'_> {
         }
         let looked = self.watch.passes(1, time_s);
         let before = looked.then(|| self.state.clone());
-        let output = controller.step(&mut self.state, reference, measurement);
-        let mut forward = 0.0;
+        let mut added = 0.0;
         if *feed_forward != 0.0 {
-            forward = feed_forward * self.velocity(state, inputs);
+            added = feed_forward * self.velocity(state, inputs);
         }
-        let wanted = output.command + forward;
-        let within = wanted.clamp(-command_limit, *command_limit);
+        if controller.reads_inner() && *pressure_noise > 0.0 {
+            inner += pressure_noise * random::normal(&mut self.random);
+        }
+        let read = ControllerInput { reference, measurement, inner, added };
+        let output = controller.step_with(&mut self.state, &read);
         if let Some(memory) = before {
-            let sample = Sample { state, inputs, memory, read: [reference, measurement] };
+            let sample = Sample { state, inputs, memory, read: [reference, measurement, inner] };
             self.watch.take(time_s, least_stable(self.sampled, &sample));
             self.log.borrow_mut().amplification = self.watch.amplification();
         }
-        let command_v = self.sampled.command_converter.map_or(within, |converter| converter.rounded(within));
+        let converter = self.sampled.command_converter;
+        let command_v = converter.map_or(output.command, |converter| converter.rounded(output.command));
         self.log.borrow_mut().take(ControllerSample {
             time_s,
             filtered_reference_n: output.filtered_reference,
             command_v,
-            unlimited_v: output.wanted + forward,
+            unlimited_v: output.wanted,
             integral_v: output.integral,
             measurement_n: measurement,
-            limited: output.limited || within != wanted,
+            limited: output.limited,
         });
         if let Some(memory) = self.memory {
             let memories = self.state.memories();

@@ -13,8 +13,8 @@ pub(crate) struct Sample<'a> {
     pub(crate) inputs: &'a [f64],
     /// The state of the controller before.
     pub(crate) memory: ControllerState,
-    /// Filtered reference and measurement, N.
-    pub(crate) read: [f64; 2],
+    /// Filtered reference and measurement in N, and inner signal in Pa.
+    pub(crate) read: [f64; 3],
 }
 
 /// The least stable mode of the loop.
@@ -22,7 +22,7 @@ pub(crate) fn least_stable(sampled: &Sampled, sample: &Sample<'_>) -> Option<Fro
     let Sampled { held, controller, feed_forward, delay_s, .. } = sampled;
     let Sample { state, inputs, memory, read } = sample;
     let frozen = Frozen::at(held, state, inputs);
-    let rows = [0, 1].map(|place| {
+    let rows = [0, 1, 2].map(|place| {
         frozen.row(state, inputs, |state, inputs| held.sampled::<f64, f64>(state, inputs)[place])
     });
     let law = SampledLaw::new(controller, *delay_s, memory, *read).reading(rows);

@@ -26,6 +26,8 @@ pub struct Rest {
     pub start: Vec<f64>,
     /// The measurement of the controller, N.
     pub measured_n: f64,
+    /// The pressure signal that it may feed back, Pa.
+    pub inner_pa: f64,
     /// The command of the controller, V.
     pub command_v: f64,
     /// Largest magnitude of the command, V.
@@ -95,12 +97,16 @@ pub fn at_rest(
             let free = commanded.as_ref().clone().unlimited();
             let start = equilibrium(&free, guess, &inputs, &kept)?;
             let (state, waves) = start.split_at(System::<f64>::states(&free));
-            let signals = free.signals::<f64, f64>(state, &[inputs.as_slice(), waves].concat());
+            let all = [inputs.as_slice(), waves].concat();
+            let signals = free.signals::<f64, f64>(state, &all);
+            let [_, measured_n, inner_pa] = free.sampled::<f64, f64>(state, &all);
             let limit_v = commanded.limit();
-            Rest { measured_n: signals.measurement, command_v: signals.wanted, limit_v, start }
+            Rest { measured_n, inner_pa, command_v: signals.wanted, limit_v, start }
         }
         Control::Sampled(sampled) => {
-            let resting = RestingMachine { held: &sampled.held, gains: sampled.controller.steady_gains() };
+            let controller = &sampled.controller;
+            let (gains, inner_gain) = (controller.steady_gains(), controller.steady_inner_gain());
+            let resting = RestingMachine { held: &sampled.held, gains, inner_gain };
             let mut guess = guess.to_vec();
             let states = System::<f64>::states(&sampled.held);
             guess.insert(states, beginning.command);
@@ -108,8 +114,8 @@ pub fn at_rest(
             let command_v = start.remove(states);
             let (state, waves) = start.split_at(states);
             let all = [&[command_v][..], &inputs, waves].concat();
-            let [_, measured_n] = sampled.held.sampled::<f64, f64>(state, &all);
-            Rest { measured_n, command_v, limit_v: sampled.command_limit, start }
+            let [_, measured_n, inner_pa] = sampled.held.sampled::<f64, f64>(state, &all);
+            Rest { measured_n, inner_pa, command_v, limit_v: sampled.command_limit, start }
         }
     })
 }
@@ -117,8 +123,8 @@ pub fn at_rest(
 /// A machine whose command is held by a controller in steady state.
 ///
 /// ```text
-/// 0 = F(1) r - m                 where the controller integrates
-/// 0 = G(1) (F(1) r - m) - u      where it does not
+/// 0 = F(1) r - m                             where the controller integrates
+/// 0 = G(1) (F(1) r - m) - H(1) p - u         where it does not
 /// ```
 ///
 /// Its last state is the command u.
@@ -126,6 +132,8 @@ struct RestingMachine<'a> {
     held: &'a Commanded,
     /// F(1) and G(1).
     gains: [Option<f64>; 2],
+    /// H(1) of the pressures that are fed back.
+    inner_gain: f64,
 }
 
 impl System<f64> for RestingMachine<'_> {
@@ -147,10 +155,11 @@ impl System<f64> for RestingMachine<'_> {
         let Some((closing, rates)) = rates.split_last_mut() else { return };
         let inputs = [&[command][..], inputs].concat();
         self.held.rates(state, &inputs, rates);
-        let [reference, measurement] = self.held.sampled::<f64, T>(state, &inputs);
+        let [reference, measurement, inner] = self.held.sampled::<f64, T>(state, &inputs);
         let [of_prefilter, of_feedback] = self.gains;
         let error = reference.times(of_prefilter.unwrap_or(0.0)) - measurement;
-        *closing = of_feedback.map_or(error, |gain| error.times(gain) - command);
+        *closing =
+            of_feedback.map_or(error, |gain| error.times(gain) - inner.times(self.inner_gain) - command);
     }
 
     fn delays(&self) -> Vec<f64> {

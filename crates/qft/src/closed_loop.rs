@@ -5,25 +5,23 @@ mod disc;
 mod fed_forward;
 mod images;
 mod member;
+mod plant_response;
 mod sampled_end;
 
 use std::sync::Arc;
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Controller, RateSensor, Timing};
-use phea_dynamics::linear::{
-    Discretization, LinearError, Polynomial, StateSpace, TimeDomain, TransferFunction,
-};
+use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember, RationalCoefficients, UncertainPlant};
 
 use crate::family::MeasuredPlant;
 pub(crate) use disc::DiscFactors;
-pub use fed_forward::FedForward;
-use fed_forward::{FedBack, rate_path};
-pub(crate) use fed_forward::{closed, moved_rate};
-use member::{continuous, load_motion};
+use fed_forward::{FedBack, inner_path, rate_path};
+pub use fed_forward::{FedForward, InnerPath};
+pub(crate) use fed_forward::{closed, closed_at_rest, moved_rate};
 
 /// The part of the loop that is the same for every plant: G, F, H, the delay of the loop, and its
 /// sampling.
@@ -36,6 +34,7 @@ use member::{continuous, load_motion};
 /// ```text
 /// P/(1 - K H_v P_v)    the plant that the loop sees where a rate v = P_v u + V_d d is fed forward that the command moves too
 /// Pd + K H_v V_d P     the path of its disturbance, P with its hold and delay; V_d = s where v is the rate of d itself
+/// P/(1 + H_p P_p)      the plant of a sampled loop where an inner signal p = P_p u + I_d d is fed back, its path Pd - H_p I_d P
 /// ```
 ///
 /// H_v is the sensor of that rate: its filter and its dead time, before the samples.
@@ -55,6 +54,8 @@ pub struct Compensation {
     delay_s: f64,
     rate_feed_forward: f64,
     rate_sensor: RateSensor,
+    /// H_p in z; `None` where no inner signal is fed back, or the plant has it.
+    inner_feedback: Option<TransferFunction>,
 }
 
 /// G, F at one frequency.
@@ -90,6 +91,8 @@ pub enum Member {
         fed_forward: FedForward,
         /// H_v P_v/(1 - K H_v P_v) with hold and delay, in z; `None` where nothing is fed back.
         rate: Option<TransferFunction>,
+        /// P_p/(1 + H_p P_p) likewise.
+        inner: Option<TransferFunction>,
     },
     /// A plant without polynomials, with the delay of the loop; sampling adds the lag of its hold.
     Responding {
@@ -105,6 +108,8 @@ pub enum Member {
         rate_feed_forward: f64,
         /// H_v
         rate_sensor: RateSensor,
+        /// H_p in z
+        inner_feedback: Option<TransferFunction>,
     },
     /// A measured plant, with the delay of the loop; sampling adds the lag of its hold.
     Measured {
@@ -168,10 +173,14 @@ impl Compensation {
         if sensor.domain() != TimeDomain::Continuous {
             return Err(LinearError::WrongDomain { operation: "a sensor", needed: "continuous" });
         }
+        let inner = timing.inner_feedback;
+        let is_sampled = timing.sample_time_s.is_some() && !inner.is_zero();
+        let inner_feedback = is_sampled.then(|| deployed(inner.transfer_function()?, timing)).transpose()?;
         Ok(Compensation {
             feedback,
             prefilter,
             sensor,
+            inner_feedback,
             sample_time_s: timing.sample_time_s,
             delay_s: timing.delay_s,
             rate_feed_forward: timing.rate_feed_forward,
@@ -244,10 +253,15 @@ impl Compensation {
         self.rate_sensor
     }
 
-    /// The same loop with no rate fed forward.
+    /// H_p in z: what a sampled controller feeds back of an inner signal.
+    pub fn inner_feedback(&self) -> Option<&TransferFunction> {
+        self.inner_feedback.as_ref()
+    }
+
+    /// The same loop with no rate fed forward and no inner signal fed back.
     #[must_use]
-    pub fn without_feed_forward(&self) -> Compensation {
-        Compensation { rate_feed_forward: 0.0, ..self.clone() }
+    pub fn without_inner_paths(&self) -> Compensation {
+        Compensation { rate_feed_forward: 0.0, inner_feedback: None, ..self.clone() }
     }
 
     /// The same loop with another delay.
@@ -290,12 +304,14 @@ impl Compensation {
         check_dead_time(plant.dead_time_s)?;
         plant.dead_time_s += self.delay_s;
         let (gain, rate_sensor) = (self.rate_feed_forward, self.rate_sensor);
-        let fed_forward = FedForward::of(gain, rate_sensor, &plant);
+        let inner_feedback = self.inner_feedback.as_ref();
+        let fed_forward = FedForward::of(gain, rate_sensor, inner_feedback, &plant);
         let Some(sample_time_s) = self.sample_time_s else {
             let plant = closed(gain, rate_sensor, plant)?;
             return Ok(Member::Continuous { plant, sensor: self.sensor.clone(), fed_forward });
         };
         let rate = rate_path(gain, rate_sensor, &plant)?;
+        let inner = inner_path(inner_feedback, &plant)?;
         let rational = TransferFunction::from_polynomials(
             &Polynomial::new(plant.command.numerator),
             &Polynomial::new(plant.command.denominator),
@@ -306,8 +322,8 @@ impl Compensation {
             let dead_time_s = function.dead_time_s() + plant.dead_time_s;
             function.with_dead_time(dead_time_s)?.discretized(sample_time_s, Discretization::ZeroOrderHold)
         };
-        let rate = rate.map(held).transpose()?;
-        let back = rate.as_ref().map(|rate| FedBack::new(gain, rate)).transpose()?;
+        let [rate, inner] = [rate.map(held).transpose()?, inner.map(held).transpose()?];
+        let back = FedBack::of(rate.as_ref().map(|rate| (gain, rate)), inner_feedback.zip(inner.as_ref()))?;
         let within = |function| match &back {
             Some(back) => back.around(&held(function)?),
             None => held(function),
@@ -318,8 +334,11 @@ impl Compensation {
         } else {
             within(rational.series(&self.sensor)?)?
         };
-        let rate = back.as_ref().zip(rate).map(|(back, rate)| back.around(&rate)).transpose()?;
-        Ok(Member::Sampled { command, with_sensor, disturbance: plant.disturbance, fed_forward, rate })
+        let closed = |path: Option<TransferFunction>| {
+            back.as_ref().zip(path).map(|(back, path)| back.around(&path)).transpose()
+        };
+        let (rate, inner) = (closed(rate)?, closed(inner)?);
+        Ok(Member::Sampled { command, with_sensor, disturbance: plant.disturbance, fed_forward, rate, inner })
     }
 
     /// The plant of a family with these parameter values within this loop.
@@ -384,68 +403,8 @@ impl Compensation {
             sample_time_s: self.sample_time_s,
             rate_feed_forward: self.rate_feed_forward,
             rate_sensor: self.rate_sensor,
+            inner_feedback: self.inner_feedback.clone(),
         }
-    }
-
-    /// P, Pd and H of a plant at one frequency: what its [`Compensation::member`] gives there, with
-    /// a tenth of the work in a sampled loop, where forming the member involves finding its zeros.
-    ///
-    /// # Errors
-    /// Those of [`Compensation::member`].
-    ///
-    /// # Example
-    /// ```
-    /// # use phea_dynamics::controller::{Controller, Timing};
-    /// # use phea_dynamics::linear::TransferFunction;
-    /// # use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
-    /// # use phea_qft::closed_loop::Compensation;
-    /// # fn main() -> Result<(), phea_dynamics::linear::LinearError> {
-    /// let timing = Timing { sample_time_s: Some(0.1), delay_s: 0.13, ..Timing::default() };
-    /// let controller = Controller { timing, ..Controller::default() };
-    /// let compensation = Compensation::new(&controller, TransferFunction::gain_only(2.0))?;
-    /// let command = RationalCoefficients { numerator: vec![3.0], denominator: vec![1.0, 0.4, 9.0] };
-    /// let plant = PlantCoefficients { command, disturbance: None, dead_time_s: 0.02, rate: None };
-    /// let response = compensation.plant_response(plant.clone(), 2.0)?;
-    /// let member = compensation.member(plant)?.response(2.0).unwrap();
-    /// assert!((response.plant - member.plant).norm_sqr() < 1e-24 && response.sensor.re == 2.0);
-    /// # Ok(())
-    /// # }
-    /// ```
-    pub fn plant_response(
-        &self,
-        mut plant: PlantCoefficients<f64>,
-        frequency_rad_per_s: f64,
-    ) -> Result<MemberResponse, LinearError> {
-        check_dead_time(plant.dead_time_s)?;
-        plant.dead_time_s += self.delay_s;
-        let (gain, dead_time_s) = (self.rate_feed_forward, plant.dead_time_s);
-        let fed = FedForward::of(gain, self.rate_sensor, &plant).at(frequency_rad_per_s);
-        let Some(sample_time_s) = self.sample_time_s else {
-            let plant = closed(gain, self.rate_sensor, plant)?;
-            return Ok(continuous(&plant, &self.sensor, frequency_rad_per_s).fed(fed));
-        };
-        let rate = rate_path(gain, self.rate_sensor, &plant)?;
-        let load_motion = load_motion(plant.disturbance.as_ref(), frequency_rad_per_s);
-        let rational = TransferFunction::from_polynomials(
-            &Polynomial::new(plant.command.numerator),
-            &Polynomial::new(plant.command.denominator),
-        )?;
-        // whole samples only turn the phase; what is left of a sample becomes a state
-        let held = |function: TransferFunction| {
-            let dead_time_s = function.dead_time_s() + dead_time_s;
-            let whole_s = (dead_time_s / sample_time_s).floor() * sample_time_s;
-            let states = StateSpace::from_transfer_function(&function.with_dead_time(0.0)?)?;
-            let part_s = (dead_time_s - whole_s).max(0.0);
-            let response =
-                states.held_with_dead_time(sample_time_s, part_s)?.at_frequency(frequency_rad_per_s, 0, 0)?;
-            Ok::<Complex64, LinearError>(response * turned(frequency_rad_per_s, whole_s))
-        };
-        let is_gain = self.sensor.poles().is_empty() && self.sensor.dead_time_s() == 0.0;
-        let with_sensor = if is_gain { None } else { Some(held(rational.series(&self.sensor)?)?) };
-        let plant = held(rational)?;
-        let sensor = with_sensor.map_or(Complex64::new(self.sensor.gain(), 0.0), |response| response / plant);
-        let back = rate.map(held).transpose()?.map_or(Complex64::ZERO, |rate| gain * rate);
-        Ok(MemberResponse { plant: plant / (1.0 - back), load_motion, sensor }.fed(fed))
     }
 
     /// A measured plant within this loop.

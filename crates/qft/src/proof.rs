@@ -102,6 +102,8 @@ pub enum NotProven {
     BeyondSampling,
     /// The load's velocity is fed forward.
     RateFedForward,
+    /// A sampled controller feeds an inner signal back.
+    InnerFeedback,
     /// Waves travel in the plant, which has no polynomials.
     Waves,
     /// The coefficients of the plant are not polynomials in its parameters.

@@ -9,6 +9,7 @@ mod design;
 mod design_diagnosis;
 mod family;
 mod fed_back;
+mod inner_feedback;
 mod kernels;
 mod manual_shaping;
 mod measured_discs;

@@ -79,7 +79,7 @@ fn it_is_the_closed_form_of_two_lags() {
         command: RationalCoefficients { numerator: vec![1.0], denominator: denominator.clone() },
         disturbance: Some(RationalCoefficients { numerator: vec![-3.0, 0.0], denominator: vec![1.0, 5.0] }),
         dead_time_s: 0.0,
-        rate: Some(RateNumerators { command: vec![c, 0.0], disturbance: vec![1.0, 1.0, 0.0] }),
+        rate: Some(RateNumerators { command: vec![c, 0.0], disturbance: vec![1.0, 1.0, 0.0], inner: None }),
     };
     for (gain, delay, further) in
         [(5.0, 0.0, 0.0), (5.0, 0.0237, 0.0), (-8.0, 0.0037, 0.0063), (5.0, 0.01, 0.0137), (12.0, 0.03, 0.0)]
@@ -127,7 +127,7 @@ fn a_sensor_of_the_rate_is_a_path_of_its_own() {
         command: RationalCoefficients { numerator: vec![1.0], denominator },
         disturbance: Some(RationalCoefficients { numerator: vec![-3.0, 0.0], denominator: vec![1.0, 5.0] }),
         dead_time_s: 0.0,
-        rate: Some(RateNumerators { command: vec![c, 0.0], disturbance: vec![1.0, 1.0, 0.0] }),
+        rate: Some(RateNumerators { command: vec![c, 0.0], disturbance: vec![1.0, 1.0, 0.0], inner: None }),
     };
     let filter = RateFilter::FirstOrder { frequency_rad_per_s: w };
     for (gain, delay, later) in [
@@ -140,7 +140,7 @@ fn a_sensor_of_the_rate_is_a_path_of_its_own() {
         let rate_sensor = RateSensor { filter, delay_s: later };
         let around = compensation(Timing { rate_sensor, ..fed(gain, delay) }, vec![], lagging(90.0, 0.0037));
         let member = around.member(plant.clone()).unwrap();
-        let without = around.without_feed_forward().member(plant.clone()).unwrap();
+        let without = around.without_inner_paths().member(plant.clone()).unwrap();
         for frequency in FREQUENCIES {
             let (s, z) =
                 (Complex64::new(0.0, frequency), exp_complex(Complex64::new(0.0, frequency * SAMPLE_TIME)));
@@ -206,7 +206,11 @@ impl Drawn {
             },
             disturbance: Some(RationalCoefficients { numerator: vec![-1.0, 0.0], denominator }),
             dead_time_s: 0.0,
-            rate: Some(RateNumerators { command: self.rate.to_vec(), disturbance: vec![0.3, 2.0, 5.0, 0.0] }),
+            rate: Some(RateNumerators {
+                command: self.rate.to_vec(),
+                disturbance: vec![0.3, 2.0, 5.0, 0.0],
+                inner: None,
+            }),
         }
     }
 
@@ -423,6 +427,7 @@ fn an_audit_sees_it() {
             rate: Some(RateNumerators {
                 command: vec![p[0] * 2.0.into(), 0.0.into()],
                 disturbance: vec![1.0.into(), p[0], 0.0.into()],
+                inner: None,
             }),
         }
     })

@@ -13,6 +13,7 @@ use phea_workbench::simulate::{FrequencyRequest, MachineResponses, frequency_res
 use phea_workbench::source::Memory;
 
 use super::ask::project_of;
+use super::shaken_load;
 
 const BENCHMARK: &str = include_str!("../../../examples/benchmark/closed_loop.toml");
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
@@ -90,13 +91,56 @@ fn a_late_loop_is_that_of_the_machine() {
     check(&[SPRUNG, WAVES, LATE]);
 }
 
+#[test]
+fn a_sampled_loop_is_that_of_the_machine() {
+    let sampled = "controller.sample_time=1 ms";
+    check(&[sampled]);
+    check(&[sampled, "controller.delay=1.4 ms", UNEQUAL, SPRUNG]);
+    check(&[sampled, LATE, WAVES]);
+}
+
+/// Force per motion of the load or its ground, Pd - G H Pd P/(1 + L) with the pressures fed back.
+fn of_loop(settings: &[&str], hertz: u32) -> Complex64 {
+    let project = shaken_load::loaded(settings, &[]);
+    let setup = Setup::new(&project).unwrap();
+    let compensation = setup.compensation(setup.controller.as_ref().unwrap()).unwrap();
+    let frequency = std::f64::consts::TAU * f64::from(hertz);
+    let own = shaken_load::response(&compensation, setup.rig().unwrap().in_loop(), frequency);
+    own.load_motion / (1.0 + own.plant * own.sensor * compensation.feedback().at_frequency(frequency))
+}
+
+/// A load that moves finds the rig that the linear loop says, at once, late, sampled, with waves.
+#[test]
+fn a_load_that_moves_finds_the_loop() {
+    let mut moved = 0.0_f64;
+    for settings in [
+        &[][..],
+        &[LATE, SPRUNG],
+        &["controller.sample_time=1 ms", "controller.delay=1.4 ms"],
+        &["controller.sample_time=1 ms", SPRUNG],
+        &["controller.sample_time=1 ms", "controller.delay=0.5 ms", WAVES, SPRUNG],
+    ] {
+        let settings = [settings, &[GENTLE]].concat();
+        for feedback in [FEEDBACKS[0], FEEDBACKS[2]] {
+            let with = [&settings[..], &[feedback]].concat();
+            let (machine, linear) = (shaken_load::of_machine(&with, 7), of_loop(&with, 7));
+            let error = apart(machine, linear);
+            assert!(error < 1e-3, "{with:?}: {machine}, not {linear}: {error}");
+            moved = moved.max(apart(of_loop(&settings, 7), linear));
+        }
+    }
+    assert!(moved > 0.01, "{moved}");
+}
+
 /// A machine that rests under a controller that does not integrate: what is fed back at rest is
 /// part of its command.
 #[test]
 fn it_rests_with_what_is_fed_back() {
     let proportional = ["controller.numerator=0.0005", "controller.denominator=1"];
-    for feedback in FEEDBACKS {
-        let settings = [&SMOOTH[..], &proportional, &[UNEQUAL, feedback]].concat();
+    for (feedback, sampled) in FEEDBACKS.into_iter().flat_map(|one| [(one, ""), (one, "1 ms")]) {
+        let sampled = format!("controller.sample_time={sampled}");
+        let mut settings = [&SMOOTH[..], &proportional, &[UNEQUAL, feedback]].concat();
+        settings.extend((!sampled.ends_with('=')).then_some(sampled.as_str()));
         let settings =
             [&settings[..], &["scenario.0.reference=[{ at = \"0 s\", force = \"1 kN\" }]"]].concat();
         let from_rest: Vec<&str> = BENCHMARK.lines().filter(|line| !line.starts_with("start = ")).collect();
@@ -125,7 +169,14 @@ fn it_is_part_of_the_stability_of_the_loop() {
     let (start, rest) = HOSE.split_once("[uncertainty]").unwrap();
     let (_, specifications) = rest.split_once("[[specification]]").unwrap();
     let certain = format!("{start}[[specification]]{specifications}");
-    for line in [&[][..], &["controller.delay=0.2 ms"], &["line.model=transmission_line", GENTLE]] {
+    let sampled = "controller.sample_time=0.5 ms";
+    for line in [
+        &[][..],
+        &["controller.delay=0.2 ms"],
+        &["line.model=transmission_line", GENTLE],
+        &[sampled],
+        &[sampled, "line.model=transmission_line", GENTLE],
+    ] {
         for (gain, stable) in [("0.005 V/bar", true), ("-1 V/bar", false)] {
             let gain = format!("controller.pressure_feedback.gain={gain}");
             let settings = [line, &[gain.as_str(), "controller.pressure_feedback.high_pass=2 Hz"]].concat();

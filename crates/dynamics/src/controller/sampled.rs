@@ -8,6 +8,8 @@ use crate::linear::{LinearError, TimeDomain, TransferFunction};
 pub struct SampledController {
     feedback: Vec<Section>,
     prefilter: Vec<Section>,
+    /// H of an inner signal that is fed back; `None` where none is.
+    inner: Option<Vec<Section>>,
     /// Reads the integral part of the command off the states of the feedback.
     integral: Vec<f64>,
     command_limit: f64,
@@ -20,13 +22,28 @@ pub struct SampledController {
 pub struct ControllerState {
     feedback: Vec<[f64; 2]>,
     prefilter: Vec<[f64; 2]>,
+    inner: Vec<[f64; 2]>,
 }
 
 impl ControllerState {
-    /// Every number in it: two for each section of the feedback, then of the prefilter.
+    /// Every number in it: two for each section of the feedback, then of the prefilter, then of
+    /// what feeds an inner signal back.
     pub fn memories(&self) -> Vec<f64> {
-        [self.feedback.as_flattened(), self.prefilter.as_flattened()].concat()
+        [self.feedback.as_flattened(), self.prefilter.as_flattened(), self.inner.as_flattened()].concat()
     }
+}
+
+/// What a controller reads at a sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ControllerInput {
+    /// r.
+    pub reference: f64,
+    /// y.
+    pub measurement: f64,
+    /// p, of which H p is subtracted from the command.
+    pub inner: f64,
+    /// What is added to the command.
+    pub added: f64,
 }
 
 /// What one sample gives.
@@ -62,6 +79,12 @@ impl Controller {
                 TimeDomain::Discrete { .. } => Err(LinearError::DomainMismatch),
             }
         };
+        let inner = self.timing.inner_feedback;
+        let in_sections = || -> Result<_, LinearError> {
+            let function =
+                inner.transfer_function()?.discretized(sample_time_s, self.timing.discretization)?;
+            Section::in_series(&function)
+        };
         let feedback = sampled(&self.feedback)?;
         let sections = Section::in_series(&feedback)?;
         let none = Compensator::default();
@@ -70,6 +93,7 @@ impl Controller {
             integral: integral_of(&feedback, &sections),
             feedback: sections,
             prefilter: Section::in_series(&sampled(prefilter)?)?,
+            inner: (!inner.is_zero()).then(in_sections).transpose()?,
             command_limit: self.command_limit.unwrap_or(f64::INFINITY),
             anti_windup: self.anti_windup,
             sample_time_s,
@@ -93,12 +117,22 @@ impl SampledController {
         ControllerState {
             feedback: vec![[0.0; 2]; self.feedback.len()],
             prefilter: vec![[0.0; 2]; self.prefilter.len()],
+            inner: vec![[0.0; 2]; self.inner().len()],
         }
+    }
+
+    fn inner(&self) -> &[Section] {
+        self.inner.as_deref().unwrap_or_default()
+    }
+
+    /// Whether it feeds an inner signal back.
+    pub fn reads_inner(&self) -> bool {
+        self.inner.is_some()
     }
 
     /// The state in which it holds a command while reference and measurement do not change: an
     /// integral part carries the command, and a controller without one gives its response to the
-    /// error.
+    /// error. No inner signal is fed back: see [`SampledController::holding_with`].
     ///
     /// # Example
     /// ```
@@ -114,11 +148,36 @@ impl SampledController {
     /// # Ok::<(), phea_dynamics::linear::LinearError>(())
     /// ```
     pub fn holding(&self, reference: f64, measurement: f64, command: f64) -> ControllerState {
-        let mut signal = reference;
+        self.holding_with(&ControllerInput { reference, measurement, ..ControllerInput::default() }, command)
+    }
+
+    /// The same while an inner signal that is fed back does not change either.
+    ///
+    /// # Example
+    /// What is fed back without a high pass is held by the integral part.
+    /// ```
+    /// use phea_dynamics::controller::{Compensator, Controller, ControllerInput, Element, InnerFeedback, Timing};
+    /// let feedback = Compensator::new(vec![Element::Gain(2.0), Element::Integrator]);
+    /// let inner_feedback = InnerFeedback { gain: 3.0, low_pass_rad_per_s: Some(4.0), ..InnerFeedback::default() };
+    /// let timing = Timing { inner_feedback, ..Timing::default() };
+    /// let sampled = Controller { feedback, timing, ..Controller::default() }.sampled(0.1)?;
+    /// let read = ControllerInput { reference: 1.0, measurement: 1.0, inner: 7.0, added: 0.0 };
+    /// let mut state = sampled.holding_with(&read, 0.5);
+    /// for _ in 0..10 {
+    ///     assert!((sampled.step_with(&mut state, &read).command - 0.5).abs() < 1e-12);
+    /// }
+    /// # Ok::<(), phea_dynamics::linear::LinearError>(())
+    /// ```
+    pub fn holding_with(&self, read: &ControllerInput, command: f64) -> ControllerState {
+        let mut signal = read.reference;
         let prefilter = self.prefilter.iter().map(|section| section.settled(&mut signal, 0.0)).collect();
-        signal -= measurement;
-        let feedback = self.feedback.iter().map(|section| section.settled(&mut signal, command)).collect();
-        ControllerState { feedback, prefilter }
+        let mut error = signal - read.measurement;
+        let mut back = read.inner;
+        let inner = self.inner().iter().map(|section| section.settled(&mut back, 0.0)).collect();
+        let subtracted = if self.reads_inner() { back } else { 0.0 };
+        let held = command + subtracted - read.added;
+        let feedback = self.feedback.iter().map(|section| section.settled(&mut error, held)).collect();
+        ControllerState { feedback, prefilter, inner }
     }
 
     /// A state with these memories, in the order of [`ControllerState::memories`]; `None` for
@@ -137,11 +196,13 @@ impl SampledController {
     /// # Ok::<(), phea_dynamics::linear::LinearError>(())
     /// ```
     pub fn resumed(&self, memories: &[f64]) -> Option<ControllerState> {
-        let feedback = 2 * self.feedback.len();
-        let whole = memories.len() == feedback + 2 * self.prefilter.len();
-        let (of_feedback, of_prefilter) = memories.split_at_checked(feedback).filter(|_| whole)?;
-        let pairs = |values: &[f64]| values.as_chunks::<2>().0.to_vec();
-        Some(ControllerState { feedback: pairs(of_feedback), prefilter: pairs(of_prefilter) })
+        let (feedback, prefilter) = (2 * self.feedback.len(), 2 * self.prefilter.len());
+        let whole = memories.len() == feedback + prefilter + 2 * self.inner().len();
+        let (of_feedback, others) = memories.split_at_checked(feedback).filter(|_| whole)?;
+        let (of_prefilter, of_inner) = others.split_at_checked(prefilter)?;
+        let [feedback, prefilter, inner] =
+            [of_feedback, of_prefilter, of_inner].map(|values| values.as_chunks::<2>().0.to_vec());
+        Some(ControllerState { feedback, prefilter, inner })
     }
 
     /// The steady response of prefilter and feedback to constant inputs; `None` for one that
@@ -163,6 +224,12 @@ impl SampledController {
         })
     }
 
+    /// The steady response of what feeds an inner signal back; zero where none is.
+    pub fn steady_inner_gain(&self) -> f64 {
+        let gains = self.inner.iter().flatten().map(|section| section.steady_gain().unwrap_or(0.0));
+        if self.reads_inner() { gains.product() } else { 0.0 }
+    }
+
     /// One sample: the command for this reference and measurement, and the next state.
     ///
     /// # Example
@@ -180,30 +247,59 @@ impl SampledController {
     /// # Ok::<(), phea_dynamics::linear::LinearError>(())
     /// ```
     pub fn step(&self, state: &mut ControllerState, reference: f64, measurement: f64) -> ControllerOutput {
-        let mut filtered_reference = reference;
+        self.step_with(state, &ControllerInput { reference, measurement, ..ControllerInput::default() })
+    }
+
+    /// The same with what is added to the command and an inner signal that is fed back: the limit
+    /// is that of the sum.
+    ///
+    /// ```text
+    /// u = limit(G (F r - y) - H p + a)
+    /// ```
+    ///
+    /// # Example
+    /// Six that the feedback requires and nine that are added reach the limit of ten.
+    /// ```
+    /// use phea_dynamics::controller::{Compensator, Controller, ControllerInput, Element};
+    /// let feedback = Compensator::new(vec![Element::Gain(2.0)]);
+    /// let limited = Controller { feedback, command_limit: Some(10.0), ..Controller::default() }.sampled(0.1)?;
+    /// let read = |added| ControllerInput { reference: 3.0, added, ..ControllerInput::default() };
+    /// let step = |added| limited.step_with(&mut limited.at_rest(), &read(added));
+    /// assert_eq!((step(9.0).command, step(9.0).wanted, step(-9.0).command), (10.0, 15.0, -3.0));
+    /// # Ok::<(), phea_dynamics::linear::LinearError>(())
+    /// ```
+    pub fn step_with(&self, state: &mut ControllerState, read: &ControllerInput) -> ControllerOutput {
+        let mut filtered_reference = read.reference;
         for (section, memory) in self.prefilter.iter().zip(&mut state.prefilter) {
             let output = section.output(*memory, filtered_reference);
             *memory = section.advance(*memory, filtered_reference, output);
             filtered_reference = output;
         }
-        let error = filtered_reference - measurement;
+        let error = filtered_reference - read.measurement;
+        let mut back = read.inner;
+        for (section, memory) in self.inner().iter().zip(&mut state.inner) {
+            let output = section.output(*memory, back);
+            *memory = section.advance(*memory, back, output);
+            back = output;
+        }
+        let beside = if self.reads_inner() { read.added - back } else { read.added };
         let integral =
             state.feedback.iter().flatten().zip(&self.integral).map(|(state, part)| state * part).sum();
-        let (command, wanted) = self.feedback_step(&mut state.feedback, error);
+        let (command, wanted) = self.feedback_step(&mut state.feedback, error, beside);
         ControllerOutput { command, wanted, integral, limited: command != wanted, filtered_reference }
     }
 
-    /// The command within its limit, and before it.
-    fn feedback_step(&self, state: &mut [[f64; 2]], error: f64) -> (f64, f64) {
+    /// The command within its limit, and before it, with what lies beside the feedback.
+    fn feedback_step(&self, state: &mut [[f64; 2]], error: f64, beside: f64) -> (f64, f64) {
         let before = (self.anti_windup == AntiWindup::Clamping).then(|| state.to_vec());
         let last = self.feedback.len().saturating_sub(1);
-        let (mut signal, mut wanted) = (error, error);
+        let (mut signal, mut wanted) = (error, error + beside);
         for (index, (section, memory)) in self.feedback.iter().zip(state.iter_mut()).enumerate() {
             let mut output = section.output(*memory, signal);
             let mut continued = output;
             if index == last {
-                wanted = output;
-                output = output.clamp(-self.command_limit, self.command_limit);
+                wanted = output + beside;
+                output = within(wanted, self.command_limit, beside, output);
                 if self.anti_windup == AntiWindup::BackCalculation {
                     continued = output;
                 }
@@ -211,11 +307,18 @@ impl SampledController {
             *memory = section.advance(*memory, signal, continued);
             signal = output;
         }
-        if let Some(before) = before.filter(|_| signal != wanted && wanted * error > 0.0) {
+        let command = wanted.clamp(-self.command_limit, self.command_limit);
+        if let Some(before) = before.filter(|_| command != wanted && wanted * error > 0.0) {
             state.copy_from_slice(&before);
         }
-        (signal, wanted)
+        (command, wanted)
     }
+}
+
+/// What the feedback may give so that the sum stays within its limit: its own output within it.
+fn within(wanted: f64, limit: f64, beside: f64, output: f64) -> f64 {
+    let command = wanted.clamp(-limit, limit);
+    if command == wanted { output } else { command - beside }
 }
 
 /// The row that reads the integral part off the states of these sections: their matrices follow

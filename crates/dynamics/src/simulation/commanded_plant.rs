@@ -291,13 +291,16 @@ impl<P> CommandedPlant<P> {
         delayed.unwrap_or_else(|| self.signals::<f64, f64>(state, inputs).command)
     }
 
-    /// The inputs of a sampled controller: reference after the prefilter, and measurement.
-    pub fn sampled<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> [T; 2]
+    /// The inputs of a sampled controller: reference after the prefilter, measurement, and inner
+    /// measurement.
+    pub fn sampled<S: Scalar, T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> [T; 3]
     where
         P: Plant<S>,
     {
         let signals = self.signals::<S, T>(state, inputs);
-        [signals.filtered_reference, signals.measurement]
+        let [of_plant, ..] = self.parts::<S, T>(state);
+        let inner = self.plant.inner_measurement(of_plant, self.own::<S, T>(inputs));
+        [signals.filtered_reference, signals.measurement, inner]
     }
 }
 

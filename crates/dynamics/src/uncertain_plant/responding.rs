@@ -22,6 +22,12 @@ pub trait RespondingPlant: Debug + Send + Sync {
         [Complex64::new(0.0, 0.0), Complex64::new(0.0, frequency_rad_per_s)]
     }
 
+    /// The inner signal that a sampled controller may feed back, at a positive frequency in rad/s:
+    /// from the command, and from the disturbance.
+    fn inner(&self, _frequency_rad_per_s: f64) -> [Complex64; 2] {
+        [Complex64::new(0.0, 0.0); 2]
+    }
+
     /// A disc that holds P(jw) at every frequency between two in rad/s, the first of which may be
     /// zero; the whole plane where nothing is known. It shrinks to the response as the two come
     /// together.

@@ -125,6 +125,9 @@ pub fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -
         NotProven::RateFedForward => {
             "the load's velocity is fed forward, which the prover does not yet cover".into()
         }
+        NotProven::InnerFeedback => {
+            "a sampled controller feeds the pressures back, which the prover does not yet cover".into()
+        }
         NotProven::Waves => "waves travel in the lines, so that the plant has no polynomials".into(),
         NotProven::NotPolynomial => {
             format!(

@@ -51,7 +51,9 @@ impl Rig {
     /// A plant with what is fed forward and back in it without delay.
     pub(crate) fn with_inner_paths<S: Scalar>(&self, plant: LinearPlant<S>) -> LinearPlant<S> {
         let plant = self.fed.map_or(plant, |fed| fed.at_once(plant));
-        LinearPlant { pressure_feedback: self.fed_back.and_then(|back| back.at_once()), ..plant }
+        let pressure_feedback = self.fed_back.and_then(|back| back.at_once());
+        let pressure_signal = self.fed_back.and_then(|back| back.sampled_ratio());
+        LinearPlant { pressure_feedback, pressure_signal, ..plant }
     }
 
     /// The plant without polynomials as it appears to the loop: with these lines in motion, or with
@@ -76,7 +78,7 @@ impl Rig {
         };
         Some(match back {
             Some(back) => plant.fed_back(Some(back.feedback), back.delay_s),
-            None => plant,
+            None => plant.showing(self.fed_back.and_then(|back| back.sampled_ratio())),
         })
     }
 
@@ -179,6 +181,11 @@ impl PressureFeedbackPath {
         let feedback = PressureFeedback { filter: inner_feedback(&declared), ratio };
         let (delay_s, sampled) = (controller.delay, controller.sample_time.is_some());
         Some(PressureFeedbackPath { feedback, delay_s, sampled })
+    }
+
+    /// phi of the signal that the loop around the plant samples, if it does.
+    fn sampled_ratio(&self) -> Option<f64> {
+        self.sampled.then_some(self.feedback.ratio)
     }
 
     /// What acts in the plant without delay.

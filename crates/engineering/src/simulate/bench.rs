@@ -188,6 +188,7 @@ fn sampled(
     let controller = setup.deployed(&controller)?;
     let noise = project.actuator.as_ref().map_or(0.0, |actuator| actuator.force_sensor.noise);
     let of_velocity = project.actuator.as_ref().and_then(|actuator| actuator.velocity_sensor.as_ref());
+    let of_pressures = project.controller.as_ref().and_then(|controller| controller.pressure_feedback);
     Ok(Sampled {
         held: CommandedPlant::on_hold(sensed, &between)?,
         delay_s: controller.timing.delay_s,
@@ -199,6 +200,7 @@ fn sampled(
         noise,
         velocity_noise: of_velocity.map_or(0.0, |sensor| sensor.noise),
         velocity_resolution: of_velocity.map_or(0.0, |sensor| sensor.resolution),
+        pressure_noise: of_pressures.map_or(0.0, |declared| declared.noise),
         seed: u64::from(project.simulation.seed),
     })
 }

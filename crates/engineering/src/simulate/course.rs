@@ -1,5 +1,6 @@
 //! The start of a scenario, and its inputs.
 
+use phea_dynamics::controller::ControllerInput;
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::simulation::{Input, Plant, Profile, ProfileError};
 use phea_hydraulics::machine::{InitialCondition, StartValues};
@@ -141,9 +142,15 @@ pub(crate) fn course_of(
     let at = driven.at_start();
     let near = near_rest(bench, scenario, at.reference_n)?;
     let guess = loop_start(bench, &near, Some(at.reference_n));
-    let RestedLoop { rest: Rest { start, measured_n, command_v, .. }, ground_m } =
+    let RestedLoop { rest: Rest { start, measured_n, inner_pa, command_v, .. }, ground_m } =
         rest(bench, &guess, &near, at, &scenario.name)?;
-    let waking = Waking::Holding([at.reference_n, measured_n, command_v]);
+    let read = ControllerInput {
+        reference: at.reference_n,
+        measurement: measured_n,
+        inner: inner_pa,
+        ..ControllerInput::default()
+    };
+    let waking = Waking::Holding { read, command_v };
     Ok(driven.course(bench, ground_m, start, waking))
 }
 

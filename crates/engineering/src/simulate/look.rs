@@ -214,7 +214,7 @@ impl<'a, 't> Looking<'a, 't> {
                 (Some([inputs[1], filtered]), of_sample(|sample| sample.command_v), of_loop, &inputs[2..])
             }
             Control::Open(held) => {
-                let [_, measured] = held.sampled::<f64, f64>(states, inputs);
+                let [_, measured, _] = held.sampled::<f64, f64>(states, inputs);
                 (None, inputs[0], [inputs[0], inputs[0], 0.0, measured, 0.0], &inputs[2..])
             }
         };

@@ -6,7 +6,10 @@ use phea_dynamics::controller::{RateFilter, VirtualImpedance};
 
 use super::chambers::{Chamber, ChamberPair, ChamberPolynomials, Reading};
 use super::supply::{Coupled, Over};
-use super::{LinearLoad, LinearPlant, LinearSeries, Paths, PressureFeedback, VelocitySensor, YieldingSupply};
+use super::{
+    LinearLoad, LinearPlant, LinearSeries, Paths, PressureFeedback, SeriesOutput, VelocitySensor,
+    YieldingSupply,
+};
 use crate::accumulator::GasBranch;
 use crate::cross_port::DynamicFeedback;
 use crate::line::{DynamicLine, Segments, TransferMatrix};
@@ -143,6 +146,12 @@ impl PlantInMotion {
         PlantInMotion { plant, feedback_delay_s, ..self }
     }
 
+    /// The same with the paths to a pressure signal p_A - phi p_B that a loop around it samples.
+    #[must_use]
+    pub fn showing(self, pressure_signal: Option<f64>) -> PlantInMotion {
+        PlantInMotion { plant: LinearPlant { pressure_signal, ..self.plant }, ..self }
+    }
+
     /// The plant with its lumped lines as they are: for a load velocity that is fed forward late,
     /// or pressures that are fed back late, of which there is no quotient of polynomials.
     pub fn lumped(plant: &LinearPlant) -> PlantInMotion {
@@ -207,16 +216,56 @@ impl PlantInMotion {
     }
 
     fn paths_of_force<A: Analytic>(&self, s: A) -> Paths<A> {
+        let spool = self.spool(s);
+        let chambers = self.with_feedback(s, spool);
+        let moved = self.resisted(s, &chambers);
+        self.against_load(s, spool, chambers, moved)
+    }
+
+    /// p/U_C in Pa/V and p/X_0 in Pa/m of the signal p_A - phi p_B: as polynomials are, see
+    /// [`LinearPlant::coefficients`]. Nothing is fed forward or back in the plant.
+    fn signal(&self, s: Complex64, ratio: f64) -> [Complex64; 2] {
+        let spool = self.spool(s);
+        let areas = self.sides.map(|side| side.area);
+        let (across, at) = (self.across(s), self.at_chambers(s));
+        let force = || self.read(s, &at, across, &Reading::of_force(areas));
+        let read = self.read(s, &at, across, &Reading::of_signal(ratio, areas));
+        let series = self.plant.series.map(|series| LinearSeries { output: SeriesOutput::Sensor, ..series });
+        let own = PlantInMotion { plant: LinearPlant { series, ..self.plant }, ..*self };
+        let displaced = self.turned(s, &at).scaled(areas[1] - ratio * areas[0]);
+        let within = ChamberPolynomials { own: read.driven, driven: Complex64::ZERO, displaced };
+        let moved = self.resisted(s, &within);
+        let by_command = own.against_load(s, spool, within, moved).sensed;
+        let Paths { ground, .. } = own.against_load(s, spool, force(), s * read.displaced);
+        let whole = own.against_load(s, spool, force(), self.resisted(s, &force())).sensed;
+        [spool * by_command / whole, ground / whole]
+    }
+
+    fn spool<A: Analytic>(&self, s: A) -> A {
         let frequency = self.plant.valve_natural_frequency;
         let square = frequency * frequency;
         let turned = s.scaled(2.0 * self.plant.valve_damping_ratio * frequency);
-        let spool = A::from(square) / (s * s + turned + A::from(square));
-        let chambers = self.with_feedback(s, spool);
-        let ChamberPolynomials { own, driven, displaced } = chambers;
-        let sensor = self.plant.sensor_stiffness;
+        A::from(square) / (s * s + turned + A::from(square))
+    }
+
+    /// Q of these chambers.
+    fn resisted<A: Analytic>(&self, s: A, chambers: &ChamberPolynomials<A>) -> A {
         let rubbed = s.scaled(self.plant.moving_mass) + A::from(self.plant.viscous_friction);
-        let moved = s * (rubbed * own + displaced);
-        let moved = self.plant.area_stiffness.map_or(moved, |stiffness| moved + own.scaled(stiffness));
+        let moved = s * (rubbed * chambers.own + chambers.displaced);
+        let stiffness = self.plant.area_stiffness;
+        stiffness.map_or(moved, |stiffness| moved + chambers.own.scaled(stiffness))
+    }
+
+    /// Valve and chambers with this Q against the load.
+    fn against_load<A: Analytic>(
+        &self,
+        s: A,
+        spool: A,
+        chambers: ChamberPolynomials<A>,
+        moved: A,
+    ) -> Paths<A> {
+        let ChamberPolynomials { own, driven, .. } = chambers;
+        let sensor = self.plant.sensor_stiffness;
         let driven = (spool * driven).scaled(sensor);
         let fed = match self.fed_gain() {
             Some(gain) => {
@@ -254,31 +303,12 @@ impl PlantInMotion {
     /// D, N_u and N_v at s with the pressures fed back behind a spool S, see [`PressureFeedback`]:
     /// D + S H N_p, N_u and N_v + S H m.
     fn with_feedback<A: Analytic>(&self, s: A, spool: A) -> ChamberPolynomials<A> {
-        let across = self.across(s);
-        let at = self.at_chambers(s);
+        let (across, at) = (self.across(s), self.at_chambers(s));
         let areas = self.sides.map(|side| side.area);
-        let read = |reading: &Reading<f64>| {
-            let combined = |apart: &A, joined: &A| *apart + across * *joined;
-            match &self.plant.supply {
-                None => self.chambers(&at, reading).combined(combined),
-                Some(supply) => self
-                    .behind(supply, &at, s)
-                    .chambers(areas, reading)
-                    .combined(|apart, joined| Over(combined(&apart.0, &joined.0)))
-                    .unwrapped(),
-            }
-        };
-        let chambers = read(&Reading::of_force(areas));
+        let chambers = self.read(s, &at, across, &Reading::of_force(areas));
         let Some(feedback) = &self.plant.pressure_feedback else { return chambers };
-        let turned = match &self.plant.supply {
-            None => {
-                let [gain_a, gain_b] = self.sides.map(|side| side.flow_gain);
-                at[1].passed.scaled(areas[1] * gain_a) - at[0].passed.scaled(areas[0] * gain_b)
-            }
-            Some(supply) => self.behind(supply, &at, s).turned(areas).0,
-        };
-        let turned = turned.scaled(areas[1] - feedback.ratio * areas[0]);
-        let signal = read(&Reading::of_signal(feedback.ratio, areas)).driven;
+        let turned = self.turned(s, &at).scaled(areas[1] - feedback.ratio * areas[0]);
+        let signal = self.read(s, &at, across, &Reading::of_signal(feedback.ratio, areas)).driven;
         let back = spool * feedback.filter.response(s);
         let back = match self.feedback_delay_s > 0.0 {
             true => back * s.scaled(-self.feedback_delay_s).exponential(),
@@ -288,6 +318,37 @@ impl PlantInMotion {
             own: chambers.own + back * signal,
             driven: chambers.driven,
             displaced: chambers.displaced + back * turned,
+        }
+    }
+
+    /// D, N_u and N_v of a reading with what flows from chamber to chamber.
+    fn read<A: Analytic>(
+        &self,
+        s: A,
+        at: &[AtChamber<A>; 2],
+        across: A,
+        reading: &Reading<f64>,
+    ) -> ChamberPolynomials<A> {
+        let combined = |apart: &A, joined: &A| *apart + across * *joined;
+        match &self.plant.supply {
+            None => self.chambers(at, reading).combined(combined),
+            Some(supply) => self
+                .behind(supply, at, s)
+                .chambers(self.sides.map(|side| side.area), reading)
+                .combined(|apart, joined| Over(combined(&apart.0, &joined.0)))
+                .unwrapped(),
+        }
+    }
+
+    /// m over A_B - phi A_A, see [`PressureFeedback`].
+    fn turned<A: Analytic>(&self, s: A, at: &[AtChamber<A>; 2]) -> A {
+        let areas = self.sides.map(|side| side.area);
+        match &self.plant.supply {
+            None => {
+                let [gain_a, gain_b] = self.sides.map(|side| side.flow_gain);
+                at[1].passed.scaled(areas[1] * gain_a) - at[0].passed.scaled(areas[0] * gain_b)
+            }
+            Some(supply) => self.behind(supply, at, s).turned(areas).0,
         }
     }
 

@@ -125,7 +125,10 @@ impl<S: Scalar> LinearPlant<S> {
         let rate = plant.rate.as_mut();
         let paths = [Some(&mut plant.command), second].into_iter().flatten();
         let of_paths = paths.flat_map(|path| [&mut path.numerator, &mut path.denominator]);
-        let of_rate = rate.into_iter().flat_map(|rate| [&mut rate.command, &mut rate.disturbance]);
+        let of_rate = rate.into_iter().flat_map(|rate| {
+            let inner = rate.inner.iter_mut().flatten();
+            [&mut rate.command, &mut rate.disturbance].into_iter().chain(inner)
+        });
         for polynomial in of_paths.chain(of_rate) {
             polynomial.pop();
         }

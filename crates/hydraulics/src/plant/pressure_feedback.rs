@@ -2,9 +2,10 @@
 
 use phea_dynamics::controller::InnerFeedback;
 use phea_dynamics::scalar::Scalar;
+use phea_dynamics::uncertain_plant::{PlantCoefficients, RateNumerators};
 
 use super::chambers::{ChamberPolynomials, Reading};
-use super::{LinearPlant, product, scaled, sum};
+use super::{LinearPlant, LinearSeries, SeriesOutput, product, scaled, shifted, sum};
 use crate::cross_port::DynamicFeedback;
 
 /// A pressure signal that is fed back to the command.
@@ -102,6 +103,49 @@ impl<S: Scalar> LinearPlant<S> {
             Some(DynamicFeedback { conductance, capacity }) => product(&[capacity, conductance], &turned),
         };
         [signal, turned]
+    }
+
+    /// The plant with the paths to the signal p_A - phi p_B, for a loop that samples it: those of
+    /// the force without a virtual impedance, with N_p and m for D and N_v in the denominator, and
+    /// N_x s for Q in the numerator of the motion.
+    ///
+    /// ```text
+    /// p/U_C = w^2 Delta(N_p, m)/(V Delta(D, N_v)),     F_s = K_S (... - V Q X_0)/(V Delta),     p/X_0 = F_s/X_0 with N_x s for Q
+    /// ```
+    pub(super) fn with_signal(&self, mut plant: PlantCoefficients<S>, ratio: f64) -> PlantCoefficients<S> {
+        let areas = self.chambers.areas();
+        let square = self.valve_natural_frequency.squared();
+        let [signal, turned] = self.signal(ratio);
+        let chambers = ChamberPolynomials { own: signal, driven: vec![], displaced: turned };
+        let moved = self.resisted(&chambers);
+        let within = ValveAndChambers { chambers, spool: vec![S::from(1.0)], square: S::from(1.0) };
+        let command = scaled(square, &self.against_load(within, moved).command.denominator);
+        let series = self.series.map(|series| LinearSeries { output: SeriesOutput::Sensor, ..series });
+        let through_sensor = LinearPlant {
+            series,
+            virtual_impedance: None,
+            load_velocity_feed_forward: None,
+            pressure_feedback: None,
+            ..*self
+        };
+        let moved = shifted(&self.chamber_polynomials(&Reading::of_signal(ratio, areas)).displaced);
+        let pushed = through_sensor.against_load(through_sensor.valve_and_chambers(), moved);
+        let ground = pushed.disturbance.map_or(vec![], |path| path.numerator);
+        let ground = match (&self.virtual_impedance, self.load.terms()) {
+            (Some(impedance), Some(_)) => {
+                let under: Vec<S> = impedance.denominator().into_iter().map(S::from).collect();
+                product(&ground, &under)
+            }
+            _ => ground,
+        };
+        let of_ground = || RateNumerators {
+            command: vec![S::from(0.0)],
+            disturbance: shifted(&plant.command.denominator),
+            inner: None,
+        };
+        let rate = plant.rate.take().unwrap_or_else(of_ground);
+        plant.rate = Some(RateNumerators { inner: Some([command, ground]), ..rate });
+        plant
     }
 
     /// m over A_B - phi A_A.

@@ -437,8 +437,11 @@ impl<S: Scalar> LinearPlant<S> {
                     disturbance: Some(self.beside_motion(ground, denominator)),
                     dead_time_s: S::from(0.0),
                     // what is shown of the rate of X_0 itself
-                    rate: disturbance
-                        .map(|disturbance| RateNumerators { command: vec![S::from(0.0)], disturbance }),
+                    rate: disturbance.map(|disturbance| RateNumerators {
+                        command: vec![S::from(0.0)],
+                        disturbance,
+                        inner: None,
+                    }),
                 }
             }
             Some(terms) => {

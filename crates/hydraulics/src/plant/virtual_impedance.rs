@@ -51,7 +51,7 @@ impl<S: Scalar> LinearPlant<S> {
             command: RationalCoefficients { numerator: command, denominator: denominator.clone() },
             disturbance: Some(RationalCoefficients { numerator: ground, denominator }),
             dead_time_s: S::from(0.0),
-            rate: Some(RateNumerators { command: of_command, disturbance: of_ground }),
+            rate: Some(RateNumerators { command: of_command, disturbance: of_ground, inner: None }),
         }
     }
 }

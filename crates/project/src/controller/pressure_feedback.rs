@@ -2,7 +2,7 @@
 
 use crate::key::{key, plain};
 use crate::visitor::Visitor;
-use phea_quantity::{ANGULAR_FREQUENCY, RATIO, VOLTAGE_PER_PRESSURE};
+use phea_quantity::{ANGULAR_FREQUENCY, PRESSURE, RATIO, VOLTAGE_PER_PRESSURE};
 
 /// What the controller subtracts from its command for the pressures of the chambers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,6 +17,8 @@ pub struct DeclaredPressureFeedback {
     pub high_pass: Option<f64>,
     /// rad/s; absent: no low pass.
     pub low_pass: Option<f64>,
+    /// Pa, root mean square of the white noise of the signal that a sampled controller sees.
+    pub noise: f64,
 }
 
 /// What is made of the pressures of both chambers.
@@ -45,5 +47,7 @@ impl DeclaredPressureFeedback {
         v.optional(key("high_pass", &ANGULAR_FREQUENCY, doc).positive(), &mut self.high_pass);
         let doc = "Corner of the low pass; absent: none.";
         v.optional(key("low_pass", &ANGULAR_FREQUENCY, doc).positive(), &mut self.low_pass);
+        let doc = "Root mean square of the noise of the signal, for a sampled controller.";
+        v.quantity(key("noise", &PRESSURE, doc).not_negative().or(0.0), &mut self.noise);
     }
 }

@@ -1,7 +1,9 @@
 //! `[controller.pressure_feedback]`: what has to fit samples and rig.
 
+use std::f64::consts::PI;
+
 use super::Check;
-use crate::{PressureSignal, Project};
+use crate::{Load, PressureSignal, Project};
 
 const PLACE: &str = "controller.pressure_feedback";
 
@@ -14,9 +16,23 @@ pub(super) fn pressure_feedback(project: &Project, check: &mut Check<'_, '_>) {
         let help = "give the [plant] with what is fed back within it, or describe the rig";
         return check.error_with_help(PLACE, message, help);
     }
-    if controller.sample_time.is_some() {
-        let message = "the pressure feedback of a sampled controller is not simulated yet";
-        return check.error_with_help(PLACE, message, "leave out `sample_time`");
+    let moves = project.actuator.as_ref().is_some_and(|actuator| actuator.load != Load::Prescribed);
+    let fed = controller.load_velocity_feed_forward.is_some_and(|fed| fed.gain != Some(0.0));
+    if controller.sample_time.is_some() && moves && fed {
+        let message = "a sampled controller cannot feed the pressures back yet where it feeds the velocity of a load that can move forward too";
+        return check.error_with_help(PLACE, message, "leave out one of them, or `sample_time`");
+    }
+    for (name, corner) in [("high_pass", declared.high_pass), ("low_pass", declared.low_pass)] {
+        if let (Some(corner), Some(sample_time)) = (corner, controller.sample_time)
+            && corner >= PI / sample_time
+        {
+            let message =
+                format!("`{name}` is not below half the sampling frequency, {:.4} rad/s", PI / sample_time);
+            check.error(&at(name), message);
+        }
+    }
+    if declared.noise > 0.0 && controller.sample_time.is_none() {
+        check.warning(&at("noise"), "`noise` has no effect on a continuous controller");
     }
     if declared.gain == 0.0 && check.declared(&at("gain")) {
         check.warning(&at("gain"), "[controller.pressure_feedback] has no effect: its gain is zero");

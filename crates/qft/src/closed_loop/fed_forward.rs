@@ -1,9 +1,11 @@
 //! A rate that is fed forward, sampled and delayed like the rest of the command: a second path of
-//! the disturbance, and a loop where the command moves that rate too.
+//! the disturbance, and a loop where the command moves that rate too. An inner signal that is fed
+//! back likewise.
 //!
 //! ```text
-//! u = G (F r - y) + K H_v v,     y = P u + Pd d,     v = P_v u + V_d d
+//! u = G (F r - y) + K H_v v - H p,     y = P u + Pd d,     v = P_v u + V_d d,     p = P_p u + I_d d
 //! P' = P/(1 - K H_v P_v),        Pd' = Pd + K H_v V_d P'            V_d = s and P_v = 0 where v is the rate of d itself
+//! P' = P/(1 + H P_p),            Pd' = Pd - H I_d P'
 //! ```
 //!
 //! H_v is the sensor of the rate, before the samples: its filter has poles that P lacks, which are
@@ -11,6 +13,7 @@
 //!
 //! In a sampled loop P and P_v are held and sampled, V_d is not: of a sine of d the samples of v
 //! are those of a sine. H_v P_v has the poles of P, and P' those of 1 - K H_v P_v in their place.
+//! H is that of the controller, in z: its poles are zeros of P' too.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::RateSensor;
@@ -26,6 +29,17 @@ pub struct FedForward {
     pub path: Option<RationalCoefficients<f64>>,
     /// H_v
     pub sensor: RateSensor,
+    /// H and I_d of an inner signal; `None` where none is fed back.
+    pub inner: Option<InnerPath>,
+}
+
+/// What an inner signal that is fed back makes of a disturbance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InnerPath {
+    /// H, in z.
+    pub feedback: TransferFunction,
+    /// I_d
+    pub path: RationalCoefficients<f64>,
 }
 
 /// The rate of a plant, if the command moves it.
@@ -47,23 +61,64 @@ pub(super) struct FedBack {
 const DELAY_MAXIMUM: f64 = 200.0;
 
 impl FedForward {
-    pub(crate) fn of(gain: f64, sensor: RateSensor, plant: &PlantCoefficients<f64>) -> FedForward {
-        let path = plant.rate.as_ref().filter(|_| gain != 0.0).map(|rate| RationalCoefficients {
-            numerator: rate.disturbance.clone(),
+    pub(crate) fn of(
+        gain: f64,
+        sensor: RateSensor,
+        inner: Option<&TransferFunction>,
+        plant: &PlantCoefficients<f64>,
+    ) -> FedForward {
+        let over = |numerator: &Vec<f64>| RationalCoefficients {
+            numerator: numerator.clone(),
             denominator: plant.command.denominator.clone(),
+        };
+        let rate = plant.rate.as_ref();
+        let path = rate.filter(|_| gain != 0.0).map(|rate| over(&rate.disturbance));
+        let inner = inner.zip(rate.and_then(|rate| rate.inner.as_ref())).map(|(feedback, [_, numerator])| {
+            InnerPath { feedback: feedback.clone(), path: over(numerator) }
         });
-        FedForward { gain, path, sensor }
+        FedForward { gain, path, sensor, inner }
     }
 
-    /// K H_v V_d(jw)
+    /// K H_v V_d - H I_d at jw
     pub(crate) fn at(&self, frequency_rad_per_s: f64) -> Complex64 {
+        let back = self.inner.as_ref().map_or(Complex64::ZERO, |InnerPath { feedback, path }| {
+            feedback.at_frequency(frequency_rad_per_s) * path.at_frequency(frequency_rad_per_s)
+        });
         let rate = match &self.path {
-            _ if self.gain == 0.0 => return Complex64::ZERO,
+            _ if self.gain == 0.0 => return -back,
             None => Complex64::new(0.0, self.gain * frequency_rad_per_s),
             Some(path) => self.gain * path.at_frequency(frequency_rad_per_s),
         };
-        if self.sensor.is_direct() { rate } else { rate * self.sensor.at_frequency(frequency_rad_per_s) }
+        let shown =
+            if self.sensor.is_direct() { rate } else { rate * self.sensor.at_frequency(frequency_rad_per_s) };
+        shown - back
     }
+}
+
+/// P_p before the dead time of the command; `None` where no inner signal is fed back.
+pub(super) fn inner_path(
+    inner: Option<&TransferFunction>,
+    plant: &PlantCoefficients<f64>,
+) -> Result<Option<TransferFunction>, LinearError> {
+    let numerators = plant.rate.as_ref().and_then(|rate| rate.inner.as_ref());
+    let Some((_, [numerator, _])) = inner.zip(numerators) else { return Ok(None) };
+    let denominator = Polynomial::new(plant.command.denominator.clone());
+    TransferFunction::from_polynomials(&Polynomial::new(numerator.clone()), &denominator).map(Some)
+}
+
+/// A plant towards zero frequency, including the inner signal that is fed back with H(1): N/(D +
+/// H(1) N_p).
+pub(crate) fn closed_at_rest(
+    inner: Option<&TransferFunction>,
+    mut plant: PlantCoefficients<f64>,
+) -> PlantCoefficients<f64> {
+    let numerators = plant.rate.as_ref().and_then(|rate| rate.inner.as_ref());
+    if let Some((feedback, [numerator, _])) = inner.zip(numerators) {
+        let back = Polynomial::new(numerator.clone()).scaled(feedback.dc_gain());
+        let whole = Polynomial::new(plant.command.denominator).sum(&back);
+        plant.command.denominator = whole.coefficients().to_vec();
+    }
+    plant
 }
 
 /// H_v P_v before the dead time of the command; `None` where nothing is fed back.
@@ -101,6 +156,22 @@ pub(crate) fn closed(
 }
 
 impl FedBack {
+    /// What closes the paths of a rate and of an inner signal, both held and sampled; `None` where
+    /// neither is fed back.
+    pub(super) fn of(
+        rate: Option<(f64, &TransferFunction)>,
+        inner: Option<(&TransferFunction, &TransferFunction)>,
+    ) -> Result<Option<FedBack>, LinearError> {
+        match (rate, inner) {
+            (None, None) => Ok(None),
+            (Some((gain, rate)), None) => FedBack::new(gain, rate).map(Some),
+            (None, Some((feedback, path))) => FedBack::new(-1.0, &path.series(feedback)?).map(Some),
+            (Some(_), Some(_)) => Err(LinearError::NotRational {
+                operation: "a rate and an inner signal that are both fed back",
+            }),
+        }
+    }
+
     /// Of K and of P_v, held and sampled.
     pub(super) fn new(gain: f64, rate: &TransferFunction) -> Result<FedBack, LinearError> {
         let TimeDomain::Discrete { sample_time_s } = rate.domain() else {

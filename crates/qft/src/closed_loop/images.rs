@@ -31,6 +31,8 @@ pub(super) struct SamplingImages<'a> {
     pub(super) rate_feed_forward: f64,
     /// H_v
     pub(super) rate_sensor: RateSensor,
+    /// H_p in z
+    pub(super) inner_feedback: Option<&'a TransferFunction>,
 }
 
 impl SamplingImages<'_> {
@@ -41,40 +43,46 @@ impl SamplingImages<'_> {
         frequency_rad_per_s: f64,
     ) -> Option<MemberResponse> {
         let [_, load_motion] = plant.response(frequency_rad_per_s);
-        let [own, with_sensor, rate] = self.sums(plant, frequency_rad_per_s)?;
-        let [_, from_disturbance] = self.rate(plant, frequency_rad_per_s);
+        let [own, with_sensor, back] = self.sums(plant, frequency_rad_per_s)?;
         let found = sampled([own, with_sensor], load_motion);
-        let back = 1.0 - self.rate_feed_forward * rate;
-        let closed = MemberResponse { plant: found.plant / back, ..found };
-        Some(closed.fed(self.rate_feed_forward * from_disturbance))
+        let closed = MemberResponse { plant: found.plant / (1.0 - back), ..found };
+        let [_, rate] = self.rate(plant, frequency_rad_per_s);
+        let [_, inner] = self.inner(plant, frequency_rad_per_s);
+        let inner = inner * self.inner_at(frequency_rad_per_s);
+        Some(closed.fed(self.rate_feed_forward * rate - inner))
     }
 
-    /// K H_v P_v
+    /// K H_v P_v - H_p P_p
     pub(super) fn fed_back(
         &self,
         plant: &dyn RespondingPlant,
         frequency_rad_per_s: f64,
     ) -> Option<Complex64> {
-        let [_, _, rate] = self.sums(plant, frequency_rad_per_s)?;
-        Some(self.rate_feed_forward * rate)
+        let [_, _, back] = self.sums(plant, frequency_rad_per_s)?;
+        Some(back)
     }
 
-    /// P, P H and P_v with the delay, folded where the loop samples.
+    /// P, P H and K H_v P_v - H_p P_p with the delay, folded where the loop samples: H_p is that of
+    /// the samples.
     fn sums(&self, plant: &dyn RespondingPlant, frequency: f64) -> Option<[Complex64; 3]> {
+        let own = self.inner_at(frequency);
         let at = |v: f64| {
             let ([response, _], [rate, _]) = (plant.response(v.abs()), self.rate(plant, v.abs()));
-            (response, rate)
+            let [inner, _] = self.inner(plant, v.abs());
+            // an image at a negative frequency is conjugate as a whole, and H_p is not
+            let seen = if v < 0.0 { own.conj() } else { own };
+            (response, self.rate_feed_forward * rate - seen * inner)
         };
         let Some(sample_time_s) = self.sample_time_s else {
             let turned = turned(frequency, self.delay_s);
-            let (response, rate) = at(frequency);
+            let (response, back) = at(frequency);
             let own = response * turned;
-            return Some([own, own * self.sensor.at_frequency(frequency), rate * turned]);
+            return Some([own, own * self.sensor.at_frequency(frequency), back * turned]);
         };
         let spacing = 2.0 * std::f64::consts::PI / sample_time_s;
-        let image = |(response, rate): (Complex64, Complex64), v: f64| {
+        let image = |(response, back): (Complex64, Complex64), v: f64| {
             let [own, with_sensor] = self.image(response, v, sample_time_s);
-            [own, with_sensor, self.held(rate, v, sample_time_s)]
+            [own, with_sensor, self.held(back, v, sample_time_s)]
         };
         let mut sum = image(at(frequency), frequency);
         for order in 1..IMAGES_MAXIMUM {
@@ -93,9 +101,8 @@ impl SamplingImages<'_> {
             // later images fall at least with the cube of their frequency, except at resonances
             let beyond = away > plant.range_rad_per_s()[1].min(spacing * IMAGES_MAXIMUM as f64 / 4.0);
             let left = largest.map(|largest| largest * order as f64);
-            let back = portable::magnitude(1.0 - self.rate_feed_forward * sum[2]);
-            let small = left[0] <= LEFT_SHARE * portable::magnitude(sum[0])
-                && left[1] * self.rate_feed_forward.abs() <= LEFT_SHARE * back;
+            let back = portable::magnitude(1.0 - sum[2]);
+            let small = left[0] <= LEFT_SHARE * portable::magnitude(sum[0]) && left[1] <= LEFT_SHARE * back;
             if (beyond || order > 2) && small {
                 return Some(sum);
             }
@@ -114,6 +121,16 @@ impl SamplingImages<'_> {
         }
         let shown = self.rate_sensor.at_frequency(frequency);
         rate.map(|path| path * shown)
+    }
+
+    /// P_p and I_d where an inner signal is fed back.
+    fn inner(&self, plant: &dyn RespondingPlant, frequency: f64) -> [Complex64; 2] {
+        self.inner_feedback.map_or([Complex64::ZERO; 2], |_| plant.inner(frequency))
+    }
+
+    /// H_p at the samples.
+    fn inner_at(&self, frequency: f64) -> Complex64 {
+        self.inner_feedback.map_or(Complex64::ZERO, |feedback| feedback.at_frequency(frequency))
     }
 
     /// As far as the measurement reaches; `None` where the part beyond it could matter if it were

@@ -53,8 +53,8 @@ impl Member {
         }
     }
 
-    /// K H_v P_v(jw) of a plant without polynomials, with the delay of the loop and sampled where
-    /// that samples; `None` of other plants, and where its images do not die out.
+    /// K H_v P_v(jw) - H_p P_p(jw) of a plant without polynomials, with the delay of the loop and
+    /// sampled where that samples; `None` of other plants, and where its images do not die out.
     pub(crate) fn fed_back(&self, frequency_rad_per_s: f64) -> Option<Complex64> {
         let Member::Responding { plant, .. } = self else { return None };
         self.images()?.fed_back(plant.as_ref(), frequency_rad_per_s)
@@ -62,21 +62,29 @@ impl Member {
 
     fn images(&self) -> Option<SamplingImages<'_>> {
         match self {
-            Member::Responding { sensor, delay_s, sample_time_s, rate_feed_forward, rate_sensor, .. } => {
-                Some(SamplingImages {
-                    sensor,
-                    delay_s: *delay_s,
-                    sample_time_s: *sample_time_s,
-                    rate_feed_forward: *rate_feed_forward,
-                    rate_sensor: *rate_sensor,
-                })
-            }
+            Member::Responding {
+                sensor,
+                delay_s,
+                sample_time_s,
+                rate_feed_forward,
+                rate_sensor,
+                inner_feedback,
+                ..
+            } => Some(SamplingImages {
+                sensor,
+                delay_s: *delay_s,
+                sample_time_s: *sample_time_s,
+                rate_feed_forward: *rate_feed_forward,
+                rate_sensor: *rate_sensor,
+                inner_feedback: inner_feedback.as_ref(),
+            }),
             Member::Measured { sensor, delay_s, sample_time_s, .. } => Some(SamplingImages {
                 sensor,
                 delay_s: *delay_s,
                 sample_time_s: *sample_time_s,
                 rate_feed_forward: 0.0,
                 rate_sensor: RateSensor::default(),
+                inner_feedback: None,
             }),
             Member::Continuous { .. } | Member::Sampled { .. } => None,
         }

@@ -27,6 +27,9 @@ pub(super) fn stated(family: &Family, compensation: &Compensation) -> Result<Cer
     if compensation.rate_feed_forward() != 0.0 {
         return Err(NotProven::RateFedForward);
     }
+    if compensation.inner_feedback().is_some() {
+        return Err(NotProven::InnerFeedback);
+    }
     let parts = [compensation.feedback(), compensation.prefilter(), compensation.sensor()];
     let expression = family.plant().followed_expression().ok_or(NotProven::Waves)?;
     let (boxes, variables) = boxes(family)?;

@@ -5,8 +5,9 @@
 //! 0.66 samples instead of the true 0.8. Each time the loop is sampled anew, nearer to its limit,
 //! the error of the estimate of the remaining delay is smaller.
 //!
-//! Where a rate is fed back within the plant, the remaining delay is that of the controller's own
-//! path, and sampling the plant anew would delay the rate too: there phase over frequency is used.
+//! Where a rate or an inner signal is fed back within the plant, the remaining delay is that of the
+//! controller's own path, and sampling the plant anew would delay the rate too: there phase over
+//! frequency is used.
 
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 
@@ -19,14 +20,15 @@ const TOLERANCE: f64 = 1e-9;
 /// Steps of the search, and then of halving.
 const STEPS_MAXIMUM: usize = 60;
 
-/// `None` for a loop that is not stable to begin with, and where a rate is fed back within the
-/// plant.
+/// `None` for a loop that is not stable to begin with, and where a rate or an inner signal is fed
+/// back within the plant.
 pub(super) fn critical_delay(
     plant: &PlantCoefficients<f64>,
     compensation: &Compensation,
     path: &FeedbackPath,
 ) -> Option<CriticalDelay> {
-    if compensation.rate_feed_forward() != 0.0 && moved_rate(plant).is_some() {
+    let rate = compensation.rate_feed_forward() != 0.0 && moved_rate(plant).is_some();
+    if rate || compensation.inner_feedback().is_some() {
         return None;
     }
     let remaining = |delay_s: f64| {

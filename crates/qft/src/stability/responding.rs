@@ -59,12 +59,13 @@ pub(super) fn stability(
     }
 }
 
-/// Poles in the unstable region of a plant whose rate is fed back within it, as the controller sees
-/// it; `None` where nothing is fed back.
+/// Poles in the unstable region of a plant whose rate or inner signal is fed back within it, as the
+/// controller sees it; `None` where nothing is fed back. H_p has no poles there.
 pub(crate) fn own_poles(member: &Member, compensation: &Compensation) -> Option<Result<usize, Irresolution>> {
-    let Member::Responding { plant, rate_feed_forward, .. } = member else { return None };
+    let Member::Responding { plant, rate_feed_forward, inner_feedback, .. } = member else { return None };
     let [_, highest] = plant.range_rad_per_s();
-    if *rate_feed_forward == 0.0 || plant.rate(highest)[0] == Complex64::ZERO {
+    let moved = *rate_feed_forward != 0.0 && plant.rate(highest)[0] != Complex64::ZERO;
+    if !moved && inner_feedback.is_none() {
         return None;
     }
     let own = plant.unstable_poles().ok_or(Irresolution::OpenLoopPoles);

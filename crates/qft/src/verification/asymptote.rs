@@ -9,7 +9,7 @@ use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use num_complex::Complex64;
 
 use super::criterion::{Criterion, MarginSide};
-use crate::closed_loop::{Compensation, FedForward, Member, closed};
+use crate::closed_loop::{Compensation, FedForward, InnerPath, Member, closed, closed_at_rest};
 use crate::specification::{ClosedLoop, Limit};
 
 /// Which end of the frequency axis.
@@ -253,28 +253,33 @@ fn parts(
         let gain = PowerTerm { coefficient: fed.gain, power: 0 };
         let path = fed.path.as_ref().map(|path| rational(&path.numerator, &path.denominator));
         let shown = rational(&[1.0], &fed.sensor.filter.denominator());
-        gain.times(path.unwrap_or(PowerTerm { coefficient: 1.0, power: 1 })).times(shown)
+        let forward = gain.times(path.unwrap_or(PowerTerm { coefficient: 1.0, power: 1 })).times(shown);
+        let Some(InnerPath { feedback, path }) = &fed.inner else { return Some(forward) };
+        let minus = PowerTerm { coefficient: -1.0, power: 0 };
+        let back = of(feedback)?.times(rational(&path.numerator, &path.denominator)).times(minus);
+        Some(forward.plus(back, false, end))
     };
     let (plant, load_motion, with_sensor, forward, turns) = match member {
         Member::Continuous { plant, sensor, fed_forward } => {
             let command = rational(&plant.command.numerator, &plant.command.denominator);
             let with_sensor = command.times(of(sensor)?);
             let turns = plant.dead_time_s > 0.0;
-            (command, path(&plant.disturbance), with_sensor, forward(fed_forward), turns)
+            (command, path(&plant.disturbance), with_sensor, forward(fed_forward)?, turns)
         }
         Member::Sampled { command, with_sensor, disturbance, fed_forward, .. } => {
-            (of(command)?, path(disturbance), of(with_sensor)?, forward(fed_forward), false)
+            (of(command)?, path(disturbance), of(with_sensor)?, forward(fed_forward)?, false)
         }
-        Member::Responding { plant, sensor, rate_feed_forward, rate_sensor, .. } => {
+        Member::Responding { plant, sensor, rate_feed_forward, rate_sensor, inner_feedback, .. } => {
             // its load-motion path has the ends of the slow plant
             let at_once = RateSensor { delay_s: 0.0, ..*rate_sensor };
-            let slow = closed(*rate_feed_forward, at_once, plant.slow()).ok()?;
-            let fed = FedForward::of(*rate_feed_forward, *rate_sensor, &plant.slow());
+            let inner = inner_feedback.as_ref();
+            let slow = closed_at_rest(inner, closed(*rate_feed_forward, at_once, plant.slow()).ok()?);
+            let fed = FedForward::of(*rate_feed_forward, *rate_sensor, inner, &plant.slow());
             let command = match end {
                 AxisEnd::Zero => rational(&slow.command.numerator, &slow.command.denominator),
                 AxisEnd::Infinity => rolled_off(plant.as_ref())?,
             };
-            (command, path(&slow.disturbance), command.times(of(sensor)?), forward(&fed), true)
+            (command, path(&slow.disturbance), command.times(of(sensor)?), forward(&fed)?, true)
         }
         Member::Measured { .. } => return None,
     };

@@ -87,6 +87,7 @@ pub(super) fn rigs() -> Vec<(String, Vec<&'static str>)> {
         (hose(), [&SPRUNG[..], &["controller.load_velocity_feed_forward={ gain = 20 }", SHOWN]].concat()),
         (hose(), vec![IMPEDANCE]),
         (hose(), vec![FED_BACK]),
+        (hose(), vec![FED_BACK, "controller.sample_time=1 ms", "controller.pressure_feedback.noise=0.1 bar"]),
         (hose(), CONVERTERS.to_vec()),
         (factored, vec![]),
         (pipe(), [&WALL[..], &["load.relative_damping=0.1"]].concat()),
@@ -240,7 +241,7 @@ fn without_uncertainty(text: &str) -> String {
 }
 
 /// Values of what may be absent, or is not a number.
-const STATED: [(&str, &str); 88] = [
+const STATED: [(&str, &str); 89] = [
     ("cross_port.mass", "1 kg"),
     ("cross_port.price", "100 EUR"),
     ("line.accumulator.mass", "1 kg"),
@@ -298,6 +299,7 @@ const STATED: [(&str, &str); 88] = [
     ("controller.pressure_feedback.area_ratio", "0.8"),
     ("controller.pressure_feedback.high_pass", "2 Hz"),
     ("controller.pressure_feedback.low_pass", "90 Hz"),
+    ("controller.pressure_feedback.noise", "0.2 bar"),
     ("controller.quantization.command_bits", "9"),
     ("controller.quantization.command_range", "[\"-9 V\", \"9 V\"]"),
     ("controller.quantization.measurement_bits", "9"),

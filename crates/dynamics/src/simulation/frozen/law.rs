@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{Frozen, FrozenMode};
-use crate::controller::{ControllerState, SampledController};
+use crate::controller::{ControllerInput, ControllerState, SampledController};
 use crate::linear::working_eigenvalues;
 use crate::portable;
 use crate::simulation::propagator::first_function;
@@ -34,13 +34,13 @@ const DISPLACED: f64 = 1e-5;
 
 impl SampledLaw {
     /// A controller whose command acts after a delay in s, before a sample at which it reads the
-    /// filtered reference and the measurement; without its limit, which stops a growth but does not
-    /// make a loop stable.
+    /// filtered reference, the measurement and the inner signal; without its limit, which stops a
+    /// growth but does not make a loop stable.
     pub fn new(
         controller: &SampledController,
         delay_s: f64,
         memory: &ControllerState,
-        read: [f64; 2],
+        read: [f64; 3],
     ) -> SampledLaw {
         let controller = &controller.unlimited();
         let memories = memory.memories();
@@ -62,7 +62,9 @@ impl SampledLaw {
                 all[place] = at + by;
                 let (memories, read) = all.split_at(count);
                 let mut moved = controller.resumed(memories).unwrap_or_else(|| controller.at_rest());
-                let command = controller.step(&mut moved, read[0], read[1]).command;
+                let read =
+                    ControllerInput { reference: read[0], measurement: read[1], inner: read[2], added: 0.0 };
+                let command = controller.step_with(&mut moved, &read).command;
                 (DVector::from_vec(moved.memories()), command)
             });
             all[place] = at;
@@ -84,9 +86,9 @@ impl SampledLaw {
     }
 
     /// The same reading these rows over the states of the plant, as [`Frozen::row`] gives them:
-    /// filtered reference and measurement.
+    /// filtered reference, measurement and inner signal.
     #[must_use]
-    pub fn reading(mut self, rows: [Vec<f64>; 2]) -> SampledLaw {
+    pub fn reading(mut self, rows: [Vec<f64>; 3]) -> SampledLaw {
         self.signals = rows.map(DVector::from_vec).to_vec();
         self
     }
@@ -158,8 +160,8 @@ impl Frozen {
     /// let feedback = Compensator::new(vec![Element::Gain(20.0)]);
     /// let controller = Controller { feedback, ..Controller::default() }.sampled(0.1)?;
     /// let frozen = Frozen::at(&Tank, &[0.0], &[0.0]);
-    /// let rows = [vec![0.0], frozen.row(&[0.0], &[0.0], |state, _| state[0])];
-    /// let law = SampledLaw::new(&controller, 0.1, &controller.at_rest(), [0.0; 2]).reading(rows);
+    /// let rows = [vec![0.0], frozen.row(&[0.0], &[0.0], |state, _| state[0]), vec![0.0]];
+    /// let law = SampledLaw::new(&controller, 0.1, &controller.at_rest(), [0.0; 3]).reading(rows);
     /// let growth = frozen.least_stable_sampled(&law).unwrap().growth_per_s;
     /// assert!((growth - 0.5 * 2.0_f64.ln() / 0.1).abs() < 1e-4);
     /// # Ok::<(), phea_dynamics::linear::LinearError>(())

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use num_complex::Complex64;
-use phea_dynamics::controller::Controller;
+use phea_dynamics::controller::{Controller, ControllerInput, Timing};
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
 use phea_dynamics::simulation::{CommandedPlant, Input, Plant, Profile, Sensed, SimulationSettings};
@@ -165,7 +165,13 @@ impl LoopParts<'_> {
         frequencies: &[f64],
         goes_on: &mut dyn FnMut(usize) -> bool,
     ) -> Result<MachineResponse, SimulateError> {
-        let quiet = Sampled { noise: 0.0, velocity_noise: 0.0, velocity_resolution: 0.0, ..sampled.clone() };
+        let quiet = Sampled {
+            noise: 0.0,
+            velocity_noise: 0.0,
+            velocity_resolution: 0.0,
+            pressure_noise: 0.0,
+            ..sampled.clone()
+        };
         let (held, rest) = (&quiet.held, &self.rested.rest);
         let mut state = rest.state.clone();
         state.extend(held.plant().sensor_at_rest(self.rested.force_n));
@@ -197,7 +203,9 @@ impl LoopParts<'_> {
                 settings: self.settings(),
             };
             let log = RefCell::new(ControllerSamples::default());
-            let waking = Waking::Holding([filtered[0], filtered[1], rest.command]);
+            let [reference, measurement, inner] = filtered;
+            let read = ControllerInput { reference, measurement, inner, added: 0.0 };
+            let waking = Waking::Holding { read, command_v: rest.command };
             let digital = Box::new(Digital::new(&quiet, &waking, &log));
             let sine = [*frequency, self.amplitude];
             let found = respond(resting, Some(digital), sine, &mut || goes_on(index))?;
@@ -222,9 +230,10 @@ fn whole(frequency: f64, sample_time_s: f64) -> Option<f64> {
 /// sampled: T = F G/(1 + L) hold P e^(-s d),    hold = (1 - e^(-s T))/(s T), L in z; the fundamental of what is between the samples.
 /// ```
 ///
-/// If the velocity of a load that can move is fed forward at the samples, the command grows by the
-/// factor P_z'/P_z, where these are the plants in z with and without it. Beside a virtual impedance
-/// L is that of y = F_e + Z_v X_L, and P between reference and force that of the force.
+/// If the velocity of a load that can move is fed forward, or pressures are fed back, at the
+/// samples, the command grows by the factor P_z'/P_z, where these are the plants in z with and
+/// without it. Beside a virtual impedance L is that of y = F_e + Z_v X_L, and P between reference
+/// and force that of the force.
 struct LinearizedLoop {
     /// As the loop sees it.
     rig: Rig,
@@ -254,8 +263,9 @@ impl LinearizedLoop {
             None => compensation.member(rig.plant.coefficients()).map_err(SimulateError::Plant),
         };
         let within = |compensation: &Compensation| of(&seen, compensation);
-        let is_fed = given.timing.sample_time_s.is_some() && given.timing.rate_feed_forward != 0.0;
-        let alone = is_fed.then(|| within(&compensation.without_feed_forward())).transpose()?;
+        let Timing { sample_time_s, rate_feed_forward, inner_feedback, .. } = given.timing;
+        let is_fed = sample_time_s.is_some() && (rate_feed_forward != 0.0 || !inner_feedback.is_zero());
+        let alone = is_fed.then(|| within(&compensation.without_inner_paths())).transpose()?;
         let member = within(&compensation)?;
         let force = seen.virtual_impedance.is_some().then(|| of(&rig, &compensation)).transpose()?;
         Ok(LinearizedLoop { rig, compensation, member, alone, force })

@@ -36,6 +36,11 @@ impl RespondingPlant for PlantInMotion {
         self.load_velocity(Complex64::new(0.0, frequency_rad_per_s)).map(|path| path * self.velocity_gain())
     }
 
+    fn inner(&self, frequency_rad_per_s: f64) -> [Complex64; 2] {
+        let signal = |ratio| self.signal(Complex64::new(0.0, frequency_rad_per_s), ratio);
+        self.plant.pressure_signal.map_or([Complex64::ZERO; 2], signal)
+    }
+
     fn enclosure(&self, frequencies_rad_per_s: [f64; 2]) -> Disc {
         Jet::enclosed(Disc::of_frequencies(frequencies_rad_per_s), |s| {
             let [command, _] = self.response(s);
