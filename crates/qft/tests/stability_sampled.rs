@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
-use phea_dynamics::portable::{asin, ln, log1p, sin};
+use phea_dynamics::portable::{asin, exp, ln, log1p, sin};
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
@@ -104,6 +104,43 @@ fn a_fraction_of_a_sample_is_borne_exactly() {
         found(vec![Element::Gain(1.25 / SAMPLE)], (&[1.0], &[1.0, 0.0]), 0.0).critical_delay.unwrap();
     let half = asin(0.5 * 1.25);
     assert!((estimate.delay_s / SAMPLE - (std::f64::consts::FRAC_PI_2 - half) / (2.0 * half)).abs() < 1e-12);
+}
+
+/// k/(s + a), sampled every second and m s late, m < 1, closes to z^2 + c z + d: stable until d is
+/// one. Phase over frequency is least where a is largest, and what is tolerated where a is zero.
+///
+/// ```text
+/// d = k (e^(-a (1 - m)) - e^(-a))/a
+/// ```
+#[test]
+fn the_plant_that_tolerates_least_need_not_have_the_least_estimate() {
+    let gain = |a: f64| 1.95 + 0.178 * a * a;
+    let tolerated = |a: f64| if a > 0.0 { 1.0 + ln(a / gain(a) + exp(-a)) / a } else { 1.0 / gain(a) };
+    let pole = UncertainParameter { name: "a".into(), nominal: 1.6, minimum: 0.0, maximum: 1.6 };
+    let plant = UncertainPlant::record(vec![pole], |p| PlantCoefficients {
+        command: RationalCoefficients {
+            numerator: vec![p[0] * p[0] * 0.178.into() + 1.95.into()],
+            denominator: vec![1.0.into(), p[0]],
+        },
+        disturbance: None,
+        dead_time_s: 0.0.into(),
+        rate: None,
+    });
+    let plant = plant.unwrap();
+    let coordinate =
+        Coordinate { parameters: vec![0], opposed: vec![], spacing: vec![Spacing::Linear], points: 2 };
+    let members = vertices(&plant, std::slice::from_ref(&coordinate)).unwrap();
+    for extent in [Extent::Members, Extent::Box] {
+        let coordinates = vec![coordinate.clone()];
+        let family = UncertainFamily::new(plant.clone(), coordinates, members.clone(), extent).unwrap();
+        let timing = Timing { sample_time_s: Some(1.0), ..Timing::default() };
+        let controller = Controller { timing, ..Controller::default() };
+        let compensation = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
+        let found = family_stability(&Family::Uncertain(family), &compensation, &mut unwatched).unwrap();
+        let margin = found.delay_margin.unwrap();
+        assert!((margin.delay_s - tolerated(0.0)).abs() < 1e-6, "{extent:?}: {margin:?}");
+        assert!(tolerated(1.6) > 1.5 * margin.delay_s);
+    }
 }
 
 /// An unstable mode of the controller that its own zero hides counts in samples too.

@@ -1,5 +1,7 @@
 //! Stability of a family: every member, then the worst of what lies between them.
 
+mod delayed;
+
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::watch::{Stopped, Watch, part, tell};
@@ -12,8 +14,8 @@ use super::record::StabilityRecord;
 use super::responding::PoleCounting;
 use super::search::climb;
 use super::{
-    CriticalDelay, DelayMargin, Irresolution, MemberStability, StabilityFinding, StabilityMethod,
-    StabilityReason, characteristic, of_member, resampled, responding,
+    DelayMargin, Irresolution, MemberStability, StabilityFinding, StabilityMethod, StabilityReason,
+    characteristic, of_member, responding,
 };
 use crate::closed_loop::{Compensation, Member};
 use crate::family::{Extent, Family, UncertainFamily, corners};
@@ -242,28 +244,6 @@ impl<'a> StabilityAudit<'a> {
     fn take(&mut self, plant: PlantPoint, mut found: MemberStability) {
         found.critical_delay = found.critical_delay.filter(|_| !self.resampled);
         self.record.take(plant, &found);
-    }
-
-    /// Replaces the delay margin by the least that the worst plants tolerate when they are sampled
-    /// anew with every delay.
-    fn resample(&mut self) {
-        let (Family::Uncertain(family), Ok(path)) = (self.family, &self.path) else { return };
-        let worst = self.record.delay.as_ref().map(|margin| margin.plant.clone());
-        if let Some(PlantPoint::Parameters(values)) = worst {
-            self.estimated.push(values);
-        }
-        let mut least: Option<DelayMargin> = None;
-        for values in self.estimated.drain(..) {
-            let Some(plant) = family.plant().coefficients(&values) else { continue };
-            let Some(found) = resampled::critical_delay(&plant, self.compensation, path) else { continue };
-            if least.as_ref().is_none_or(|least| found.delay_s < least.delay_s) {
-                let CriticalDelay { delay_s, frequency_rad_per_s } = found;
-                let plant = PlantPoint::Parameters(values);
-                least = Some(DelayMargin { delay_s, frequency_rad_per_s, plant });
-            }
-        }
-        self.record.delay = least.or(self.record.delay.take());
-        self.resampled = true;
     }
 
     /// The worst plants that lie apart from each other, as shares of the box.
