@@ -8,10 +8,10 @@ mod nominal;
 mod prefilter;
 mod proven;
 mod remark;
+mod signal_noise;
 mod stability;
-mod velocity_noise;
 mod words;
-pub use velocity_noise::{VelocityNoise, VelocityNoiseEffect};
+pub use signal_noise::{NoisySignal, SignalNoise, SignalNoiseEffect};
 pub(crate) use words::rounded;
 pub use words::{evidence_key, evidence_sentence, finding_sentence, place_words};
 
@@ -147,7 +147,9 @@ pub struct ProjectAudit {
     /// limit.
     pub reached: Vec<Option<ReachedLimit>>,
     /// What the noise of a velocity that is fed forward does; `None` without one.
-    pub velocity_noise: Option<VelocityNoise>,
+    pub velocity_noise: Option<SignalNoise>,
+    /// What the noise of pressures that are fed back does; `None` without one.
+    pub pressure_noise: Option<SignalNoise>,
     /// Margins of the nominal loop; `None` for an unstable family, and without a nominal plant that
     /// has polynomials.
     pub nominal: Option<NominalMargins>,
@@ -233,7 +235,8 @@ impl ProjectAudit {
             audit.verdict = Verdict::NotProven;
         }
         let in_time = in_time::findings(problem, &audit);
-        let velocity_noise = VelocityNoise::of(problem, audit.stability.verdict);
+        let noise = |signal| SignalNoise::of(signal, problem, audit.stability.verdict);
+        let [velocity_noise, pressure_noise] = [NoisySignal::LoadVelocity, NoisySignal::Pressures].map(noise);
         let is_unstable = audit.stability.verdict == Verdict::Violated;
         let nominal = if is_unstable { None } else { nominal::nominal_margins(problem).ok().flatten() };
         ProjectAudit {
@@ -253,6 +256,7 @@ impl ProjectAudit {
             dead_time: LoopDeadTime::of(problem),
             caveats,
             velocity_noise,
+            pressure_noise,
             in_time,
             amplifying_prefilter: PrefilterGain::amplifying(compensation),
             proof: None,

@@ -18,7 +18,7 @@ use crate::caveat::{Caveat, caveats};
 use crate::family::{ProjectFamilyError, family};
 use crate::plant_names::PlantNames;
 use crate::quantity::Units;
-use crate::setup::{ControlError, Setup, velocity_noise};
+use crate::setup::{ControlError, Setup, pressure_noise, velocity_noise};
 use crate::simulate::{TimeRequirement, time_requirements};
 use crate::source::Source;
 use crate::specification::{SpecificationError, kind_words, of_rounding, specifications};
@@ -50,6 +50,8 @@ pub struct RobustProblem {
     pub without_polynomials: Option<&'static str>,
     /// Noise of the velocity that a sampled controller feeds forward, m/s rms; zero without.
     pub velocity_noise: f64,
+    /// Noise of the pressure signal at the samples in Pa rms, where it is fed back; zero without.
+    pub pressure_noise: f64,
     /// A margin of minus this much still counts as met, dB.
     pub tolerance_db: f64,
     /// How the rig moves.
@@ -144,6 +146,7 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
             None => None,
         },
         velocity_noise: velocity_noise(setup.project),
+        pressure_noise: pressure_noise(setup.project),
         tolerance_db: setup.project.tolerance_db().unwrap_or(TOLERANCE_DB),
         units: setup.project.units,
         caveats: caveats(setup),

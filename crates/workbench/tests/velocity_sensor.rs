@@ -219,17 +219,42 @@ fn noise_reaches_command_and_force_as_the_verdict_says() {
         let project = still(&[control, friction, noise, load]);
         let view = audited(&project);
         let told = view.velocity_noise.as_ref().unwrap();
-        assert!((told.rms_m_per_s - 1e-3 * (13.0_f64 / 12.0).sqrt()).abs() < 1e-12);
+        assert!((told.rms - 1e-3 * (13.0_f64 / 12.0).sqrt()).abs() < 1e-12);
         let effect = told.effect.as_ref().unwrap();
         // a prescribed load that stands still lets K times the noise through, and the controller
         // answers little
         if load != SPRUNG {
-            assert!((effect.command_rms_v / (20.0 * told.rms_m_per_s) - 1.0).abs() < 0.02, "{effect:?}");
+            assert!((effect.command_rms_v / (20.0 * told.rms) - 1.0).abs() < 0.02, "{effect:?}");
         }
         let [commands, forces] = samples(&project);
         let [command, force] = [rms(&commands) / effect.command_rms_v, rms(&forces) / effect.force_rms_n];
         assert!((command - 1.0).abs() < 0.03, "{load}: {command}");
         assert!((force - 1.0).abs() < 0.12, "{load}: {force}");
+        assert!(told.sentence(&view.names).contains("mV rms"), "{}", told.sentence(&view.names));
+    }
+}
+
+/// So has the noise of pressures that are fed back, which reaches the command through its filters.
+#[test]
+fn noise_of_pressures_reaches_command_and_force_as_the_verdict_says() {
+    let control = "controller={ numerator = \"0.0002*s + 0.002\", denominator = \"s\", sample_time = \"1 ms\", delay = \"0.5 ms\" }";
+    let friction = "cylinder.friction={ model = \"viscous\", viscous = \"300 N.s/m\" }";
+    for (filters, load) in [("", "load={}"), (", high_pass = \"2 Hz\", low_pass = \"150 Hz\"", SPRUNG)] {
+        let feedback =
+            format!("controller.pressure_feedback={{ gain = \"0.1 V/bar\", noise = \"0.2 bar\"{filters} }}");
+        let project = still(&[control, &feedback, friction, load]);
+        let view = audited(&project);
+        let told = view.pressure_noise.as_ref().unwrap();
+        assert_eq!((told.rms, view.velocity_noise.is_none()), (0.2e5, true));
+        let effect = told.effect.as_ref().unwrap();
+        if filters.is_empty() {
+            // little comes back within a sample: k n
+            assert!((effect.command_rms_v / 0.02 - 1.0).abs() < 0.1, "{effect:?}");
+        }
+        let [commands, forces] = samples(&project);
+        let [command, force] = [rms(&commands) / effect.command_rms_v, rms(&forces) / effect.force_rms_n];
+        assert!((command - 1.0).abs() < 0.03, "{load}: {command}");
+        assert!((force - 1.0).abs() < 0.15, "{load}: {force}");
         assert!(told.sentence(&view.names).contains("mV rms"), "{}", told.sentence(&view.names));
     }
 }

@@ -213,7 +213,9 @@ impl Plan {
         let values = self.ranges.iter().map(|range| range.draw(&mut stream)).collect();
         let noisy = match &self.bench.control {
             Control::Sampled(sampled) => {
-                sampled.noise > 0.0 || (sampled.velocity_noise > 0.0 && sampled.feed_forward != 0.0)
+                let velocity = sampled.velocity_noise > 0.0 && sampled.feed_forward != 0.0;
+                let pressure = sampled.pressure_noise > 0.0 && sampled.controller.reads_inner();
+                sampled.noise > 0.0 || velocity || pressure
             }
             Control::Continuous(_) | Control::Open(_) => false,
         };

@@ -285,3 +285,10 @@ pub(crate) fn velocity_noise(project: &Project) -> f64 {
     let rms = |noise: f64, resolution: f64| (noise * noise + resolution * resolution / 12.0).sqrt();
     sensor.filter(|_| samples).map_or(0.0, |sensor| rms(sensor.noise, sensor.resolution))
 }
+
+/// Noise of the pressure signal at the samples in Pa rms, where it is fed back; zero without.
+pub(crate) fn pressure_noise(project: &Project) -> f64 {
+    let controller = project.controller.as_ref().filter(|controller| controller.sample_time.is_some());
+    let declared = controller.and_then(|controller| controller.pressure_feedback);
+    declared.map_or(0.0, |declared| declared.noise)
+}

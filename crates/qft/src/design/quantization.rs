@@ -11,7 +11,7 @@ mod rate_noise;
 mod rounding_effect;
 
 pub use coefficients::{RoundedController, rounded};
-pub use rate_noise::{RateNoise, rate_noise};
+pub use rate_noise::{RateNoise, inner_noise, rate_noise};
 pub use rounding_effect::{LimitCycle, RoundingEffect, RoundingEffects, rounding_effects};
 
 pub use phea_dynamics::controller::{CoefficientFormat, CoefficientTooLarge, Converter, ConverterError};

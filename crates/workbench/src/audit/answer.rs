@@ -2,7 +2,9 @@ use phea_qft::proof::{Certificate, Proof, Standing};
 use phea_qft::verification::{Evidence, SpecificationFinding, StabilityFinding, Verdict, WorstCase};
 
 use super::in_time::unexamined_words;
-use super::{PrefilterGain, ProjectAudit, ReachedLimit, TimeFinding, TimeOutcome, VelocityNoise, WorstStep};
+use super::{
+    NoisySignal, PrefilterGain, ProjectAudit, ReachedLimit, SignalNoise, TimeFinding, TimeOutcome, WorstStep,
+};
 use super::{evidence_key, remark_sentences, stability_reason, verdict_key, why_not_proven};
 use crate::answer::{Csv, Object, OutputFile, envelope};
 use crate::plant_names::PlantNames;
@@ -54,7 +56,8 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
         .with("members", view.members)
         .with("parameters", names.headings())
         .with("timing", timing)
-        .maybe("velocity_noise", view.velocity_noise.as_ref().map(|noise| velocity_noise(noise, names)))
+        .maybe("velocity_noise", view.velocity_noise.as_ref().map(|noise| signal_noise(noise, names)))
+        .maybe("pressure_noise", view.pressure_noise.as_ref().map(|noise| signal_noise(noise, names)))
         .maybe("amplifying_prefilter", view.amplifying_prefilter.map(amplifying))
         .each("specifications", in_file_order(view), |one| one)
         .each("warnings", &view.caveats, |caveat| caveat.sentence.as_str())
@@ -91,12 +94,16 @@ fn amplifying(gain: PrefilterGain) -> Object {
         .with("frequency_rad_per_s", gain.frequency_rad_per_s)
 }
 
-/// The noise of the velocity that is fed forward, with its effects.
-fn velocity_noise(noise: &VelocityNoise, names: &PlantNames) -> Object {
+/// The noise of a velocity that is fed forward or of pressures that are fed back, with its effects.
+fn signal_noise(noise: &SignalNoise, names: &PlantNames) -> Object {
     let effect = noise.effect.as_ref();
     let (of, reason) = (effect.ok(), effect.err().map_or("", String::as_str));
+    let rms = match noise.signal {
+        NoisySignal::LoadVelocity => "rms_m_per_s",
+        NoisySignal::Pressures => "rms_pa",
+    };
     Object::new()
-        .with("rms_m_per_s", noise.rms_m_per_s)
+        .with(rms, noise.rms)
         .known("command_rms_v", of.map(|effect| effect.command_rms_v), reason)
         .maybe("command_plant", of.map(|effect| names.named(&effect.command_plant)))
         .known("force_rms_n", of.map(|effect| effect.force_rms_n), reason)

@@ -47,7 +47,8 @@ pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
     sentences.push(stability_sentence(&view.audit.stability, &view.names));
     sentences.extend(delay_sentence(view));
     sentences.extend(view.nominal.as_ref().and_then(NominalMargins::reduction_sentence));
-    sentences.extend(view.velocity_noise.iter().map(|noise| noise.sentence(&view.names)));
+    let noise = view.velocity_noise.iter().chain(&view.pressure_noise);
+    sentences.extend(noise.map(|noise| noise.sentence(&view.names)));
     let stable = view.audit.stability.verdict != Verdict::Violated;
     let findings = view.audit.specifications.iter().enumerate();
     sentences.extend(findings.map(|(index, finding)| {

@@ -28,6 +28,7 @@ pub(super) fn assumptions(project: &Project) -> Vec<String> {
         told.push("The oil carries no free air.");
     }
     told.extend(velocity(project));
+    told.extend(pressures(project));
     told.into_iter().map(str::to_string).collect()
 }
 
@@ -84,6 +85,20 @@ fn friction(actuator: &DeclaredActuator) -> Option<&'static str> {
     let law = &actuator.friction()?.law;
     (*law != FrictionLaw::Viscous)
         .then_some("Friction enters the linear models by its viscous part alone; the machine has all of it.")
+}
+
+/// How the pressures of the chambers are known, where they are fed back.
+fn pressures(project: &Project) -> Option<&'static str> {
+    let controller = project.controller.as_ref()?;
+    let fed = controller.pressure_feedback.filter(|fed| fed.gain != 0.0)?;
+    Some(match (controller.sample_time, fed.noise > 0.0) {
+        (Some(_), true) => {
+            "The pressures that are fed back are those of the chambers, without delay or error of their sensors, with white noise at the samples."
+        }
+        (None, _) | (_, false) => {
+            "The pressures that are fed back are those of the chambers, without delay, error or noise of their sensors."
+        }
+    })
 }
 
 /// How the velocity of the load is known, where it is fed forward.
