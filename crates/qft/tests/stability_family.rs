@@ -5,6 +5,7 @@ use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable::atan2;
+use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
@@ -129,6 +130,34 @@ fn an_uncertain_dead_time_counts() {
     let margin = audited(&Family::Uncertain(family), vec![], Timing::default()).delay_margin.unwrap();
     assert!((margin.delay_s - (std::f64::consts::FRAC_PI_2 / 1.2 - 0.9)).abs() < 1e-12, "{margin:?}");
     assert_eq!(margin.plant, PlantPoint::Parameters(vec![1.2, 0.9]));
+}
+
+/// k/s tolerates pi/(2 k). k has a hill of 1 at p = 0.35 and one of 1.05 just behind a jump at
+/// 0.47, narrower than the steps of a search from anywhere else.
+#[test]
+fn the_worst_behind_a_jump_is_found() {
+    let parameter = UncertainParameter { name: "p".into(), nominal: 0.35, minimum: 0.0, maximum: 0.6 };
+    let plant = UncertainPlant::record(vec![parameter], |p| {
+        let [off, away] = [p[0] - 0.35.into(), p[0] - 0.4775.into()];
+        let before = (off * off).times(-4.0) + 1.0.into();
+        let behind = (away * away).times(1270.0) + 1.0.into();
+        let chosen = |one, other| Scalar::select(p[0].less_than(0.47.into()), one, other);
+        PlantCoefficients {
+            command: RationalCoefficients {
+                numerator: vec![chosen(before, 1.05.into())],
+                denominator: vec![chosen(1.0.into(), behind), 0.0.into()],
+            },
+            disturbance: None,
+            dead_time_s: 0.0.into(),
+            rate: None,
+        }
+    });
+    let coordinate =
+        Coordinate { parameters: vec![0], opposed: vec![], spacing: vec![Spacing::Linear], points: 2 };
+    let members = [0.0, 0.35, 0.47 - 1e-9, 0.47 + 1e-9, 0.6].map(|p| vec![p]).to_vec();
+    let family = UncertainFamily::new(plant.unwrap(), vec![coordinate], members, Extent::Box).unwrap();
+    let margin = audited(&Family::Uncertain(family), vec![], Timing::default()).delay_margin.unwrap();
+    assert!((margin.delay_s - std::f64::consts::FRAC_PI_2 / 1.05).abs() < 1e-9, "{margin:?}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Stability of a family: every member, then the worst of what lies between them.
 
 mod delayed;
+mod jumps;
 
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::order::sort_by_number;
@@ -12,7 +13,7 @@ use super::folding::{self, Folded};
 use super::infinity::{self, Infinity};
 use super::record::StabilityRecord;
 use super::responding::PoleCounting;
-use super::search::climb;
+use super::search::{LONGEST_STEP, climb_by};
 use super::{
     DelayMargin, Irresolution, MemberStability, StabilityFinding, StabilityMethod, StabilityReason,
     characteristic, of_member, responding,
@@ -193,7 +194,10 @@ impl<'a> StabilityAudit<'a> {
         for (number, (ranked_by, searched)) in searches.into_iter().enumerate() {
             for (start, shares) in self.starts(family, ranked_by).into_iter().enumerate() {
                 tell(watch, STAGE, STARTS * number + start, STARTS * searches.len() + 1)?;
-                self.search(searched, shares);
+                self.search(searched, LONGEST_STEP, shares);
+            }
+            for shares in self.sides(family, ranked_by) {
+                self.search(searched, jumps::STEP, shares);
             }
         }
         tell(watch, STAGE, STARTS * searches.len(), STARTS * searches.len() + 1)?;
@@ -225,10 +229,11 @@ impl<'a> StabilityAudit<'a> {
         }
     }
 
-    fn search(&mut self, searches: &[Badness], mut shares: Vec<f64>) {
+    fn search(&mut self, searches: &[Badness], first_step: f64, mut shares: Vec<f64>) {
         let Family::Uncertain(family) = self.family else { return };
         for &badness in searches {
-            (shares, _) = climb(&shares, &mut |shares| self.badness_at(badness, family.values(shares)));
+            let mut objective = |shares: &[f64]| self.badness_at(badness, family.values(shares));
+            (shares, _) = climb_by(first_step, &shares, &mut objective);
         }
         let values = family.values(&shares);
         if searches.last() == Some(&Badness::DelaySensitivity) {
@@ -315,8 +320,8 @@ impl<'a> StabilityAudit<'a> {
                 && family.extent() == Extent::Box
             {
                 let shares = family.shares(values);
-                self.search(&[Badness::Closeness], shares.clone());
-                self.search(&[Badness::RealPart], shares);
+                self.search(&[Badness::Closeness], LONGEST_STEP, shares.clone());
+                self.search(&[Badness::RealPart], LONGEST_STEP, shares);
             }
         }
         Ok(())

@@ -1,5 +1,7 @@
 //! The largest value of a function over the unit box, from one start.
 
+/// The first step of a climb, as a share of the box.
+pub(super) const LONGEST_STEP: f64 = 0.25;
 /// The smallest step of a climb, as a share of the box.
 const SMALLEST_STEP: f64 = 1e-7;
 /// The smallest step of a climb that has ended in a corner.
@@ -19,10 +21,19 @@ struct Climb<'a> {
 /// or to the top of the parabola over three values, with steps that shrink once they are longer
 /// than the distance moved.
 pub(super) fn climb(start: &[f64], objective: &mut dyn FnMut(&[f64]) -> f64) -> (Vec<f64>, f64) {
+    climb_by(LONGEST_STEP, start, objective)
+}
+
+/// The same with another first step.
+pub(super) fn climb_by(
+    first_step: f64,
+    start: &[f64],
+    objective: &mut dyn FnMut(&[f64]) -> f64,
+) -> (Vec<f64>, f64) {
     let value = objective(start);
     let value = if value.is_nan() { f64::NEG_INFINITY } else { value };
     let mut climb = Climb { objective, shares: start.to_vec(), value, values_asked: 1 };
-    let mut step = 0.25;
+    let mut step = first_step;
     while step >= SMALLEST_STEP && climb.values_asked < VALUES_MAXIMUM {
         let way = (0..start.len()).map(|coordinate| climb.along(coordinate, step)).fold(0.0, f64::max);
         let in_corner = climb.shares.iter().all(|&share| share <= 0.0 || share >= 1.0);
