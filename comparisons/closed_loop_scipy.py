@@ -18,10 +18,13 @@ MAGNITUDES = np.array([1.0, 1e3, 1e5, 1e5, 1e-4, 1e-2, 1e-5, 1.0, 1e3, 1e5])
 NECKS = np.array([1e-5, 1e5, 1e-5, 1e5])
 # Absolute temperature of the gas at A and B over that of its wall.
 HEAT = np.array([1.0, 1.0])
+# Pressure signal behind its low pass, and what a high pass takes from it; of a rig without gas.
+FED_BACK = np.array([1e5, 1e5])
 
 
 def magnitudes_of(rig):
     parts = [NECKS] * hasattr(rig, "neck") + [HEAT] * hasattr(rig, "time_constant")
+    parts += [FED_BACK] * hasattr(rig, "pressure_feedback")
     return np.concatenate((MAGNITUDES, *parts))
 
 
@@ -103,7 +106,14 @@ def rates(time, state, rig, reference):
     load_position, load_velocity = load(rig, time)
     position, force = load_position + deflection, rig.sensor_stiffness * deflection
     error = r - force
-    command = min(max(rig.proportional_gain * error + integral, -rig.saturation), rig.saturation)
+    wanted, filters = rig.proportional_gain * error + integral, []
+    if hasattr(rig, "pressure_feedback"):
+        # u = G (F r - y) - k p_h, of p_l = p w/(s + w) and p_h = p_l s/(s + w)
+        gain, ratio, high_pass, low_pass = rig.pressure_feedback
+        low, slow = state[10:12].tolist()
+        wanted -= gain * (low - slow)
+        filters = [low_pass * (pressure_a - ratio * pressure_b - low), high_pass * (low - slow)]
+    command = min(max(wanted, -rig.saturation), rig.saturation)
     into_a, into_b = flows(rig, spool, pressure_a, pressure_b)
     if has_neck:
         flow_a, gas_a, flow_b, gas_b = state[10:14].tolist()
@@ -134,7 +144,7 @@ def rates(time, state, rig, reference):
         r_rate,
         rig.prefilter_stiffness * (reference - r) - rig.prefilter_damping * r_rate,
     ]
-    return np.array(rate + necks + ([warming_a, warming_b] if has_heat else [])) / scales
+    return np.array(rate + necks + ([warming_a, warming_b] if has_heat else []) + filters) / scales
 
 
 def force(tolerance, **changes):
