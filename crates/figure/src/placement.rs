@@ -6,6 +6,10 @@ use super::scene::{Point, Rectangle};
 
 /// Width of a letter, roughly.
 const LETTER: f64 = 8.0;
+/// Least distance between two texts.
+const APART: f64 = 1.5;
+/// Distance below which two texts are read as one.
+const CROWDED: f64 = 6.0;
 
 /// A place for a label, with the line that leads to its point where one is needed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,18 +75,18 @@ impl Occupancy {
         self.leads.push((from, to));
     }
 
-    /// The index of the best candidate inside `frame`: free of texts, then with the fewest curves
-    /// and markers beneath it, then the earliest. `None` when every candidate leaves the frame or
-    /// covers a text.
+    /// The index of the best candidate inside `frame`: free of texts, then with the least of curves
+    /// and markers beneath it and of texts close to it, then the earliest. `None` when every
+    /// candidate leaves the frame or covers a text.
     pub fn choose(&self, candidates: &[Rectangle], frame: &Rectangle) -> Option<usize> {
-        let mut best: Option<(usize, usize)> = None;
+        let mut best: Option<(usize, f64)> = None;
         for (index, candidate) in candidates.iter().enumerate() {
-            let spaced = candidate.grown(1.5);
+            let spaced = candidate.grown(APART);
             if !frame.contains(candidate) || self.texts.iter().any(|text| text.overlaps(&spaced)) {
                 continue;
             }
-            let cost = self.cost(candidate);
-            if cost == 0 {
+            let cost = self.weight(candidate);
+            if cost == 0.0 {
                 return Some(index);
             }
             if best.is_none_or(|(_, least)| cost < least) {
@@ -98,7 +102,7 @@ impl Occupancy {
     pub(crate) fn choose_led(&self, candidates: &[Led], frame: &Rectangle) -> Option<usize> {
         let mut best: Option<(usize, f64)> = None;
         for (index, Led { point, bounds, line }) in candidates.iter().enumerate() {
-            let spaced = bounds.grown(1.5);
+            let spaced = bounds.grown(APART);
             let is_hit = |text: &Rectangle| {
                 text.overlaps(&spaced)
                     || line.is_some_and(|(from, to)| super::clip::segment(from, to, text).is_some())
@@ -138,25 +142,25 @@ impl Occupancy {
         hypot(to.x - from.x, to.y - from.y) / LETTER + crossed.map(|piece| 2.0 * piece.width).sum::<f64>()
     }
 
-    /// What lies beneath a label: markers, and curves by their length in letters and their width.
+    /// What lies beneath a label, namely markers and curves by their length in letters and their
+    /// width, and the texts close to it. A label that touches a curve at all is hard to read, so
+    /// that a short line to a free place costs less.
     fn weight(&self, bounds: &Rectangle) -> f64 {
+        const MARKER: f64 = 20.0;
+        const TOUCHED: f64 = 6.0;
+        const CLOSE: f64 = 4.0;
         let markers = self.obstacles.iter().filter(|o| o.overlaps(bounds)).count();
-        let hidden = self.segments.iter().filter_map(|piece| {
-            let (a, b) = super::clip::segment(piece.from, piece.to, bounds)?;
-            Some(piece.width * hypot(b.x - a.x, b.y - a.y) / LETTER)
-        });
-        20.0 * markers as f64 + hidden.sum::<f64>()
-    }
-
-    /// Curves and markers beneath a label; one curve counts once per piece, so a curve along the
-    /// label costs more.
-    fn cost(&self, candidate: &Rectangle) -> usize {
-        let markers = self.obstacles.iter().filter(|o| o.overlaps(candidate)).count();
-        let pieces = self
+        let hidden: f64 = self
             .segments
             .iter()
-            .filter(|piece| super::clip::segment(piece.from, piece.to, candidate).is_some())
-            .count();
-        20 * markers + pieces
+            .filter_map(|piece| {
+                let (a, b) = super::clip::segment(piece.from, piece.to, bounds)?;
+                Some(piece.width * hypot(b.x - a.x, b.y - a.y) / LETTER)
+            })
+            .sum();
+        let touched = if hidden > 0.0 { TOUCHED } else { 0.0 };
+        let around = bounds.grown(CROWDED);
+        let close = self.texts.iter().filter(|text| text.overlaps(&around)).count();
+        MARKER * markers as f64 + touched + hidden + CLOSE * close as f64
     }
 }

@@ -10,5 +10,6 @@ mod edge;
 mod gallery;
 mod hostile;
 mod legibility;
+mod nichols;
 mod primitives;
 mod qft;

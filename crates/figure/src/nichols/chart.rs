@@ -1,5 +1,7 @@
 //! The parts of a Nichols chart in their place: axes, marks, labels, legend.
 
+use std::ops::RangeInclusive;
+
 use phea_qft::bound::Bound;
 
 use super::super::axis::{Axis, extent};
@@ -18,6 +20,9 @@ use super::{Boundary, NicholsChart, OpenLoopViolation, boundaries, magnitude_con
 const PHASES: [f64; 2] = [-270.0, 0.0];
 /// A loop below this magnitude is far from the critical points whatever its phase, dB.
 const FAR_BELOW_DB: f64 = -12.0;
+/// Magnitudes of what may widen the axis of phase beyond a whole turn, dB: outside of them the
+/// phase of a loop decides nothing.
+const NEAR_DB: RangeInclusive<f64> = -30.0..=30.0;
 /// Most turns that an axis of phase shows on either side of -360 to 0 degrees.
 const TURNS: i32 = 2;
 
@@ -100,14 +105,18 @@ impl<'a> PlacedChart<'a> {
         decibel_axis(&self.y.title, marked.chain(filled).chain(near).chain([-20.0, 20.0]))
     }
 
-    /// From -270 to 0 degrees, and on by quarter turns where a loop near or above 0 dB, a template
-    /// or a violation that can be seen needs it.
+    /// From -270 to 0 degrees, and on by quarter turns where a loop near 0 dB, or a violation that
+    /// can be seen, needs it; a mark or a template far from 0 dB widens it to -360 degrees at most.
     fn phase_axis(&self) -> Axis {
         let loops = self.loops.iter().flat_map(|one| one.points.iter().copied());
+        let loops = loops.filter(|point| (FAR_BELOW_DB..=*NEAR_DB.end()).contains(&point.1));
         let marked = self.marks.iter().map(|mark| (mark.phase_deg, mark.magnitude_db));
-        let loops = loops.filter(|point| point.1 >= FAR_BELOW_DB).chain(marked);
         let filled = self.templates.iter().flat_map(PlacedTemplate::extent);
-        let all = loops.chain(filled).chain(self.violations.iter().copied());
+        let in_turn = |(phase, magnitude): (f64, f64)| match NEAR_DB.contains(&magnitude) {
+            true => (phase, magnitude),
+            false => (phase.clamp(-360.0, 0.0), magnitude),
+        };
+        let all = loops.chain(marked.chain(filled).map(in_turn)).chain(self.violations.iter().copied());
         let seen = all.filter(|point| (self.y.minimum..=self.y.maximum).contains(&point.1));
         let (low, high) = extent(seen.map(|point| point.0).chain(PHASES));
         let most = 360.0 * f64::from(TURNS);
