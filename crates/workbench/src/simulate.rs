@@ -21,6 +21,6 @@ pub(crate) use figures::{comparison_files, figure_files, laid_over, pictures, tu
 pub(crate) use frequency::{
     document as frequency_document, files as frequency_files, pictures as frequency_pictures,
 };
-pub(crate) use metrics::{METRICS, OVERSHOOT, SETTLING, cells_of, metric_of};
+pub(crate) use metrics::{METRICS, Metric, OVERSHOOT, SETTLING, cells_of, metric_of, settling_within};
 pub(crate) use span::around;
 pub(crate) use together::{NamedRun, at_a_glance, close_ups, measured_together, together};

@@ -395,7 +395,7 @@ fn runs_that_never_settle_are_told_beside_the_quantiles() {
     let missing: Vec<u64> = events.iter().map(settling).collect();
     assert!(missing.iter().any(|missing| *missing > 1), "{missing:?}");
     for missing in missing.iter().filter(|missing| **missing > 1) {
-        let words = format!("settling (s); {missing} of 20 never settle");
+        let words = format!("settling to 1 % (s); {missing} of 20 never settle");
         assert!(answer.text.contains(&words), "{}", answer.text);
     }
 }

@@ -136,7 +136,7 @@ fn both_controllers_stand_there_as_the_commands_tell_them() {
         let (_, card) = page.split_once(&format!("Simulated, {name} controller")).unwrap();
         let card = plain(card.split("</dd>").next().unwrap());
         assert!(
-            card.contains(&format!("settling {settling_s:.3} s; load motion at 3 s")),
+            card.contains(&format!("settling {settling_s:.3} s (1 %); load motion at 3 s")),
             "{card} {settling_s}"
         );
     }

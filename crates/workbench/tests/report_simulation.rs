@@ -181,7 +181,7 @@ const IN_TIME: &str = "[[specification]]\nkind = \"tracking\"\nfrequencies = [0.
 fn the_first_page_takes_the_worst_of_the_campaign() {
     let text = format!("{CAMPAIGN}\n{IN_TIME}");
     let report = reported(&text, &["scenario.0.duration=2.9 s", "campaign.runs=24"]);
-    let settling = row(chapter(&report, "campaign"), "settling (s)");
+    let settling = row(chapter(&report, "campaign"), "settling to 1 % (s)");
     let (worst, run) = settling[6].split_once(" (").expect("a run");
     let (_, page) = report.html.split_once("id=\"decision\">").expect("the first page");
     let page = page.split("</section>").next().unwrap();

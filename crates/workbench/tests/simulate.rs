@@ -386,9 +386,10 @@ fn a_long_scenario_says_how_often_it_was_looked_at() {
 
 #[test]
 fn projects_stand_side_by_side() {
-    let [one, other] = [("1.9e-4", "10 kN"), ("3.03e-5", "3 kN")].map(|(volume, capacity)| {
-        let settings = [format!("line.volume={volume}"), format!("force_sensor.capacity={capacity}")];
-        load(BENCHMARK, &[settings[0].as_str(), settings[1].as_str(), "scenario.0.duration=3.4 s"])
+    let [one, other] = [("1.9e-4", "10 kN", 1), ("3.03e-5", "3 kN", 2)].map(|(volume, capacity, band)| {
+        let band = format!("scenario.0.settling_band_percent={band}");
+        let settings = [format!("line.volume={volume}"), format!("force_sensor.capacity={capacity}"), band];
+        load(BENCHMARK, &[&settings[0], &settings[1], &settings[2], "scenario.0.duration=3.4 s"])
     });
     let answer = command::compare_watched(&Memory::default(), &[one, other], true, &mut |_| true).unwrap();
     let json: Value = serde_json::from_str(&answer.json).unwrap();
@@ -402,6 +403,7 @@ fn projects_stand_side_by_side() {
     assert_eq!(names.len(), 3, "{names:?}");
     assert!(names.contains(&"compare-1.svg") && names.contains(&"compare-1-event-2.svg"), "{names:?}");
     assert!(answer.text.contains("disturbance peak"), "{}", answer.text);
+    assert!(answer.text.contains("settling (1 %, 2 %)"), "{}", answer.text);
     let overloads: Vec<&str> = answer.text.lines().filter(|line| line.contains("is overloaded")).collect();
     assert!(overloads.len() == 1 && overloads[0].starts_with("   B: from 2."), "{}", answer.text);
     assert!(overloads[0].contains("its capacity is 3 kN"), "{}", answer.text);

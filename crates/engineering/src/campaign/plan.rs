@@ -176,6 +176,11 @@ impl Plan {
         &self.scenario.name
     }
 
+    /// The band of its settling times, percent of a step.
+    pub fn settling_band_percent(&self) -> f64 {
+        self.scenario.settling_band_percent
+    }
+
     /// The windows that are evaluated in each run.
     pub fn windows(&self) -> &[Window] {
         &self.columns.windows

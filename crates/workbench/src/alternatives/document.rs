@@ -7,6 +7,7 @@ use super::{AlternativeColumn, AlternativeColumns, Alternatives, ColumnPart, Jud
 use crate::document::{Cell, Document, Table};
 use crate::linearize::PortView;
 use crate::quantity::{DisplayUnit, significant};
+use crate::simulate::ScenarioRun;
 use phea_qft::verification::Verdict;
 
 /// The table and the findings, below what must be known first.
@@ -80,7 +81,9 @@ fn table(found: &Alternatives) -> Table {
             rows.row(words("stable with its load", found, stable));
             rows.row(words("on the machine", found, machine));
         }
+        let settling = summary::settling(found.judged.iter(), |run| is_of(run, &part));
         for (key, name) in keys {
+            let name = if key == "settling_time_s" { settling.as_str() } else { name };
             let cells = all.iter().map(|columns| cell(columns, &part, key));
             rows.row(std::iter::once(Cell::from(name)).chain(cells));
         }
@@ -90,6 +93,10 @@ fn table(found: &Alternatives) -> Table {
         }
     }
     rows
+}
+
+fn is_of(run: &ScenarioRun, part: &ColumnPart) -> bool {
+    matches!(part, ColumnPart::Scenario(name) if *name == run.name)
 }
 
 fn words(name: &str, found: &Alternatives, of: fn(&JudgedAlternative) -> Cell) -> Vec<Cell> {

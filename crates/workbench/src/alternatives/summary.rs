@@ -4,6 +4,7 @@
 use super::{AlternativeColumns, Alternatives, COMPARED_AT_A_GLANCE, JudgedAlternative};
 use crate::document::{Cell, Table};
 use crate::quantity::significant;
+use crate::simulate::{ScenarioRun, settling_within};
 use crate::trial::agreement_word;
 
 /// What the group of the project's own load is called, where there are load cases too.
@@ -15,7 +16,11 @@ pub(super) fn table(found: &Alternatives) -> Table {
     let all: Vec<Vec<AlternativeColumns>> =
         groups.iter().map(|(_, judged)| judged.iter().map(JudgedAlternative::columns).collect()).collect();
     let shown = shown(all.iter().flatten());
-    let words = shown.iter().map(|(_, words)| (*words).to_string());
+    let settling = settling(groups.iter().flat_map(|(_, judged)| judged.iter()), |_| true);
+    let words = shown.iter().map(|(key, words)| match *key {
+        "settling_time_s" => settling.clone(),
+        _ => (*words).to_string(),
+    });
     let headings = ["alternative", "specifications", "on the machine"].map(String::from);
     let headings = headings.into_iter().chain(words);
     let mut rows = match groups.len() {
@@ -33,6 +38,17 @@ pub(super) fn table(found: &Alternatives) -> Table {
         }
     }
     rows
+}
+
+/// The word for the settling times of some runs, with the bands in which they settle.
+pub(super) fn settling<'a>(
+    all: impl Iterator<Item = &'a JudgedAlternative>,
+    counts: impl Fn(&ScenarioRun) -> bool,
+) -> String {
+    let runs = all.filter_map(|one| one.runs.as_ref().ok()).flatten().filter(|run| counts(run));
+    let metrics = runs.flat_map(|run| &run.windows).map(|(_, metrics)| metrics);
+    let settled = metrics.filter(|metrics| metrics.settling_time_s.is_ok());
+    settling_within(settled.map(|metrics| metrics.settling_band_percent))
 }
 
 /// The declared load and the load cases, each with its alternatives.

@@ -9,7 +9,7 @@ use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::Loaded;
 use crate::quantity::{DisplayUnit, Units};
-use crate::simulate::{self, ScenarioRun, cause_words, metric_of};
+use crate::simulate::{self, Metric, ScenarioRun, cause_words, metric_of};
 
 /// Largest number of rejected and ended runs that are listed.
 const TOLD: usize = 6;
@@ -17,9 +17,13 @@ const TOLD: usize = 6;
 const LUMP_WORDS: [&str; 3] = ["K_H (N/m)", "K_qU (m3/(s.V))", "K_c (m3/(s.Pa))"];
 
 /// A metric in words, with its unit.
-fn metric_words(metric: usize, units: Units) -> String {
+fn metric_words(metric: usize, plan: &Plan) -> String {
     let known = METRIC_NAMES.get(metric).and_then(|key| metric_of(key));
-    known.map_or(String::new(), |metric| metric.shown_in(units).title(metric.word))
+    let word = |metric: &Metric| match metric.key {
+        "settling_time_s" => format!("{} to {} %", metric.word, plan.settling_band_percent()),
+        _ => metric.word.to_string(),
+    };
+    known.map_or(String::new(), |metric| metric.shown_in(plan.units()).title(&word(metric)))
 }
 
 /// The unit of a metric.
@@ -139,7 +143,7 @@ pub(crate) fn metrics(plan: &Plan, summary: &Summary) -> Table {
         for metric in meaningful(window, plan.is_open_loop()) {
             let missing = without(metric, spreads[metric], summary.driven());
             let missing = missing.map_or(String::new(), |text| format!("; {text}"));
-            let name = Cell::from(format!("{}{missing}", metric_words(metric, units)));
+            let name = Cell::from(format!("{}{missing}", metric_words(metric, plan)));
             rows.row(std::iter::once(name).chain(spread_cells(spreads[metric], unit_of(metric, units))));
         }
     }

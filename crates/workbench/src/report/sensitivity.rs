@@ -113,7 +113,8 @@ fn event_table(varied: &[VariedQuantity], event: usize) -> Option<Table> {
     let units = varied.iter().find_map(|varied| Some(varied.run.as_ref().ok()?.record.units))?;
     let shown = told(windows.iter());
     let event = cause_words(&windows.first()?.0, units);
-    let heads = std::iter::once(event.as_str()).chain(shown.iter().map(|place| METRICS[*place].word));
+    let bands = || windows.iter().map(|(_, metrics)| metrics.settling_band_percent);
+    let heads = std::iter::once(event).chain(shown.iter().map(|place| METRICS[*place].word_within(bands())));
     let mut rows = Table::grouped_by("quantity", heads);
     let mut quantity = "";
     for varied in varied {

@@ -124,7 +124,9 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, wish: Option<&TrackingWis
         [alone] => out.table(windows(alone.run, wish, Some(declared))),
         several => {
             let shown = told(several.iter().flat_map(|named| &named.run.windows));
-            let heads = std::iter::once("").chain(shown.iter().map(|place| METRICS[*place].word));
+            let band = first.settling_band_percent;
+            let words = shown.iter().map(|place| METRICS[*place].word_within([band]));
+            let heads = std::iter::once(String::new()).chain(words);
             let mut rows = Table::grouped_by("event", heads);
             for (index, (window, _)) in first.windows.iter().enumerate() {
                 rows.group(cause_words(window, first.record.units));

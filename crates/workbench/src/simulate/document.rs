@@ -88,9 +88,8 @@ pub(crate) fn windows(run: &ScenarioRun, wish: Option<&TrackingWish>, declared: 
     let shown: Vec<usize> =
         (0..METRICS.len()).filter(|place| always(METRICS[*place].word) || has(place)).collect();
     let head = |place: &usize| match METRICS[*place].word {
-        "settling" => format!("settling ({} %)", run.settling_band_percent),
         "disturbance peak" => "disturbance".to_string(),
-        name => name.to_string(),
+        _ => METRICS[*place].word_within([run.settling_band_percent]),
     };
     let units = run.record.units;
     let mut rows = Table::new(std::iter::once("event".to_string()).chain(shown.iter().map(head)));
@@ -392,13 +391,14 @@ fn side_by_side(columns: &[Option<&ScenarioRun>], units: Units) -> Table {
             columns.iter().map(|run| run.and_then(|run| run.windows.get(index))).collect();
         let Some((first, _)) = windows.iter().flatten().next() else { continue };
         rows.group(cause_words(first, units));
+        let bands = || windows.iter().flatten().map(|(_, metrics)| metrics.settling_band_percent);
         let cells: Vec<_> =
             windows.iter().map(|window| window.map(|(_, metrics)| cells_of(metrics, units))).collect();
         for (place, metric) in METRICS.iter().enumerate() {
             let of = |cells: &Option<[Cell; METRICS.len()]>| cells.as_ref().map(|cells| cells[place].clone());
             let values: Vec<Cell> = cells.iter().map(|cells| of(cells).unwrap_or_default()).collect();
             if values.iter().any(|value| *value != Cell::Missing) {
-                rows.row(std::iter::once(metric.word.into()).chain(values));
+                rows.row(std::iter::once(metric.word_within(bands()).into()).chain(values));
             }
         }
     }

@@ -51,6 +51,15 @@ impl Metric {
         Cell::quantity(value, self.digits, self.shown_in(units))
     }
 
+    /// Its word, that of the settling time with its band: `settling (1 %)`; with each band once
+    /// where it differs between what is compared.
+    pub(crate) fn word_within(&self, bands_percent: impl IntoIterator<Item = f64>) -> String {
+        match self.key == METRICS[SETTLING].key {
+            true => settling_within(bands_percent),
+            false => self.word.to_string(),
+        }
+    }
+
     /// The unit in which people read it.
     pub(crate) fn shown_in(&self, units: Units) -> DisplayUnit {
         match self.unit {
@@ -58,6 +67,18 @@ impl Metric {
             symbol => DisplayUnit { symbol, in_si: 1.0 },
         }
     }
+}
+
+/// The word for a settling time, with its bands: see [`Metric::word_within`].
+pub(crate) fn settling_within(bands_percent: impl IntoIterator<Item = f64>) -> String {
+    let mut bands: Vec<String> = Vec::new();
+    for band in bands_percent.into_iter().map(|band| format!("{band} %")) {
+        if !bands.contains(&band) {
+            bands.push(band);
+        }
+    }
+    let word = METRICS[SETTLING].word;
+    if bands.is_empty() { word.to_string() } else { format!("{word} ({})", bands.join(", ")) }
 }
 
 /// Each metric with its unit.
