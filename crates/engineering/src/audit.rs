@@ -4,6 +4,7 @@
 mod alone;
 mod dead_time;
 mod in_time;
+mod margins;
 mod nominal;
 mod prefilter;
 mod proven;
@@ -18,6 +19,7 @@ pub use words::{evidence_key, evidence_sentence, finding_sentence, place_words};
 pub(crate) use alone::{caveat as caveat_of_rig, unexamined as unexamined_rig};
 pub use dead_time::LoopDeadTime;
 pub use in_time::{TimeFinding, TimeOutcome, Unexamined, WorstStep};
+pub use margins::{AuditMargins, LoopMargin, MarginSet};
 pub use nominal::NominalMargins;
 pub use prefilter::PrefilterGain;
 pub use proven::{prove_audit, standing_word, try_to_prove, why_not_proven};
@@ -153,6 +155,8 @@ pub struct ProjectAudit {
     /// Margins of the nominal loop; `None` for an unstable family, and without a nominal plant that
     /// has polynomials.
     pub nominal: Option<NominalMargins>,
+    /// Gain, phase, modulus and delay margin of the nominal loop, and the worst of the family.
+    pub margins: AuditMargins,
     /// The requirements in time of its specifications.
     pub in_time: Vec<TimeFinding>,
     /// The prefilter, where it amplifies.
@@ -239,8 +243,10 @@ impl ProjectAudit {
         let [velocity_noise, pressure_noise] = [NoisySignal::LoadVelocity, NoisySignal::Pressures].map(noise);
         let is_unstable = audit.stability.verdict == Verdict::Violated;
         let nominal = if is_unstable { None } else { nominal::nominal_margins(problem).ok().flatten() };
+        let margins = AuditMargins::of(problem, &audit);
         ProjectAudit {
             nominal,
+            margins,
             reached: audit.specifications.iter().map(|finding| reached(problem, finding)).collect(),
             audit,
             names: problem.names.clone(),

@@ -4,6 +4,7 @@ mod answer;
 mod certificate;
 mod document;
 pub(crate) mod in_time;
+mod margins;
 
 pub use phea_engineering::audit::*;
 

@@ -105,5 +105,6 @@ mod valve_reversals;
 mod valve_tests;
 mod velocity_sensor;
 mod verify_contract;
+mod verify_margins;
 mod waves_in_the_loop;
 mod what_moves_what;

@@ -1,9 +1,9 @@
 //! Margins of the nominal loop.
 
 use phea_dynamics::frequency::{decibels, margins};
-use phea_dynamics::linear::{LinearError, Polynomial, TransferFunction};
-use phea_qft::closed_loop::Member;
+use phea_dynamics::linear::LinearError;
 
+use super::margins::open_loop;
 use crate::quantity::significant;
 use crate::robust::RobustProblem;
 
@@ -40,8 +40,9 @@ impl NominalMargins {
 /// # Errors
 /// [`LinearError`] for a nominal plant that is not a transfer function.
 pub(super) fn nominal_margins(problem: &RobustProblem) -> Result<Option<NominalMargins>, LinearError> {
-    let Some(plant) = nominal_plant(problem)? else { return Ok(None) };
-    let found = margins(&plant.series(problem.compensation.feedback())?);
+    let Some(member) = problem.nominal()? else { return Ok(None) };
+    let Some(open_loop) = open_loop(problem, &member)? else { return Ok(None) };
+    let found = margins(&open_loop);
     let crossover = found.phase_margins.iter().map(|margin| margin.frequency_rad_per_s).fold(0.0, f64::max);
     Ok(Some(NominalMargins {
         gain_margin_db: decibels(found.gain_increase_factor()),
@@ -49,20 +50,4 @@ pub(super) fn nominal_margins(problem: &RobustProblem) -> Result<Option<NominalM
         phase_margin_deg: found.phase_margin_deg(),
         crossover_rad_per_s: crossover,
     }))
-}
-
-/// P H of the nominal plant with the delay of the loop, in z where it samples; `None` for one
-/// without polynomials.
-fn nominal_plant(problem: &RobustProblem) -> Result<Option<TransferFunction>, LinearError> {
-    Ok(match problem.nominal()? {
-        Some(Member::Continuous { plant, sensor, .. }) => {
-            let command = TransferFunction::from_polynomials(
-                &Polynomial::new(plant.command.numerator),
-                &Polynomial::new(plant.command.denominator),
-            )?;
-            Some(command.with_dead_time(plant.dead_time_s)?.series(&sensor)?)
-        }
-        Some(Member::Sampled { with_sensor, .. }) => Some(with_sensor),
-        Some(Member::Responding { .. } | Member::Measured { .. }) | None => None,
-    })
 }

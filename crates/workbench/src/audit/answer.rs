@@ -2,6 +2,7 @@ use phea_qft::proof::{Certificate, Proof, Standing};
 use phea_qft::verification::{Evidence, SpecificationFinding, StabilityFinding, Verdict, WorstCase};
 
 use super::in_time::unexamined_words;
+use super::margins;
 use super::{
     NoisySignal, PrefilterGain, ProjectAudit, ReachedLimit, SignalNoise, TimeFinding, TimeOutcome, WorstStep,
 };
@@ -53,6 +54,7 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
         .known("delay_margin_s", margin.map(|margin| margin.delay_s), no_margin)
         .maybe("delay_margin", delay_margin)
         .known("gain_reduction_db", reduction, no_nominal)
+        .with("margins", margins::object(view))
         .with("members", view.members)
         .with("parameters", names.headings())
         .with("timing", timing)

@@ -4,7 +4,7 @@ use phea_dynamics::portable;
 use phea_qft::proof::{Proof, Standing};
 use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
-use super::{NominalMargins, ProjectAudit, in_time};
+use super::{NominalMargins, ProjectAudit, in_time, margins};
 use super::{
     closed_loop_symbol, evidence_sentence, finding_sentence, place_words, remark_sentences,
     stability_sentence, standing_word, verdict_words, why_not_proven, worst_at_design,
@@ -32,6 +32,7 @@ pub(crate) fn document(view: &ProjectAudit, figures: Vec<Figure>) -> Document {
     let mut out = Document::default();
     out.verdict(verdict.into(), format!("Verdict: {}", verdict_words(verdict)), summary(view));
     out.section("Specifications", specifications(view));
+    out.section("Margins", margins::table(view));
     out.section("Worst plants", plants(view));
     out.section("Where examined plants violate it", violations(view));
     out.figures_below("Closed loops of the family", figures);
@@ -214,6 +215,7 @@ pub(crate) fn basis(view: &ProjectAudit) -> Vec<String> {
         evidence_sentence(audit.evidence, audit.verdict, view.names.headings().is_empty()).to_string(),
         tolerance(view),
     ];
+    sentences.extend(margins::sentence(view));
     sentences.extend(remarks(view));
     sentences
 }

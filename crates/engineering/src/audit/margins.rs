@@ -1,0 +1,304 @@
+//! Margins of the nominal loop, and the worst of the family.
+//!
+//! ```text
+//! gain:      1/|L| where arg L = -180 deg           growth: the least above 1, reduction: the greatest below
+//! phase:     |180 deg + arg L| where |L| = 1        the least
+//! modulus:   min |1 + L|
+//! delay:     the least dead time that brings L to -1
+//! ```
+
+mod response;
+
+use phea_dynamics::frequency::{GainMargin, Margins, PhaseMargin, decibels, margins};
+use phea_dynamics::linear::{LinearError, Polynomial, TransferFunction};
+use phea_qft::closed_loop::Member;
+use phea_qft::family::{Extent, Family, UncertainFamily};
+use phea_qft::stability::{StabilityStatus, member_stability};
+use phea_qft::verification::{Audit, PlantPoint, SpecificationFinding, Verdict};
+
+use crate::robust::RobustProblem;
+
+/// A margin, and where it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoopMargin {
+    /// dB, degrees, |1 + L| or s; infinite where nothing limits it.
+    pub value: f64,
+    /// rad/s; `None` where nothing limits it.
+    pub frequency_rad_per_s: Option<f64>,
+    /// The plant.
+    pub plant: PlantPoint,
+}
+
+/// The margins of a loop, or the worst of each in a family.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MarginSet {
+    /// The factor by which the gain may grow, dB.
+    pub gain_db: LoopMargin,
+    /// The factor to which it may fall, dB; minus infinity where it may vanish.
+    pub gain_reduction_db: LoopMargin,
+    /// The least angle between L and -1 where |L| = 1, lag or lead, degrees.
+    pub phase_deg: LoopMargin,
+    /// The least |1 + L|.
+    pub modulus: LoopMargin,
+    /// The least dead time that brings L to -1, s.
+    pub delay_s: LoopMargin,
+}
+
+/// Margins of the nominal loop and of the family.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AuditMargins {
+    /// Of the nominal loop; `None` where it is not known to be stable.
+    pub nominal: Option<MarginSet>,
+    /// The worst that were found; `None` unless the family is stable.
+    pub family: Option<MarginSet>,
+    /// Number of plants of which the worst is the worst.
+    pub plants: usize,
+}
+
+/// Most members and corners whose margins are computed; of plants without polynomials.
+const MEMBERS: usize = 150;
+const CORNERS: usize = 64;
+const MEMBERS_OF_RESPONSES: usize = 8;
+/// First step of the search between the members, as a share of the box; it is halved this often.
+const FIRST_SHARE: f64 = 0.25;
+const HALVINGS: usize = 3;
+
+impl MarginSet {
+    /// Each margin of the plant that has the worse one.
+    fn worst_of(self, other: MarginSet) -> MarginSet {
+        let least = |one: LoopMargin, other: LoopMargin| if other.value < one.value { other } else { one };
+        let greatest = |one: LoopMargin, other: LoopMargin| if other.value > one.value { other } else { one };
+        MarginSet {
+            gain_db: least(self.gain_db, other.gain_db),
+            gain_reduction_db: greatest(self.gain_reduction_db, other.gain_reduction_db),
+            phase_deg: least(self.phase_deg, other.phase_deg),
+            modulus: least(self.modulus, other.modulus),
+            delay_s: least(self.delay_s, other.delay_s),
+        }
+    }
+
+    /// The margins that a search follows, each a plant to start from.
+    fn searched(&self) -> [&LoopMargin; 3] {
+        [&self.gain_db, &self.gain_reduction_db, &self.phase_deg]
+    }
+
+    fn of(found: &Margins, plant: &PlantPoint) -> MarginSet {
+        let gain = |margin: Option<&GainMargin>, none: f64| LoopMargin {
+            value: margin.map_or(none, |margin| decibels(margin.factor)),
+            frequency_rad_per_s: margin.map(|margin| margin.frequency_rad_per_s),
+            plant: plant.clone(),
+        };
+        let crossing = |margin: Option<&PhaseMargin>, value: fn(&PhaseMargin) -> f64| LoopMargin {
+            value: margin.map_or(f64::INFINITY, value),
+            frequency_rad_per_s: margin.map(|margin| margin.frequency_rad_per_s),
+            plant: plant.clone(),
+        };
+        MarginSet {
+            gain_db: gain(found.gain_increase(), f64::INFINITY),
+            gain_reduction_db: gain(found.gain_decrease(), f64::NEG_INFINITY),
+            phase_deg: crossing(found.critical_phase(), |margin| margin.phase_deg.abs()),
+            modulus: LoopMargin {
+                value: found.modulus_margin.distance,
+                frequency_rad_per_s: Some(found.modulus_margin.frequency_rad_per_s),
+                plant: plant.clone(),
+            },
+            delay_s: crossing(found.critical_delay(), |margin| margin.delay_s),
+        }
+    }
+}
+
+impl AuditMargins {
+    /// The margins after an audit: modulus and delay of the family are the worst that the audit
+    /// itself found in its box; gain and phase those of the members, corners and worst plants, and
+    /// of a search from the worst of these.
+    pub(super) fn of(problem: &RobustProblem, audit: &Audit) -> AuditMargins {
+        let is_stable = audit.stability.verdict == Verdict::Met;
+        let nominal = nominal_point(problem);
+        let nominal =
+            of_plant(problem, &nominal).filter(|_| is_stable || member_is_stable(problem, &nominal));
+        if !is_stable {
+            return AuditMargins { nominal, family: None, plants: 0 };
+        }
+        let mut search = MarginSearch { problem, worst: nominal.clone(), plants: nominal.iter().count() };
+        for plant in visited(problem, audit).iter().skip(1) {
+            search.visit(plant);
+        }
+        search.between();
+        let MarginSearch { worst, plants, .. } = search;
+        let family = worst.map(|worst| with_audited(worst, audit));
+        // a delay between whole samples also changes the sampled plant: the audit samples it anew
+        let least_s = family.as_ref().map_or(0.0, |family| family.delay_s.value);
+        let nominal = nominal.map(|mut nominal| {
+            nominal.delay_s.value = nominal.delay_s.value.max(least_s);
+            nominal
+        });
+        AuditMargins { nominal, family, plants }
+    }
+}
+
+/// With the modulus and delay margin that the audit searched the box for.
+fn with_audited(mut worst: MarginSet, audit: &Audit) -> MarginSet {
+    if let Some(closest) = &audit.stability.closest_approach
+        && closest.distance < worst.modulus.value
+    {
+        worst.modulus = LoopMargin {
+            value: closest.distance,
+            frequency_rad_per_s: Some(closest.frequency_rad_per_s),
+            plant: closest.plant.clone(),
+        };
+    }
+    if let Some(least) = &audit.delay_margin {
+        worst.delay_s = LoopMargin {
+            value: least.delay_s,
+            frequency_rad_per_s: least.delay_s.is_finite().then_some(least.frequency_rad_per_s),
+            plant: least.plant.clone(),
+        };
+    }
+    worst
+}
+
+fn nominal_point(problem: &RobustProblem) -> PlantPoint {
+    match &problem.family {
+        Family::Uncertain(family) => PlantPoint::Parameters(family.plant().nominal()),
+        Family::Measured(_) => PlantPoint::Measured(0),
+    }
+}
+
+fn member_is_stable(problem: &RobustProblem, plant: &PlantPoint) -> bool {
+    problem.member(plant).is_some_and(|member| {
+        member_stability(&member, &problem.compensation).status == StabilityStatus::Stable
+    })
+}
+
+/// The nominal plant, members and corners spread over the family, and the plants that the audit
+/// found worst.
+fn visited(problem: &RobustProblem, audit: &Audit) -> Vec<PlantPoint> {
+    let mut all = vec![nominal_point(problem)];
+    match &problem.family {
+        Family::Measured(family) => all.extend((0..family.plants().len()).map(PlantPoint::Measured)),
+        Family::Uncertain(family) => {
+            let is_rational = family.plant().is_rational();
+            let most = if is_rational { MEMBERS } else { MEMBERS_OF_RESPONSES };
+            all.extend(spread(family.members(), most).map(PlantPoint::Parameters));
+            let most = if is_rational { CORNERS } else { MEMBERS_OF_RESPONSES };
+            all.extend(spread(&corners(family), most).map(PlantPoint::Parameters));
+        }
+    }
+    all.extend(audit.specifications.iter().flat_map(worst_plants).cloned());
+    all.push(audit.stability.plant.clone());
+    all.extend(audit.stability.closest_approach.iter().map(|closest| closest.plant.clone()));
+    all.extend(audit.delay_margin.iter().map(|margin| margin.plant.clone()));
+    let mut distinct: Vec<PlantPoint> = Vec::new();
+    for plant in all {
+        if !distinct.contains(&plant) {
+            distinct.push(plant);
+        }
+    }
+    distinct
+}
+
+fn spread(plants: &[Vec<f64>], most: usize) -> impl Iterator<Item = Vec<f64>> {
+    let step = plants.len().div_ceil(most).max(1);
+    plants.iter().step_by(step).chain(plants.last()).cloned()
+}
+
+/// The corners of the box, at most those of its first eight coordinates.
+fn corners(family: &UncertainFamily) -> Vec<Vec<f64>> {
+    let dimension = family.coordinates().len();
+    if family.extent() != Extent::Box || dimension == 0 || dimension > 8 {
+        return Vec::new();
+    }
+    let share = |mask: usize, index: usize| if (mask >> index) & 1 == 1 { 1.0 } else { 0.0 };
+    let shares = |mask: usize| (0..dimension).map(|index| share(mask, index)).collect::<Vec<f64>>();
+    (0..1_usize << dimension).map(|mask| family.values(&shares(mask))).collect()
+}
+
+fn worst_plants(finding: &SpecificationFinding) -> impl Iterator<Item = &PlantPoint> {
+    let cases = finding.worst.iter().chain(&finding.interior);
+    cases.flat_map(|case| std::iter::once(&case.plant).chain(&case.other))
+}
+
+/// The worst of each margin so far.
+struct MarginSearch<'a> {
+    problem: &'a RobustProblem,
+    worst: Option<MarginSet>,
+    plants: usize,
+}
+
+impl MarginSearch<'_> {
+    fn visit(&mut self, plant: &PlantPoint) {
+        let Some(found) = of_plant(self.problem, plant) else { return };
+        self.plants += 1;
+        self.worst = Some(match self.worst.take() {
+            Some(worst) => worst.worst_of(found),
+            None => found,
+        });
+    }
+
+    /// Follows gain and phase from their worst plants along the coordinates of the box, as long as
+    /// they become worse.
+    fn between(&mut self) {
+        let Family::Uncertain(family) = &self.problem.family else { return };
+        if family.extent() != Extent::Box || !family.plant().is_rational() {
+            return;
+        }
+        let mut share = FIRST_SHARE;
+        for _ in 0..HALVINGS {
+            for index in 0..3 {
+                for coordinate in 0..family.coordinates().len() {
+                    [share, -share].into_iter().for_each(|step| self.beside(family, index, coordinate, step));
+                }
+            }
+            share *= 0.5;
+        }
+    }
+
+    /// The plant a step from the worst of one margin, within the box.
+    fn beside(&mut self, family: &UncertainFamily, index: usize, coordinate: usize, step: f64) {
+        let worst = self.worst.as_ref().and_then(|worst| worst.searched().into_iter().nth(index).cloned());
+        let Some(LoopMargin { plant: PlantPoint::Parameters(values), value, .. }) = worst else { return };
+        if value.is_infinite() {
+            return;
+        }
+        let mut shares = family.shares(&values);
+        let Some(own) = shares.get_mut(coordinate) else { return };
+        let moved = (*own + step).clamp(0.0, 1.0);
+        if moved != *own {
+            *own = moved;
+            self.visit(&PlantPoint::Parameters(family.values(&shares)));
+        }
+    }
+}
+
+/// The margins of the loop of one plant; `None` where its response is not known.
+fn of_plant(problem: &RobustProblem, plant: &PlantPoint) -> Option<MarginSet> {
+    let member = problem.member(plant)?;
+    match open_loop(problem, &member) {
+        Ok(Some(open_loop)) => Some(MarginSet::of(&margins(&open_loop), plant)),
+        Ok(None) => Some(MarginSet::of(&response::margins(problem, &member)?, plant)),
+        Err(_) => None,
+    }
+}
+
+/// L = G P H with the delay of the loop, in z where it samples; `None` for a plant without
+/// polynomials.
+///
+/// # Errors
+/// [`LinearError`] for a plant that is not a transfer function.
+pub(super) fn open_loop(
+    problem: &RobustProblem,
+    member: &Member,
+) -> Result<Option<TransferFunction>, LinearError> {
+    let with_sensor = match member {
+        Member::Continuous { plant, sensor, .. } => {
+            let command = TransferFunction::from_polynomials(
+                &Polynomial::new(plant.command.numerator.clone()),
+                &Polynomial::new(plant.command.denominator.clone()),
+            )?;
+            command.with_dead_time(plant.dead_time_s)?.series(sensor)?
+        }
+        Member::Sampled { with_sensor, .. } => with_sensor.clone(),
+        Member::Responding { .. } | Member::Measured { .. } => return Ok(None),
+    };
+    with_sensor.series(problem.compensation.feedback()).map(Some)
+}

@@ -1,0 +1,133 @@
+//! Margins of a loop that is known by its response.
+
+use num_complex::Complex64;
+use phea_dynamics::frequency::{GainMargin, Margins, ModulusMargin, PhaseMargin, logarithmic_grid};
+use phea_dynamics::portable::{argument, magnitude};
+use phea_qft::closed_loop::Member;
+
+use crate::robust::RobustProblem;
+
+/// Frequencies of an even grid, before it is refined.
+const GRID_POINTS: usize = 300;
+/// Turn of L from one frequency to the next, rad; where |L| is not small.
+const TURN_RAD: f64 = 0.3;
+const SMALL_GAIN: f64 = 1e-3;
+/// Thirds by which the place of the least |1 + L| is narrowed.
+const REFINEMENTS: usize = 50;
+/// Ratio of two frequencies between which no more are taken.
+const CLOSEST: f64 = 1.0 + 1e-6;
+/// Most frequencies.
+const POINTS_MAXIMUM: usize = 5000;
+
+/// A frequency in rad/s, and L there.
+type KnownPoint = (f64, Complex64);
+
+/// The margins between the first and the last frequency at which the response is known; `None` for
+/// fewer than two. Between the frequencies of a measurement the response is interpolated.
+pub(super) fn margins(problem: &RobustProblem, member: &Member) -> Option<Margins> {
+    let at = |frequency: f64| {
+        let response = problem.response(member, frequency)?;
+        let value = response.plant * response.sensor * response.controller;
+        value.is_finite().then_some((frequency, value))
+    };
+    let points = points(problem, member, &at);
+    let nearest = nearest(&points, &at)?;
+    let pairs = || points.iter().zip(points.iter().skip(1));
+    let of_gain = |(from, to): (&KnownPoint, &KnownPoint)| {
+        let angle = |point: &KnownPoint| argument(-point.1);
+        let passes = (angle(from) < 0.0) != (angle(to) < 0.0)
+            && (angle(from) - angle(to)).abs() < std::f64::consts::PI;
+        let (frequency_rad_per_s, value) = crossing(*from, *to, &at, &|point| angle(point) < 0.0)?;
+        passes.then(|| GainMargin { frequency_rad_per_s, factor: 1.0 / magnitude(value) })
+    };
+    let of_phase = |(from, to): (&KnownPoint, &KnownPoint)| {
+        let above = |point: &KnownPoint| magnitude(point.1) >= 1.0;
+        let (frequency_rad_per_s, value) = crossing(*from, *to, &at, &above)?;
+        let signed = argument(-value);
+        let lag = if signed < 0.0 { signed + 2.0 * std::f64::consts::PI } else { signed };
+        let delay_s = lag / frequency_rad_per_s;
+        Some(PhaseMargin { frequency_rad_per_s, phase_deg: signed.to_degrees(), delay_s })
+    };
+    Some(Margins {
+        gain_margins: pairs().filter_map(of_gain).collect(),
+        phase_margins: pairs().filter_map(of_phase).collect(),
+        modulus_margin: ModulusMargin { frequency_rad_per_s: nearest.0, distance: nearest.1 },
+    })
+}
+
+/// The frequency of the least |1 + L|, and that: the least of the points, refined between its
+/// neighbours.
+fn nearest(points: &[KnownPoint], at: &dyn Fn(f64) -> Option<KnownPoint>) -> Option<(f64, f64)> {
+    let distance = |point: &KnownPoint| magnitude(1.0 + point.1);
+    let least = (0..points.len()).min_by(|one, other| {
+        let [one, other] = [one, other].map(|index| points.get(*index).map_or(f64::INFINITY, distance));
+        one.total_cmp(&other)
+    })?;
+    let own = *points.get(least)?;
+    let [mut low, mut high] =
+        [least.saturating_sub(1), least + 1].map(|index| points.get(index).map_or(own.0, |point| point.0));
+    for _ in 0..REFINEMENTS {
+        let third = (high - low) / 3.0;
+        let (Some(left), Some(right)) = (at(low + third), at(high - third)) else { break };
+        if distance(&left) < distance(&right) { high = right.0 } else { low = left.0 }
+    }
+    let refined = at(0.5 * (low + high)).filter(|point| distance(point) < distance(&own));
+    let found = refined.unwrap_or(own);
+    Some((found.0, distance(&found)))
+}
+
+/// L at the frequencies of a measurement, or at as many as it takes for L to turn little.
+fn points(
+    problem: &RobustProblem,
+    member: &Member,
+    at: &dyn Fn(f64) -> Option<KnownPoint>,
+) -> Vec<KnownPoint> {
+    let highest = problem.compensation.highest_frequency_rad_per_s();
+    let frequencies = match member {
+        Member::Measured { plant, .. } => plant.frequencies_rad_per_s.clone(),
+        Member::Responding { plant, .. } => {
+            let [from, to] = plant.range_rad_per_s();
+            logarithmic_grid(1e-3 * from, to.min(highest), GRID_POINTS).unwrap_or_default()
+        }
+        _ => vec![],
+    };
+    let fills = matches!(member, Member::Responding { .. });
+    let mut found: Vec<KnownPoint> = Vec::new();
+    for end in frequencies.into_iter().take_while(|&one| one <= highest).filter_map(at) {
+        let mut ahead = vec![end];
+        while let Some(&next) = ahead.last() {
+            let middle = found.last().filter(|&&last| fills && turns(last, next));
+            let middle = middle.filter(|_| found.len() < POINTS_MAXIMUM);
+            match middle.and_then(|last| at((last.0 * next.0).sqrt())) {
+                Some(point) => ahead.push(point),
+                None => found.extend(ahead.pop()),
+            }
+        }
+    }
+    found
+}
+
+/// Whether L turns much from one point to the next.
+fn turns(from: KnownPoint, to: KnownPoint) -> bool {
+    let large = magnitude(from.1).max(magnitude(to.1)) > SMALL_GAIN;
+    large && to.0 > CLOSEST * from.0 && argument(to.1 / from.1).abs() > TURN_RAD
+}
+
+/// The point between two at which a statement changes; `None` where it does not.
+fn crossing(
+    from: KnownPoint,
+    to: KnownPoint,
+    at: &dyn Fn(f64) -> Option<KnownPoint>,
+    holds: &dyn Fn(&KnownPoint) -> bool,
+) -> Option<KnownPoint> {
+    let first = holds(&from);
+    if first == holds(&to) {
+        return None;
+    }
+    let (mut low, mut high) = (from, to);
+    for _ in 0..50 {
+        let Some(middle) = at(0.5 * (low.0 + high.0)) else { break };
+        if holds(&middle) == first { low = middle } else { high = middle }
+    }
+    Some(high)
+}

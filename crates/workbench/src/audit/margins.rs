@@ -1,0 +1,109 @@
+//! Margins of the nominal loop, and the worst of the family, in words and in JSON.
+
+use super::{LoopMargin, MarginSet, ProjectAudit};
+use crate::answer::Object;
+use crate::document::{Cell, Table};
+use crate::quantity::DisplayUnit;
+
+/// Why there are none of the nominal loop.
+const NO_NOMINAL: &str = "no margin: the nominal loop is not known to be stable";
+/// Why there are none of the family.
+const NO_FAMILY: &str = "no margin: not every plant is known to be stable";
+/// Why there is no frequency.
+const UNLIMITED: &str = "nothing limits it";
+
+/// The worst of the family, and the same keys of both.
+pub(super) fn object(view: &ProjectAudit) -> Object {
+    let margins = &view.margins;
+    let own = values(margins.family.as_ref(), NO_FAMILY);
+    let set = |set: Option<&MarginSet>| set.map(|set| values(Some(set), "").with("at", places(view, set)));
+    own.with("evidence", "search")
+        .with("plants", margins.plants)
+        .known("nominal", set(margins.nominal.as_ref()), NO_NOMINAL)
+        .known("family", set(margins.family.as_ref()), NO_FAMILY)
+}
+
+/// The numbers by their keys.
+fn named(set: &MarginSet) -> [(&'static str, &LoopMargin); 5] {
+    [
+        ("gain_db", &set.gain_db),
+        ("gain_reduction_db", &set.gain_reduction_db),
+        ("phase_deg", &set.phase_deg),
+        ("modulus", &set.modulus),
+        ("delay_s", &set.delay_s),
+    ]
+}
+
+const KEYS: [&str; 5] = ["gain_db", "gain_reduction_db", "phase_deg", "modulus", "delay_s"];
+
+fn values(set: Option<&MarginSet>, reason: &str) -> Object {
+    match set {
+        Some(set) => named(set).iter().fold(Object::new(), |object, (key, one)| object.with(*key, one.value)),
+        None => KEYS.iter().fold(Object::new(), |object, key| object.known(key, None::<f64>, reason)),
+    }
+}
+
+fn places(view: &ProjectAudit, set: &MarginSet) -> Object {
+    named(set).iter().fold(Object::new(), |object, (key, one)| {
+        let place = Object::new()
+            .known("frequency_rad_per_s", one.frequency_rad_per_s, UNLIMITED)
+            .with("plant", view.names.named(&one.plant));
+        object.with(*key, place)
+    })
+}
+
+/// A row for each margin; empty where there are none.
+pub(super) fn table(view: &ProjectAudit) -> Table {
+    let (nominal, family) = (view.margins.nominal.as_ref(), view.margins.family.as_ref());
+    if nominal.is_none() && family.is_none() {
+        return Table::default();
+    }
+    let mut rows = Table::new(["margin", "nominal loop", "at rad/s", "worst of the family", "at rad/s"]);
+    for (words, of, unit) in rows_of() {
+        let both = [nominal, family].map(|set| set.map(of));
+        let unlimited = both.iter().flatten().all(|one| one.value == f64::NEG_INFINITY);
+        if unlimited {
+            continue;
+        }
+        let cells = both.map(|one| one.map_or([Cell::Missing, Cell::Missing], |one| cells(one, unit)));
+        let [[value, at], [worst, place]] = cells;
+        rows.row([words.into(), value, at, worst, place]);
+    }
+    rows
+}
+
+type PrintedMargin = (&'static str, fn(&MarginSet) -> &LoopMargin, DisplayUnit);
+
+const DECIBEL: DisplayUnit = DisplayUnit { symbol: "dB", in_si: 1.0 };
+const DEGREE: DisplayUnit = DisplayUnit { symbol: "deg", in_si: 1.0 };
+const NUMBER: DisplayUnit = DisplayUnit { symbol: "1", in_si: 1.0 };
+
+fn rows_of() -> [PrintedMargin; 5] {
+    [
+        ("gain may grow by", |set| &set.gain_db, DECIBEL),
+        ("gain may fall by", |set| &set.gain_reduction_db, DECIBEL),
+        ("phase", |set| &set.phase_deg, DEGREE),
+        ("modulus, least |1 + L|", |set| &set.modulus, NUMBER),
+        ("delay", |set| &set.delay_s, DisplayUnit::MILLISECOND),
+    ]
+}
+
+/// A margin and its frequency; a fall of the gain without its sign.
+fn cells(margin: &LoopMargin, unit: DisplayUnit) -> [Cell; 2] {
+    if margin.value.is_infinite() {
+        return ["no limit".into(), Cell::Missing];
+    }
+    let value = Cell::quantity(margin.value.abs(), 3, unit);
+    [value, margin.frequency_rad_per_s.map_or(Cell::Missing, Cell::frequency)]
+}
+
+/// The plants that the worst of the family was searched among; `None` where there is none.
+pub(super) fn sentence(view: &ProjectAudit) -> Option<String> {
+    view.margins.family.as_ref()?;
+    let plants = view.margins.plants;
+    (plants > 1).then(|| {
+        format!(
+            "The worst margins are those of {plants} plants: members, corners, the worst of the audit, and a search from these."
+        )
+    })
+}

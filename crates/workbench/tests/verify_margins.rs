@@ -1,0 +1,116 @@
+//! Margins of the nominal loop and the worst of the family, against closed forms.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use crate::ask::{HOSE, answer, json};
+use phea_workbench::command::Request;
+use serde_json::Value;
+
+const VERIFY: Request = Request::Verify { proof: false, on_machine: false };
+
+fn close(value: &Value, expected: f64) {
+    let number = value.as_f64().unwrap_or_else(|| panic!("{value} instead of {expected}"));
+    assert!((number - expected).abs() <= 1e-5 * expected.abs(), "{number} instead of {expected}");
+}
+
+/// k/s with a dead time, k from 1 to 4.
+const DELAYED: &str = "schema = 1\ntitle = \"delayed\"\n[plant]\nnumerator = \"k\"\ndenominator = \"s\"\n\
+    delay = \"0.1 s\"\n[uncertainty]\nk = { nominal = 2, minimum = 1, maximum = 4, points = 3 }\n[controller]\n\
+    numerator = \"1\"\ndenominator = \"1\"\n[[specification]]\nkind = \"robust_stability\"\nlimit = 2\n\
+    frequencies = [1, 5]\nband = [0, inf]\n";
+
+/// The margins of k e^(-s T)/s.
+fn assert_delayed(set: &Value, k: f64, dead_time_s: f64) {
+    close(&set["gain_db"], 20.0 * (PI / (2.0 * dead_time_s * k)).log10());
+    close(&set["phase_deg"], 90.0 - (k * dead_time_s).to_degrees());
+    close(&set["delay_s"], FRAC_PI_2 / k - dead_time_s);
+    assert_eq!(set["gain_reduction_db"], "-inf");
+    let at = &set["at"];
+    close(&at["gain_db"]["frequency_rad_per_s"], FRAC_PI_2 / dead_time_s);
+    close(&at["phase_deg"]["frequency_rad_per_s"], k);
+    close(&at["delay_s"]["frequency_rad_per_s"], k);
+    for key in ["gain_db", "phase_deg", "modulus", "delay_s"] {
+        close(&at[key]["plant"]["k"], k);
+    }
+    assert!(at["gain_reduction_db"]["frequency_rad_per_s"].is_null());
+    assert_eq!(at["gain_reduction_db"]["frequency_rad_per_s_reason"], "nothing limits it");
+}
+
+#[test]
+fn the_worst_of_a_family_of_gains_is_at_the_largest() {
+    let said = answer(DELAYED, &[], &[], &VERIFY);
+    let object: Value = serde_json::from_str(&said.json).unwrap();
+    let margins = &object["margins"];
+    assert_delayed(&margins["nominal"], 2.0, 0.1);
+    assert_delayed(&margins["family"], 4.0, 0.1);
+    for key in ["gain_db", "gain_reduction_db", "phase_deg", "modulus", "delay_s"] {
+        assert_eq!(margins[key], margins["family"][key]);
+    }
+    // the least |1 + L| over a fine grid
+    let distance = |w: f64| {
+        let (re, im) = (1.0 - 4.0 * (0.1 * w).sin() / w, -4.0 * (0.1 * w).cos() / w);
+        re.hypot(im)
+    };
+    let scan = (1..=400_000).map(|i| distance(f64::from(i) * 1e-4)).fold(f64::INFINITY, f64::min);
+    close(&margins["modulus"], scan);
+    assert_eq!(margins["evidence"], "search");
+    // ORIGIN: analytic, 20 log10(5 pi/4) dB and 90 deg - 0.4 rad
+    for part in ["gain may grow by", "11.9 dB", "67.1 deg", "worst of the family"] {
+        assert!(said.text.contains(part), "{part} is missing in: {}", said.text);
+    }
+}
+
+/// 8/(s - 1) needs its gain: |L| = 8 at zero frequency, |1 + L| = |jw + 7|/|jw - 1| falls to 1.
+#[test]
+fn around_an_unstable_plant_the_gain_may_not_fall() {
+    let unstable = DELAYED
+        .replace("denominator = \"s\"", "denominator = \"s - 1\"")
+        .replace("delay = \"0.1 s\"\n", "")
+        .replace("nominal = 2, minimum = 1, maximum = 4", "nominal = 8, minimum = 8, maximum = 16");
+    let margins = &json(&unstable, &[], &[], &VERIFY)["margins"];
+    let crossover = 63.0_f64.sqrt();
+    assert_eq!(margins["gain_db"], "inf");
+    close(&margins["gain_reduction_db"], -20.0 * 8.0_f64.log10());
+    close(&margins["nominal"]["phase_deg"], crossover.atan().to_degrees());
+    close(&margins["nominal"]["delay_s"], crossover.atan() / crossover);
+    close(&margins["nominal"]["modulus"], 1.0);
+    let at = &margins["family"]["at"];
+    assert_eq!(at["modulus"]["frequency_rad_per_s"], "inf");
+    assert_eq!(at["gain_reduction_db"]["frequency_rad_per_s"], 0.0);
+    assert_eq!(at["gain_reduction_db"]["plant"]["k"], 8.0);
+}
+
+/// k e^(-s T)/s is stable up to k = pi/(2 T): a family beyond it has no margins, a nominal loop
+/// below it has its own.
+#[test]
+fn an_unstable_family_has_no_margins_and_says_why() {
+    let beyond = DELAYED.replace("maximum = 4", "maximum = 16");
+    let margins = &json(&beyond, &[], &[], &VERIFY)["margins"];
+    assert!(margins["family"].is_null() && margins["phase_deg"].is_null());
+    let reason = "no margin: not every plant is known to be stable";
+    assert_eq!((&margins["phase_deg_reason"], &margins["family_reason"]), (&reason.into(), &reason.into()));
+    assert_delayed(&margins["nominal"], 2.0, 0.1);
+}
+
+/// Lines with waves have no polynomials: their margins tend to those of lumped lines as the waves
+/// become fast, and the worst of a family is never better than its nominal loop.
+#[test]
+fn loops_without_polynomials_have_margins_too() {
+    let settings = |model| {
+        ["line.length=\"0.05 m\"".to_string(), format!("line.model={model}"), "uncertainty={}".into()]
+    };
+    let found = ["lumped", "transmission_line"].map(|model| {
+        let settings = settings(model);
+        let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
+        json(HOSE, &settings, &[], &VERIFY)["margins"].clone()
+    });
+    let [lumped, waves] = &found;
+    for key in ["gain_db", "phase_deg", "modulus", "delay_s"] {
+        let [one, other] = [lumped, waves].map(|margins| margins["nominal"][key].as_f64().unwrap());
+        assert!((one - other).abs() < 0.03 * one.abs(), "{key}: {one} {other}");
+        assert!(waves["family"][key].as_f64().unwrap() <= other * (1.0 + 1e-9), "{key}");
+    }
+}
