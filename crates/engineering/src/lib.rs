@@ -27,6 +27,7 @@ pub mod design;
 pub mod family;
 pub mod friction;
 pub mod identify;
+pub mod impossible;
 pub mod line_test;
 pub mod linear_loop;
 pub mod linear_step;

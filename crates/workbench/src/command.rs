@@ -5,6 +5,7 @@ mod campaign;
 mod check;
 mod friction;
 mod identify;
+mod impossible;
 mod line_test;
 mod linearize;
 mod motor;
@@ -57,6 +58,7 @@ use crate::specification::crossed_limits;
 use crate::trial::{Agreement, Trial, tried};
 use alternatives::alternatives_answer;
 use check::check;
+use impossible::Impossible;
 use linearize::{linearize_answer, swept_answer};
 use simulate::simulate_answer;
 use unprinted::Unprinted;
@@ -324,17 +326,22 @@ fn verify_answer(
     let mut files = audit::files(&view);
     files.extend(certificate_of(loaded, &view, CERTIFICATE_FILE));
     let is_met = view.verdict() == Verdict::Met;
+    let impossible = Impossible::all(source, loaded, &setup)?;
+    let mut document = Document::default();
+    document.warnings(impossible.iter().map(Impossible::sentence));
+    let body = audit::body(&view).each("impossible", &impossible, Impossible::object);
     if !on_machine {
-        let (document, body) = (audit::output(&view, None), audit::body(&view));
+        document.append(audit::output(&view, None));
         return Ok(Unprinted { document, body, files, affirmative: is_met });
     }
     let watch = &mut within(watch, [proven, 1.0]);
     let Some(trial) = tried(source, &setup, &robust_problem(source, &setup)?, &view, watch)? else {
         return Err(RigError::NoActuator.into());
     };
+    document.append(audit::output(&view, Some(&trial)));
     Ok(Unprinted {
-        document: audit::output(&view, Some(&trial)),
-        body: audit::body(&view).with("machine", crate::trial::body(&trial)),
+        document,
+        body: body.with("machine", crate::trial::body(&trial)),
         files,
         affirmative: is_met
             && trial.agreement() != Agreement::Contradicts

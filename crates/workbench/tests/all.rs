@@ -33,6 +33,7 @@ mod gas_heat;
 mod golden_ybitu;
 mod ideal_valve;
 mod impedance;
+mod impossible;
 mod json_contract;
 mod line_coverage;
 mod line_identification;

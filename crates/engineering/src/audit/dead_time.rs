@@ -18,7 +18,7 @@ pub struct LoopDeadTime {
 }
 
 impl LoopDeadTime {
-    pub(super) fn of(problem: &RobustProblem) -> LoopDeadTime {
+    pub(crate) fn of(problem: &RobustProblem) -> LoopDeadTime {
         LoopDeadTime {
             plant_s: of_plants(&problem.family).unwrap_or([0.0; 2]),
             sensor_s: problem.compensation.sensor().dead_time_s(),

@@ -4,6 +4,7 @@ use phea_qft::family::Family;
 
 use super::CommandError;
 use super::alternatives::read_alternatives;
+use super::impossible::Impossible;
 use super::unprinted::Unprinted;
 use crate::caveat::caveats;
 use crate::derived::{self, derive};
@@ -14,7 +15,7 @@ use crate::rig::RigError;
 use crate::setup::Setup;
 use crate::simulate::{foreseen, unreadable};
 use crate::source::Source;
-use crate::specification::{self, crossed_limits, wishes};
+use crate::specification::{self, wishes};
 
 /// Every derived quantity, the box of the family and the requirements in time.
 ///
@@ -33,15 +34,13 @@ pub(super) fn check(
         Err(error) => return Err(error.into()),
     };
     let of_alternatives = read_alternatives(source, loaded, catalogues)?;
-    let crossed = crossed_limits(&loaded.project)?.map(|crossed| {
-        let line = refused(source, loaded, &crossed.at()).diagnostics.first().map_or(0, |found| found.line);
-        format!("{crossed} (line {line}): no loop is between them")
-    });
+    let impossible = Impossible::all(source, loaded, &setup)?;
     let of_scenarios = scenarios(source, loaded, &setup)?;
     let wishes = wishes(&loaded.project)?;
     let visited = visited_box(&setup)?;
+    let of_loops = impossible.iter().map(Impossible::sentence);
     let told: Vec<String> =
-        told_first(&setup).into_iter().chain(crossed).chain(of_alternatives).chain(of_scenarios).collect();
+        told_first(&setup).into_iter().chain(of_loops).chain(of_alternatives).chain(of_scenarios).collect();
     let mut document = Document::default();
     document.warnings(told.clone());
     if !derived.is_empty() {
@@ -59,6 +58,7 @@ pub(super) fn check(
     });
     let files = derived::files(&derived);
     let body = derived::body(loaded, &derived, visited.as_deref(), &wishes, told);
+    let body = body.each("impossible", &impossible, Impossible::object);
     Ok(Unprinted { document, body, files, affirmative: true })
 }
 

@@ -1,0 +1,128 @@
+//! Requirements that no loop can satisfy, found before any search, each with the key that states
+//! it and what would satisfy it.
+
+mod in_time;
+
+use phea_qft::design::{DesignProblem, Finding, FindingSeverity, diagnose};
+use phea_qft::family::{Extent, Family, UncertainFamily, vertices};
+use phea_qft::specification::ClosedLoop;
+
+use crate::design::{Explanation, design_problem};
+use crate::project::{LateError, Project};
+use crate::quantity::significant;
+use crate::robust::{RobustProblem, robust_problem};
+use crate::setup::Setup;
+use crate::source::Source;
+use crate::specification::{SpecificationError, closed_loops, crossed_limits};
+
+/// Plants of a box that are examined: corners, and members.
+const CORNERS: usize = 8;
+const MEMBERS: usize = 8;
+/// Coordinates of a box whose corners are listed.
+const COORDINATES_MAXIMUM: usize = 8;
+
+/// Requirements that no linear loop can satisfy: limits that cross; what a few plants forbid
+/// (the nominal one, some corners, some members), whatever the controller; and times shorter than a
+/// delay. Each holds for every controller and prefilter; an empty list does not mean that a
+/// controller exists. Where there is no robust problem, only crossed limits are found.
+///
+/// # Errors
+/// [`SpecificationError`] for a limit that is absent or not a function of frequency.
+pub fn impossibilities(source: &dyn Source, setup: &Setup<'_>) -> Result<Vec<LateError>, SpecificationError> {
+    let project = setup.project;
+    let crossed = crossed_limits(project)?;
+    let mut found: Vec<LateError> = crossed.iter().map(SpecificationError::at).collect();
+    if project.specifications.is_empty() {
+        return Ok(found);
+    }
+    let Ok(problem) = robust_problem(source, setup) else { return Ok(found) };
+    found.extend(in_time::findings(setup, &problem));
+    found.extend(of_plants(setup, &problem));
+    Ok(found)
+}
+
+/// What a few plants forbid.
+fn of_plants(setup: &Setup<'_>, problem: &RobustProblem) -> Vec<LateError> {
+    let whole = design_problem(setup, problem);
+    let few = DesignProblem { family: few_plants(&whole.family), ..whole };
+    let is_new = |finding: &Finding| {
+        finding.severity() == FindingSeverity::Impossible && !matches!(finding, Finding::CrossedLimits { .. })
+    };
+    let findings = diagnose(&few);
+    findings.iter().filter(|finding| is_new(finding)).map(|one| stated(setup.project, problem, one)).collect()
+}
+
+/// The nominal plant, some corners and some members: what is impossible for these is impossible for
+/// the family.
+fn few_plants(family: &Family) -> Family {
+    let Family::Uncertain(uncertain) = family else { return family.clone() };
+    let strided = |plants: &[Vec<f64>], most: usize| -> Vec<Vec<f64>> {
+        plants.iter().step_by(plants.len().div_ceil(most).max(1)).chain(plants.last()).cloned().collect()
+    };
+    let dimension = uncertain.coordinates().len();
+    let corners = match uncertain.extent() == Extent::Box && (1..=COORDINATES_MAXIMUM).contains(&dimension) {
+        true => vertices(uncertain.plant(), uncertain.coordinates()).unwrap_or_default(),
+        false => vec![],
+    };
+    let members = [strided(&corners, CORNERS), strided(uncertain.members(), MEMBERS)].concat();
+    let plant = uncertain.plant().clone();
+    let few = UncertainFamily::new(plant, vec![], members, Extent::Members);
+    few.map_or_else(|_| family.clone(), Family::Uncertain)
+}
+
+/// A finding at the key of the first specification that it concerns, with the plant.
+fn stated(project: &Project, problem: &RobustProblem, finding: &Finding) -> LateError {
+    let explanation = Explanation::of(finding);
+    let plant = explanation.plants.first().map(|plant| problem.names.text(plant));
+    let plant = plant.filter(|text| !text.is_empty()).map_or(String::new(), |text| format!(" ({text})"));
+    let path = match explanation.specifications.first() {
+        Some(first) => key_of(project, *first).unwrap_or_else(|| "controller.quantization".to_string()),
+        None if matches!(finding, Finding::DelayMargin { .. }) => "design.minimum_delay_margin".to_string(),
+        None => "uncertainty".to_string(),
+    };
+    LateError { path, message: format!("{}{plant}", explanation.sentence), help: cure(project, finding) }
+}
+
+/// The key of a limit on a closed loop, by its index.
+fn key_of(project: &Project, index: usize) -> Option<String> {
+    let (number, closed_loop, _) = closed_loops(project).nth(index)?;
+    let key = if closed_loop == ClosedLoop::Tracking { "lower" } else { "limit" };
+    Some(format!("specification[{}].{key}", number - 1))
+}
+
+/// What would satisfy it.
+fn cure(project: &Project, finding: &Finding) -> String {
+    let number = |index: usize| closed_loops(project).nth(index).map_or(index + 1, |(number, ..)| number);
+    match finding {
+        Finding::SumBelowOne { frequency_rad_per_s, sensitivity, complementary, .. } => {
+            let at = significant(*frequency_rad_per_s, 3);
+            format!(
+                "at {at} rad/s raise the limit of specification {} until |S| may be {}, or that of {} until |T| may be {}, or end the `band` of one of them before",
+                number(sensitivity.specification),
+                significant(1.0 - complementary.limit, 3),
+                number(complementary.specification),
+                significant(1.0 - sensitivity.limit, 3)
+            )
+        }
+        Finding::DelayMargin { greatest_s, .. } => {
+            format!("require less than {} ms", significant(1e3 * greatest_s, 3))
+        }
+        Finding::GainSign { .. } => "narrow the ranges so that all plants have one sign".to_string(),
+        Finding::PoleOnTheAxis { frequency_rad_per_s, .. } => {
+            format!("allow |T| = 1 at {} rad/s, or end `band` before", significant(*frequency_rad_per_s, 3))
+        }
+        Finding::ZeroOnTheAxis { frequency_rad_per_s, .. } => {
+            format!("allow |S| = 1 at {} rad/s, or begin `band` beyond", significant(*frequency_rad_per_s, 3))
+        }
+        _ => match finding.relaxation_db() {
+            Some(relaxation_db) => {
+                format!(
+                    "raise its limits by more than {} dB, or end their `band` before",
+                    significant(relaxation_db, 3)
+                )
+            }
+            None => "another plant: less dead time, or slower poles and faster zeros in the right half plane"
+                .to_string(),
+        },
+    }
+}
