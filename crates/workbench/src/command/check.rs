@@ -33,6 +33,8 @@ pub(super) fn check(
         Err(RigError::NoActuator) => vec![],
         Err(error) => return Err(error.into()),
     };
+    // everything that is wrong with measured plants, and not the first file that is missing alone
+    let underived = derived.is_empty().then(|| without_derived(source, &setup)).transpose()?;
     let of_alternatives = read_alternatives(source, loaded, catalogues)?;
     let impossible = Impossible::all(source, loaded, &setup)?;
     let of_scenarios = scenarios(source, loaded, &setup)?;
@@ -52,9 +54,9 @@ pub(super) fn check(
         document.gap();
     }
     document.append(specification::document(&wishes));
-    document.line(match derived.is_empty() {
-        true => format!("The project is valid. {}", without_derived(source, &setup)?),
-        false => "The project is valid.".to_string(),
+    document.line(match underived {
+        Some(words) => format!("The project is valid. {words}"),
+        None => "The project is valid.".to_string(),
     });
     let files = derived::files(&derived);
     let body = derived::body(loaded, &derived, visited.as_deref(), &wishes, told);
