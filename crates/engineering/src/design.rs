@@ -2,14 +2,19 @@
 //! every specification, its comparison with the given one, and the wording of both.
 
 mod comparison;
+mod deployable;
 mod explanation;
 mod factors;
 mod problem;
 mod proven;
 mod repair;
 mod rounding;
+mod search;
 mod side;
+mod step_aim;
 mod words;
+pub use crate::limit_kind::{DesignLimitKind, limit_key, limit_words};
+pub use deployable::{DesignLimit, LimitFinding, LimitOrigin, design_limits};
 pub use factors::factored;
 pub use words::{objective_key, part_key, repair_key, repair_words, status_key};
 
@@ -25,10 +30,12 @@ pub use words::{status_sentence, structure_words};
 use phea_dynamics::controller::{Controller, RateSensor, Timing};
 use phea_dynamics::linear::LinearError;
 use phea_qft::closed_loop::Compensation;
-use phea_qft::design::{Design, DesignOptions, DesignOutcome, DesignProblem, PrefilterChoice};
+use phea_qft::design::{Design, DesignOptions, DesignOutcome, DesignProblem, DesignStatus, PrefilterChoice};
 use phea_qft::verification::Verdict;
 
-use crate::audit::{ProjectAudit, audit_problem, caveat_of_rig, unexamined_rig};
+use self::deployable::{limited, split};
+use self::search::found;
+use crate::audit::{ProjectAudit, audit_problem, audit_request, caveat_of_rig, try_to_prove, unexamined_rig};
 use crate::project::{self, Project};
 use crate::quantity;
 use crate::robust::{RobustError, RobustProblem, robust_problem};
@@ -100,6 +107,10 @@ pub struct ProjectDesign {
     pub design: Design,
     /// How it was looked for.
     pub options: DesignOptions,
+    /// What may be built: limits beyond the specifications.
+    pub limits: Vec<DesignLimit>,
+    /// What the audit finds of those that are specifications of their own.
+    pub limit_findings: Vec<LimitFinding>,
     /// Required delay in addition to that of the loop, s.
     pub minimum_delay_margin_s: f64,
     /// Whether the designed loop tolerates it, regardless of the specifications.
@@ -148,14 +159,15 @@ impl ProjectDesign {
         let project = setup.project;
         let has_prefilter = options.prefilter != PrefilterChoice::None;
         let law = design.law.clone();
+        let (own, audit, limit_findings) = split(given, &design.audit);
         let problem = RobustProblem {
             compensation: Compensation::new(&design.controller, setup.sensor.clone())?,
             has_controller: true,
             has_prefilter,
-            ..given.clone()
+            ..own
         };
         let of_rig = caveat_of_rig(&problem, watch).unwrap_or_else(|Stopped| unexamined_rig(&problem));
-        let view = ProjectAudit::new(&problem, design.audit.clone(), of_rig);
+        let view = ProjectAudit::new(&problem, audit, of_rig);
         let rounding = rounding::rounding(setup, &problem)?;
         let declared = project.controller.clone().unwrap_or_default();
         let declared_controller = project::DeclaredController {
@@ -176,6 +188,8 @@ impl ProjectDesign {
             minimum_delay_margin_s: asked.minimum_delay_margin_s,
             designed,
             design,
+            limits: design_limits(setup, given),
+            limit_findings,
             options,
             stopped: false,
             published: None,
@@ -187,6 +201,50 @@ impl ProjectDesign {
             declared_controller,
             declared_prefilter,
         })
+    }
+
+    /// The same design, judged by the limits of another problem than that which was searched.
+    fn judged_by(mut self, given: &RobustProblem, watch: Watch<'_>) -> Result<ProjectDesign, DesignError> {
+        let problem = RobustProblem {
+            has_prefilter: self.designed.problem.has_prefilter,
+            has_controller: true,
+            compensation: self.designed.problem.compensation.clone(),
+            ..given.clone()
+        };
+        let audit = phea_qft::audit::audit(&audit_request(&problem, &problem.family), watch)?;
+        self.design.audit = audit.clone();
+        let (problem, audit, limit_findings) = split(&problem, &audit);
+        let of_rig = caveat_of_rig(&problem, watch)?;
+        let mut view = ProjectAudit::new(&problem, audit, of_rig);
+        try_to_prove(&problem, &mut view, watch)?;
+        let controller = self.designed.controller.clone();
+        let designed = AuditedController::new(controller, problem, view)?;
+        Ok(ProjectDesign { designed, limit_findings, ..self })
+    }
+
+    /// The same where nothing but the way to a required step was missed: the design is met.
+    fn met_where_it_is(mut self, known: usize) -> ProjectDesign {
+        let is_kept = |(kind, finding): &LimitFinding| {
+            *kind == DesignLimitKind::RequiredStep || finding.verdict == Verdict::Met
+        };
+        if self.designed.view.audit.verdict == Verdict::Met && self.limit_findings.iter().all(is_kept) {
+            self.design.status = DesignStatus::Met;
+        }
+        self.design.binding.retain(|limit| limit.specification < known);
+        if let DesignStatus::Infeasible(relaxation) = &mut self.design.status {
+            relaxation.conflicts.retain(|conflict| conflict.specification < known);
+        }
+        self
+    }
+
+    /// What a specification of the search is called: one of the project's by its number, a limit of
+    /// the design by its name.
+    pub fn named(&self, specification: usize) -> String {
+        let own = self.designed.problem.specifications.len();
+        match specification.checked_sub(own).and_then(|limit| self.limit_findings.get(limit)) {
+            Some((kind, _)) => limit_words(*kind).to_string(),
+            None => self.designed.view.numbered(specification),
+        }
     }
 
     /// The project with the designed laws in place of its own.
@@ -203,9 +261,14 @@ impl ProjectDesign {
         self.trial.as_ref().map_or(Agreement::Agrees, Trial::agreement)
     }
 
-    /// Whether the designed controller satisfies every specification.
+    /// Whether the designed controller satisfies every specification and keeps every limit.
     pub fn is_met(&self) -> bool {
-        self.designed.view.verdict() == Verdict::Met && self.tolerates_its_delay
+        let kept = |(kind, finding): &LimitFinding| {
+            *kind == DesignLimitKind::RequiredStep || finding.verdict == Verdict::Met
+        };
+        self.designed.view.verdict() == Verdict::Met
+            && self.tolerates_its_delay
+            && self.limit_findings.iter().all(kept)
     }
 }
 
@@ -240,6 +303,8 @@ pub fn design_project(
 
 /// The problem and its result.
 struct DesignRun {
+    /// The limits that the search aims at.
+    aimed: RobustProblem,
     problem: DesignProblem,
     outcome: DesignOutcome,
 }
@@ -266,42 +331,17 @@ fn designed(
             Some(AuditedController::new(law.clone(), given.clone(), view)?)
         }
     };
-    let problem = design_problem(setup, &given);
-    let options = design_options(setup, &given, seed)?;
-    let mut outcome = phea_qft::design::design(&problem, &options, &mut within(&mut *watch, [0.05, 0.6]))?;
-    outcome.conclude()?;
-    let (DesignRun { problem, outcome }, proven) = proven::proven(
-        (setup, &given),
-        DesignRun { problem, outcome },
-        &options,
-        &mut within(&mut *watch, [0.6, 0.7]),
-    )?;
-    let mut stopped = outcome.stopped;
-    let explanations = outcome.findings.iter().map(Explanation::of).collect::<Vec<_>>();
-    match outcome.design.clone() {
-        Some(design) => {
-            let mut told = {
-                let judging = &mut within(&mut *watch, [0.7, 0.8]);
-                ProjectDesign::new(setup, &given, &problem, design, options, judging)?
-            };
-            if let Some(view) = proven {
-                told.designed.view = view;
-            }
-            let continuous = unless_stopped(&mut stopped, || {
-                continuous_as_sampled(setup, &problem, &told, &mut within(&mut *watch, [0.8, 0.9]))
-            })?;
-            let trial = unless_stopped(&mut stopped, || {
-                tried_design(source, project, &told, &mut within(watch, [0.9, 1.0]))
-            })?;
-            let run = DesignRun { problem, outcome };
-            Ok((run, ProjectDesign { stopped, published, explanations, continuous, trial, ..told }))
-        }
-        None if stopped => Err(Stopped.into()),
-        None => {
-            let sentences = explanations.into_iter().map(|explanation| explanation.sentence).collect();
-            Err(DesignError::NoController(sentences))
-        }
-    }
+    let limits = design_limits(setup, &given);
+    let given = limited(&given, &limits);
+    let (run, told) = found(setup, &given, seed, &mut within(&mut *watch, [0.05, 0.8]))?;
+    let mut stopped = told.stopped;
+    let continuous = unless_stopped(&mut stopped, || {
+        continuous_as_sampled(setup, &run.problem, &told, &mut within(&mut *watch, [0.8, 0.9]))
+    })?;
+    let trial = unless_stopped(&mut stopped, || {
+        tried_design(source, project, &told, &mut within(watch, [0.9, 1.0]))
+    })?;
+    Ok((run, ProjectDesign { stopped, published, continuous, trial, ..told }))
 }
 
 /// A result that follows a design; absent once the watch has stopped it, since the design remains.

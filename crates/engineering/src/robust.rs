@@ -12,10 +12,11 @@ use phea_qft::closed_loop::{Compensation, Member};
 use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::specification::{LoopResponse, Specification};
 use phea_qft::template::{BuiltTemplate, TemplateError, TemplateOptions, Templates};
-use phea_qft::verification::{PlantPoint, TOLERANCE_DB};
+use phea_qft::verification::PlantPoint;
 
 use crate::caveat::{Caveat, caveats};
 use crate::family::{ProjectFamilyError, family};
+use crate::limit_kind::DesignLimitKind;
 use crate::plant_names::PlantNames;
 use crate::quantity::Units;
 use crate::setup::{ControlError, Setup, pressure_noise, velocity_noise};
@@ -41,6 +42,8 @@ pub struct RobustProblem {
     pub specifications: Vec<Specification>,
     /// The name of each: its kind, or the signal that is rounded.
     pub specification_names: Vec<String>,
+    /// The last of the specifications where they are limits of a design: which, in their order.
+    pub design_limits: Vec<DesignLimitKind>,
     /// Requirements in time: of specifications of their own, then of limits of tracking.
     pub in_time: Vec<TimeRequirement>,
     /// The rig itself as a family of one, where the family does not contain it, and what of it is
@@ -140,6 +143,7 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
         has_prefilter: setup.prefilter.is_some(),
         specifications,
         specification_names,
+        design_limits: vec![],
         in_time: time_requirements(setup.project)?,
         rig_outside: match setup.outside() {
             Some((alone, beyond)) => Some((self::family(&Setup::new(&alone)?, source)?, beyond)),
@@ -147,11 +151,15 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
         },
         velocity_noise: velocity_noise(setup.project),
         pressure_noise: pressure_noise(setup.project),
-        tolerance_db: setup.project.tolerance_db().unwrap_or(TOLERANCE_DB),
+        tolerance_db: setup.project.tolerance_db().unwrap_or(DEFAULT_TOLERANCE_DB),
         units: setup.project.units,
         caveats: caveats(setup),
     })
 }
+
+/// A margin of minus this much counts as met where the project states no tolerance, dB: no answer
+/// depends on less than what a rig is known to.
+pub const DEFAULT_TOLERANCE_DB: f64 = 0.01;
 
 /// Why plants whose lines move have no polynomials.
 pub(crate) const LINES_IN_MOTION: &str = "lines in motion";

@@ -179,7 +179,8 @@ pub fn wishes(project: &Project) -> Result<Vec<CheckedWish>, SpecificationError>
     Ok(checked)
 }
 
-fn specification(
+/// The limit that a declared specification makes, with its number for messages.
+pub(crate) fn specification(
     declared: &project::DeclaredSpecification,
     kind: ClosedLoop,
     number: usize,

@@ -17,8 +17,21 @@ pub struct DeclaredDesign {
     pub prefilter_maximum_order: u32,
     /// The seed of the random starting points.
     pub seed: u32,
-    /// s, which every plant must tolerate in addition to the delay of the loop.
-    pub minimum_delay_margin: f64,
+    /// Which limits hold that are not stated.
+    pub limits: UnstatedLimits,
+    /// s, which every plant must tolerate in addition to the delay of the loop; absent: of a rig
+    /// one sample, or half a millisecond where the loop is continuous.
+    pub minimum_delay_margin: Option<f64>,
+    /// Least distance |1 + L| of every plant; absent: of a rig 0.5.
+    pub modulus_margin: Option<f64>,
+    /// rad/s, from where on |L/(1+L)| is at most -3 dB; absent: of a rig the least of what quarter
+    /// wave, servovalve and sampling leave.
+    pub highest_bandwidth: Option<f64>,
+    /// Largest root mean square of the command from the noise of the force sensor, over the valve's
+    /// nominal voltage; absent: 1 %.
+    pub noise_to_command: Option<f64>,
+    /// Least damping ratio of the controller's poles; absent: of a rig 0.3.
+    pub pole_damping_ratio: Option<f64>,
     /// Factor by which every limit is kept, above what counts as met; absent: what the recordings
     /// of an identified valve leave open.
     pub reserve: Option<f64>,
@@ -26,6 +39,16 @@ pub struct DeclaredDesign {
     pub gain: Option<[f64; 2]>,
     /// The controller's factors; empty: structures of growing order are tried.
     pub structure: Vec<StructurePart>,
+}
+
+/// Which limits of what may be built hold where the project states none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum UnstatedLimits {
+    /// Those of a rig.
+    #[default]
+    Default,
+    /// None: a design has its specifications alone.
+    None,
 }
 
 /// The words of `objective`.
@@ -83,7 +106,12 @@ impl Default for DeclaredDesign {
             maximum_order: 4,
             prefilter_maximum_order: 3,
             seed: 1,
-            minimum_delay_margin: 0.0,
+            limits: UnstatedLimits::Default,
+            minimum_delay_margin: None,
+            modulus_margin: None,
+            highest_bandwidth: None,
+            noise_to_command: None,
+            pole_damping_ratio: None,
             reserve: None,
             gain: None,
             structure: vec![],
@@ -105,9 +133,22 @@ impl DeclaredDesign {
         v.count(k.not_negative().at_most(MAXIMUM_ORDER).or(3.0), &mut self.prefilter_maximum_order);
         let k = key("seed", &RATIO, "The seed of the random starting points.").not_negative();
         v.count(k.or(1.0), &mut self.seed);
+        let words = &[("default", UnstatedLimits::Default), ("none", UnstatedLimits::None)];
+        let k = plain("limits", "Whether limits that are not stated have their defaults, or none.");
+        v.choice(k, words, &mut self.limits, false);
         let doc = "Delay beyond that of the loop that every plant must tolerate.";
-        let k = key("minimum_delay_margin", &TIME, doc).not_negative().or(0.0);
-        v.quantity(k, &mut self.minimum_delay_margin);
+        v.optional(key("minimum_delay_margin", &TIME, doc).not_negative(), &mut self.minimum_delay_margin);
+        let k = key("modulus_margin", &RATIO, "Least |1 + L| of every plant; absent: of a rig 0.5.");
+        v.optional(k.not_negative().below(1.0), &mut self.modulus_margin);
+        let doc = "Where |L/(1+L)| has fallen to -3 dB; absent: what waves, valve and sampling leave.";
+        let k = key("highest_bandwidth", &ANGULAR_FREQUENCY, doc).positive().or_infinite();
+        v.optional(k, &mut self.highest_bandwidth);
+        let doc = "Command from the sensor's noise, rms over the nominal voltage; absent: 1 %.";
+        let k = key("noise_to_command", &RATIO, doc).positive().or_infinite();
+        v.optional(k, &mut self.noise_to_command);
+        let doc = "Least damping ratio of the controller's poles; absent: of a rig 0.3.";
+        let k = key("pole_damping_ratio", &RATIO, doc).not_negative().at_most(1.0);
+        v.optional(k, &mut self.pole_damping_ratio);
         let doc = "Margin that the design keeps to every limit; absent: what recordings leave open.";
         v.optional(key("reserve", &GAIN, doc).at_least(1.0).at_most(2.0), &mut self.reserve);
         v.pair(key("gain", &RATIO, "Least and greatest gain of `structure`."), &mut self.gain);

@@ -7,13 +7,13 @@ use phea_quantity::GAIN;
 /// How a controller is judged.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredVerification {
-    /// Factor by which a limit may be missed and still counts as met; absent: 0.001 dB.
+    /// Factor by which a limit may be missed and still counts as met; absent: 0.01 dB.
     pub tolerance: Option<f64>,
 }
 
 impl DeclaredVerification {
     pub(crate) fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let doc = "By how much a limit may be missed and still counts as met; absent: 0.001 dB.";
+        let doc = "By how much a limit may be missed and still counts as met; absent: 0.01 dB.";
         v.optional(key("tolerance", &GAIN, doc).at_least(1.0).at_most(GREATEST), &mut self.tolerance);
     }
 }

@@ -22,7 +22,8 @@ use phea_dynamics::uncertain_plant::{
 use phea_dynamics::watch::unwatched;
 use phea_qft::design::quantization::CoefficientFormat;
 use phea_qft::design::{
-    ControllerChoice, Design, DesignOptions, DesignProblem, DesignStatus, Objective, PrefilterChoice, design,
+    ControllerChoice, Design, DesignOptions, DesignProblem, DesignStatus, Objective, PoleRange,
+    PrefilterChoice, design,
 };
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
 use phea_qft::loop_shaping::{Structure, StructureFactor};
@@ -124,6 +125,7 @@ fn options(task: &Task, seed: u64) -> DesignOptions {
         seed,
         tolerance_db: TOLERANCE_DB,
         reserve_db: 0.0,
+        poles: PoleRange::default(),
         coefficients: CoefficientFormat::Double,
     }
 }

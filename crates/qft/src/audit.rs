@@ -116,6 +116,19 @@ fn joined(
     }
 }
 
+impl Audit {
+    /// The audit of the first specifications alone, and the findings for the others.
+    pub fn split_off(&self, count: usize) -> (Audit, Vec<SpecificationFinding>) {
+        let mut own = self.clone();
+        let others = own.specifications.split_off(count.min(own.specifications.len()));
+        let verdicts = own.specifications.iter().map(|finding| finding.verdict);
+        own.verdict = verdicts.fold(own.stability.verdict, worse);
+        let evidences = own.specifications.iter().map(|finding| finding.evidence);
+        own.evidence = evidences.fold(own.stability.evidence, Evidence::min);
+        (own, others)
+    }
+}
+
 /// The plants at which specifications are worst, each once.
 fn suspects(findings: &[SpecificationFinding]) -> Vec<PlantPoint> {
     let mut plants: Vec<PlantPoint> = Vec::new();

@@ -26,7 +26,7 @@ pub use attempt::LoopDesignError;
 pub use candidates::gain_range;
 pub use diagnosis::{Constraint, ConstraintPlace, Finding, FindingSeverity, Party, SharedLimit, diagnose};
 pub use outcome::DesignOutcome;
-pub use problem::{ControllerChoice, DesignOptions, PrefilterChoice};
+pub use problem::{ControllerChoice, DesignOptions, PoleRange, PrefilterChoice};
 
 pub use crate::loop_shaping::DesignProblem;
 pub use phea_dynamics::controller::Objective;

@@ -2,6 +2,7 @@
 
 mod answer;
 mod document;
+mod limits;
 mod stages;
 
 pub use phea_engineering::design::*;

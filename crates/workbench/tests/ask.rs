@@ -86,8 +86,18 @@ pub(crate) fn json(project: &str, settings: &[&str], catalogues: &[&str], reques
 pub(crate) fn designed_hose() -> &'static Answer {
     static ANSWER: OnceLock<Answer> = OnceLock::new();
     let request = Request::Design { seed: None, stages: false, repair: true };
+    ANSWER.get_or_init(|| answer(HOSE, &UNLIMITED, &[], &request))
+}
+
+/// The same design within what may be built, once for all tests.
+pub(crate) fn built_hose() -> &'static Answer {
+    static ANSWER: OnceLock<Answer> = OnceLock::new();
+    let request = Request::Design { seed: None, stages: false, repair: true };
     ANSWER.get_or_init(|| answer(HOSE, &[], &[], &request))
 }
+
+/// The settings that leave a design nothing but its specifications.
+pub(crate) const UNLIMITED: [&str; 1] = ["design.limits=none"];
 
 /// The report of a project whose specifications no controller satisfies: made once for all tests
 /// that ask for it.

@@ -15,7 +15,7 @@ use phea_qft::design::{
     PrefilterChoice, Relaxation,
 };
 use phea_qft::loop_shaping::{Structure, StructureFactor};
-use phea_qft::verification::{AuditProblem, PlantPoint, TOLERANCE_DB, TrackingJudgement, Verdict};
+use phea_qft::verification::{AuditProblem, PlantPoint, TrackingJudgement, Verdict};
 use phea_workbench::audit::audit_project;
 use phea_workbench::command::{Request, answer};
 use phea_workbench::design::{
@@ -25,6 +25,7 @@ use phea_workbench::design::{
 use phea_workbench::project::{
     self, DeclaredQuantization, FeedForward, Loaded, Prefilter, RationalFunction, Transfer,
 };
+use phea_workbench::robust::DEFAULT_TOLERANCE_DB;
 use phea_workbench::robust::robust_problem;
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
@@ -67,7 +68,7 @@ fn design(problem: &DesignProblem, coefficients: CoefficientFormat, status: Desi
         compensation: &compensation,
         specifications: &problem.specifications,
         tracking: TrackingJudgement::Magnitude,
-        tolerance_db: TOLERANCE_DB,
+        tolerance_db: DEFAULT_TOLERANCE_DB,
     };
     let structure = Structure {
         sign: 1.0,

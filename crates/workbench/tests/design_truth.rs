@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::{PIPE, answer, designed_hose, json, number, within};
+use crate::ask::{PIPE, UNLIMITED, answer, built_hose, designed_hose, json, number, within};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::Request;
 use phea_workbench::design::DESIGNED_PROJECT;
@@ -40,7 +40,7 @@ fn assert_met(design: &Value, verified: &Value, orders: [f64; 2]) {
         assert_eq!((&audit["verdict"], &audit["stable"]), (&"met".into(), &true.into()), "{audit}");
         for finding in audit["specifications"].as_array().unwrap() {
             assert_eq!(finding["verdict"], "met", "{finding}");
-            assert!(number(finding, "worst_margin_db") >= -0.001, "{finding}");
+            assert!(number(finding, "worst_margin_db") >= -0.01, "{finding}");
         }
     }
     let [own, again] = [audited, verified].map(|audit| audit["specifications"].as_array().unwrap());
@@ -71,9 +71,41 @@ fn the_rig_with_hoses_is_met() {
 /// order all limits have to give by 0.03 dB.
 #[test]
 fn the_rig_with_pipes_is_met() {
-    let (design, verified) = designed_and_verified(PIPE, &[]);
+    let (design, verified) = designed_and_verified(PIPE, &UNLIMITED);
     assert_met(&design, &verified, [4.0, 3.0]);
     assert_eq!(number(&design, "figures.order"), 4.0);
+}
+
+/// What may be built: the least distance from -1, the bandwidth below the quarter wave of the hoses
+/// and the delay that is tolerated are those of the controller that is written, when it is verified
+/// against them alone; and the nonlinear rig agrees with it, with waves in its hoses too.
+#[test]
+fn the_rig_with_hoses_is_met_within_what_may_be_built() {
+    let (design, verified) = with_verified(built_hose());
+    assert_met(&design, &verified, [4.0, 3.0]);
+    assert_eq!(design["machine"]["verdict"], "agrees");
+    let limits = design["limits"].as_array().unwrap();
+    assert!(limits.iter().all(|limit| limit["kept"] == true), "{limits:?}");
+    let value = |key: &str, of: &str| {
+        let limit = limits.iter().find(|limit| limit["key"] == key).unwrap();
+        (number(limit, of), limit["origin"].as_str().unwrap().to_string())
+    };
+    // ORIGIN: analytic, pi c/(2 L) with the wave's speed in the hose at 35 bar
+    let (bandwidth, origin) = value("highest_bandwidth", "value_rad_per_s");
+    assert!((bandwidth - 560.0).abs() < 1.0 && origin == "quarter_wave", "{bandwidth} {origin}");
+    assert_eq!(value("modulus_margin", "value"), (0.5, "default".to_string()));
+    assert_eq!(value("minimum_delay_margin", "value_s"), (0.5e-3, "default".to_string()));
+    let file = built_hose().files.iter().find(|file| file.name == DESIGNED_PROJECT).unwrap();
+    let written = String::from_utf8(file.bytes.clone()).unwrap();
+    let alone = format!(
+        "{written}\n[[specification]]\nkind = \"sensitivity\"\nlimit = 2\nfrequencies = [1, 100]\n\
+         band = [0, inf]\n[[specification]]\nkind = \"robust_stability\"\nlimit = {}\n\
+         frequencies = [{bandwidth}]\nband = [{bandwidth}, inf]\n",
+        0.5_f64.sqrt()
+    );
+    let again = json(&alone, &[], &[], &Request::Verify { proof: false, on_machine: false });
+    assert_eq!(again["verdict"], "met", "{again:#}");
+    assert!(number(&again, "delay_margin_s") >= 0.5e-3);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use phea_workbench::command::{self, CommandError, Progress, Request};
 use phea_workbench::design::{DESIGNED_PROJECT, NEAREST_PROJECT};
 use serde_json::Value;
 
-use super::ask::{HOSE, answer, designed_hose, json, load, number, source};
+use super::ask::{HOSE, UNLIMITED, answer, designed_hose, json, load, number, source};
 
 const REPAIRED: Request = Request::Design { seed: None, stages: false, repair: true };
 const LEFT: Request = Request::Design { seed: None, stages: false, repair: false };
@@ -90,14 +90,17 @@ fn wider() -> String {
     })
 }
 
+/// Nothing but the specifications, which are to be met to a thousandth of a decibel.
+const EXACT: [&str; 2] = [UNLIMITED[0], "verification.tolerance=0.001 dB"];
+
 /// A controller that the machine with waves contradicts is replaced by one that serves both.
 #[test]
 fn a_design_is_repaired_where_it_can_be() {
-    let first = object(&answer(&wider(), &[], &[], &LEFT));
+    let first = object(&answer(&wider(), &EXACT, &[], &LEFT));
     assert_eq!((&first["status"], &first["machine"]["verdict"]), (&"met".into(), &"contradicts".into()));
     assert_eq!((&first["repair"], &first["repair_reason"]), (&Value::Null, &"it was not asked for".into()));
 
-    let said = answer(&wider(), &[], &[], &REPAIRED);
+    let said = answer(&wider(), &EXACT, &[], &REPAIRED);
     let object = object(&said);
     let repair = &object["repair"];
     assert_eq!((&object["status"], &repair["status"]), (&"met".into(), &"met".into()), "{repair}");
@@ -147,7 +150,7 @@ fn what_no_plant_explains_is_told() {
 /// A repair that is stopped leaves the design as it was.
 #[test]
 fn a_repair_may_be_stopped() {
-    let loaded = load(&wider(), &[], &[]);
+    let loaded = load(&wider(), &EXACT, &[]);
     let mut stages = Vec::new();
     let mut watch = |progress: Progress| {
         stages.push(progress.stage);

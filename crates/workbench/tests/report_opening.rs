@@ -5,7 +5,7 @@
 
 use std::fmt::Write as _;
 
-use crate::ask::{contradictory_report, designed_hose};
+use crate::ask::{built_hose, contradictory_report};
 use phea_workbench::command::{self, Request};
 use phea_workbench::project::{self, Loaded};
 use phea_workbench::report::{Report, report};
@@ -99,7 +99,7 @@ fn both_controllers_stand_there_as_the_commands_tell_them() {
 
     let verified = json(&source, &loaded, &Request::Verify { proof: false, on_machine: true });
     // what was measured does not take part in a design
-    let designed: Value = serde_json::from_str(&designed_hose().json).unwrap();
+    let designed: Value = serde_json::from_str(&built_hose().json).unwrap();
     let both = [&verified, &designed["verification"]];
     let verdict = designed["verification"]["verdict"].as_str().unwrap();
     let proven = if is_all_proven(&designed["verification"]) { ", proven" } else { "" };

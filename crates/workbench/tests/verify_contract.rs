@@ -28,7 +28,7 @@ fn the_keys_that_stay_are_there() {
     let object = verify(INTEGRATOR, &[]);
     assert_eq!(object["verdict"], "met");
     assert_eq!(object["evidence"], "search");
-    assert_eq!(object["tolerance_db"], 0.001);
+    assert_eq!(object["tolerance_db"], 0.01);
     assert_eq!(object["stable"], true);
     // pi/2 at k = 2, where |L| = 1 at 2 rad/s: ORIGIN: analytic
     close(&object["delay_margin_s"], std::f64::consts::FRAC_PI_4, 1e-6);
@@ -76,7 +76,7 @@ fn what_cannot_be_met_is_not_called_met() {
     assert_eq!(row["verdict"], "violated");
     assert!(row["worst_margin_db"].is_null() && row["reason"].is_string());
     // a negative margin within the tolerance is met, one beyond it is violated
-    for (limit, verdict) in [("0.99995", "met"), ("0.999", "violated")] {
+    for (limit, verdict) in [("0.9995", "met"), ("0.99", "violated")] {
         let setting = format!("specification.0.limit={limit}");
         assert_eq!(verify(INTEGRATOR, &[&setting])["verdict"], verdict, "{limit}");
     }

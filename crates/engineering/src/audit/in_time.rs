@@ -9,7 +9,7 @@ use phea_qft::verification::{Audit, PlantPoint, SpecificationFinding, Verdict};
 
 use crate::linear_step::linear_step;
 use crate::robust::RobustProblem;
-use crate::simulate::{TimeRequirement, TrackingWish};
+use crate::simulate::{ReachedStep, TimeRequirement, TrackingWish};
 
 /// What the steps of the plants that were visited do.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,6 +92,18 @@ impl TimeFinding {
     /// Whether nothing is known of what a specification of its own requires.
     pub fn is_open(&self) -> bool {
         self.requirement.limits.is_none() && self.verdict().is_none()
+    }
+
+    /// The worst of each property that is required, zero where it is not; `None` where no step was
+    /// computed.
+    pub fn reached(&self) -> Option<ReachedStep> {
+        let TimeOutcome::Searched { overshoot, settling, rise, .. } = &self.outcome else { return None };
+        let value = |worst: &Option<WorstStep>| worst.as_ref().map_or(0.0, |worst| worst.value);
+        Some(ReachedStep {
+            overshoot_percent: value(overshoot),
+            settling_time_s: value(settling),
+            rise_time_s: value(rise),
+        })
     }
 
     /// The worst step of the property that is furthest beyond its limit, or else nearest to it.

@@ -7,6 +7,8 @@ use phea_qft::design::{ControllerChoice, DesignOptions, DesignProblem, Prefilter
 use phea_qft::loop_shaping::{Structure, StructureFactor};
 
 use super::DesignError;
+use super::deployable::{design_limits, limit_value, pole_range};
+use crate::limit_kind::DesignLimitKind;
 use crate::project::StructurePart;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
@@ -25,7 +27,11 @@ pub fn design_problem(setup: &Setup<'_>, given: &RobustProblem) -> DesignProblem
         sensor: setup.sensor.clone(),
         timing: setup.timing,
         specifications: given.specifications.clone(),
-        minimum_delay_margin_s: setup.project.design.clone().unwrap_or_default().minimum_delay_margin,
+        minimum_delay_margin_s: limit_value(
+            &design_limits(setup, given),
+            DesignLimitKind::MinimumDelayMargin,
+        )
+        .unwrap_or(0.0),
     }
 }
 
@@ -54,6 +60,7 @@ pub fn design_options(
         seed: u64::from(seed.unwrap_or(design.seed)),
         tolerance_db: given.tolerance_db,
         reserve_db: design.reserve.map_or(0.0, |factor| 20.0 * portable::log10(factor)),
+        poles: pole_range(&design_limits(setup, given)),
         coefficients: setup.quantization.coefficients,
     })
 }

@@ -161,8 +161,7 @@ fn with_waves(
         let sentences = vec![words::nothing_found()];
         return Ok(Repair { status: RepairStatus::NotStabilised, sentences, ..known });
     };
-    let audits = found.design.beside.first().cloned();
-    let after = audits.map(|audit| ProjectAudit::new(&alone_in_loop(&plant, &found), audit, None));
+    let after = Some(audit_problem(&alone_in_loop(&plant, &found), watch)?);
     let whole = match status {
         RepairStatus::Met => family_with_waves((source, setup), &found, watch)?,
         _ => None,
@@ -210,7 +209,7 @@ fn designed_again(
     (plant, told): (&UncertainPlant, &ProjectDesign),
     watch: Watch<'_>,
 ) -> Result<Option<(RepairStatus, ProjectDesign)>, DesignError> {
-    let DesignRun { mut problem, outcome } = run;
+    let DesignRun { aimed, mut problem, outcome } = run;
     problem.beside.push(plant.clone());
     let options = told.options.clone();
     let outcome =
@@ -228,7 +227,11 @@ fn designed_again(
         DesignStatus::NotConverged { .. } => RepairStatus::NotConverged,
         DesignStatus::NotStabilised => RepairStatus::NotStabilised,
     };
-    let found = ProjectDesign::new(setup, &told.designed.problem, &problem, design, options, watch)?;
+    let mut found = ProjectDesign::new(setup, &aimed, &problem, design, options, watch)?;
+    let own = &told.designed.problem.specifications;
+    if aimed.specifications[..own.len()] != own[..] {
+        found = found.judged_by(&told.designed.problem, watch)?;
+    }
     let trial = tried_design(source, setup.project, &found, watch)?;
     Ok(Some((status, ProjectDesign { trial, ..found })))
 }

@@ -16,6 +16,8 @@ use crate::simulate::{DIVERGED, ScenarioRun, SimulateError, TimeRequirement, UND
 
 /// Motion of a force that counts as settled, as a share of the step.
 const STILL: f64 = 0.01;
+/// Motion of a force that has come to rest, likewise.
+const AT_REST: f64 = 1e-3;
 /// Factor by which settling times may differ.
 const SETTLING_RATIO: f64 = 2.0;
 /// Percent of the step by which an overshoot may differ: friction has an effect of this size on a
@@ -159,8 +161,21 @@ fn missed_in_time(machine: &TrialStep, linear: Option<TrialStep>, problem: &Robu
 
 fn unsettled(driven: &Driven<'_>) -> String {
     let force = driven.run.record.units.force;
+    let leg = driven.worst();
+    let still =
+        driven.steps.remains(driven.run, leg).filter(|range| width(*range) <= AT_REST * driven.steps.size());
+    if let Some([low, high]) = still {
+        let reference = driven.steps.reference(leg);
+        let off = 100.0 * (0.5 * (low + high) - reference).abs() / driven.steps.size();
+        return format!(
+            "the force does not settle{}: it comes to rest at {}, {} of the step off its reference",
+            leg_words(leg),
+            force.text(0.5 * (low + high), 5),
+            percent_words(off)
+        );
+    }
     let words = driven.remains().map_or(String::new(), |range| format!(": {}", range_words(range, force)));
-    format!("the force does not settle{}{words}", leg_words(driven.worst()))
+    format!("the force does not settle{}{words}", leg_words(leg))
 }
 
 /// The limits and ends that the machine reached, in order.

@@ -99,8 +99,8 @@ pub(super) fn rigs(
     (rigs, missing)
 }
 
-/// The worst plant of each limit, and of each requirement in time that is part of the verdict, with
-/// what it is the worst of.
+/// The worst plant of each specification, and of each requirement in time that is part of the
+/// verdict, with what it is the worst of.
 fn worst_plants(view: &ProjectAudit) -> impl Iterator<Item = (String, &PlantPoint)> {
     let of_limits = view.audit.specifications.iter().enumerate();
     let of_limits =
@@ -156,7 +156,7 @@ pub(crate) fn waves_alone(setup: &Setup<'_>) -> Option<Project> {
 
 /// Where the slower line is a quarter of a wave long, rad/s: pi/(2 T), T the time that a wave takes
 /// through it.
-fn quarter_wave(rig: &Rig) -> Option<f64> {
+pub(crate) fn quarter_wave(rig: &Rig) -> Option<f64> {
     let components = rig.actuator.components();
     let delay = |line| {
         Conduit::of_line(line, &components.fluid, rig.actuator.mean_pressure(), StiffeningMember::Nominal)

@@ -90,6 +90,11 @@ impl Steps {
         BEFORE_S + leg as usize as f64 * self.hold_s
     }
 
+    /// The reference after a step, N.
+    pub(super) fn reference(&self, leg: Leg) -> f64 {
+        self.ends(leg)[1]
+    }
+
     /// The reference before and after a step, N.
     fn ends(&self, leg: Leg) -> [f64; 2] {
         match leg {

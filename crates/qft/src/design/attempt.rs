@@ -30,9 +30,9 @@ use crate::prefilter::{FittedPrefilter, PrefilterBand, PrefilterOptions, Prefilt
 use crate::specification::Specification;
 use crate::verification::{Audit, AuditProblem, TrackingJudgement, audit_among};
 
-/// Below this worst margin of the samples, the reserve taken off, a structure counts as unable to
-/// meet the specifications, dB.
-pub(super) const FEASIBLE_DB: f64 = -1.5e-3;
+/// How far beyond the tolerance the worst margin of the samples may lie, the reserve taken off,
+/// before a structure counts as unable to meet the specifications, dB.
+const BEYOND_TOLERANCE_DB: f64 = 0.5e-3;
 /// Where a counterexample misses by this much more than all samples did, the margins of what was
 /// found lead nowhere, dB.
 const ASTRAY_DB: f64 = -6.0;
@@ -45,6 +45,14 @@ const BAND_ROOM_DB: f64 = 3.0;
 /// How far inside its limits a search stays, dB, so that what the audit finds between the samples
 /// still satisfies them.
 const RESERVE_DB: f64 = 0.001;
+
+impl DesignOptions {
+    /// The least worst margin of the samples with which a structure may still meet the
+    /// specifications, dB.
+    pub(super) fn feasible_db(&self) -> f64 {
+        -self.tolerance_db - BEYOND_TOLERANCE_DB
+    }
+}
 
 /// What an attempt ended with.
 #[derive(Clone, Debug, PartialEq)]
@@ -245,7 +253,7 @@ impl Attempt {
             self.shaping.count_shares_of_room();
         }
         let worst_margin_db = result.judgement.worst_margin_db;
-        if worst_margin_db < FEASIBLE_DB && !self.relaxes {
+        if worst_margin_db < self.options.feasible_db() && !self.relaxes {
             return Err(Leave::Ended(AttemptEnding::Missed { worst_margin_db, audit: None }));
         }
         if self.fits_prefilter(watch)? { self.descend(false, watch) } else { Ok(()) }
@@ -306,7 +314,7 @@ impl Attempt {
                 return Err(Leave::Ended(AttemptEnding::NotStabilised));
             };
             let worst_margin_db = judgement.worst_margin_db;
-            if worst_margin_db >= FEASIBLE_DB || self.relaxes {
+            if worst_margin_db >= self.options.feasible_db() || self.relaxes {
                 return Ok(());
             }
             if is_near {

@@ -9,6 +9,7 @@ use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 
 use super::feedback_sign::opposing_sign;
+use super::problem::PoleRange;
 use super::stabilising::stabilising;
 use crate::family::Family;
 use crate::family::corners;
@@ -83,6 +84,7 @@ pub(super) struct Ground {
     sign: f64,
     corner: [f64; 2],
     gain: [f64; 2],
+    poles: PoleRange,
 }
 
 impl Ground {
@@ -105,7 +107,12 @@ impl Ground {
         let gains = along.unwrap_or_default().iter().filter_map(crossover).reduce(joined);
         let gains = gains.unwrap_or([1.0, 1.0]);
         let gain = [gains[0] / GAIN_ROOM, gains[1] * GAIN_ROOM];
-        Ground { integrators, sign: low.sign, corner, gain }
+        Ground { integrators, sign: low.sign, corner, gain, poles: PoleRange::default() }
+    }
+
+    /// The same with poles in this range.
+    pub(super) fn with_poles(self, poles: PoleRange) -> Ground {
+        Ground { poles, ..self }
     }
 
     /// Points at which a structure is equal to a simpler controller, or nearly: poles and zeros are
@@ -136,24 +143,30 @@ impl Ground {
     pub(super) fn structure(&self, order: usize, zeros: usize) -> Structure {
         let integrator = std::iter::repeat_n(StructureFactor::Fixed(Element::Integrator), self.integrators);
         let poles = order.saturating_sub(self.integrators);
-        let pair = |is_pole: bool| {
-            let (natural_frequency, damping_ratio) = (self.corner, DAMPING_RATIOS);
-            if is_pole {
-                StructureFactor::PolePair { natural_frequency, damping_ratio }
-            } else {
-                StructureFactor::ZeroPair { natural_frequency, damping_ratio }
+        let [lowest, highest] = self.corner;
+        let of_poles = [lowest, highest.min(self.poles.fastest_rad_per_s).max(lowest)];
+        let [least, greatest] = DAMPING_RATIOS;
+        // a pair of poles under a pair of zeros is a notch
+        let notches = zeros / 2;
+        let pair = |number: usize, is_pole: bool| match is_pole {
+            true if number < notches => {
+                StructureFactor::PolePair { natural_frequency: of_poles, damping_ratio: DAMPING_RATIOS }
+            }
+            true => {
+                let damping_ratio = [least.max(self.poles.least_damping_ratio), greatest];
+                StructureFactor::PolePair { natural_frequency: of_poles, damping_ratio }
+            }
+            false => {
+                StructureFactor::ZeroPair { natural_frequency: self.corner, damping_ratio: DAMPING_RATIOS }
             }
         };
-        let single = |is_pole: bool| {
-            let frequency = self.corner;
-            if is_pole {
-                StructureFactor::RealPole { frequency }
-            } else {
-                StructureFactor::RealZero { frequency }
-            }
+        let single = |is_pole: bool| match is_pole {
+            true => StructureFactor::RealPole { frequency: of_poles },
+            false => StructureFactor::RealZero { frequency: self.corner },
         };
         let factors = |count: usize, is_pole: bool| {
-            std::iter::repeat_n(pair(is_pole), count / 2)
+            (0..count / 2)
+                .map(|number| pair(number, is_pole))
                 .chain(std::iter::repeat_n(single(is_pole), count % 2))
                 .collect::<Vec<StructureFactor>>()
         };

@@ -32,6 +32,22 @@ pub enum PrefilterChoice {
     },
 }
 
+/// Where the poles of a designed controller may lie; integrators are not concerned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoleRange {
+    /// Least damping ratio of a pair that is not the notch of a pair of zeros.
+    pub least_damping_ratio: f64,
+    /// Greatest natural frequency, rad/s.
+    pub fastest_rad_per_s: f64,
+}
+
+impl Default for PoleRange {
+    /// Any but hardly damped ones.
+    fn default() -> Self {
+        PoleRange { least_damping_ratio: 0.1, fastest_rad_per_s: f64::INFINITY }
+    }
+}
+
 /// How a design is made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignOptions {
@@ -48,6 +64,8 @@ pub struct DesignOptions {
     /// Margin that the design keeps to every limit, between its samples too, dB; where two limits
     /// are near, [`Requirement::reserve_at_db`](crate::specification::Requirement::reserve_at_db).
     pub reserve_db: f64,
+    /// Where poles of a controller of growing order may lie.
+    pub poles: PoleRange,
     /// The number format of the coefficients of a sampled controller, which is judged with rounded
     /// coefficients. A continuous controller is not rounded.
     pub coefficients: CoefficientFormat,

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::watch::{Progress, Watch};
 
-use super::attempt::{Attempt, AttemptEnding, FEASIBLE_DB, LoopDesignError, StartingPoints};
+use super::attempt::{Attempt, AttemptEnding, LoopDesignError, StartingPoints};
 use super::binding::{all_conflicts, binding_limits};
 use super::candidates::Ground;
 use super::diagnosis::{FindingSeverity, diagnose};
@@ -73,7 +73,7 @@ const RELAXATION_GAINED_DB: f64 = 0.01;
 ///     objective: Objective::LeastHighFrequencyGain,
 ///     controller: ControllerChoice::Given(gain_alone),
 ///     prefilter: PrefilterChoice::None,
-///     seed: 1, tolerance_db: TOLERANCE_DB, reserve_db: 0.0, coefficients: CoefficientFormat::Double,
+///     seed: 1, tolerance_db: TOLERANCE_DB, reserve_db: 0.0, poles: PoleRange::default(), coefficients: CoefficientFormat::Double,
 /// };
 /// let found = design(&problem, &options, &mut unwatched)?.design.ok_or("none was found")?;
 /// assert_eq!(found.status, DesignStatus::Met);
@@ -171,7 +171,7 @@ impl<'a> DesignProgress<'a> {
         options: &'a DesignOptions,
         kept: &'a KeptPlants,
     ) -> DesignProgress<'a> {
-        let ground = Ground::new(problem);
+        let ground = Ground::new(problem).with_poles(options.poles);
         let is_hard = has_poles_to_move(problem);
         let waiting = structures_to_try(problem, options, &ground, is_hard);
         DesignProgress {
@@ -320,7 +320,7 @@ impl<'a> DesignProgress<'a> {
                 Ok(self.relaxing || self.waiting.is_empty())
             }
             AttemptEnding::Missed { worst_margin_db, audit: Some(_) }
-                if worst_margin_db > FEASIBLE_DB && !self.begun_again =>
+                if worst_margin_db > self.options.feasible_db() && !self.begun_again =>
             {
                 // it can be met after all: from here on the objective is optimised
                 (self.begun_again, self.relaxing) = (true, false);

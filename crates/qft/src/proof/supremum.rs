@@ -38,6 +38,9 @@ pub(super) struct EnclosedSupremum {
     pub(super) open: Option<ProofRegion>,
 }
 
+/// Takes a ratio of eight digits to the next one below.
+const BELOW: f64 = 1.0 - 1e-7;
+
 /// What is looked for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SoughtSupremum<'a> {
@@ -69,8 +72,11 @@ pub(super) fn enclose(
             break;
         }
         let near = found.least * wanted.width;
-        let ratio = if found.least <= wanted.decisive { near.min(wanted.decisive) } else { near };
-        let ratio = portable::rounded(ratio, 8);
+        let may_decide = found.least <= wanted.decisive;
+        let ratio = portable::rounded(if may_decide { near.min(wanted.decisive) } else { near }, 8);
+        // rounded up it would decide nothing
+        let is_beyond = may_decide && ratio > wanted.decisive;
+        let ratio = if is_beyond { portable::rounded(wanted.decisive * BELOW, 8) } else { ratio };
         match walk_boxes(certificate, (&claims, ratio), wanted.effort, watch)? {
             Boxes::Shown(panels) => {
                 found.most = Some((ratio, panels));

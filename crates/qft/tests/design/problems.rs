@@ -11,7 +11,8 @@ use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::quantization::CoefficientFormat;
 use phea_qft::design::{
-    ControllerChoice, Design, DesignOptions, DesignProblem, DesignStatus, Objective, PrefilterChoice, design,
+    ControllerChoice, Design, DesignOptions, DesignProblem, DesignStatus, Objective, PoleRange,
+    PrefilterChoice, design,
 };
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
 use phea_qft::loop_shaping::{Structure, StructureFactor};
@@ -135,6 +136,7 @@ pub(crate) fn least_gain(structure: Structure, seed: u64) -> DesignOptions {
         seed,
         tolerance_db: TOLERANCE_DB,
         reserve_db: 0.0,
+        poles: PoleRange::default(),
         coefficients: CoefficientFormat::Double,
     }
 }

@@ -7,7 +7,9 @@ use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
 use phea_qft::design::quantization::CoefficientFormat;
-use phea_qft::design::{ControllerChoice, DesignOptions, DesignProblem, Objective, PrefilterChoice};
+use phea_qft::design::{
+    ControllerChoice, DesignOptions, DesignProblem, Objective, PoleRange, PrefilterChoice,
+};
 use phea_qft::family::Spacing;
 use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{TOLERANCE_DB, TrackingJudgement};
@@ -25,6 +27,7 @@ fn growing(maximum_order: usize, prefilter: PrefilterChoice, seed: u64) -> Desig
         seed,
         tolerance_db: TOLERANCE_DB,
         reserve_db: 0.0,
+        poles: PoleRange::default(),
         coefficients: CoefficientFormat::Double,
     }
 }

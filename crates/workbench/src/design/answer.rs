@@ -8,6 +8,7 @@ use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::verification::PlantPoint;
 
 use super::AuditedController;
+use super::limits;
 use super::{Explanation, ProjectDesign};
 use super::{objective_key, part_key, status_key};
 use crate::answer::{Json, Object};
@@ -58,6 +59,7 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
         .with("published", published)
         .maybe("continuous_as_sampled", view.continuous.as_ref().map(audited))
         .with("minimum_delay_margin_s", view.minimum_delay_margin_s)
+        .with("limits", limits::rows(view))
         .with("reserve_db", view.options.reserve_db)
         .maybe("published_reason", no_published)
         .each("rounds", &design.rounds, round)
@@ -189,6 +191,7 @@ fn limit_row(
     let requirement = side.problem.specifications.get(specification).map(|one| &one.requirement);
     Object::new()
         .with("specification", specification)
+        .with("name", view.named(specification))
         .with("kind", requirement.map_or("", crate::specification::kind_key))
         .with("frequency_rad_per_s", frequency_rad_per_s)
         .with("margin_db", margin_db)

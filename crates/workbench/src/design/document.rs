@@ -40,7 +40,7 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
     if view.minimum_delay_margin_s > 0.0 {
         let does = if view.tolerates_its_delay { "tolerates" } else { "does not tolerate" };
         let asked = DisplayUnit::MILLISECOND.text(view.minimum_delay_margin_s, 3);
-        out.sentences([format!("the loop {does} the delay of {asked} that was asked for")]);
+        out.sentences([format!("the loop {does} the further delay of {asked} that is required")]);
     }
     if view.options.reserve_db > 0.0 {
         let reserve = significant(view.options.reserve_db, 2);
@@ -75,6 +75,7 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
     };
     out.heading(format!("To be pasted into the project{caution}"));
     out.preformatted(snippet(&view.declared_controller, view.declared_prefilter.as_ref()));
+    out.append(super::limits::document(view));
     out.append(costs(view));
     out.heading("Audit of the designed controller");
     out.append(audit::document(&view.designed.view, vec![]));
@@ -191,10 +192,12 @@ pub(crate) fn side_by_side(view: &ProjectDesign) -> Document {
     let columns: Vec<(&str, Vec<(String, String)>)> =
         sides.into_iter().filter_map(|(name, side)| Some((name, compared(side?)))).collect();
     let mut table = Table::new(std::iter::once("").chain(columns.iter().map(|(name, _)| *name)));
-    let names = columns.first().into_iter().flat_map(|(_, rows)| rows).map(|(name, _)| name);
-    for (index, name) in names.enumerate() {
+    // a designed loop has limits that the given one has not
+    let names = columns.iter().map(|(_, rows)| rows).max_by_key(|rows| rows.len());
+    for (index, (name, _)) in names.into_iter().flatten().enumerate() {
         let cell = |rows: &Vec<(String, String)>| {
-            rows.get(index).map_or(Cell::Missing, |(_, text)| compared_cell(index, text))
+            let own = rows.iter().find(|(known, _)| known == name);
+            own.map_or(Cell::Missing, |(_, text)| compared_cell(index, text))
         };
         table.row(std::iter::once(name.as_str().into()).chain(columns.iter().map(|(_, rows)| cell(rows))));
     }
@@ -233,7 +236,7 @@ fn limits<'a>(view: &ProjectDesign, rows: impl Iterator<Item = (usize, f64, f64,
     let names = &view.designed.view.names;
     let mut found = Table::new(["specification", "rad/s", "margin"].into_iter().chain(names.headings()));
     for (specification, frequency, margin, plant) in rows {
-        let name = view.designed.view.numbered(specification).into();
+        let name = view.named(specification).into();
         let row = [name, Cell::frequency(frequency), Cell::margin(margin)];
         found.row(row.into_iter().chain(names.cells(plant).into_iter().map(Cell::from)));
     }

@@ -9,7 +9,7 @@
 use phea_dynamics::controller::Controller;
 use phea_dynamics::watch::Watch;
 
-use super::{Attempt, AttemptEnding, FEASIBLE_DB, Leave, LoopDesignError, RESERVE_DB};
+use super::{Attempt, AttemptEnding, Leave, LoopDesignError, RESERVE_DB};
 use crate::closed_loop::Compensation;
 use crate::design::quantization::{CoefficientFormat, rounded};
 use crate::loop_shaping::{Aim, Judgement, SearchProblem};
@@ -61,7 +61,7 @@ impl Attempt {
         }
         loop {
             let Judgement { stable, worst_margin_db, .. } = self.judgement();
-            if stable && worst_margin_db >= FEASIBLE_DB {
+            if stable && worst_margin_db >= self.options.feasible_db() {
                 return Ok(());
             }
             if self.draws >= DRAWS_MAXIMUM {

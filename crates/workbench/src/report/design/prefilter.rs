@@ -5,12 +5,13 @@ use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
 use phea_qft::prefilter::{PrefilterBand, PrefilterBandPoint};
 use phea_qft::specification::Specification;
-use phea_qft::verification::{TOLERANCE_DB, Verdict};
+use phea_qft::verification::Verdict;
 
 use crate::answer::significant;
 use crate::audit::frequency_words;
 use crate::design::{AuditedController, ProjectDesign};
 use crate::figure::{Figure, PrefilterPanel, PrefilterPoint, Words, prefilter_band};
+use crate::robust::DEFAULT_TOLERANCE_DB;
 
 /// Distance of tracking limits below which they are not distinguishable in a figure, dB.
 const DISTINGUISHED_DB: f64 = 0.01;
@@ -102,7 +103,7 @@ fn shown(band: &PrefilterBand, drawn: &[f64]) -> Vec<PrefilterBandPoint> {
 }
 
 fn sentence(name: &str, band: &PrefilterBand, shown: &[PrefilterBandPoint]) -> String {
-    if let Some(closed) = band.closed(TOLERANCE_DB) {
+    if let Some(closed) = band.closed(DEFAULT_TOLERANCE_DB) {
         return format!(
             "The {name} loop leaves none: the family spreads {} dB too far {}.",
             significant(-closed.width_db(), 3),

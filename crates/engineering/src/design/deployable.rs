@@ -1,0 +1,207 @@
+//! What may be built: limits that a designed loop keeps beyond the specifications, of `[design]` or
+//! by default. Only a rig has defaults: a plant given by polynomials may be anything.
+//!
+//! ```text
+//! noise to command     |G/(1+L)| <= a U_n/n           then rms(u) <= a U_n for white noise of n rms at the samples
+//! modulus margin       |1/(1+L)| <= 1/m               at every frequency
+//! bandwidth            |L/(1+L)| <= 1/sqrt(2)         from w_b on: a crossover beyond has a phase margin of 90 degrees
+//! ```
+
+use std::f64::consts::FRAC_1_SQRT_2;
+
+use phea_dynamics::order::sorted_distinct;
+use phea_qft::design::PoleRange;
+use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
+use phea_qft::verification::{Audit, SpecificationFinding};
+
+use crate::limit_kind::{DesignLimitKind, limit_words};
+use crate::project::{DeclaredDesign, UnstatedLimits};
+use crate::robust::RobustProblem;
+use crate::setup::Setup;
+use crate::trial::quarter_wave;
+
+/// Part of the nominal voltage that noise may take, rms.
+const NOISE_SHARE: f64 = 0.01;
+const MODULUS_MARGIN: f64 = 0.5;
+/// s, of a continuous loop.
+const DELAY_MARGIN_S: f64 = 0.5e-3;
+const POLE_DAMPING_RATIO: f64 = 0.3;
+/// Part of pi/T that a bandwidth may reach, and that a pole may.
+const BANDWIDTH_SHARE: f64 = 0.2;
+const FASTEST_SHARE: f64 = 0.5;
+/// Fastest pole of a continuous controller over the highest bandwidth.
+const BEYOND_BANDWIDTH: f64 = 10.0;
+/// Multiples of the highest bandwidth at which its bounds are drawn.
+const DRAWN: [f64; 3] = [1.0, 2.0, 4.0];
+
+/// Why a limit has its value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LimitOrigin {
+    /// The project states it.
+    Stated,
+    /// It is the default of every rig.
+    Default,
+    /// The lines are a quarter wave long there.
+    QuarterWave,
+    /// The natural frequency of the servovalve.
+    Servovalve,
+    /// The sample time.
+    Sampling,
+    /// It follows from the highest bandwidth.
+    Bandwidth,
+}
+
+/// A limit of what may be built.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DesignLimit {
+    /// What it is about.
+    pub kind: DesignLimitKind,
+    /// In SI: a share of the nominal voltage, a distance, rad/s or s.
+    pub value: f64,
+    /// Where the value comes from.
+    pub origin: LimitOrigin,
+    /// The specification by which it is kept; `None` where the search itself keeps it.
+    pub specification: Option<Specification>,
+}
+
+/// The limits of a design for this problem; none for a plant without a rig that states none.
+pub fn design_limits(setup: &Setup<'_>, given: &RobustProblem) -> Vec<DesignLimit> {
+    let declared = setup.project.design.clone().unwrap_or_default();
+    let is_rig = setup.project.actuator.is_some() && declared.limits == UnstatedLimits::Default;
+    let default = |value: f64| is_rig.then_some((value, LimitOrigin::Default));
+    let stated = |value: Option<f64>| value.map(|value| (value, LimitOrigin::Stated));
+    let delay_s = setup.timing.sample_time_s.unwrap_or(DELAY_MARGIN_S);
+    let unstated = || highest_bandwidth(setup).filter(|_| is_rig);
+    let bandwidth = stated(declared.highest_bandwidth).or_else(unstated);
+    let each = [
+        (DesignLimitKind::NoiseToCommand, stated(declared.noise_to_command).or(default(NOISE_SHARE))),
+        (DesignLimitKind::ModulusMargin, stated(declared.modulus_margin).or(default(MODULUS_MARGIN))),
+        (DesignLimitKind::HighestBandwidth, bandwidth),
+        (DesignLimitKind::MinimumDelayMargin, stated(declared.minimum_delay_margin).or(default(delay_s))),
+        (
+            DesignLimitKind::PoleDampingRatio,
+            stated(declared.pole_damping_ratio).or(default(POLE_DAMPING_RATIO)),
+        ),
+        (DesignLimitKind::FastestPole, fastest_pole(setup, &declared, bandwidth)),
+    ];
+    let asks = |(kind, found): (DesignLimitKind, Option<(f64, LimitOrigin)>)| {
+        let (value, origin) = found.filter(|(value, _)| *value > 0.0 && value.is_finite())?;
+        let specification = specification((setup, given), kind, value);
+        // without a noisy sensor in a sampled loop there is nothing to limit
+        let is_void = kind == DesignLimitKind::NoiseToCommand && specification.is_none();
+        (!is_void).then_some(DesignLimit { kind, value, origin, specification })
+    };
+    each.into_iter().filter_map(asks).collect()
+}
+
+/// The value of a limit, if there is one.
+pub(super) fn limit_value(limits: &[DesignLimit], kind: DesignLimitKind) -> Option<f64> {
+    limits.iter().find(|limit| limit.kind == kind).map(|limit| limit.value)
+}
+
+/// Where the poles of a designed controller may lie.
+pub(super) fn pole_range(limits: &[DesignLimit]) -> PoleRange {
+    let free = PoleRange::default();
+    PoleRange {
+        least_damping_ratio: limit_value(limits, DesignLimitKind::PoleDampingRatio)
+            .unwrap_or(free.least_damping_ratio),
+        fastest_rad_per_s: limit_value(limits, DesignLimitKind::FastestPole)
+            .unwrap_or(free.fastest_rad_per_s),
+    }
+}
+
+/// The problem with the limits that are specifications as further ones, each named by its key.
+pub(super) fn limited(given: &RobustProblem, limits: &[DesignLimit]) -> RobustProblem {
+    let mut problem = given.clone();
+    for limit in limits {
+        let Some(specification) = limit.specification.clone() else { continue };
+        problem.specifications.push(specification);
+        problem.specification_names.push(limit_words(limit.kind).to_string());
+        problem.design_limits.push(limit.kind);
+    }
+    problem
+}
+
+/// The problem of the project's own specifications, and the audit of a design split likewise: its
+/// own, and the findings for the limits.
+pub(super) fn split(given: &RobustProblem, audit: &Audit) -> (RobustProblem, Audit, Vec<LimitFinding>) {
+    let own = given.specifications.len() - given.design_limits.len();
+    let (audit, others) = audit.split_off(own);
+    let mut problem = given.clone();
+    problem.specifications.truncate(own);
+    problem.specification_names.truncate(own);
+    let kinds = std::mem::take(&mut problem.design_limits);
+    (problem, audit, kinds.into_iter().zip(others).collect())
+}
+
+/// What an audit finds of a limit.
+pub type LimitFinding = (DesignLimitKind, SpecificationFinding);
+
+/// The least of what waves in the lines, the servovalve and sampling leave.
+fn highest_bandwidth(setup: &Setup<'_>) -> Option<(f64, LimitOrigin)> {
+    let rig = setup.rig().ok()?;
+    let valve = rig.actuator.components().valve.natural_frequency;
+    let sampled = setup.timing.sample_time_s.map(|time_s| BANDWIDTH_SHARE * std::f64::consts::PI / time_s);
+    let each = [
+        quarter_wave(rig).map(|frequency| (frequency, LimitOrigin::QuarterWave)),
+        Some((valve, LimitOrigin::Servovalve)),
+        sampled.map(|frequency| (frequency, LimitOrigin::Sampling)),
+    ];
+    each.into_iter().flatten().min_by(|one, other| one.0.total_cmp(&other.0))
+}
+
+/// The fastest pole that a controller of growing order may have; a structure that the project
+/// states has its own ranges.
+fn fastest_pole(
+    setup: &Setup<'_>,
+    declared: &DeclaredDesign,
+    bandwidth: Option<(f64, LimitOrigin)>,
+) -> Option<(f64, LimitOrigin)> {
+    let has_none = setup.project.actuator.is_none() || declared.limits == UnstatedLimits::None;
+    if !declared.structure.is_empty() || has_none {
+        return None;
+    }
+    match setup.timing.sample_time_s {
+        Some(time_s) => Some((FASTEST_SHARE * std::f64::consts::PI / time_s, LimitOrigin::Sampling)),
+        None => bandwidth.map(|(frequency, _)| (BEYOND_BANDWIDTH * frequency, LimitOrigin::Bandwidth)),
+    }
+}
+
+/// The specification by which a limit is kept.
+fn specification(
+    (setup, given): (&Setup<'_>, &RobustProblem),
+    kind: DesignLimitKind,
+    value: f64,
+) -> Option<Specification> {
+    let highest = given.compensation.highest_frequency_rad_per_s();
+    let over = |closed_loop, limit: f64, frequencies: Vec<f64>, band_rad_per_s: [f64; 2]| Specification {
+        requirement: Requirement::at_most(closed_loop, Limit::Constant(limit)),
+        frequencies_rad_per_s: frequencies.into_iter().filter(|frequency| *frequency <= highest).collect(),
+        band_rad_per_s,
+    };
+    let drawn = || given.design_frequencies();
+    match kind {
+        DesignLimitKind::ModulusMargin => {
+            Some(over(ClosedLoop::Sensitivity, 1.0 / value, drawn(), [0.0, f64::INFINITY]))
+        }
+        DesignLimitKind::HighestBandwidth => {
+            let frequencies = DRAWN.map(|factor| factor * value).to_vec();
+            Some(over(ClosedLoop::RobustStability, FRAC_1_SQRT_2, frequencies, [value, f64::INFINITY]))
+        }
+        DesignLimitKind::NoiseToCommand => {
+            setup.timing.sample_time_s?;
+            let noise_n = setup.project.actuator.as_ref()?.force_sensor.noise;
+            let nominal_v = setup.rig().ok()?.actuator.components().valve.nominal_voltage;
+            let limit = value * nominal_v / noise_n;
+            let mut frequencies = drawn();
+            frequencies.extend([0.1, 0.3, 0.9].map(|share| share * highest));
+            let found =
+                || over(ClosedLoop::ControlEffort, limit, sorted_distinct(frequencies), [0.0, highest]);
+            (noise_n > 0.0).then(found)
+        }
+        DesignLimitKind::MinimumDelayMargin
+        | DesignLimitKind::PoleDampingRatio
+        | DesignLimitKind::FastestPole
+        | DesignLimitKind::RequiredStep => None,
+    }
+}

@@ -1,0 +1,105 @@
+//! The search for a design: the limits of the project and of what may be built, aimed at what is
+//! required in time, and stricter where the steps of what was found still miss it.
+
+use phea_dynamics::watch::{Stopped, Watch, within};
+use phea_qft::design::{DesignStatus, Finding};
+use phea_qft::verification::Verdict;
+
+use super::problem::{design_options, design_problem};
+use super::step_aim::{REPETITIONS, StepAim, excess};
+use super::{DesignError, DesignRun, Explanation, ProjectDesign, proven};
+use crate::limit_kind::limit_words;
+use crate::robust::RobustProblem;
+use crate::setup::Setup;
+
+/// The best design that was found for a problem with the limits of what may be built.
+pub(super) fn found(
+    setup: &Setup<'_>,
+    given: &RobustProblem,
+    seed: Option<u32>,
+    watch: Watch<'_>,
+) -> Result<(DesignRun, ProjectDesign), DesignError> {
+    let mut aim = StepAim::AS_REQUIRED;
+    let mut found: Vec<(DesignRun, ProjectDesign)> = Vec::new();
+    for repetition in 0..=REPETITIONS {
+        let aimed = aim.of(setup.project, given)?;
+        let share = [repetition, repetition + 1].map(|done| done as f64 / (REPETITIONS + 1) as f64);
+        match searched(setup, (given, &aimed), seed, &mut within(&mut *watch, share)) {
+            Ok(one) => found.push(one),
+            // what was found before remains
+            Err(error) if found.is_empty() => return Err(error),
+            Err(_) => break,
+        }
+        let Some((_, told)) = found.last().filter(|(_, told)| !told.stopped) else { break };
+        match aim.stricter(told).filter(|_| repetition < REPETITIONS) {
+            Some(stricter) => aim = stricter,
+            None => break,
+        }
+    }
+    let by_rank = |one: &(DesignRun, ProjectDesign), other: &(DesignRun, ProjectDesign)| {
+        let (one, other) = (rank(&one.1), rank(&other.1));
+        one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
+    };
+    found.into_iter().min_by(by_rank).ok_or(Stopped.into())
+}
+
+/// What makes one of several designs the better one, the least the best: its verdict over
+/// frequency, then how far its steps are from what is required.
+fn rank(told: &ProjectDesign) -> (u8, f64) {
+    let verdict = match told.designed.view.audit.verdict {
+        Verdict::Met if told.design.status == DesignStatus::Met => 0,
+        Verdict::Met => 1,
+        Verdict::NotProven => 2,
+        Verdict::Violated => 3,
+    };
+    (verdict, excess(&told.designed.view.in_time))
+}
+
+/// A design of the problem that is aimed at, judged as the given one.
+fn searched(
+    setup: &Setup<'_>,
+    (given, aimed): (&RobustProblem, &RobustProblem),
+    seed: Option<u32>,
+    watch: Watch<'_>,
+) -> Result<(DesignRun, ProjectDesign), DesignError> {
+    let problem = design_problem(setup, aimed);
+    let options = design_options(setup, aimed, seed)?;
+    let mut outcome = phea_qft::design::design(&problem, &options, watch)?;
+    outcome.conclude()?;
+    let run = DesignRun { aimed: aimed.clone(), problem, outcome };
+    let (run, proven) = proven::proven((setup, aimed), run, &options, watch)?;
+    let DesignRun { problem, outcome, .. } = &run;
+    let explained = |finding: &Finding| explained(finding, aimed);
+    let explanations = outcome.findings.iter().map(explained).collect::<Vec<_>>();
+    let Some(design) = outcome.design.clone() else {
+        if outcome.stopped {
+            return Err(Stopped.into());
+        }
+        let sentences = explanations.into_iter().map(|explanation| explanation.sentence).collect();
+        return Err(DesignError::NoController(sentences));
+    };
+    let mut told = ProjectDesign::new(setup, aimed, problem, design, options, watch)?;
+    if let Some(view) = proven {
+        told.designed.view = view;
+    }
+    let stopped = outcome.stopped;
+    let (known, aimed_at) = (given.specifications.len(), &aimed.specifications);
+    if given.specifications != aimed_at[..known] {
+        told = told.judged_by(given, watch)?;
+    }
+    told = told.met_where_it_is(known);
+    Ok((run, ProjectDesign { stopped, explanations, ..told }))
+}
+
+/// A finding in words, which say where a number is that of a limit of the design.
+fn explained(finding: &Finding, aimed: &RobustProblem) -> Explanation {
+    let own = aimed.specifications.len() - aimed.design_limits.len();
+    let mut found = Explanation::of(finding);
+    for specification in found.specifications.clone() {
+        if let Some(kind) = specification.checked_sub(own).and_then(|limit| aimed.design_limits.get(limit)) {
+            let words = format!("; {} is a limit of the design: {}", specification + 1, limit_words(*kind));
+            found.sentence.push_str(&words);
+        }
+    }
+    found
+}

@@ -1,0 +1,151 @@
+//! The way to what is required in time: limits on tracking that lead a search there. They follow
+//! from the requirement, and are tightened where steps of the designed loop still miss it; the
+//! design is judged without them.
+//!
+//! ```text
+//! requirement in time -> limits of tracking -> design -> steps miss it by r -> the same for a requirement stricter by r
+//! ```
+
+use phea_qft::specification::Specification;
+
+use super::{DesignError, DesignLimitKind, ProjectDesign, limit_words};
+use crate::audit::TimeFinding;
+use crate::project::{DeclaredLimit, DeclaredSpecification, Project, ResponseWish, SpecificationKind};
+use crate::robust::{RobustError, RobustProblem};
+use crate::simulate::TimeRequirement;
+use crate::specification::{specification, specifications};
+use phea_dynamics::closed_loop::ClosedLoop;
+
+/// How often a design is repeated with stricter limits.
+pub(super) const REPETITIONS: usize = 3;
+/// Room that is left where a limit is tightened.
+const ROOM: f64 = 0.97;
+/// Least share of a requirement that is aimed at.
+const LEAST_SHARE: f64 = 0.2;
+/// Settling time of the upper limit over that of the lower one, and zero and pole times it.
+const UPPER_SHARE: f64 = 0.4;
+const EXTRA_ROOT: f64 = 15.0;
+/// Least overshoot of an upper limit, percent.
+const LEAST_OVERSHOOT_PERCENT: f64 = 0.1;
+/// Design frequencies times the settling time; the last is the end of the band.
+const FREQUENCIES: [f64; 6] = [0.025, 0.25, 1.25, 2.5, 5.0, 12.5];
+
+/// Shares of what is required that a search aims at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct StepAim {
+    overshoot: f64,
+    settling: f64,
+}
+
+impl StepAim {
+    /// At what is required itself.
+    pub(super) const AS_REQUIRED: StepAim = StepAim { overshoot: 1.0, settling: 1.0 };
+
+    /// Stricter by as much as the steps of a design miss a requirement; `None` where they miss
+    /// none, or where nothing is gained by aiming lower still.
+    pub(super) fn stricter(self, told: &ProjectDesign) -> Option<StepAim> {
+        let missed = told.designed.view.in_time.iter().find(|finding| finding.violates())?;
+        let (reached, wish) = (missed.reached()?, missed.requirement.wish);
+        let over = |value: f64, most: Option<f64>| {
+            let ratio = value / most?.max(LEAST_OVERSHOOT_PERCENT);
+            (ratio > 1.0).then_some(ratio)
+        };
+        let late = |time_s: f64, most: Option<f64>| Some(time_s / most?).filter(|ratio| *ratio > 1.0);
+        let overshoot = over(reached.overshoot_percent, wish.overshoot_percent);
+        let slower = late(reached.settling_time_s, wish.settling_time_s)
+            .into_iter()
+            .chain(late(reached.rise_time_s, wish.rise_time_s))
+            .reduce(f64::max);
+        let tightened = |share: f64, ratio: Option<f64>| match ratio {
+            Some(ratio) if ratio.is_finite() => (share * ROOM / ratio).max(LEAST_SHARE),
+            Some(_) => (0.5 * share).max(LEAST_SHARE),
+            None => share,
+        };
+        let aim = StepAim {
+            overshoot: tightened(self.overshoot, overshoot),
+            settling: tightened(self.settling, slower),
+        };
+        (aim != self).then_some(aim)
+    }
+
+    /// The problem that is searched with this aim: its limits of tracking that follow from a
+    /// requirement for a stricter one, and where only a step is required, limits that lead there.
+    ///
+    /// # Errors
+    /// [`DesignError`] for a requirement without limits.
+    pub(super) fn of(self, project: &Project, given: &RobustProblem) -> Result<RobustProblem, DesignError> {
+        let mut problem = given.clone();
+        let aimed = Project {
+            specifications: project.specifications.iter().map(|one| self.aimed(one)).collect(),
+            ..project.clone()
+        };
+        let limits = specifications(&aimed).map_err(RobustError::from)?;
+        for (own, limit) in problem.specifications.iter_mut().zip(limits) {
+            *own = limit;
+        }
+        let tracks = |one: &Specification| one.requirement.is_tracking();
+        if !problem.specifications.iter().any(tracks)
+            && let Some(required) = given.in_time.iter().find(|one| one.limits.is_none())
+        {
+            problem.specifications.push(self.towards(required)?);
+            problem.specification_names.push(limit_words(DesignLimitKind::RequiredStep).to_string());
+            problem.design_limits.push(DesignLimitKind::RequiredStep);
+        }
+        Ok(problem)
+    }
+
+    /// A specification with limits for a stricter requirement.
+    fn aimed(self, declared: &DeclaredSpecification) -> DeclaredSpecification {
+        let mut stricter = declared.clone();
+        for limit in [&mut stricter.upper, &mut stricter.lower] {
+            let Some(DeclaredLimit::Response(wish)) = limit else { continue };
+            if wish.function.is_none() {
+                wish.overshoot_percent =
+                    wish.overshoot_percent.map(|most| (self.overshoot * most).max(LEAST_OVERSHOOT_PERCENT));
+            }
+        }
+        if let Some(DeclaredLimit::Response(wish)) = &mut stricter.lower
+            && wish.function.is_none()
+        {
+            wish.settling_time = wish.settling_time.map(|time_s| self.settling * time_s);
+        }
+        stricter
+    }
+
+    /// Limits of tracking that lead to a required step.
+    fn towards(self, required: &TimeRequirement) -> Result<Specification, DesignError> {
+        let wish = required.wish;
+        let settling_s = self.settling * wish.horizon_s;
+        let response = |settling_s: f64| ResponseWish {
+            settling_time: Some(settling_s),
+            settling_band_percent: Some(wish.band_percent),
+            ..ResponseWish::default()
+        };
+        let root = Some(EXTRA_ROOT / wish.horizon_s);
+        let overshoot_percent = self.overshoot * wish.overshoot_percent.unwrap_or(wish.band_percent);
+        let upper = ResponseWish {
+            overshoot_percent: Some(overshoot_percent.max(LEAST_OVERSHOOT_PERCENT)),
+            zero: root,
+            ..response(UPPER_SHARE * settling_s)
+        };
+        let frequencies = FREQUENCIES.map(|factor| factor / wish.horizon_s).to_vec();
+        let declared = DeclaredSpecification {
+            kind: SpecificationKind::ClosedLoop(ClosedLoop::Tracking),
+            upper: Some(DeclaredLimit::Response(upper)),
+            lower: Some(DeclaredLimit::Response(ResponseWish { pole: root, ..response(settling_s) })),
+            frequencies,
+            ..DeclaredSpecification::default()
+        };
+        Ok(specification(&declared, ClosedLoop::Tracking, required.number).map_err(RobustError::from)?)
+    }
+}
+
+/// How far the steps of a design are from what is required: the largest ratio, at most 1 where all
+/// satisfy it.
+pub(super) fn excess(findings: &[TimeFinding]) -> f64 {
+    let required = findings.iter().filter(|finding| finding.requirement.follows);
+    let ratio = |finding: &TimeFinding| {
+        finding.reached().map_or(f64::INFINITY, |reached| finding.requirement.wish.excess(&reached))
+    };
+    required.map(ratio).fold(0.0, f64::max)
+}

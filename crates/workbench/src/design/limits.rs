@@ -1,0 +1,138 @@
+//! What may be built: the limits of a design beyond its specifications, with what it reaches.
+
+use phea_engineering::design::{DesignLimit, DesignLimitKind, LimitOrigin, limit_key, limit_words};
+use phea_qft::verification::{SpecificationFinding, Verdict};
+
+use super::ProjectDesign;
+use crate::answer::{Object, significant};
+use crate::document::{Cell, Document, Table};
+use crate::quantity::DisplayUnit;
+
+/// A margin below which a limit leaves the search no room, dB.
+const BINDS_DB: f64 = 0.05;
+
+/// A table of the limits; empty where there are none.
+pub(crate) fn document(view: &ProjectDesign) -> Document {
+    let mut out = Document::default();
+    if view.limits.is_empty() {
+        return out;
+    }
+    out.heading("What may be built");
+    out.explanation(
+        "Limits beyond the specifications, which `[design]` states or which hold by default. Where one binds, the search had no more room there: a looser one may allow a lower order, or less relaxation.",
+    );
+    let row = |limit: &DesignLimit| {
+        [
+            limit_words(limit.kind).into(),
+            Cell::Code(format!("design.{}", limit_key(limit.kind))),
+            value_words(limit).into(),
+            origin_words(limit.origin).into(),
+            finding(view, limit.kind)
+                .and_then(|found| found.worst.as_ref())
+                .map_or(Cell::Missing, |worst| Cell::margin(worst.margin_db)),
+            Cell::from(binds(view, limit).map(|binds| if binds { "binds" } else { "" }.to_string())),
+        ]
+    };
+    out.table(
+        Table::new(["limit", "key", "value", "from", "least margin", ""]).with(view.limits.iter().map(row)),
+    );
+    out
+}
+
+/// The limits in JSON.
+pub(crate) fn rows(view: &ProjectDesign) -> Vec<Object> {
+    let row = |limit: &DesignLimit| {
+        let found = finding(view, limit.kind);
+        let margin = found.and_then(|found| found.worst.as_ref()).map(|worst| worst.margin_db);
+        Object::new()
+            .with("key", limit_key(limit.kind))
+            .with(value_key(limit.kind), limit.value)
+            .with("origin", origin_key(limit.origin))
+            .with("kept", is_kept(view, limit))
+            .maybe("worst_margin_db", margin)
+            .maybe("binds", binds(view, limit))
+    };
+    view.limits.iter().map(row).collect()
+}
+
+/// Whether the design keeps a limit; the ranges of poles are kept by the search itself.
+fn is_kept(view: &ProjectDesign, limit: &DesignLimit) -> bool {
+    match limit.kind {
+        DesignLimitKind::MinimumDelayMargin => view.tolerates_its_delay,
+        DesignLimitKind::PoleDampingRatio | DesignLimitKind::FastestPole | DesignLimitKind::RequiredStep => {
+            true
+        }
+        DesignLimitKind::NoiseToCommand
+        | DesignLimitKind::ModulusMargin
+        | DesignLimitKind::HighestBandwidth => {
+            finding(view, limit.kind).is_some_and(|found| found.verdict == Verdict::Met)
+        }
+    }
+}
+
+/// Whether a limit leaves no room; `None` where that is not known.
+fn binds(view: &ProjectDesign, limit: &DesignLimit) -> Option<bool> {
+    if limit.kind == DesignLimitKind::MinimumDelayMargin {
+        let margin_s = view.designed.figures.delay_margin_s?;
+        return Some(margin_s <= (1.0 + DELAY_NEAR) * limit.value);
+    }
+    Some(finding(view, limit.kind)?.worst.as_ref()?.margin_db < BINDS_DB)
+}
+
+/// Share of a required delay margin within which it binds.
+const DELAY_NEAR: f64 = 0.01;
+
+/// The finding of the audit for a limit that is a specification.
+fn finding(view: &ProjectDesign, kind: DesignLimitKind) -> Option<&SpecificationFinding> {
+    view.limit_findings.iter().find(|(known, _)| *known == kind).map(|(_, found)| found)
+}
+
+fn value_key(kind: DesignLimitKind) -> &'static str {
+    match kind {
+        DesignLimitKind::HighestBandwidth | DesignLimitKind::FastestPole => "value_rad_per_s",
+        DesignLimitKind::MinimumDelayMargin => "value_s",
+        DesignLimitKind::NoiseToCommand
+        | DesignLimitKind::ModulusMargin
+        | DesignLimitKind::PoleDampingRatio
+        | DesignLimitKind::RequiredStep => "value",
+    }
+}
+
+fn value_words(limit: &DesignLimit) -> String {
+    let value = limit.value;
+    match limit.kind {
+        DesignLimitKind::NoiseToCommand => {
+            format!("{} % of the nominal voltage, rms", significant(100.0 * value, 3))
+        }
+        DesignLimitKind::ModulusMargin => format!("|1+L| at least {}", significant(value, 3)),
+        DesignLimitKind::HighestBandwidth => {
+            format!("|L/(1+L)| at most -3 dB from {} rad/s on", significant(value, 3))
+        }
+        DesignLimitKind::MinimumDelayMargin => format!("{} more", DisplayUnit::MILLISECOND.text(value, 3)),
+        DesignLimitKind::PoleDampingRatio => format!("at least {}", significant(value, 3)),
+        DesignLimitKind::FastestPole => format!("at most {} rad/s", significant(value, 3)),
+        DesignLimitKind::RequiredStep => String::new(),
+    }
+}
+
+fn origin_key(origin: LimitOrigin) -> &'static str {
+    match origin {
+        LimitOrigin::Stated => "stated",
+        LimitOrigin::Default => "default",
+        LimitOrigin::QuarterWave => "quarter_wave",
+        LimitOrigin::Servovalve => "servovalve",
+        LimitOrigin::Sampling => "sampling",
+        LimitOrigin::Bandwidth => "highest_bandwidth",
+    }
+}
+
+fn origin_words(origin: LimitOrigin) -> &'static str {
+    match origin {
+        LimitOrigin::Stated => "stated",
+        LimitOrigin::Default => "default",
+        LimitOrigin::QuarterWave => "quarter wave of the lines",
+        LimitOrigin::Servovalve => "natural frequency of the valve",
+        LimitOrigin::Sampling => "sample time",
+        LimitOrigin::Bandwidth => "ten times the bandwidth",
+    }
+}
