@@ -10,5 +10,6 @@ pub use phea_engineering::design::*;
 pub use answer::body;
 pub use document::output;
 pub(crate) use document::{costs, explanation_words, laws, side_by_side, status};
+pub(crate) use limits::document as limits;
 pub(crate) use stages::bound_files;
 pub use stages::{files, stage_files};

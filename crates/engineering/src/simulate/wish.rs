@@ -111,7 +111,7 @@ impl TrackingWish {
     }
 
     /// Whether a step satisfies it, up to the rounding of printed numbers. An overshoot below
-    /// [`NO_OVERSHOOT_PERCENT`] counts as none.
+    /// a hundredth of a percent counts as none.
     pub fn is_satisfied(&self, reached: &ReachedStep) -> bool {
         self.excess(reached) <= 1.0 + ROUNDED
     }

@@ -75,7 +75,7 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
     };
     out.heading(format!("To be pasted into the project{caution}"));
     out.preformatted(snippet(&view.declared_controller, view.declared_prefilter.as_ref()));
-    out.append(super::limits::document(view));
+    out.append(super::limits(view));
     out.append(costs(view));
     out.heading("Audit of the designed controller");
     out.append(audit::document(&view.designed.view, vec![]));

@@ -14,7 +14,9 @@ use super::chapter::Chapter;
 use super::family_steps;
 use crate::answer::{OutputFile, significant};
 use crate::audit::basis;
-use crate::design::{DesignError, ProjectDesign, costs, design_project, files, laws, side_by_side, status};
+use crate::design::{
+    DesignError, ProjectDesign, costs, design_project, files, laws, limits, side_by_side, status,
+};
 use crate::document::{Document, StatusMark};
 use crate::error::CommandError;
 use crate::figure::Figure;
@@ -173,6 +175,7 @@ fn chapter(found: &FoundDesign) -> Result<Chapter, CommandError> {
         Some(Err(reason)) => out.explanation(format!("No step responses of the family: {reason}.")),
         None => {}
     }
+    out.append(limits(view));
     out.append(costs(view));
     out.heading("What this rests on");
     out.sentences(basis(&side.view));
