@@ -78,7 +78,7 @@ pub fn within<'a>(watch: Watch<'a>, [from, to]: [f64; 2]) -> impl FnMut(Progress
 pub fn rising<'a>(watch: Watch<'a>) -> impl FnMut(Progress) -> bool + use<'a> {
     let mut most = 0.0_f64;
     move |progress| {
-        most = most.max(progress.share.min(1.0));
+        most = most.max(progress.share).min(1.0);
         watch(Progress { share: most, ..progress })
     }
 }

@@ -151,7 +151,7 @@ impl Sampler for Digital<'_> {
     }
 
     fn command(&mut self, _time_s: f64, state: &[f64], inputs: &[f64]) -> f64 {
-        let [reference, measurement] = self.held.sampled(state, inputs);
+        let [reference, measurement, _] = self.held.sampled(state, inputs);
         self.controller.step(&mut self.state, reference, measurement).command
     }
 }
