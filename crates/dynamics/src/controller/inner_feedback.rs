@@ -3,7 +3,7 @@
 use crate::analytic::Analytic;
 use crate::linear::{LinearError, Polynomial, TransferFunction};
 
-/// What a controller subtracts from its command for a second measured signal of the plant.
+/// Feedback of a second measured signal of the plant, subtracted from the command.
 ///
 /// ```text
 /// u = G (F r - y) - H p,     H(s) = k s/(s + w_h) w_l/(s + w_l)         each of both filters optional
@@ -36,7 +36,7 @@ pub struct InnerFeedback {
 }
 
 impl InnerFeedback {
-    /// Whether H is zero.
+    /// True where H is zero.
     pub fn is_zero(&self) -> bool {
         self.gain == 0.0
     }

@@ -33,7 +33,7 @@ impl ControllerState {
     }
 }
 
-/// What a controller reads at a sample.
+/// The values that a controller reads at a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ControllerInput {
     /// r.
@@ -42,7 +42,7 @@ pub struct ControllerInput {
     pub measurement: f64,
     /// p, of which H p is subtracted from the command.
     pub inner: f64,
-    /// What is added to the command.
+    /// A value that is added to the command.
     pub added: f64,
 }
 
@@ -125,7 +125,7 @@ impl SampledController {
         self.inner.as_deref().unwrap_or_default()
     }
 
-    /// Whether it feeds an inner signal back.
+    /// True where it feeds an inner signal back.
     pub fn reads_inner(&self) -> bool {
         self.inner.is_some()
     }
@@ -154,7 +154,7 @@ impl SampledController {
     /// The same while an inner signal that is fed back does not change either.
     ///
     /// # Example
-    /// What is fed back without a high pass is held by the integral part.
+    /// The integral part holds what is fed back without a high pass.
     /// ```
     /// use phea_dynamics::controller::{Compensator, Controller, ControllerInput, Element, InnerFeedback, Timing};
     /// let feedback = Compensator::new(vec![Element::Gain(2.0), Element::Integrator]);
@@ -315,7 +315,7 @@ impl SampledController {
     }
 }
 
-/// What the feedback may give so that the sum stays within its limit: its own output within it.
+/// The part of the output that feedback may have so that the sum stays within its limit.
 fn within(wanted: f64, limit: f64, beside: f64, output: f64) -> f64 {
     let command = wanted.clamp(-limit, limit);
     if command == wanted { output } else { command - beside }

@@ -8,7 +8,7 @@ pub struct RateNumerators<S> {
     pub command: Vec<S>,
     /// From the disturbance.
     pub disturbance: Vec<S>,
-    /// Those to the inner signal that a sampled controller feeds back, from command and
+    /// Numerators to the inner signal that a sampled controller feeds back, from command and
     /// disturbance; `None` where it feeds back none.
     pub inner: Option<[Vec<S>; 2]>,
 }
