@@ -24,7 +24,7 @@ pub use nominal::NominalMargins;
 pub use prefilter::PrefilterGain;
 pub use proven::{prove_audit, standing_word, try_to_prove, why_not_proven};
 pub use remark::remark_sentences;
-pub use stability::{stability_reason, stability_sentence};
+pub use stability::{infinity_sentence, stability_reason, stability_sentence};
 pub use words::{
     closed_loop_symbol, frequency_number, frequency_words, margin_words, meaning, verdict_key, verdict_words,
     worst_at_design,

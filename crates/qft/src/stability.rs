@@ -36,7 +36,9 @@ use phea_dynamics::linear::LinearError;
 pub use crossover::CriticalDelay;
 pub(crate) use family::StabilityAudit;
 pub use family::{FamilyStability, family_stability};
-pub use finding::{ClosestApproach, DelayMargin, StabilityFinding, StabilityMethod, StabilityReason};
+pub use finding::{
+    ClosestApproach, DelayMargin, SearchedInfinity, StabilityFinding, StabilityMethod, StabilityReason,
+};
 
 use crate::closed_loop::{Compensation, Member};
 use characteristic::Characteristic;
@@ -101,8 +103,8 @@ pub enum Irresolution {
     /// Plants without polynomials in a sampled loop, between which modes may fold.
     FoldingUnknown,
     /// The enclosures of the coefficients that must not vanish, so that no pole passes through
-    /// infinity, still contain zero.
-    InfinityOpen,
+    /// infinity, still contain zero, and a search comes near to it.
+    InfinityOpen(SearchedInfinity),
     /// A controller or sensor with undamped poles away from the origin, in a loop that is known by
     /// measured points only.
     UndampedController,

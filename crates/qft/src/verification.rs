@@ -18,7 +18,7 @@ pub(crate) use audit::audit_among;
 pub use audit::{AuditProblem, AuditWork, TOLERANCE_DB, TrackingJudgement, audit_specifications};
 
 pub use crate::stability::{
-    ClosestApproach, DelayMargin, StabilityFinding, StabilityMethod, StabilityReason,
+    ClosestApproach, DelayMargin, SearchedInfinity, StabilityFinding, StabilityMethod, StabilityReason,
 };
 pub use crate::verdict::{Evidence, PlantPoint, Verdict};
 

@@ -264,12 +264,33 @@ fn a_pole_that_touches_infinity_is_told_where_the_square_is_recorded() {
     assert_eq!(audit(&build(false), &controller, &[sensitivity(3.0)]).verdict, Verdict::Met);
     let found = audit(&build(true), &controller, &[sensitivity(3.0)]);
     assert_eq!(found.verdict, Verdict::NotProven);
-    let open = [Irresolution::PoleThroughInfinity, Irresolution::InfinityOpen];
-    assert!(
-        open.map(StabilityReason::NotResolved).contains(&found.stability.reason),
-        "{:?}",
-        found.stability
-    );
+    let StabilityReason::NotResolved(Irresolution::PoleThroughInfinity | Irresolution::InfinityOpen(_)) =
+        found.stability.reason
+    else {
+        panic!("{:?}", found.stability)
+    };
+}
+
+/// A leading coefficient 1 - x share, recorded so that no enclosure over a part of the box has an
+/// end: the two squares are equal, and their difference keeps the width of both.
+#[test]
+fn a_leading_coefficient_without_enclosures_is_searched_for() {
+    let build = |share: f64| {
+        family(&[("x", 0.0, 0.0, 1.0)], Spacing::Linear, move |p| {
+            let from = p[0] - 0.5.into();
+            let unit = (p[0] * p[0] - p[0] + 0.25.into() - from * from + 1e-7.into()).times(1e7);
+            let leading = -(p[0].times(share) / unit) + 1.0.into();
+            rational(vec![1.0.into()], vec![leading, 1.0.into(), 0.0.into()], 0.0)
+        })
+    };
+    let kept = audit(&build(0.6), &Controller::default(), &[sensitivity(3.0)]);
+    assert_eq!(kept.stability.verdict, Verdict::Met, "{:?}", kept.stability);
+    let found = kept.stability.infinity.expect("a search");
+    assert!((found.least_share - 0.4).abs() < 1e-6 && found.parameters == [0], "{found:?}");
+    assert_eq!(value(&found.plant), 1.0);
+    let changed = audit(&build(1.25), &Controller::default(), &[sensitivity(3.0)]);
+    assert_eq!(changed.stability.verdict, Verdict::Violated, "{:?}", changed.stability);
+    assert!(value(&changed.stability.plant) > 0.8);
 }
 
 /// |L(inf)| = 1.001 - (x - 0.37)^2 exceeds one for |x - 0.37| < 0.0316: with dead time infinitely many poles are unstable there.

@@ -205,6 +205,7 @@ pub(crate) fn blind(problem: &RandomProblem, nominal: Vec<f64>) -> Audit {
             largest_real_part: None,
             plant: PlantPoint::Parameters(nominal),
             closest_approach: None,
+            infinity: None,
             reason: StabilityReason::UnstablePrefilter,
         },
         delay_margin: None,

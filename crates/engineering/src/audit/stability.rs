@@ -2,7 +2,7 @@
 
 use phea_qft::stability::{Instability, Irresolution};
 use phea_qft::verification::{
-    ClosestApproach, Evidence, StabilityFinding, StabilityMethod, StabilityReason, Verdict,
+    ClosestApproach, Evidence, SearchedInfinity, StabilityFinding, StabilityMethod, StabilityReason, Verdict,
 };
 
 use super::PlantNames;
@@ -26,9 +26,34 @@ pub fn stability_sentence(stability: &StabilityFinding, names: &PlantNames) -> S
         }
         (Verdict::Violated, _) => format!("unstable, with {plant}: {}", stability_reason(stability)),
         (Verdict::NotProven, _) => {
-            format!("stability is not proven: {} ({plant})", stability_reason(stability))
+            let moved = match &stability.reason {
+                StabilityReason::NotResolved(Irresolution::InfinityOpen(found)) => {
+                    format!("; what moves it: {}", moving_words(found, names))
+                }
+                _ => String::new(),
+            };
+            format!("stability is not proven: {} ({plant}{moved})", stability_reason(stability))
         }
     }
+}
+
+/// The evidence that no pole passes through infinity inside the box, where it is a search.
+pub fn infinity_sentence(stability: &StabilityFinding, names: &PlantNames) -> Option<String> {
+    let found = stability.infinity.as_ref()?;
+    Some(format!(
+        "That no pole passes through infinity inside the box was searched for, since the enclosures of the leading \
+         coefficient are too wide there: it falls to {} of its nominal value at least ({}) and depends on {}.",
+        significant(found.least_share, 3),
+        names.text(&found.plant),
+        moving_words(found, names)
+    ))
+}
+
+/// The names of the parameters that move a leading coefficient.
+fn moving_words(found: &SearchedInfinity, names: &PlantNames) -> String {
+    let all = names.headings();
+    let named: Vec<&str> = found.parameters.iter().filter_map(|&index| all.get(index).copied()).collect();
+    if named.is_empty() { "no single parameter".to_string() } else { named.join(", ") }
 }
 
 /// How stability was decided.
@@ -134,9 +159,10 @@ fn irresolution_words(irresolution: &Irresolution) -> String {
         Irresolution::FoldingUnknown => {
             "which modes beyond half of the sampling rate fold into the band between one plant and the next is not known where lines move".to_string()
         }
-        Irresolution::InfinityOpen => {
-            "it could not be shown that no pole passes through infinity inside the box".to_string()
-        }
+        Irresolution::InfinityOpen(found) => format!(
+                "it could not be shown that no pole passes through infinity inside the box: the leading coefficient of the characteristic equation falls to {} of its nominal value",
+                rounded(found.least_share)
+            ),
         Irresolution::UndampedController => {
             "controller or sensor has poles on the boundary of stability, which measured points cannot go around".to_string()
         }

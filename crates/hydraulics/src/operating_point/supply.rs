@@ -54,10 +54,26 @@ impl<S: Scalar> Balance<S> {
             let falls = unit.relief_override * (found.taken / unit.pump_flow).minimum(S::from(1.0));
             let slope = falls / (S::from(2.0) * (pressure - self.supply.tank_pressure));
             let slope = S::select(found.taken.less_than(unit.pump_flow), slope, S::from(0.0));
-            pressure = pressure + (self.supply.pressure - falls - pressure) / (S::from(1.0) + slope);
+            let next = pressure + (self.supply.pressure - falls - pressure) / (S::from(1.0) + slope);
+            pressure = self.within_relief(next, unit, steady);
             found = self.taking(pressure, tare_drop, steady);
         }
         found
+    }
+
+    /// A pressure of the supply, not below that at which the relief valve is shut, and at
+    /// standstill, where nothing flows back, not above that which is held when idle. The solution
+    /// lies there, and its enclosure over a box of parameters is no wider.
+    fn within_relief(&self, pressure: S, unit: &PumpLimited<S>, steady: Steady<S>) -> S {
+        let idle = self.supply.pressure;
+        let not_below = pressure.maximum(idle - unit.relief_override);
+        let velocity = match steady {
+            Steady::Command(_) => S::from(0.0),
+            Steady::Moving { velocity, .. } => velocity,
+            Steady::Matched(..) => return not_below,
+        };
+        let still = velocity.abs().less_than(S::from(f64::MIN_POSITIVE));
+        S::select(still, not_below.minimum(idle), not_below)
     }
 
     fn taking(&self, pressure: S, tare_drop: S, steady: Steady<S>) -> SettledSupply<S> {

@@ -332,7 +332,11 @@ impl<'a> StabilityAudit<'a> {
         let Family::Uncertain(family) = self.family else { return };
         match infinity::search(family, self.compensation) {
             Infinity::Kept => {}
-            Infinity::Open => self.record.doubt(Irresolution::InfinityOpen, self.nominal()),
+            Infinity::Searched(found) => self.record.infinity = Some(found),
+            Infinity::Open(found) => {
+                let plant = found.plant.clone();
+                self.record.doubt(Irresolution::InfinityOpen(found), plant);
+            }
             Infinity::Changed(shares) => {
                 let values: Vec<Vec<f64>> = shares.iter().map(|shares| family.values(shares)).collect();
                 let changed = values.first().cloned().map(PlantPoint::Parameters);
@@ -373,6 +377,7 @@ impl<'a> StabilityAudit<'a> {
                 largest_real_part: record.real_part.as_ref().map(|(real_part, _)| *real_part),
                 plant,
                 closest_approach: record.closest.clone().filter(|_| stable),
+                infinity: record.infinity.clone().filter(|_| stable),
                 reason,
             },
             delay_margin: record.delay.clone().filter(|_| stable),

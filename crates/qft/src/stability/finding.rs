@@ -17,8 +17,22 @@ pub struct StabilityFinding {
     pub plant: PlantPoint,
     /// How near the loops of the family come to -1; `None` unless it is stable.
     pub closest_approach: Option<ClosestApproach>,
+    /// Where a search, and no enclosure, finds that no pole passes through infinity inside the box.
+    pub infinity: Option<SearchedInfinity>,
     /// How it was decided.
     pub reason: StabilityReason,
+}
+
+/// The leading coefficients of the characteristic equation over a box, by a search: while they keep
+/// their sign, no pole passes through infinity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SearchedInfinity {
+    /// The least that was found, as a share of its value for the nominal plant.
+    pub least_share: f64,
+    /// The plant that has it.
+    pub plant: PlantPoint,
+    /// The parameters that move it, as their indices, the most important first.
+    pub parameters: Vec<usize>,
 }
 
 /// How the stability of a family was decided.

@@ -12,19 +12,31 @@
 //! ```
 //!
 //! The recorded coefficients are enclosed over the box, which is halved until each part has one
-//! sign, or a plant with the other sign is found.
+//! sign, or a plant with the other sign is found. Where enclosures are too wide to decide, the
+//! least of them is searched for, as the worst plants of the other audits are.
 
 use std::collections::VecDeque;
 
 use phea_dynamics::linear::Polynomial;
-use phea_dynamics::scalar::Interval;
-use phea_dynamics::uncertain_plant::PlantCoefficients;
+use phea_dynamics::order::sort_by_number;
+use phea_dynamics::scalar::{Interval, Scalar};
+use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
 
+use super::finding::SearchedInfinity;
+use super::search::climb;
 use crate::closed_loop::Compensation;
-use crate::family::UncertainFamily;
+use crate::family::{UncertainFamily, corners};
+use crate::verdict::PlantPoint;
 
-/// Parts of the box that are enclosed.
+/// Parts of the box that are enclosed; fewer where none of the first ones is decided.
 const PARTS_MAXIMUM: usize = 4000;
+const PARTS_WITHOUT_ANY: usize = 64;
+/// Starts of the search where the enclosures do not decide.
+const STARTS: usize = 4;
+/// Share of its nominal value that counts as clearly not zero, after a search.
+const CLEAR_SHARE: f64 = 1e-3;
+/// Relative change of a coefficient by a parameter that counts.
+const CHANGE: f64 = 1e-3;
 /// Additional plants between one sign and the other that are judged.
 const BETWEEN: usize = 12;
 
@@ -36,8 +48,10 @@ pub(super) enum Infinity {
     /// Yes: these plants, given by their shares of the box, have the opposite sign to the first
     /// member, or lie next to the change of sign.
     Changed(Vec<Vec<f64>>),
-    /// Neither was shown.
-    Open,
+    /// No, as far as a search from members and corners finds.
+    Searched(SearchedInfinity),
+    /// Neither was shown: the search comes too near to zero.
+    Open(SearchedInfinity),
 }
 
 /// The contribution of the loop to the leading coefficients of the plant: a factor of the numerator
@@ -61,14 +75,15 @@ pub(super) fn search(family: &UncertainFamily, compensation: &Compensation) -> I
     let dimension = family.coordinates().len();
     let signs = |low: &[f64], high: &[f64]| around.leading(family, low, high);
     let nominal = family.shares(family.plant().nominal().as_slice());
+    let searched = || Searched { family, around: &around, nominal: &nominal }.look();
     let first: Vec<Option<bool>> = signs(&nominal, &nominal).into_iter().map(sign).collect();
     let mut open = VecDeque::from([BoxPart { low: vec![0.0; dimension], high: vec![1.0; dimension] }]);
-    let mut enclosed = 0;
+    let (mut enclosed, mut decided) = (0, 0);
     // the widest parts first, in which a plant with the other sign is found soonest
     while let Some(part) = open.pop_front() {
         enclosed += 1;
-        if enclosed > PARTS_MAXIMUM {
-            return Infinity::Open;
+        if enclosed > PARTS_MAXIMUM || decided == 0 && enclosed > PARTS_WITHOUT_ANY {
+            return searched();
         }
         let middle = part.middle();
         let here = signs(&part.low, &part.high);
@@ -78,6 +93,7 @@ pub(super) fn search(family: &UncertainFamily, compensation: &Compensation) -> I
             None => !enclosure.has_both_signs(),
         };
         if here.iter().zip(&first).all(kept) {
+            decided += 1;
             continue;
         }
         let at_middle = signs(&middle, &middle);
@@ -87,9 +103,13 @@ pub(super) fn search(family: &UncertainFamily, compensation: &Compensation) -> I
             .zip(&first)
             .any(|(here, first)| first.zip(here).is_some_and(|(first, here)| first != here));
         if other {
-            return Infinity::Changed(between(&nominal, &middle, &first, &signs));
+            let is_first = |shares: &[f64]| {
+                let here = signs(shares, shares).into_iter().map(sign);
+                here.zip(&first).all(|(here, first)| here == *first)
+            };
+            return Infinity::Changed(between(&nominal, &middle, &is_first));
         }
-        let Some(halves) = part.halved(&middle, &signs) else { return Infinity::Open };
+        let Some(halves) = part.halved(&middle, &signs) else { return searched() };
         open.extend(halves);
     }
     Infinity::Kept
@@ -107,7 +127,7 @@ fn sign(enclosure: Interval) -> Option<bool> {
 type Signs<'a> = &'a dyn Fn(&[f64], &[f64]) -> Vec<Interval>;
 
 /// Plants from the one with the other sign towards the change, on the line to the first member.
-fn between(from: &[f64], to: &[f64], first: &[Option<bool>], signs: Signs<'_>) -> Vec<Vec<f64>> {
+fn between(from: &[f64], to: &[f64], is_first: &dyn Fn(&[f64]) -> bool) -> Vec<Vec<f64>> {
     let at = |share: f64| -> Vec<f64> {
         from.iter().zip(to).map(|(from, to)| from + share * (to - from)).collect()
     };
@@ -116,8 +136,7 @@ fn between(from: &[f64], to: &[f64], first: &[Option<bool>], signs: Signs<'_>) -
     for _ in 0..BETWEEN {
         let middle = 0.5 * (same + other);
         let shares = at(middle);
-        let here = signs(&shares, &shares).into_iter().map(sign);
-        if here.zip(first).all(|(here, first)| here == *first) {
+        if is_first(&shares) {
             same = middle;
         } else {
             other = middle;
@@ -125,6 +144,76 @@ fn between(from: &[f64], to: &[f64], first: &[Option<bool>], signs: Signs<'_>) -
         plants.push(shares);
     }
     plants
+}
+
+/// The search for the least of what must keep its sign, relative to the nominal plant.
+struct Searched<'a> {
+    family: &'a UncertainFamily,
+    around: &'a LoopAtInfinity,
+    nominal: &'a [f64],
+}
+
+impl Searched<'_> {
+    fn look(&self) -> Infinity {
+        let known = self.numbers(self.nominal);
+        let share = |shares: &[f64]| {
+            let here = self.numbers(shares);
+            let each = here.iter().zip(&known).map(|(here, known)| here / known);
+            if here.len() == known.len() { each.fold(f64::INFINITY, f64::min) } else { f64::NAN }
+        };
+        let plants = self.family.members().iter().cloned().chain(corners(self.family));
+        let mut starts: Vec<(f64, Vec<f64>)> = plants
+            .map(|values| {
+                let shares = self.family.shares(&values);
+                (share(&shares), shares)
+            })
+            .collect();
+        starts.retain(|(share, _)| share.is_finite());
+        sort_by_number(&mut starts, |(share, _)| *share);
+        let climbed = starts.iter().take(STARTS).map(|(_, start)| {
+            let (shares, least) = climb(start, &mut |shares| -share(shares));
+            (-least, shares)
+        });
+        let mut found: Vec<(f64, Vec<f64>)> = climbed.collect();
+        sort_by_number(&mut found, |(least, _)| *least);
+        let (least_share, shares) =
+            found.into_iter().next().unwrap_or_else(|| (f64::NAN, self.nominal.to_vec()));
+        if least_share < 0.0 {
+            return Infinity::Changed(between(self.nominal, &shares, &|shares| share(shares) > 0.0));
+        }
+        let parameters = self.moving(&share);
+        let plant = PlantPoint::Parameters(self.family.values(&shares));
+        let searched = SearchedInfinity { least_share, plant, parameters };
+        if least_share > CLEAR_SHARE { Infinity::Searched(searched) } else { Infinity::Open(searched) }
+    }
+
+    /// Everything that must keep its sign, of one plant.
+    fn numbers(&self, shares: &[f64]) -> Vec<f64> {
+        let plant = self.family.plant().coefficients(&self.family.values(shares));
+        plant.map_or(vec![], |plant| {
+            let delayed = plant.dead_time_s > 0.0;
+            self.around.keeping(plant, delayed)
+        })
+    }
+
+    /// The parameters that move it from its nominal value, the most important first.
+    fn moving(&self, share: &dyn Fn(&[f64]) -> f64) -> Vec<usize> {
+        let change = |coordinate: usize| {
+            let at = |end: f64| {
+                let mut shares = self.nominal.to_vec();
+                shares[coordinate] = end;
+                (share(&shares) - 1.0).abs()
+            };
+            at(0.0).max(at(1.0))
+        };
+        let coordinates = self.family.coordinates();
+        let mut each: Vec<(f64, usize)> =
+            (0..coordinates.len()).map(|coordinate| (change(coordinate), coordinate)).collect();
+        each.retain(|(change, _)| *change > CHANGE);
+        sort_by_number(&mut each, |(change, _)| -change);
+        let moved = each.into_iter().filter_map(|(_, coordinate)| coordinates[coordinate].parameters.first());
+        moved.copied().collect()
+    }
 }
 
 /// A part of the box, by the shares of two opposite corners.
@@ -196,18 +285,25 @@ impl LoopAtInfinity {
         else {
             return vec![Interval::WHOLE];
         };
-        let zero = Interval::from(0.0);
+        let delayed = dead_time_s.high() > 0.0;
+        self.keeping(PlantCoefficients { command, dead_time_s, disturbance: None, rate: None }, delayed)
+    }
+
+    /// The same from the coefficients of a plant.
+    fn keeping<S: Scalar + PartialEq>(&self, plant: PlantCoefficients<S>, plant_delays: bool) -> Vec<S> {
+        let zero = S::from(0.0);
         // a coefficient that is zero for every plant does not count
-        let kept = |coefficients: Vec<Interval>| -> (Interval, i64) {
-            let rest: Vec<Interval> = coefficients.into_iter().skip_while(|one| *one == zero).collect();
+        let kept = |coefficients: Vec<S>| -> (S, i64) {
+            let rest: Vec<S> = coefficients.into_iter().skip_while(|one| *one == zero).collect();
             (rest.first().copied().unwrap_or(zero), rest.len() as i64)
         };
-        let ((n, n_length), (c_0, d_length)) = (kept(command.numerator), kept(command.denominator));
-        let n_0 = n * Interval::from(self.numerator);
+        let RationalCoefficients { numerator, denominator } = plant.command;
+        let ((n, n_length), (c_0, d_length)) = (kept(numerator), kept(denominator));
+        let n_0 = n * S::from(self.numerator);
         let excess = self.excess + d_length - n_length;
-        let delayed = dead_time_s.high() > 0.0 || self.delay_s > 0.0;
+        let delayed = plant_delays || self.delay_s > 0.0;
         if self.sampled {
-            let together = c_0 + n_0 * Interval::from(self.feedthrough);
+            let together = c_0 + n_0 * S::from(self.feedthrough);
             return if excess == 0 && !delayed { vec![c_0, together] } else { vec![c_0] };
         }
         match (excess.signum(), delayed) {

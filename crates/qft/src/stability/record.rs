@@ -1,6 +1,9 @@
 //! The worst results that were found for a family.
 
-use super::{ClosestApproach, DelayMargin, Instability, Irresolution, MemberStability, StabilityStatus};
+use super::{
+    ClosestApproach, DelayMargin, Instability, Irresolution, MemberStability, SearchedInfinity,
+    StabilityStatus,
+};
 use crate::verdict::PlantPoint;
 
 /// The worst found so far.
@@ -11,6 +14,7 @@ pub(super) struct StabilityRecord {
     pub(super) real_part: Option<(f64, PlantPoint)>,
     pub(super) closest: Option<ClosestApproach>,
     pub(super) delay: Option<DelayMargin>,
+    pub(super) infinity: Option<SearchedInfinity>,
 }
 
 impl StabilityRecord {

@@ -1,5 +1,7 @@
 use phea_qft::proof::{Certificate, Proof, Standing};
-use phea_qft::verification::{Evidence, SpecificationFinding, StabilityFinding, Verdict, WorstCase};
+use phea_qft::verification::{
+    Evidence, SearchedInfinity, SpecificationFinding, StabilityFinding, Verdict, WorstCase,
+};
 
 use super::in_time::unexamined_words;
 use super::margins;
@@ -28,6 +30,10 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
         .with("largest_real_part_per_s", stability.largest_real_part)
         .with("plant", names.named(&stability.plant))
         .with("reason", stability_reason(stability));
+    let of_stability = match &stability.infinity {
+        Some(found) => of_stability.with("leading_coefficient", leading_coefficient(found, names)),
+        None => of_stability,
+    };
     let proof = view.proof.as_ref().map(|proof| {
         Object::new()
             .with("stable", standing(view, proof, &proof.stability))
@@ -223,4 +229,14 @@ pub fn files(view: &ProjectAudit) -> Vec<OutputFile> {
         }
     }
     vec![OutputFile::new("margins.csv", csv.text())]
+}
+
+/// The least leading coefficient of the characteristic equation that a search found.
+fn leading_coefficient(found: &SearchedInfinity, names: &PlantNames) -> Object {
+    let all = names.headings();
+    let moved = found.parameters.iter().filter_map(|&index| all.get(index).copied());
+    Object::new()
+        .with("least_share_of_nominal", found.least_share)
+        .with("plant", names.named(&found.plant))
+        .with("parameters", moved.map(str::to_string).collect::<Vec<String>>())
 }

@@ -6,8 +6,8 @@ use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
 use super::{NominalMargins, ProjectAudit, in_time, margins};
 use super::{
-    closed_loop_symbol, evidence_sentence, finding_sentence, place_words, remark_sentences,
-    stability_sentence, standing_word, verdict_words, why_not_proven, worst_at_design,
+    closed_loop_symbol, evidence_sentence, finding_sentence, infinity_sentence, place_words,
+    remark_sentences, stability_sentence, standing_word, verdict_words, why_not_proven, worst_at_design,
 };
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::figure::Figure;
@@ -215,6 +215,7 @@ pub(crate) fn basis(view: &ProjectAudit) -> Vec<String> {
         evidence_sentence(audit.evidence, audit.verdict, view.names.headings().is_empty()).to_string(),
         tolerance(view),
     ];
+    sentences.extend(infinity_sentence(&audit.stability, &view.names));
     sentences.extend(margins::sentence(view));
     sentences.extend(remarks(view));
     sentences
