@@ -26,7 +26,7 @@ mod workers;
 pub use ledger::{RequestedRuns, RowStore, Shard};
 pub use plan::{Draw, Plan};
 pub use range::VariedRange;
-pub use required::{CampaignRequirement, NotJudged, SatisfiedRuns};
+pub use required::{CampaignRequirement, SatisfiedRuns};
 pub use row::{LUMP_NAMES, METRIC_NAMES, Ran, Row, RowOutcome, STATUS_WORDS};
 pub use spread::{QUANTILES, Spread};
 pub use statistics::{Bands, Summary, WorstRun};

@@ -7,6 +7,7 @@ mod figures;
 mod frequency;
 mod metrics;
 mod repetition;
+mod required;
 mod span;
 mod together;
 
@@ -22,5 +23,6 @@ pub(crate) use frequency::{
     document as frequency_document, files as frequency_files, pictures as frequency_pictures,
 };
 pub(crate) use metrics::{METRICS, Metric, OVERSHOOT, SETTLING, cells_of, metric_of, settling_within};
+pub(crate) use required::{not_judged_words, requirement_sentence, satisfied_word};
 pub(crate) use span::around;
 pub(crate) use together::{NamedRun, at_a_glance, close_ups, measured_together, together};

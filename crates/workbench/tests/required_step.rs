@@ -158,3 +158,39 @@ fn every_run_is_held_against_the_required_step() {
         assert!(largest.into_iter().all(|run| run["requirements"].as_array().unwrap().is_empty()));
     }
 }
+
+/// A scenario is held against what is required too: the worst of its steps is that of its events.
+#[test]
+fn a_simulated_scenario_is_held_against_what_is_required() {
+    let of = |step: &str| {
+        let (found, text) = answer(&rig(step), &Request::Simulate(Default::default()));
+        let run = &found["scenarios"][0];
+        (run["requirements"][0].clone(), run["events"].clone(), text)
+    };
+    let (loose, events, text) = of("overshoot_percent = 90\n");
+    assert_eq!(loose["verdict"], "satisfies");
+    assert!(text.contains("The run satisfies what specification "), "{text}");
+    let steps = events.as_array().unwrap().iter().filter(|event| event["kind"] == "reference_step");
+    let worst = steps.map(|event| number(event, "metrics.overshoot_percent")).fold(0.0, f64::max);
+    ask::near(number(&loose, "overshoot_percent"), worst, 1e-12);
+    let (tight, _, text) = of("rise_time = \"1 us\"\n");
+    assert_eq!(tight["verdict"], "misses");
+    assert!(text.contains("The run misses what specification "), "{text}");
+    let (other, ..) = of("overshoot_percent = 90\namplitude = \"1 N\"\n");
+    assert!(other["verdict_reason"].as_str().unwrap().contains("no such step"), "{other}");
+}
+
+/// `size` says where a requirement settles sooner than what is sized for.
+#[test]
+fn sizing_names_a_requirement_that_settles_sooner() {
+    let text = include_str!("../../../examples/ybitu/hose.toml");
+    let of = |time: &str| {
+        let step = format!("{text}\n[[specification]]\nkind = \"step\"\nsettling_time = \"{time}\"\n");
+        answer(&step, &Request::Size { gain: None, length: None }).1
+    };
+    // tau_d ln(50) = 1/s_1
+    let own = answer(text, &Request::Size { gain: None, length: None }).1;
+    assert!(!own.contains("requires it in"), "{own}");
+    assert!(of("0.01 s").contains("requires it in 0.01 s"));
+    assert!(!of("100 s").contains("requires it in"));
+}

@@ -2,7 +2,7 @@
 
 use super::plan::Plan;
 use super::row::{METRIC_NAMES, Ran, Row};
-use crate::simulate::{COMPLETED, Cause, ReachedStep, TimeRequirement, TrackingWish, Window};
+use crate::simulate::{COMPLETED, NotJudged, ReachedStep, TimeRequirement, TrackingWish, concerned};
 
 /// A requirement in time, and how many runs satisfy it.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,19 +26,8 @@ pub struct SatisfiedRuns {
     pub worst: Option<(u64, ReachedStep)>,
 }
 
-/// Why a campaign says nothing of a requirement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NotJudged {
-    /// The scenario has no step of the reference, or none of the required size.
-    NoStep,
-    /// The scenario measures settling in another band.
-    OtherBand,
-}
-
 /// Standard normal quantile of 97.5 percent.
 const TWO_SIDED_95: f64 = 1.959_963_984_540_054;
-/// Relative deviation of a step of the scenario from the required size that counts as none.
-const SAME: f64 = 1e-6;
 
 impl SatisfiedRuns {
     /// Bounds of the probability p that a drawn run satisfies the requirement, with 95 percent
@@ -83,15 +72,7 @@ pub(super) fn required(plan: &Plan, rows: &[Row]) -> Vec<CampaignRequirement> {
 }
 
 fn judged(plan: &Plan, rows: &[Row], one: &TimeRequirement) -> Result<SatisfiedRuns, NotJudged> {
-    let concerned: Vec<usize> =
-        (0..plan.windows().len()).filter(|window| concerns(one, &plan.windows()[*window])).collect();
-    if concerned.is_empty() {
-        return Err(NotJudged::NoStep);
-    }
-    let same_band = plan.scenario.settling_band_percent.total_cmp(&one.wish.band_percent).is_eq();
-    if one.wish.settling_time_s.is_some() && !same_band {
-        return Err(NotJudged::OtherBand);
-    }
+    let concerned = concerned(one, plan.windows(), plan.scenario.settling_band_percent)?;
     let mut found = SatisfiedRuns { satisfied: 0, runs: 0, worst: None };
     let mut most = f64::NEG_INFINITY;
     for (run, ran) in rows.iter().filter_map(|row| Some((row.run, row.ran()?))) {
@@ -105,15 +86,6 @@ fn judged(plan: &Plan, rows: &[Row], one: &TimeRequirement) -> Result<SatisfiedR
         }
     }
     Ok(found)
-}
-
-/// Whether a window is a step for which the requirement holds.
-fn concerns(one: &TimeRequirement, window: &Window) -> bool {
-    let Cause::ReferenceStep { from_n, to_n } = window.cause else { return false };
-    let is = |stated: Option<f64>, value: f64| {
-        stated.is_none_or(|stated| (stated - value).abs() <= SAME * (stated.abs() + to_n.abs()))
-    };
-    is(one.steps.amplitude_n, to_n - from_n) && is(one.steps.initial_force_n, from_n)
 }
 
 /// The worst of the steps of a run, each property by itself; infinite where it was not completed.

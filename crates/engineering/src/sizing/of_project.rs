@@ -5,12 +5,13 @@ use phea_hydraulics::linear::LinearParameters;
 
 use super::{HoseOption, OtherMeansProblem, SizedLoad, SizingProblem};
 use crate::catalogue::{Catalogue, CatalogueKind, DASH_SIZES};
-use crate::project::{self, HoseProperties, Load, SettlingTime, Speed};
+use crate::project::{self, HoseProperties, Load, Project, SettlingTime, Speed};
 use crate::quantity::significant;
 use crate::rig::{
     ExpansionPressures, Numbers, Rig, RigError, VolumetricExpansion, hose, largest_flow, stiffening,
 };
 use crate::setup::Setup;
+use crate::simulate::time_requirements;
 
 /// Recommended oil velocity of pressure lines, m/s (Rabie 2009, quoted in Ledezma 2019, section
 /// 6.3.1.1).
@@ -19,6 +20,8 @@ const OIL_VELOCITY: [f64; 2] = [2.1, 4.6];
 const MINIMUM_GAIN: f64 = 1e-4;
 /// Gain at which the search starts, V/N (the same, step f: a unitary value).
 const MAXIMUM_GAIN: f64 = 1.0;
+/// A settling time that is longer by less is that which is required.
+const ROUNDED: f64 = 1.001;
 /// Acceptable length of a line where the project states none, m.
 const HOSE_LENGTH: [f64; 2] = [0.1, 10.0];
 
@@ -64,6 +67,10 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
     let components = rig.actuator.components();
     refuse_what_no_hose_is_sized_for(components)?;
     let (time_constant, time_constant_origin) = time_constant(wish.speed);
+    let time_constant_origin = match sooner(project, time_constant) {
+        Some(required) => format!("{time_constant_origin}; {required}"),
+        None => time_constant_origin,
+    };
     let hoses = hoses(actuator, catalogue);
     if hoses.is_empty() {
         return Err(SizingError::NoHose);
@@ -264,4 +271,26 @@ fn unlike(actuator: &project::DeclaredActuator) -> Option<String> {
             Some("line A is not declared as a hose: hoses are sized for both lines".to_string())
         }
     }
+}
+
+/// The requirement in time that asks for more than this time constant reaches, in words.
+///
+/// ```text
+/// t_s = tau_d ln(100/band)                    of a first-order response, the band in percent
+/// ```
+fn sooner(project: &Project, time_constant_s: f64) -> Option<String> {
+    let required = time_requirements(project).ok()?;
+    let each = required.iter().filter_map(|one| {
+        let settles_s = time_constant_s * ln(100.0 / one.wish.band_percent);
+        let required_s = one.wish.settling_time_s.filter(|time_s| settles_s > ROUNDED * time_s)?;
+        Some((settles_s / required_s, one, settles_s))
+    });
+    let (_, one, settles_s) = each.max_by(|one, other| one.0.total_cmp(&other.0))?;
+    Some(format!(
+        "that settles within {} % in {} s, and specification {} requires it in {} s",
+        one.wish.band_percent,
+        significant(settles_s, 4),
+        one.number,
+        one.wish.settling_time_s?
+    ))
 }

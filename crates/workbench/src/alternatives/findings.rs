@@ -12,6 +12,7 @@ use crate::design::status_sentence;
 use crate::grouped::grouped;
 use crate::project::{AS_DECLARED, ImpedanceForm, LINEAR_PARAMETERS};
 use crate::quantity::{DisplayUnit, MotionKind, fitting, significant};
+use crate::simulate::{ScenarioRun, required_of_run, requirement_sentence};
 use crate::trial::Agreement;
 
 /// Of the declared load, and then of each load case.
@@ -34,6 +35,7 @@ pub(super) fn of_case(case: &JudgedCase) -> Vec<String> {
 
 fn of_judged(judged: &[JudgedAlternative], not_reached: usize) -> Vec<String> {
     let mut sentences = specifications(judged, not_reached);
+    sentences.extend(judged.iter().flat_map(missing));
     sentences.extend(shared(judged, judged.iter().flat_map(lacking)));
     let comparable = MeasuredAlternatives::of(judged.iter().filter(|one| one.is_comparable()));
     sentences.extend(best(&comparable));
@@ -73,6 +75,17 @@ impl MeasuredAlternatives {
 
 /// The measures of dominance in words.
 const FOUR: [&str; 4] = ["disturbance", "control effort", "order", "delay tolerated"];
+
+/// What an alternative misses, in its scenarios, of what is required in time.
+fn missing(one: &JudgedAlternative) -> Vec<String> {
+    let Ok(runs) = &one.runs else { return vec![] };
+    let missed = |run: &ScenarioRun| -> Vec<String> {
+        let found = required_of_run(&one.loaded.project, run).into_iter();
+        let missed = found.filter(|held| held.is_satisfied() == Some(false));
+        missed.map(|held| format!("{} in `{}` {}", one.name, run.name, requirement_sentence(&held))).collect()
+    };
+    runs.iter().flat_map(missed).collect()
+}
 
 /// Who meets every specification, who misses them by how much, and what else became of a design.
 fn specifications(judged: &[JudgedAlternative], not_reached: usize) -> Vec<String> {

@@ -1,6 +1,5 @@
 //! The JSON object of `campaign`.
 
-use super::document::not_judged_words;
 use super::{CampaignRequirement, RequestedRuns};
 use super::{Draw, Plan};
 use super::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
@@ -8,6 +7,7 @@ use super::{QUANTILES, Spread};
 use super::{Summary, WorstRun};
 use crate::answer::Object;
 use crate::project::Loaded;
+use crate::simulate::not_judged_words;
 use crate::simulate::{self, ScenarioRun};
 
 /// What a campaign says to programs. Runs are counted from 0; `until` is beyond the last.

@@ -1,7 +1,7 @@
 //! What `campaign` says to people.
 
 use super::Summary;
-use super::{CampaignRequirement, NotJudged, RequestedRuns};
+use super::{CampaignRequirement, RequestedRuns};
 use super::{Draw, Plan};
 use super::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
 use super::{QUANTILES, Spread};
@@ -9,6 +9,7 @@ use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::Loaded;
 use crate::quantity::{DisplayUnit, Units};
+use crate::simulate::not_judged_words;
 use crate::simulate::{self, Metric, ScenarioRun, cause_words, metric_of};
 
 /// Largest number of rejected and ended runs that are listed.
@@ -120,16 +121,6 @@ pub(crate) fn requirement(one: &CampaignRequirement) -> String {
         judged.satisfied,
         counted(judged.runs)
     )
-}
-
-/// Why a campaign says nothing of a requirement.
-pub(crate) fn not_judged_words(why: NotJudged) -> &'static str {
-    match why {
-        NotJudged::NoStep => "the scenario has no such step of the reference",
-        NotJudged::OtherBand => {
-            "the scenario measures settling in another band: state its `settling_band_percent` as required"
-        }
-    }
 }
 
 /// The spread of each metric, event by event.

@@ -4,12 +4,12 @@ use super::MachineResponses;
 use super::check;
 use super::frequency;
 use super::metrics::metrics_row;
-use super::repetition;
 use super::state_names;
 use super::{
     AccountSum, Cause, Exceeded, Metrics, Overlay, RunLedger, ScenarioComparison, ScenarioRun, StoppedRun,
     Window,
 };
+use super::{repetition, required, required_of_run};
 use crate::answer::{Object, body_in_use};
 use crate::project::Loaded;
 use phea_dynamics::simulation::{Amplification, GrowthCause};
@@ -38,11 +38,11 @@ pub(crate) fn comparison_body(comparison: &ScenarioComparison<'_>) -> Object {
 pub(crate) fn body(loaded: &Loaded, runs: &[ScenarioRun]) -> Object {
     let names = state_names(runs.iter().map(|run| run.name.as_str()));
     let not_run = loaded.project.scenarios.iter().skip(runs.len());
-    Object::new().each("scenarios", runs.iter().zip(names), |(run, name)| scenario(run, name)).each(
-        "not_run",
-        not_run,
-        |scenario| scenario.name.as_str(),
-    )
+    let scenarios = runs.iter().zip(names);
+    let of = |(run, name)| {
+        scenario(run, name).each("requirements", &required_of_run(&loaded.project, run), required::row)
+    };
+    Object::new().each("scenarios", scenarios, of).each("not_run", not_run, |scenario| scenario.name.as_str())
 }
 
 fn adjustment(run: &ScenarioRun) -> Object {

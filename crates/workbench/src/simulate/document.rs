@@ -4,6 +4,7 @@ use super::check;
 use super::exceeded_words;
 use super::metrics::{METRICS, OVERSHOOT, SETTLING, cells_of};
 use super::repetition::{divergence_words, sentences as doubts, work_words};
+use super::required::requirement_sentences;
 use super::{
     AdjustmentWork, BeyondExpansion, Cause, GasRange, Metrics, OUTSIDE_MODEL, Occurrence, Overlay,
     ScenarioComparison, ScenarioRun, StoppedRun, TrackingWish, UNDETERMINED, Window,
@@ -24,7 +25,9 @@ pub(crate) fn document(loaded: &Loaded, runs: &[ScenarioRun]) -> Document {
         out.tables([windows(run, None, None), measured(&[(None, run)])]);
         let checked = run.check.iter().flat_map(|found| check::sentences(found, run.record.units));
         let adjusted = adjustment_sentence(run);
-        let told = coarse_sentence(run).into_iter().chain(checked).chain(adjusted).chain(gas_sentence(run));
+        let told =
+            requirement_sentences(&loaded.project, run).into_iter().map(|held| format!("The run {held}."));
+        let told = told.chain(coarse_sentence(run)).chain(checked).chain(adjusted).chain(gas_sentence(run));
         out.sentences(told.chain(occurrence_sentences(run)));
     }
     if !runs.is_empty() {
@@ -359,13 +362,14 @@ pub(crate) fn comparison(comparison: &ScenarioComparison<'_>, asked: &[Loaded]) 
         let columns: Vec<Option<&ScenarioRun>> = comparison.runs_of(name).collect();
         out.heading(name);
         out.table(side_by_side(&columns, units));
-        for (number, run) in columns.iter().enumerate() {
+        for (number, (run, (loaded, _))) in columns.iter().zip(&comparison.projects).enumerate() {
+            let required = run.iter().flat_map(|run| requirement_sentences(&loaded.project, run));
             let exceeded = run.iter().flat_map(|run| &run.exceeded).map(|found| exceeded_words(found, units));
             let diverges =
                 run.and_then(|run| run.divergence.as_ref()).map(|found| divergence_words(found, units));
             let doubts = run.iter().flat_map(|run| doubts(run));
             let outside = run.and_then(outside_words);
-            for sentence in diverges.into_iter().chain(doubts).chain(exceeded).chain(outside) {
+            for sentence in required.chain(diverges).chain(doubts).chain(exceeded).chain(outside) {
                 out.line(format!("   {}: {sentence}", letter(number)));
             }
         }

@@ -2,6 +2,7 @@
 
 use super::{Agreement, HeldRequirement, Leg, StepSize, Trial, TrialRun, TrialStep, agreement_word};
 use crate::answer::Object;
+use crate::simulate::satisfied_word;
 
 /// A trial in JSON.
 pub(crate) fn body(trial: &Trial) -> Object {
@@ -48,11 +49,6 @@ fn held(held: &HeldRequirement) -> Object {
         .with("overshoot_percent", reached.overshoot_percent)
         .with("settling_time_s", reached.settling_time_s)
         .with("rise_time_s", reached.rise_time_s)
-}
-
-/// The word for steps that satisfy what is required in time, or not.
-pub(super) fn satisfied_word(is_satisfied: bool) -> &'static str {
-    if is_satisfied { "satisfies" } else { "misses" }
 }
 
 fn size_word(size: StepSize) -> &'static str {

@@ -1,6 +1,5 @@
 //! The trial of a verdict on the machine, for people.
 
-use super::answer::satisfied_word;
 use super::{
     Agreement, BAND_PERCENT, StepResponse, StepSize, Trial, TrialRun, TrialStep, agreement_word,
     percent_words,
@@ -8,6 +7,7 @@ use super::{
 use crate::document::{Cell, Document, Table};
 use crate::figure::{FamilySteps, Figure, TimeSeries, Words};
 use crate::quantity::DisplayUnit;
+use crate::simulate::satisfied_word;
 use phea_qft::verification::Verdict;
 
 /// A trial, with its figure if that has a name and a title.

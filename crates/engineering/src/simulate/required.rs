@@ -1,0 +1,99 @@
+//! What is required in time, held against the steps of the reference in a scenario.
+
+use super::wish::{ReachedStep, TrackingWish};
+use super::{COMPLETED, Cause, Metrics, ScenarioRun, TimeRequirement, Window, time_requirements};
+use crate::project::Project;
+
+/// A requirement in time, and what the steps of a scenario do of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScenarioRequirement {
+    /// Number of its specification in the file, from 1.
+    pub number: usize,
+    /// What is required of every step of the reference.
+    pub wish: TrackingWish,
+    /// The worst of all steps, each property by itself; infinite where the run did not complete. Or
+    /// why the scenario says nothing of it.
+    pub reached: Result<ReachedStep, NotJudged>,
+}
+
+/// Why runs say nothing of a requirement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotJudged {
+    /// The scenario has no step of the reference, or none of the required size.
+    NoStep,
+    /// The scenario measures settling in another band.
+    OtherBand,
+}
+
+/// Relative deviation of a step of the scenario from the required size that counts as none.
+const SAME: f64 = 1e-6;
+
+impl ScenarioRequirement {
+    /// Whether every step satisfies it; `None` where the scenario says nothing of it.
+    pub fn is_satisfied(&self) -> Option<bool> {
+        self.reached.ok().map(|reached| self.wish.is_satisfied(&reached))
+    }
+}
+
+/// Every requirement of a project that is part of the verdict, held against a run of one of its
+/// scenarios; none where a stated command drives the valve, or where the specifications are
+/// refused.
+pub fn required_of_run(project: &Project, run: &ScenarioRun) -> Vec<ScenarioRequirement> {
+    if run.open_loop {
+        return vec![];
+    }
+    let windows: Vec<Window> = run.windows.iter().map(|(window, _)| *window).collect();
+    let all = time_requirements(project).unwrap_or_default();
+    let of = |one: &TimeRequirement| ScenarioRequirement {
+        number: one.number,
+        wish: one.wish,
+        reached: concerned(one, &windows, run.settling_band_percent).map(|steps| reached(run, &steps)),
+    };
+    all.iter().filter(|one| one.follows).map(of).collect()
+}
+
+/// The windows that begin with a step for which a requirement holds, by their place.
+///
+/// # Errors
+/// [`NotJudged`] where there is none, or its settling is not comparable.
+pub(crate) fn concerned(
+    one: &TimeRequirement,
+    windows: &[Window],
+    band_percent: f64,
+) -> Result<Vec<usize>, NotJudged> {
+    let concerned: Vec<usize> = (0..windows.len()).filter(|&place| concerns(one, &windows[place])).collect();
+    if concerned.is_empty() {
+        return Err(NotJudged::NoStep);
+    }
+    let same_band = band_percent.total_cmp(&one.wish.band_percent).is_eq();
+    if one.wish.settling_time_s.is_some() && !same_band {
+        return Err(NotJudged::OtherBand);
+    }
+    Ok(concerned)
+}
+
+/// Whether a window is a step for which the requirement holds.
+fn concerns(one: &TimeRequirement, window: &Window) -> bool {
+    let Cause::ReferenceStep { from_n, to_n } = window.cause else { return false };
+    let is = |stated: Option<f64>, value: f64| {
+        stated.is_none_or(|stated| (stated - value).abs() <= SAME * (stated.abs() + to_n.abs()))
+    };
+    is(one.steps.amplitude_n, to_n - from_n) && is(one.steps.initial_force_n, from_n)
+}
+
+/// The worst of these steps of a run.
+fn reached(run: &ScenarioRun, steps: &[usize]) -> ReachedStep {
+    let is_complete = run.status_word() == COMPLETED;
+    let most = |of: fn(&Metrics) -> super::Measured| {
+        let values = steps.iter().map(|&place| {
+            let value = run.windows.get(place).and_then(|(_, metrics)| of(metrics).ok());
+            value.filter(|_| is_complete).unwrap_or(f64::INFINITY)
+        });
+        values.fold(0.0, f64::max)
+    };
+    ReachedStep {
+        overshoot_percent: most(|metrics| metrics.overshoot_percent),
+        settling_time_s: most(|metrics| metrics.settling_time_s),
+        rise_time_s: most(|metrics| metrics.rise_time_s),
+    }
+}

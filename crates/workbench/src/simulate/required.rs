@@ -1,0 +1,57 @@
+//! What is required in time, held against the runs of scenarios, in words and for programs.
+
+use super::{NotJudged, ScenarioRequirement, ScenarioRun, required_of_run};
+use crate::answer::Object;
+use crate::project::Project;
+
+/// Why runs say nothing of a requirement.
+pub(crate) fn not_judged_words(why: NotJudged) -> &'static str {
+    match why {
+        NotJudged::NoStep => "the scenario has no such step of the reference",
+        NotJudged::OtherBand => {
+            "the scenario measures settling in another band: state its `settling_band_percent` as required"
+        }
+    }
+}
+
+/// The word for steps that satisfy what is required in time, or not.
+pub(crate) fn satisfied_word(is_satisfied: bool) -> &'static str {
+    if is_satisfied { "satisfies" } else { "misses" }
+}
+
+/// Each requirement of the project in a run of it: satisfied, missed or not judged, with the worst
+/// of its steps.
+pub(crate) fn requirement_sentences(project: &Project, run: &ScenarioRun) -> Vec<String> {
+    required_of_run(project, run).iter().map(requirement_sentence).collect()
+}
+
+/// A requirement in a run, in words that continue the name of the run.
+pub(crate) fn requirement_sentence(one: &ScenarioRequirement) -> String {
+    let required = format!("what specification {} requires, {}", one.number, one.wish.words());
+    match (one.reached, one.is_satisfied()) {
+        (Ok(reached), Some(is_satisfied)) => {
+            format!("{} {required}: {}", satisfied_word(is_satisfied), one.wish.reached_words(&reached))
+        }
+        (Err(why), _) => format!("does not judge {required}: {}", not_judged_words(why)),
+        (Ok(_), None) => required,
+    }
+}
+
+/// The same for programs.
+pub(super) fn row(one: &ScenarioRequirement) -> Object {
+    let wish = &one.wish;
+    let required = Object::new()
+        .maybe("overshoot_percent", wish.overshoot_percent)
+        .maybe("settling_time_s", wish.settling_time_s)
+        .maybe("rise_time_s", wish.rise_time_s)
+        .with("settling_band_percent", wish.band_percent);
+    let object = Object::new().with("specification", one.number).with("required", required);
+    match one.reached {
+        Ok(reached) => object
+            .maybe("verdict", one.is_satisfied().map(satisfied_word))
+            .with("overshoot_percent", reached.overshoot_percent)
+            .with("settling_time_s", reached.settling_time_s)
+            .with("rise_time_s", reached.rise_time_s),
+        Err(why) => object.told("verdict", Err::<&str, _>(not_judged_words(why))),
+    }
+}
