@@ -1,6 +1,7 @@
 //! The design of a controller and its prefilter: from the project to a controller that satisfies
 //! every specification, its comparison with the given one, and the wording of both.
 
+mod asked;
 mod comparison;
 mod deployable;
 mod explanation;
@@ -35,7 +36,9 @@ use phea_qft::verification::Verdict;
 
 use self::deployable::{limited, split};
 use self::search::found;
-use crate::audit::{ProjectAudit, audit_problem, audit_request, caveat_of_rig, try_to_prove, unexamined_rig};
+use crate::audit::{
+    PrefilterGain, ProjectAudit, audit_problem, audit_request, caveat_of_rig, try_to_prove, unexamined_rig,
+};
 use crate::project::{self, Project};
 use crate::quantity;
 use crate::robust::{RobustError, RobustProblem, robust_problem};
@@ -224,10 +227,7 @@ impl ProjectDesign {
 
     /// The same where nothing but the way to a required step was missed: the design is met.
     fn met_where_it_is(mut self, known: usize) -> ProjectDesign {
-        let is_kept = |(kind, finding): &LimitFinding| {
-            *kind == DesignLimitKind::RequiredStep || finding.verdict == Verdict::Met
-        };
-        if self.designed.view.audit.verdict == Verdict::Met && self.limit_findings.iter().all(is_kept) {
+        if self.designed.view.audit.verdict == Verdict::Met && self.keeps_its_limits() {
             self.design.status = DesignStatus::Met;
         }
         self.design.binding.retain(|limit| limit.specification < known);
@@ -263,12 +263,24 @@ impl ProjectDesign {
 
     /// Whether the designed controller satisfies every specification and keeps every limit.
     pub fn is_met(&self) -> bool {
-        let kept = |(kind, finding): &LimitFinding| {
-            *kind == DesignLimitKind::RequiredStep || finding.verdict == Verdict::Met
-        };
         self.designed.view.verdict() == Verdict::Met
             && self.tolerates_its_delay
-            && self.limit_findings.iter().all(kept)
+            && self.exceeded_prefilter_gain().is_none()
+            && self.keeps_its_limits()
+    }
+
+    /// Whether every limit is kept by which a design is judged.
+    fn keeps_its_limits(&self) -> bool {
+        self.limit_findings.iter().all(|(kind, finding)| kind.is_led_to() || finding.verdict == Verdict::Met)
+    }
+
+    /// The largest gain that the designed prefilter may have and the one that it has, where that is
+    /// more.
+    pub fn exceeded_prefilter_gain(&self) -> Option<[f64; 2]> {
+        self.declared_prefilter.as_ref()?;
+        let most = deployable::limit_value(&self.limits, DesignLimitKind::PrefilterGain)?;
+        let largest = PrefilterGain::of_loop(&self.designed.problem.compensation).largest;
+        (largest > most).then_some([most, largest])
     }
 }
 
@@ -332,8 +344,10 @@ fn designed(
         }
     };
     let limits = design_limits(setup, &given);
+    let nothing_asks = asked::nothing_asks(&given);
     let given = limited(&given, &limits);
-    let (run, told) = found(setup, &given, seed, &mut within(&mut *watch, [0.05, 0.8]))?;
+    let (run, mut told) = found(setup, &given, seed, &mut within(&mut *watch, [0.05, 0.8]))?;
+    told.explanations.extend(nothing_asks);
     let mut stopped = told.stopped;
     let continuous = unless_stopped(&mut stopped, || {
         continuous_as_sampled(setup, &run.problem, &told, &mut within(&mut *watch, [0.8, 0.9]))

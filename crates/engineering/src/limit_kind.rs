@@ -15,6 +15,8 @@ pub enum DesignLimitKind {
     PoleDampingRatio,
     /// Natural frequency of the controller's poles.
     FastestPole,
+    /// Gain of the prefilter.
+    PrefilterGain,
     /// No limit but the way to a required step: limits of tracking that a search aims at.
     RequiredStep,
 }
@@ -28,6 +30,7 @@ pub fn limit_key(kind: DesignLimitKind) -> &'static str {
         DesignLimitKind::MinimumDelayMargin => "minimum_delay_margin",
         DesignLimitKind::PoleDampingRatio => "pole_damping_ratio",
         DesignLimitKind::FastestPole => "fastest_pole",
+        DesignLimitKind::PrefilterGain => "prefilter_gain",
         DesignLimitKind::RequiredStep => "required_step",
     }
 }
@@ -41,6 +44,15 @@ pub fn limit_words(kind: DesignLimitKind) -> &'static str {
         DesignLimitKind::MinimumDelayMargin => "delay margin",
         DesignLimitKind::PoleDampingRatio => "damping of poles",
         DesignLimitKind::FastestPole => "fastest pole",
+        DesignLimitKind::PrefilterGain => "gain of the prefilter",
         DesignLimitKind::RequiredStep => "way to the required step",
+    }
+}
+
+impl DesignLimitKind {
+    /// Whether a specification of the search only leads to it: the design is judged by something
+    /// else.
+    pub fn is_led_to(self) -> bool {
+        matches!(self, DesignLimitKind::RequiredStep | DesignLimitKind::PrefilterGain)
     }
 }

@@ -32,6 +32,8 @@ pub struct DeclaredDesign {
     pub noise_to_command: Option<f64>,
     /// Least damping ratio of the controller's poles; absent: of a rig 0.3.
     pub pole_damping_ratio: Option<f64>,
+    /// Largest |F| of the designed prefilter; absent: of a rig 2.
+    pub prefilter_gain: Option<f64>,
     /// Factor by which every limit is kept, above what counts as met; absent: what the recordings
     /// of an identified valve leave open.
     pub reserve: Option<f64>,
@@ -112,6 +114,7 @@ impl Default for DeclaredDesign {
             highest_bandwidth: None,
             noise_to_command: None,
             pole_damping_ratio: None,
+            prefilter_gain: None,
             reserve: None,
             gain: None,
             structure: vec![],
@@ -149,6 +152,9 @@ impl DeclaredDesign {
         let doc = "Least damping ratio of the controller's poles; absent: of a rig 0.3.";
         let k = key("pole_damping_ratio", &RATIO, doc).not_negative().at_most(1.0);
         v.optional(k, &mut self.pole_damping_ratio);
+        let doc = "Largest gain of the designed prefilter; absent: of a rig 2.";
+        let k = key("prefilter_gain", &GAIN, doc).at_least(1.0).or_infinite();
+        v.optional(k, &mut self.prefilter_gain);
         let doc = "Margin that the design keeps to every limit; absent: what recordings leave open.";
         v.optional(key("reserve", &GAIN, doc).at_least(1.0).at_most(2.0), &mut self.reserve);
         v.pair(key("gain", &RATIO, "Least and greatest gain of `structure`."), &mut self.gain);

@@ -53,6 +53,7 @@ mod output_names;
 mod parts;
 mod plant_of_verdicts;
 mod predicted_step;
+mod prefilter_gain;
 mod pressure_feedback;
 mod proof;
 mod proof_region;

@@ -29,12 +29,16 @@ const BEYOND: f64 = 100.0;
 impl PrefilterGain {
     /// The gain of the prefilter of a loop; `None` where it does not amplify.
     pub fn amplifying(compensation: &Compensation) -> Option<PrefilterGain> {
-        let prefilter = compensation.prefilter();
-        let gain = PrefilterGain::of(prefilter, compensation.highest_frequency_rad_per_s());
+        let gain = PrefilterGain::of_loop(compensation);
         let above = |one: f64, other: f64, most_db: f64| decibels(one / other) > most_db;
         let amplifies =
             above(gain.largest, gain.at_zero, AMPLIFIES_DB) || above(gain.at_zero, 1.0, AMPLIFIES_AT_ZERO_DB);
         amplifies.then_some(gain)
+    }
+
+    /// The gain of the prefilter of a loop.
+    pub fn of_loop(compensation: &Compensation) -> PrefilterGain {
+        PrefilterGain::of(compensation.prefilter(), compensation.highest_frequency_rad_per_s())
     }
 
     fn of(prefilter: &TransferFunction, highest: f64) -> PrefilterGain {

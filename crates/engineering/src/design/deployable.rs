@@ -26,6 +26,7 @@ const MODULUS_MARGIN: f64 = 0.5;
 /// s, of a continuous loop.
 const DELAY_MARGIN_S: f64 = 0.5e-3;
 const POLE_DAMPING_RATIO: f64 = 0.3;
+const PREFILTER_GAIN: f64 = 2.0;
 /// Part of pi/T that a bandwidth may reach, and that a pole may.
 const BANDWIDTH_SHARE: f64 = 0.2;
 const FASTEST_SHARE: f64 = 0.5;
@@ -64,6 +65,11 @@ pub struct DesignLimit {
     pub specification: Option<Specification>,
 }
 
+/// Whether anything is required of what follows the reference.
+fn follows_reference(given: &RobustProblem) -> bool {
+    given.specifications.iter().any(|one| one.requirement.is_tracking()) || !given.in_time.is_empty()
+}
+
 /// The limits of a design for this problem; none for a plant without a rig that states none.
 pub fn design_limits(setup: &Setup<'_>, given: &RobustProblem) -> Vec<DesignLimit> {
     let declared = setup.project.design.clone().unwrap_or_default();
@@ -83,12 +89,18 @@ pub fn design_limits(setup: &Setup<'_>, given: &RobustProblem) -> Vec<DesignLimi
             stated(declared.pole_damping_ratio).or(default(POLE_DAMPING_RATIO)),
         ),
         (DesignLimitKind::FastestPole, fastest_pole(setup, &declared, bandwidth)),
+        (DesignLimitKind::PrefilterGain, stated(declared.prefilter_gain).or(default(PREFILTER_GAIN))),
     ];
     let asks = |(kind, found): (DesignLimitKind, Option<(f64, LimitOrigin)>)| {
         let (value, origin) = found.filter(|(value, _)| *value > 0.0 && value.is_finite())?;
         let specification = specification((setup, given), kind, value);
-        // without a noisy sensor in a sampled loop there is nothing to limit
-        let is_void = kind == DesignLimitKind::NoiseToCommand && specification.is_none();
+        // without a noisy sensor in a sampled loop, or a reference to follow, there is nothing to
+        // limit
+        let is_void = match kind {
+            DesignLimitKind::NoiseToCommand => specification.is_none(),
+            DesignLimitKind::PrefilterGain => !follows_reference(given),
+            _ => false,
+        };
         (!is_void).then_some(DesignLimit { kind, value, origin, specification })
     };
     each.into_iter().filter_map(asks).collect()
@@ -202,6 +214,7 @@ fn specification(
         DesignLimitKind::MinimumDelayMargin
         | DesignLimitKind::PoleDampingRatio
         | DesignLimitKind::FastestPole
+        | DesignLimitKind::PrefilterGain
         | DesignLimitKind::RequiredStep => None,
     }
 }

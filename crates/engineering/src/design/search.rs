@@ -43,11 +43,15 @@ pub(super) fn found(
     found.into_iter().min_by(by_rank).ok_or(Stopped.into())
 }
 
-/// What makes one of several designs the better one, the least the best: its verdict over
-/// frequency, then how far its steps are from what is required.
+/// What makes one of several designs the better one, the least the best: its verdict over frequency
+/// with a prefilter that keeps its gain, then how far its steps are from what is required.
 fn rank(told: &ProjectDesign) -> (u8, f64) {
     let verdict = match told.designed.view.audit.verdict {
-        Verdict::Met if told.design.status == DesignStatus::Met => 0,
+        Verdict::Met
+            if told.design.status == DesignStatus::Met && told.exceeded_prefilter_gain().is_none() =>
+        {
+            0
+        }
         Verdict::Met => 1,
         Verdict::NotProven => 2,
         Verdict::Violated => 3,

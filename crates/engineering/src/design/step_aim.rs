@@ -6,7 +6,9 @@
 //! requirement in time -> limits of tracking -> design -> steps miss it by r -> the same for a requirement stricter by r
 //! ```
 
-use phea_qft::specification::Specification;
+use phea_dynamics::frequency::logarithmic_grid;
+use phea_dynamics::order::sorted_distinct;
+use phea_qft::specification::{Limit, Requirement, Specification};
 
 use super::{DesignError, DesignLimitKind, ProjectDesign, limit_words};
 use crate::audit::TimeFinding;
@@ -18,6 +20,12 @@ use phea_dynamics::closed_loop::ClosedLoop;
 
 /// How often a design is repeated with stricter limits.
 pub(super) const REPETITIONS: usize = 3;
+/// Least gain of a prefilter that a loop is led to.
+const LEAST_PREFILTER_GAIN: f64 = 1.05;
+/// A response counts as slow where its lower limit is at least this.
+const SLOW: f64 = 0.9;
+/// Points of a grid over the frequencies of a limit.
+const POINTS: usize = 100;
 /// Room that is left where a limit is tightened.
 const ROOM: f64 = 0.97;
 /// Least share of a requirement that is aimed at.
@@ -35,15 +43,29 @@ const FREQUENCIES: [f64; 6] = [0.025, 0.25, 1.25, 2.5, 5.0, 12.5];
 pub(super) struct StepAim {
     overshoot: f64,
     settling: f64,
+    /// Largest gain of a prefilter that the loop must do with.
+    prefilter_gain: Option<f64>,
 }
 
 impl StepAim {
     /// At what is required itself.
-    pub(super) const AS_REQUIRED: StepAim = StepAim { overshoot: 1.0, settling: 1.0 };
+    pub(super) const AS_REQUIRED: StepAim = StepAim { overshoot: 1.0, settling: 1.0, prefilter_gain: None };
+
+    /// Stricter by what a design lacks: a loop that does by itself what its prefilter exaggerates,
+    /// and steps that miss a requirement; `None` where it lacks nothing, or where nothing is gained
+    /// by aiming lower still.
+    pub(super) fn stricter(self, told: &ProjectDesign) -> Option<StepAim> {
+        let Some([most, largest]) = told.exceeded_prefilter_gain() else {
+            return self.stricter_steps(told);
+        };
+        let lower = |known: f64| (known * most / largest).max(LEAST_PREFILTER_GAIN);
+        let aim = StepAim { prefilter_gain: Some(self.prefilter_gain.map_or(most, lower)), ..self };
+        (aim != self).then_some(aim)
+    }
 
     /// Stricter by as much as the steps of a design miss a requirement; `None` where they miss
     /// none, or where nothing is gained by aiming lower still.
-    pub(super) fn stricter(self, told: &ProjectDesign) -> Option<StepAim> {
+    fn stricter_steps(self, told: &ProjectDesign) -> Option<StepAim> {
         let missed = told.designed.view.in_time.iter().find(|finding| finding.violates())?;
         let (reached, wish) = (missed.reached()?, missed.requirement.wish);
         let over = |value: f64, most: Option<f64>| {
@@ -64,6 +86,7 @@ impl StepAim {
         let aim = StepAim {
             overshoot: tightened(self.overshoot, overshoot),
             settling: tightened(self.settling, slower),
+            ..self
         };
         (aim != self).then_some(aim)
     }
@@ -90,6 +113,12 @@ impl StepAim {
             problem.specifications.push(self.towards(required)?);
             problem.specification_names.push(limit_words(DesignLimitKind::RequiredStep).to_string());
             problem.design_limits.push(DesignLimitKind::RequiredStep);
+        }
+        let led = self.prefilter_gain.and_then(|most| without_prefilter(&problem.specifications, most));
+        if let Some(specification) = led {
+            problem.specifications.push(specification);
+            problem.specification_names.push(limit_words(DesignLimitKind::PrefilterGain).to_string());
+            problem.design_limits.push(DesignLimitKind::PrefilterGain);
         }
         Ok(problem)
     }
@@ -138,6 +167,27 @@ impl StepAim {
         };
         Ok(specification(&declared, ClosedLoop::Tracking, required.number).map_err(RobustError::from)?)
     }
+}
+
+/// A limit that leads to a loop whose prefilter needs no larger gain, from the first limit on
+/// tracking; `None` where there is none.
+///
+/// ```text
+/// |F| <= gain,   |F T| >= lower          ask for  |T| >= lower/gain,   which follows from  |1 - T| = |S| <= 1 - lower/gain
+/// ```
+///
+/// It is asked for where the lower limit is at least 0.9, and less than 0.9 nowhere below.
+fn without_prefilter(specifications: &[Specification], gain: f64) -> Option<Specification> {
+    let tracking = specifications.iter().find(|one| one.requirement.is_tracking())?;
+    let lower = tracking.requirement.limits().0?;
+    let [first, last] = [tracking.frequencies_rad_per_s.first()?, tracking.frequencies_rad_per_s.last()?];
+    let grid = logarithmic_grid(*first, *last, POINTS).unwrap_or_default();
+    let is_slow = |frequency: &f64| lower.magnitude(*frequency).is_some_and(|limit| limit >= SLOW);
+    let top = grid.into_iter().take_while(is_slow).last()?;
+    let requirement =
+        Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(1.0 - SLOW / gain.max(1.0)));
+    let frequencies_rad_per_s = sorted_distinct([0.3 * top, top].into());
+    Some(Specification { requirement, frequencies_rad_per_s, band_rad_per_s: [0.0, top] })
 }
 
 /// How far the steps of a design are from what is required: the largest ratio, at most 1 where all

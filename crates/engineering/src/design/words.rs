@@ -15,6 +15,7 @@ pub fn status_key(view: &ProjectDesign) -> &'static str {
         _ if view.stopped => "stopped",
         DesignStatus::Met if view.designed.view.verdict() == Verdict::NotProven => "not_proven",
         DesignStatus::Met if view.designed.view.misses_in_time() => "missed_in_time",
+        DesignStatus::Met if view.exceeded_prefilter_gain().is_some() => "prefilter_amplifies",
         DesignStatus::Met => "met",
         DesignStatus::Infeasible(_) => "infeasible",
         DesignStatus::NotConverged { .. } => "not_converged",
@@ -36,6 +37,10 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
         }
         DesignStatus::Met if view.designed.view.misses_in_time() => {
             "not met: the controller satisfies every specification over frequency, and its steps miss what is required in time"
+                .to_string()
+        }
+        DesignStatus::Met if view.exceeded_prefilter_gain().is_some() => {
+            "not met: the controller satisfies every specification, and its prefilter amplifies by more than `design.prefilter_gain` allows: it commands in advance what the loop does not do"
                 .to_string()
         }
         DesignStatus::Met => "met: the controller satisfies every specification".to_string(),

@@ -5,6 +5,7 @@ use phea_qft::verification::{SpecificationFinding, Verdict};
 
 use super::ProjectDesign;
 use crate::answer::{Object, significant};
+use crate::audit::PrefilterGain;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
 
@@ -25,7 +26,7 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
         [
             limit_words(limit.kind).into(),
             Cell::Code(format!("design.{}", limit_key(limit.kind))),
-            value_words(limit).into(),
+            value_words(view, limit).into(),
             origin_words(limit.origin).into(),
             finding(view, limit.kind)
                 .and_then(|found| found.worst.as_ref())
@@ -59,6 +60,7 @@ pub(crate) fn rows(view: &ProjectDesign) -> Vec<Object> {
 fn is_kept(view: &ProjectDesign, limit: &DesignLimit) -> bool {
     match limit.kind {
         DesignLimitKind::MinimumDelayMargin => view.tolerates_its_delay,
+        DesignLimitKind::PrefilterGain => view.exceeded_prefilter_gain().is_none(),
         DesignLimitKind::PoleDampingRatio | DesignLimitKind::FastestPole | DesignLimitKind::RequiredStep => {
             true
         }
@@ -94,11 +96,12 @@ fn value_key(kind: DesignLimitKind) -> &'static str {
         DesignLimitKind::NoiseToCommand
         | DesignLimitKind::ModulusMargin
         | DesignLimitKind::PoleDampingRatio
+        | DesignLimitKind::PrefilterGain
         | DesignLimitKind::RequiredStep => "value",
     }
 }
 
-fn value_words(limit: &DesignLimit) -> String {
+fn value_words(view: &ProjectDesign, limit: &DesignLimit) -> String {
     let value = limit.value;
     match limit.kind {
         DesignLimitKind::NoiseToCommand => {
@@ -111,6 +114,10 @@ fn value_words(limit: &DesignLimit) -> String {
         DesignLimitKind::MinimumDelayMargin => format!("{} more", DisplayUnit::MILLISECOND.text(value, 3)),
         DesignLimitKind::PoleDampingRatio => format!("at least {}", significant(value, 3)),
         DesignLimitKind::FastestPole => format!("at most {} rad/s", significant(value, 3)),
+        DesignLimitKind::PrefilterGain => {
+            let reached = PrefilterGain::of_loop(&view.designed.problem.compensation).largest;
+            format!("|F| at most {}; it has {}", significant(value, 3), significant(reached, 3))
+        }
         DesignLimitKind::RequiredStep => String::new(),
     }
 }

@@ -1,0 +1,60 @@
+//! Whether the specifications ask for feedback at all.
+//!
+//! ```text
+//! largest |P| / least |P| <= upper/lower      at every design frequency: F alone could keep the limits, for any loop however slow
+//! ```
+
+use phea_dynamics::closed_loop::ClosedLoop;
+use phea_dynamics::portable;
+use phea_qft::family::Family;
+use phea_qft::specification::Specification;
+
+use super::Explanation;
+use crate::robust::RobustProblem;
+
+/// A sentence where the specifications are limits on tracking that the plants keep without a loop,
+/// and nothing limits a disturbance; `None` where something asks for feedback.
+pub(super) fn nothing_asks(given: &RobustProblem) -> Option<Explanation> {
+    let own = given.specifications.len() - given.design_limits.len();
+    let own = given.specifications.get(..own)?;
+    let rejects = |one: &Specification| {
+        matches!(
+            one.requirement.closed_loop(),
+            ClosedLoop::Sensitivity | ClosedLoop::PlantInputDisturbance | ClosedLoop::LoadMotion
+        )
+    };
+    let tracking: Vec<usize> = own
+        .iter()
+        .enumerate()
+        .filter(|(_, one)| one.requirement.is_tracking())
+        .map(|(index, _)| index)
+        .collect();
+    if tracking.is_empty() || own.iter().any(rejects) {
+        return None;
+    }
+    let Family::Uncertain(family) = &given.family else { return None };
+    let spread = |frequency: f64| {
+        let sizes = family.members().iter().filter_map(|values| family.plant().response(values, frequency));
+        let (least, most) = sizes
+            .map(portable::magnitude)
+            .fold((f64::INFINITY, 0.0), |(least, most), size| (f64::min(least, size), f64::max(most, size)));
+        most / least
+    };
+    let keeps = |one: &Specification| {
+        let (lower, upper) = one.requirement.limits();
+        one.frequencies_rad_per_s.iter().all(|&frequency| {
+            let room = upper.magnitude(frequency).zip(lower.and_then(|limit| limit.magnitude(frequency)));
+            room.is_some_and(|(upper, lower)| spread(frequency) <= upper / lower)
+        })
+    };
+    tracking.iter().all(|&index| keeps(&own[index])).then(|| Explanation {
+        sentence: SENTENCE.to_string(),
+        is_impossible: false,
+        frequency_rad_per_s: None,
+        plants: vec![],
+        specifications: tracking.clone(),
+        relaxation_db: None,
+    })
+}
+
+const SENTENCE: &str = "nothing asks for feedback: the plants of the family differ by less than the limits on tracking allow, so that a prefilter alone could keep them; add a `sensitivity` or a `load_motion`, which say how much of a disturbance may remain";
