@@ -4,6 +4,7 @@
 mod asked;
 mod comparison;
 mod deployable;
+mod driven;
 mod explanation;
 mod factors;
 mod problem;
@@ -35,7 +36,7 @@ use phea_qft::design::{Design, DesignOptions, DesignOutcome, DesignProblem, Desi
 use phea_qft::verification::Verdict;
 
 use self::deployable::{limited, split};
-use self::search::found;
+use self::driven::found_and_tried;
 use crate::audit::{
     PrefilterGain, ProjectAudit, audit_problem, audit_request, caveat_of_rig, try_to_prove, unexamined_rig,
 };
@@ -346,16 +347,14 @@ fn designed(
     let limits = design_limits(setup, &given);
     let nothing_asks = asked::nothing_asks(&given);
     let given = limited(&given, &limits);
-    let (run, mut told) = found(setup, &given, seed, &mut within(&mut *watch, [0.05, 0.8]))?;
+    let (run, mut told) =
+        found_and_tried((source, setup), &given, seed, &mut within(&mut *watch, [0.05, 0.9]))?;
     told.explanations.extend(nothing_asks);
     let mut stopped = told.stopped;
     let continuous = unless_stopped(&mut stopped, || {
-        continuous_as_sampled(setup, &run.problem, &told, &mut within(&mut *watch, [0.8, 0.9]))
+        continuous_as_sampled(setup, &run.problem, &told, &mut within(watch, [0.9, 1.0]))
     })?;
-    let trial = unless_stopped(&mut stopped, || {
-        tried_design(source, project, &told, &mut within(watch, [0.9, 1.0]))
-    })?;
-    Ok((run, ProjectDesign { stopped, published, continuous, trial, ..told }))
+    Ok((run, ProjectDesign { stopped, published, continuous, ..told }))
 }
 
 /// A result that follows a design; absent once the watch has stopped it, since the design remains.

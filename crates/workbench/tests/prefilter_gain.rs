@@ -89,3 +89,75 @@ fn that_nothing_asks_for_feedback_is_told() {
     let settings = ["plant.numerator=\"50*k\""];
     assert!(!tells(&designed(&settings, uncertain)));
 }
+
+/// Torque control of a motor of 80 cm3 against a torsional specimen, its friction a tenth of the
+/// torque.
+const MOTOR: &str = r#"schema = 1
+title = "motor"
+[fluid]
+bulk_modulus = "1.5 GPa"
+density = "870 kg/m3"
+kinematic_viscosity = "46 cSt"
+[supply]
+model = "constant"
+pressure = "200 bar"
+tank_pressure = "2 bar"
+[valve]
+nominal_voltage = "10 V"
+nominal_flow = "38 L/min"
+nominal_pressure_drop = "70 bar"
+natural_frequency = "60 Hz"
+damping_ratio = 0.8
+null_leakage = "1.5 L/min"
+null_leakage_pressure = "200 bar"
+leakage_shape = 60
+[motor]
+displacement = "80 cc/rev"
+inertia = "0.01 kg.m2"
+dead_volume = "100 mL"
+internal_leakage = "0.004 L/(min.bar)"
+[motor.friction]
+model = "stribeck"
+viscous = "0.15 N.m.s/rad"
+coulomb = "7 N.m"
+static = "10 N.m"
+stribeck_velocity = "1 rad/s"
+regular_velocity = "0.2 rad/s"
+[line]
+model = "lumped"
+bore = "12.7 mm"
+volumetric_expansion = "4 mL/m"
+volumetric_expansion_pressure = "200 bar"
+length = "1 m"
+[force_sensor]
+stiffness = "60 kN.m/rad"
+[load]
+model = "spring_mass_damper"
+mass = "0.7 kg.m2"
+damping = "1.5 N.m.s/rad"
+stiffness = "2 kN.m/rad"
+[operating_point]
+load_force = "80 N.m"
+[uncertainty]
+"load.mass" = { nominal = "0.7 kg.m2", minimum = "0.4 kg.m2", maximum = "1.4 kg.m2", points = 3 }
+[controller]
+sample_time = "1 ms"
+delay = "1 ms"
+saturation = "10 V"
+[design]
+maximum_order = 3
+"#;
+
+/// The requirements of the servo above on a motor: the loop does the work itself, and where
+/// friction delays the nonlinear rig, the design leaves room for it.
+#[test]
+fn a_motor_that_friction_delays_satisfies_what_is_required() {
+    let requirements = &SERVO[SERVO.find("[[specification]]").unwrap()..];
+    let request = Request::Design { seed: None, stages: false, repair: false };
+    let found = json(&format!("{MOTOR}{requirements}"), &[], &[], &request);
+    assert_eq!(found["status"], "met", "{found:#}");
+    assert!(number(&found, "figures.crossover_rad_per_s") > 3.0);
+    assert!(largest_gain(&found) <= 2.0);
+    assert_eq!(found["machine"]["requirements"], "satisfies", "{:#}", found["machine"]);
+    assert_ne!(found["machine"]["verdict"], "contradicts");
+}

@@ -12,40 +12,40 @@ use crate::limit_kind::limit_words;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
-/// The best design that was found for a problem with the limits of what may be built.
+/// The best design that was found for a problem with the limits of what may be built, from this aim
+/// on, and the aim that led to it.
 pub(super) fn found(
     setup: &Setup<'_>,
-    given: &RobustProblem,
+    (given, mut aim): (&RobustProblem, StepAim),
     seed: Option<u32>,
     watch: Watch<'_>,
-) -> Result<(DesignRun, ProjectDesign), DesignError> {
-    let mut aim = StepAim::AS_REQUIRED;
-    let mut found: Vec<(DesignRun, ProjectDesign)> = Vec::new();
+) -> Result<(StepAim, DesignRun, ProjectDesign), DesignError> {
+    let mut found: Vec<(StepAim, DesignRun, ProjectDesign)> = Vec::new();
     for repetition in 0..=REPETITIONS {
         let aimed = aim.of(setup.project, given)?;
         let share = [repetition, repetition + 1].map(|done| done as f64 / (REPETITIONS + 1) as f64);
         match searched(setup, (given, &aimed), seed, &mut within(&mut *watch, share)) {
-            Ok(one) => found.push(one),
+            Ok((run, told)) => found.push((aim, run, told)),
             // what was found before remains
             Err(error) if found.is_empty() => return Err(error),
             Err(_) => break,
         }
-        let Some((_, told)) = found.last().filter(|(_, told)| !told.stopped) else { break };
+        let Some((.., told)) = found.last().filter(|(.., told)| !told.stopped) else { break };
         match aim.stricter(told).filter(|_| repetition < REPETITIONS) {
             Some(stricter) => aim = stricter,
             None => break,
         }
     }
-    let by_rank = |one: &(DesignRun, ProjectDesign), other: &(DesignRun, ProjectDesign)| {
-        let (one, other) = (rank(&one.1), rank(&other.1));
+    let by_rank = |one: &ProjectDesign, other: &ProjectDesign| {
+        let (one, other) = (rank(one), rank(other));
         one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
     };
-    found.into_iter().min_by(by_rank).ok_or(Stopped.into())
+    found.into_iter().min_by(|(.., one), (.., other)| by_rank(one, other)).ok_or(Stopped.into())
 }
 
 /// What makes one of several designs the better one, the least the best: its verdict over frequency
 /// with a prefilter that keeps its gain, then how far its steps are from what is required.
-fn rank(told: &ProjectDesign) -> (u8, f64) {
+pub(super) fn rank(told: &ProjectDesign) -> (u8, f64) {
     let verdict = match told.designed.view.audit.verdict {
         Verdict::Met
             if told.design.status == DesignStatus::Met && told.exceeded_prefilter_gain().is_none() =>

@@ -14,7 +14,7 @@ use super::{DesignError, DesignLimitKind, ProjectDesign, limit_words};
 use crate::audit::TimeFinding;
 use crate::project::{DeclaredLimit, DeclaredSpecification, Project, ResponseWish, SpecificationKind};
 use crate::robust::{RobustError, RobustProblem};
-use crate::simulate::TimeRequirement;
+use crate::simulate::{ReachedStep, TimeRequirement, TrackingWish};
 use crate::specification::{specification, specifications};
 use phea_dynamics::closed_loop::ClosedLoop;
 
@@ -67,7 +67,11 @@ impl StepAim {
     /// none, or where nothing is gained by aiming lower still.
     fn stricter_steps(self, told: &ProjectDesign) -> Option<StepAim> {
         let missed = told.designed.view.in_time.iter().find(|finding| finding.violates())?;
-        let (reached, wish) = (missed.reached()?, missed.requirement.wish);
+        self.stricter_by(&missed.requirement.wish, &missed.reached()?)
+    }
+
+    /// The same by as much as these steps miss a requirement.
+    pub(super) fn stricter_by(self, wish: &TrackingWish, reached: &ReachedStep) -> Option<StepAim> {
         let over = |value: f64, most: Option<f64>| {
             let ratio = value / most?.max(LEAST_OVERSHOOT_PERCENT);
             (ratio > 1.0).then_some(ratio)
