@@ -45,6 +45,7 @@ use num_complex::Complex64;
 
 pub use discretization::Discretization;
 pub(crate) use eigenvalues::working_eigenvalues;
+pub use held::{HeldFactors, HeldModes, HeldPoint};
 pub use moved_roots::MovedRoot;
 pub use polynomial::Polynomial;
 pub use state_space::StateSpace;

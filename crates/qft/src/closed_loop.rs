@@ -7,6 +7,7 @@ mod images;
 mod member;
 mod plant_response;
 mod sampled_end;
+mod trial;
 
 use std::sync::Arc;
 
@@ -22,6 +23,7 @@ pub(crate) use disc::DiscFactors;
 use fed_forward::{FedBack, inner_path, rate_path};
 pub use fed_forward::{FedForward, InnerPath};
 pub(crate) use fed_forward::{closed, closed_at_rest, moved_rate};
+pub use trial::{HeldPlant, HeldResponse, TrialPlant};
 
 /// The part of the loop that is the same for every plant: G, F, H, the delay of the loop, and its
 /// sampling.
@@ -233,6 +235,11 @@ impl Compensation {
         &self.sensor
     }
 
+    /// Whether H = 1.
+    fn senses_the_output(&self) -> bool {
+        self.sensor == TransferFunction::gain_only(1.0)
+    }
+
     /// s; `None` for a continuous loop.
     pub fn sample_time_s(&self) -> Option<f64> {
         self.sample_time_s
@@ -329,11 +336,8 @@ impl Compensation {
             None => held(function),
         };
         let command = within(rational.clone())?;
-        let with_sensor = if self.sensor == TransferFunction::gain_only(1.0) {
-            command.clone()
-        } else {
-            within(rational.series(&self.sensor)?)?
-        };
+        let with_sensor =
+            if self.senses_the_output() { command.clone() } else { within(rational.series(&self.sensor)?)? };
         let closed = |path: Option<TransferFunction>| {
             back.as_ref().zip(path).map(|(back, path)| back.around(&path)).transpose()
         };

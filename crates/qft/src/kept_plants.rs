@@ -7,7 +7,7 @@ use phea_dynamics::expression::EvaluationMemo;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::uncertain_plant::UncertainPlant;
 
-use super::closed_loop::{Compensation, Member};
+use super::closed_loop::{Compensation, Member, TrialPlant};
 
 /// Plants that are kept, of less than a kilobyte each.
 const PLANTS_MAXIMUM: usize = 100_000;
@@ -17,10 +17,23 @@ const PLANTS_MAXIMUM: usize = 100_000;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct KeptPlants {
     sampled: RefCell<BTreeMap<Vec<u64>, Result<Member, LinearError>>>,
+    /// Plants that a search tried, likewise.
+    tried: RefCell<BTreeMap<Vec<u64>, Option<TrialPlant>>>,
     memo: RefCell<EvaluationMemo>,
 }
 
 impl KeptPlants {
+    /// How many plants were sampled with all their factors, and how many were tried.
+    pub(crate) fn work(&self) -> [usize; 2] {
+        let is_whole = |one: &&TrialPlant| match one {
+            TrialPlant::Whole(_) => true,
+            TrialPlant::Held(held) => held.is_whole(),
+        };
+        let tried = self.tried.borrow();
+        let completed = tried.values().flatten().filter(is_whole).count();
+        [self.sampled.borrow().len() + completed, tried.len()]
+    }
+
     /// The plant with these parameter values within the loop.
     pub(crate) fn member(
         &self,
@@ -41,6 +54,26 @@ impl KeptPlants {
             return build();
         }
         sampled.entry(key).or_insert_with(build).clone()
+    }
+
+    /// The same plant for a search, which evaluates it at a few frequencies; `None` if it cannot be
+    /// sampled.
+    pub(crate) fn trial(
+        &self,
+        compensation: &Compensation,
+        plant: &UncertainPlant,
+        values: &[f64],
+    ) -> Option<TrialPlant> {
+        let build = || compensation.trial(plant.member_by(&mut self.memo.borrow_mut(), values)?);
+        if compensation.sample_time_s().is_none() {
+            return build();
+        }
+        let key: Vec<u64> = values.iter().map(|value| value.to_bits()).collect();
+        let mut tried = self.tried.borrow_mut();
+        if tried.len() >= PLANTS_MAXIMUM && !tried.contains_key(&key) {
+            return build();
+        }
+        tried.entry(key).or_insert_with(build).clone()
     }
 }
 

@@ -35,4 +35,5 @@ mod stability_measured;
 mod stability_published;
 mod stability_sampled;
 mod template;
+mod trial_plants;
 mod verification;

@@ -276,7 +276,7 @@ pub(super) fn prewarped(frequency_rad_per_s: f64, sample_time_s: f64) -> Result<
 }
 
 /// Whole samples, and the rest in s; a rest that is rounding counts as none.
-fn split_dead_time(dead_time_s: f64, sample_time_s: f64) -> (f64, f64) {
+pub(super) fn split_dead_time(dead_time_s: f64, sample_time_s: f64) -> (f64, f64) {
     let samples = dead_time_s / sample_time_s;
     if (samples - samples.round()).abs() <= 1e-9 * samples.max(1.0) {
         return (samples.round(), 0.0);
@@ -284,7 +284,7 @@ fn split_dead_time(dead_time_s: f64, sample_time_s: f64) -> (f64, f64) {
     (samples.floor(), dead_time_s - samples.floor() * sample_time_s)
 }
 
-fn exponential_of(z: Complex64) -> Complex64 {
+pub(super) fn exponential_of(z: Complex64) -> Complex64 {
     let size = exp(z.re);
     if z.im == 0.0 { Complex64::new(size, 0.0) } else { Complex64::new(size * cos(z.im), size * sin(z.im)) }
 }

@@ -12,6 +12,7 @@
 //! to full accuracy. What comes out is compared with the response along the unit circle, where it
 //! will be used; factors that miss it are refused.
 
+mod modes;
 mod numerator;
 
 use nalgebra::DMatrix;
@@ -23,6 +24,7 @@ use super::double_double::{ComplexDoubleDouble, DoubleDouble};
 use super::matrix_exponential::exponential;
 use super::realization::Chain;
 use super::wide::{Wide, WideColumn};
+pub use modes::{HeldFactors, HeldModes, HeldPoint};
 
 /// Beyond exp of this the poles of a sampled plant leave the range of numbers.
 const GROWTH_MAXIMUM: f64 = 300.0;

@@ -40,6 +40,10 @@ pub struct AuditWork {
     pub searches: u64,
     /// Number of responses of one plant at one frequency.
     pub responses: u64,
+    /// Number of plants of a sampled loop whose factors were computed.
+    pub sampled: u64,
+    /// Number of plants of a sampled loop that searches tried.
+    pub tried: u64,
 }
 
 /// What is audited, and how.
@@ -143,6 +147,7 @@ pub(crate) fn audit_among(
     kept: &KeptPlants,
     watch: Watch<'_>,
 ) -> Result<(Vec<SpecificationFinding>, AuditWork), Stopped> {
+    let before = kept.work();
     let mut audit = SpecificationAudit::new(problem, others, kept);
     audit.prepare(&mut part(watch, STAGE, [0.0, 0.2]))?;
     audit.look(&mut part(watch, STAGE, [0.2, 0.6]))?;
@@ -151,7 +156,9 @@ pub(crate) fn audit_among(
     audit.search(&mut part(watch, STAGE, [0.75, 0.95]))?;
     let findings = audit.findings(&mut part(watch, STAGE, [0.95, 1.0]))?;
     let (plants, searches) = (audit.plants.len() as u64, audit.searches as u64);
-    Ok((findings, AuditWork { plants, searches, responses: audit.evaluator.responses() }))
+    let after = kept.work();
+    let [sampled, tried] = [0, 1].map(|index: usize| (after[index] - before[index]) as u64);
+    Ok((findings, AuditWork { plants, searches, responses: audit.evaluator.responses(), sampled, tried }))
 }
 
 /// Name of the stage in progress reports.

@@ -11,7 +11,7 @@ use phea_dynamics::uncertain_plant::UncertainPlant;
 use super::asymptote::{self, AxisEnd};
 use super::criterion::Criterion;
 use super::response::{LoopAround, LoopAt, decibels};
-use crate::closed_loop::{Compensation, Member};
+use crate::closed_loop::{Compensation, Member, TrialPlant};
 use crate::kept_plants::KeptPlants;
 use crate::minimum;
 
@@ -71,6 +71,11 @@ impl<'a> Evaluator<'a> {
         self.kept.member(self.compensation, plant, values).ok()
     }
 
+    /// A plant that a search tries; `None` if it cannot be sampled.
+    pub(super) fn trial(&self, plant: &UncertainPlant, values: &[f64]) -> Option<TrialPlant> {
+        self.kept.trial(self.compensation, plant, values)
+    }
+
     pub(super) fn loop_at(&self, frequency: f64) -> LoopAt {
         LoopAt::new(self.compensation, &self.criteria, self.with_prefilter, frequency)
     }
@@ -109,23 +114,68 @@ impl<'a> Evaluator<'a> {
         Some(decibels(at.excess(0, criterion, &closed)?.certain))
     }
 
+    /// The margin in dB of a plant that is tried: a sampled one by its modes, where they suffice.
+    pub(super) fn trial_margin_db(
+        &self,
+        criterion: usize,
+        plant: &TrialPlant,
+        frequency: f64,
+    ) -> Option<f64> {
+        let is_inside = frequency > 0.0 && frequency < f64::INFINITY;
+        if let (true, TrialPlant::Held(_)) = (is_inside, plant) {
+            return self.finite_trial(criterion, plant, frequency).map(|(_, margin_db)| margin_db);
+        }
+        self.margin_db(criterion, &*plant.whole(self.compensation)?, frequency)
+    }
+
     /// A quantity that vanishes at a resonance, and the margin in dB, at a frequency that is
     /// neither zero nor infinite.
     pub(super) fn resonance(
         &self,
         criterion: usize,
-        member: &Member,
+        plant: &TrialPlant,
         frequency: f64,
     ) -> Option<(Complex64, f64)> {
-        let criterion = self.criteria.get(criterion)?;
-        let (closed, margin_db) = self.finite(criterion, member, frequency)?;
-        Some((closed.vanishing(criterion), margin_db))
+        let (closed, margin_db) = self.finite_trial(criterion, plant, frequency)?;
+        Some((closed.vanishing(self.criteria.get(criterion)?), margin_db))
     }
 
     fn finite(&self, criterion: &Criterion, member: &Member, frequency: f64) -> Option<(LoopAround, f64)> {
+        self.finite_by(criterion, frequency, |at| self.closed(at, member))
+    }
+
+    fn finite_trial(
+        &self,
+        criterion: usize,
+        plant: &TrialPlant,
+        frequency: f64,
+    ) -> Option<(LoopAround, f64)> {
+        let criterion = self.criteria.get(criterion)?;
+        let closed = |at: &LoopAt| {
+            let by_modes = match plant {
+                TrialPlant::Held(held) => at.closed_held(held),
+                TrialPlant::Whole(_) => None,
+            };
+            match by_modes {
+                Some(closed) => {
+                    self.responses.set(self.responses.get() + 1);
+                    Some(closed)
+                }
+                None => self.closed(at, &*plant.whole(self.compensation)?),
+            }
+        };
+        self.finite_by(criterion, frequency, closed)
+    }
+
+    fn finite_by(
+        &self,
+        criterion: &Criterion,
+        frequency: f64,
+        closed: impl Fn(&LoopAt) -> Option<LoopAround>,
+    ) -> Option<(LoopAround, f64)> {
         let only = std::slice::from_ref(criterion);
         let at = LoopAt::new(self.compensation, only, self.with_prefilter, frequency);
-        let closed = self.closed(&at, member)?;
+        let closed = closed(&at)?;
         let excess = at.excess(0, criterion, &closed)?.worst;
         (!excess.is_nan()).then(|| (closed, decibels(excess)))
     }

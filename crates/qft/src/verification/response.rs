@@ -11,7 +11,7 @@ use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 
 use super::criterion::{Criterion, MarginSide};
-use crate::closed_loop::{Compensation, DiscFactors, Member};
+use crate::closed_loop::{Compensation, DiscFactors, HeldPlant, Member};
 use crate::specification::ClosedLoop;
 
 /// A complex number as a quotient whose denominator may be zero.
@@ -191,13 +191,40 @@ impl LoopAt {
                 (response.plant, around, Fraction::of_value(response.load_motion))
             }
         };
+        Some(self.around(plant_numerator, around, load_motion, radius))
+    }
+
+    /// The same around a sampled plant by its modes; `None` where these do not say.
+    pub(super) fn closed_held(&self, held: &HeldPlant) -> Option<LoopAround> {
+        let found = held.at(self.frequency)?;
+        let over = |response: Complex64| Fraction {
+            numerator: response * found.denominator,
+            denominator: found.denominator,
+        };
+        let plant = over(found.plant);
+        let load = match &held.disturbance {
+            Some(path) if self.load_motion => Fraction::of_coefficients(path, self.frequency),
+            _ => Fraction::of_value(Complex64::ZERO),
+        };
+        let load = self.fed(load, plant, held.fed_forward.at(self.frequency));
+        Some(self.around(plant.numerator, over(found.with_sensor), load, 0.0))
+    }
+
+    /// The loop with `around` = P H, known within a disc.
+    fn around(
+        &self,
+        plant_numerator: Complex64,
+        around: Fraction,
+        load_motion: Fraction,
+        radius: f64,
+    ) -> LoopAround {
         let a = around.denominator * self.feedback.denominator;
         let b = around.numerator * self.feedback.numerator;
         let loop_denominator = around.denominator;
         // a is that of the controller alone where a plant is known within a disc
         let disc = DiscFactors::of(b / a, radius * portable::magnitude(self.feedback.numerator / a));
         let characteristic = a + b;
-        Some(LoopAround { characteristic, a, b, plant_numerator, loop_denominator, load_motion, disc })
+        LoopAround { characteristic, a, b, plant_numerator, loop_denominator, load_motion, disc }
     }
 
     /// Pd + K V_d P over the denominator of Pd.

@@ -8,7 +8,7 @@ use std::cell::Cell;
 use phea_dynamics::portable;
 
 use super::evaluator::{Evaluator, FREQUENCY_TOLERANCE};
-use crate::closed_loop::Member;
+use crate::closed_loop::TrialPlant;
 use crate::family::UncertainFamily;
 use crate::minimum::{self, At};
 
@@ -58,7 +58,7 @@ pub(super) struct SearchEnd {
 #[derive(Clone, Debug)]
 struct SearchPoint {
     shares: Vec<Vec<f64>>,
-    members: Vec<Option<Member>>,
+    members: Vec<Option<TrialPlant>>,
     margin_db: f64,
     frequency: f64,
 }
@@ -74,10 +74,12 @@ pub(super) fn search(
         true => descent.with_resonances(start),
         false => descent.descended(start),
     });
-    let found = place.map(|place| SearchEnd {
-        margin_db: place.margin_db,
-        frequency: place.frequency,
-        values: place.shares.iter().map(|shares| family.values(shares)).collect(),
+    let found = place.and_then(|place| {
+        Some(SearchEnd {
+            margin_db: descent.confirmed(&place)?,
+            frequency: place.frequency,
+            values: place.shares.iter().map(|shares| family.values(shares)).collect(),
+        })
     });
     SearchOutcome { found, undefined: descent.undefined.get() }
 }
@@ -100,14 +102,28 @@ struct MarginDescent<'a> {
 }
 
 impl MarginDescent<'_> {
-    fn member(&self, shares: &[f64]) -> Option<Member> {
-        self.evaluator.member(self.family.plant(), &self.family.values(shares))
+    fn member(&self, shares: &[f64]) -> Option<TrialPlant> {
+        self.evaluator.trial(self.family.plant(), &self.family.values(shares))
     }
 
     fn start(&self) -> Option<SearchPoint> {
-        let members: Vec<Option<Member>> =
+        let members: Vec<Option<TrialPlant>> =
             self.task.shares.iter().map(|shares| self.member(shares)).collect();
         self.settled(self.task.shares.clone(), members, self.task.frequency)
+    }
+
+    /// The margin where a search ended, of the whole plants: what was found with their modes alone
+    /// is judged as every other plant is.
+    fn confirmed(&self, place: &SearchPoint) -> Option<f64> {
+        let mut plants = self.task.criteria.iter().zip(&place.members);
+        let sum = plants.try_fold(0.0, |sum, (&criterion, plant)| {
+            let whole = plant.as_ref()?.whole(self.evaluator.compensation)?;
+            Some(sum + self.evaluator.margin_db(criterion, &whole, place.frequency)?)
+        });
+        if sum.is_none() && self.undefined.get().is_none() {
+            self.undefined.set(Some(place.frequency));
+        }
+        sum
     }
 
     fn descended(&self, start: SearchPoint) -> SearchPoint {
@@ -147,7 +163,7 @@ impl MarginDescent<'_> {
     fn settled(
         &self,
         shares: Vec<Vec<f64>>,
-        members: Vec<Option<Member>>,
+        members: Vec<Option<TrialPlant>>,
         frequency: f64,
     ) -> Option<SearchPoint> {
         let (frequency, margin_db) = self.margin(&members, frequency)?;
@@ -159,11 +175,11 @@ impl MarginDescent<'_> {
     }
 
     /// The margin at the frequency nearest to this one at which it has a minimum: (rad/s, dB).
-    fn margin(&self, members: &[Option<Member>], frequency: f64) -> Option<At> {
+    fn margin(&self, members: &[Option<TrialPlant>], frequency: f64) -> Option<At> {
         let at = |frequency: f64| {
             let mut margins = self.task.criteria.iter().zip(members);
             let sum = margins.try_fold(0.0, |sum, (&criterion, member)| {
-                Some(sum + self.evaluator.margin_db(criterion, member.as_ref()?, frequency)?)
+                Some(sum + self.evaluator.trial_margin_db(criterion, member.as_ref()?, frequency)?)
             });
             let sum = sum.filter(|sum: &f64| !sum.is_nan());
             if sum.is_none() && self.undefined.get().is_none() {
@@ -262,7 +278,7 @@ impl MarginDescent<'_> {
             if shares == best.shares {
                 break;
             }
-            let members: Vec<Option<Member>> = shares.iter().map(|shares| self.member(shares)).collect();
+            let members: Vec<Option<TrialPlant>> = shares.iter().map(|shares| self.member(shares)).collect();
             match self.settled(shares, members, best.frequency) {
                 Some(found) if found.margin_db < best.margin_db => best = found,
                 _ => break,

@@ -1,0 +1,151 @@
+//! A plant that a search tries and leaves again: of a sampled one the response at a frequency, from
+//! its modes, without the zeros that its factors would take.
+
+use std::sync::{Arc, OnceLock};
+
+use num_complex::Complex64;
+use phea_dynamics::linear::{HeldFactors, HeldModes, HeldPoint, Polynomial};
+use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember, RationalCoefficients};
+
+use super::{Compensation, FedForward, Member, moved_rate};
+
+/// A plant within a loop, ready for a few frequencies.
+#[derive(Clone, Debug)]
+pub enum TrialPlant {
+    /// A whole member.
+    Whole(Arc<Member>),
+    /// A sampled plant by its modes.
+    Held(Arc<HeldPlant>),
+}
+
+/// A held and sampled plant by its modes, and as a whole once that is needed.
+#[derive(Debug)]
+pub struct HeldPlant {
+    command: HeldModes,
+    /// `None` where the output itself is fed back.
+    with_sensor: Option<HeldModes>,
+    pub(crate) disturbance: Option<RationalCoefficients<f64>>,
+    pub(crate) fed_forward: FedForward,
+    plant: PlantCoefficients<f64>,
+    whole: OnceLock<Option<Arc<Member>>>,
+}
+
+/// P and P H of a held plant at a frequency, and the denominator of P H.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeldResponse {
+    /// P, with hold and delay.
+    pub plant: Complex64,
+    /// P H
+    pub with_sensor: Complex64,
+    /// The product of z - p over the poles of P H.
+    pub denominator: Complex64,
+}
+
+impl Compensation {
+    /// A plant of a family within this loop, to be tried; `None` where it cannot be sampled.
+    ///
+    /// # Example
+    /// 4/(s + 2), sampled every 0.1 s, at 2 rad/s: the response that its factors give.
+    /// ```
+    /// use phea_dynamics::controller::{Controller, Timing};
+    /// use phea_dynamics::linear::TransferFunction;
+    /// use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember, RationalCoefficients};
+    /// use phea_qft::closed_loop::{Compensation, TrialPlant};
+    /// let timing = Timing { sample_time_s: Some(0.1), ..Timing::default() };
+    /// let controller = Controller { timing, ..Controller::default() };
+    /// let around = Compensation::new(&controller, TransferFunction::gain_only(1.0))?;
+    /// let command = RationalCoefficients { numerator: vec![4.0], denominator: vec![1.0, 2.0] };
+    /// let plant = PlantCoefficients { command, disturbance: None, dead_time_s: 0.0, rate: None };
+    /// let tried = around.trial(PlantMember::Rational(plant)).ok_or("it can be sampled")?;
+    /// let TrialPlant::Held(held) = &tried else { return Err("it has a mode".into()) };
+    /// let (found, whole) = (held.at(2.0).ok_or("a mode")?, tried.whole(&around).ok_or("factors")?);
+    /// assert!((found.plant - whole.response(2.0).ok_or("factors")?.plant).norm_sqr() < 1e-28);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn trial(&self, plant: PlantMember) -> Option<TrialPlant> {
+        let held = match &plant {
+            PlantMember::Rational(coefficients) => self.held(coefficients),
+            PlantMember::Responding(_) => None,
+        };
+        match held {
+            Some(held) => Some(TrialPlant::Held(Arc::new(held))),
+            None => self.around(plant).ok().map(|whole| TrialPlant::Whole(Arc::new(whole))),
+        }
+    }
+
+    /// A rational plant of a sampled loop by its modes; `None` where they are not apart, and where
+    /// something is fed back within the plant.
+    fn held(&self, plant: &PlantCoefficients<f64>) -> Option<HeldPlant> {
+        let sample_time_s = self.sample_time_s?;
+        let fed_back = self.rate_feed_forward != 0.0 && moved_rate(plant).is_some();
+        if fed_back || self.inner_feedback.is_some() || plant.dead_time_s < 0.0 {
+            return None;
+        }
+        let denominator = Polynomial::new(plant.command.denominator.clone());
+        let poles = denominator.roots().ok()?;
+        let sensor = &self.sensor;
+        let own = HeldFactors {
+            numerator: &plant.command.numerator,
+            gain: 1.0 / denominator.leading_coefficient(),
+            zeros: &[],
+            poles: &poles,
+            dead_time_s: plant.dead_time_s + self.delay_s,
+        };
+        let seen = [&poles[..], sensor.poles()].concat();
+        let with_sensor = match self.senses_the_output() {
+            true => None,
+            false => Some(HeldModes::new(
+                HeldFactors {
+                    gain: own.gain * sensor.gain(),
+                    zeros: sensor.zeros(),
+                    poles: &seen,
+                    dead_time_s: own.dead_time_s + sensor.dead_time_s(),
+                    ..own
+                },
+                sample_time_s,
+            )?),
+        };
+        let inner = self.inner_feedback.as_ref();
+        Some(HeldPlant {
+            command: HeldModes::new(own, sample_time_s)?,
+            with_sensor,
+            disturbance: plant.disturbance.clone(),
+            fed_forward: FedForward::of(self.rate_feed_forward, self.rate_sensor, inner, plant),
+            plant: plant.clone(),
+            whole: OnceLock::new(),
+        })
+    }
+}
+
+impl TrialPlant {
+    /// The whole member; `None` where it cannot be sampled.
+    pub fn whole(&self, compensation: &Compensation) -> Option<Arc<Member>> {
+        match self {
+            TrialPlant::Whole(member) => Some(Arc::clone(member)),
+            TrialPlant::Held(held) => held.whole(compensation),
+        }
+    }
+}
+
+impl HeldPlant {
+    /// At a frequency; `None` where the modes do not say.
+    pub fn at(&self, frequency_rad_per_s: f64) -> Option<HeldResponse> {
+        let HeldPoint { response, denominator } = self.command.at(frequency_rad_per_s)?;
+        let Some(with_sensor) = &self.with_sensor else {
+            return Some(HeldResponse { plant: response, with_sensor: response, denominator });
+        };
+        let seen = with_sensor.at(frequency_rad_per_s)?;
+        Some(HeldResponse { plant: response, with_sensor: seen.response, denominator: seen.denominator })
+    }
+
+    /// Whether its factors were needed.
+    pub fn is_whole(&self) -> bool {
+        self.whole.get().is_some()
+    }
+
+    /// The whole member with its factors, of the loop that this plant was placed in.
+    pub fn whole(&self, compensation: &Compensation) -> Option<Arc<Member>> {
+        let build = || compensation.member(self.plant.clone()).ok().map(Arc::new);
+        self.whole.get_or_init(build).clone()
+    }
+}
