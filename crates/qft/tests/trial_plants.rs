@@ -2,11 +2,11 @@
 #![cfg(test)]
 
 use num_complex::Complex64;
-use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
+use phea_dynamics::controller::{Compensator, Controller, Element, InnerFeedback, Timing};
 use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::{
-    PlantCoefficients, PlantMember, RationalCoefficients, UncertainParameter, UncertainPlant,
+    PlantCoefficients, PlantMember, RateNumerators, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
 use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::{Compensation, MemberResponse, TrialPlant};
@@ -55,6 +55,41 @@ fn modes_respond_as_the_whole_member() {
                 assert!(near(found.with_sensor, plant * sensor), "P H at {frequency}: {found:?}");
             }
         }
+    }
+}
+
+/// An inner signal that is fed back closes its loop around the modes as around the whole member.
+#[test]
+fn modes_respond_as_the_whole_member_with_an_inner_signal_fed_back() {
+    let inner_feedback =
+        InnerFeedback { gain: 3e-4, high_pass_rad_per_s: Some(300.0), low_pass_rad_per_s: Some(2000.0) };
+    for (sample_time_s, delay_s) in [(1e-3, 1e-3), (5e-4, 0.7e-3)] {
+        let timing =
+            Timing { sample_time_s: Some(sample_time_s), delay_s, inner_feedback, ..Timing::default() };
+        let (around, plant) = placed(timing, 0.0);
+        let signal = Polynomial::new(vec![1.0 / (150.0 * 150.0), 0.08 / 150.0, 1.0, 0.0]).scaled(1.3e4);
+        let inner = [signal.coefficients().to_vec(), vec![2e3, 0.0]];
+        let rate = RateNumerators { command: vec![0.0], disturbance: vec![0.0], inner: Some(inner) };
+        let alone = around.without_inner_paths().trial(PlantMember::Rational(plant.clone())).unwrap();
+        let tried =
+            around.trial(PlantMember::Rational(PlantCoefficients { rate: Some(rate), ..plant })).unwrap();
+        let (TrialPlant::Held(held), TrialPlant::Held(alone)) = (&tried, &alone) else {
+            panic!("its modes are apart")
+        };
+        let whole = tried.whole(&around).unwrap();
+        let mut change = 0.0_f64;
+        for step in 0..=60 {
+            let highest = std::f64::consts::PI / sample_time_s;
+            let frequency = highest * portable::pow(10.0, f64::from(step) / 15.0 - 4.0);
+            let found = held.at(frequency).unwrap();
+            let MemberResponse { plant, sensor, .. } = whole.response(frequency).unwrap();
+            for (found, expected) in [(found.plant, plant), (found.with_sensor, plant * sensor)] {
+                let error = (found - expected).norm_sqr() / expected.norm_sqr();
+                assert!(error < 1e-18, "{frequency}: {found}, {expected}");
+            }
+            change = change.max((found.plant / alone.at(frequency).unwrap().plant - 1.0).norm_sqr());
+        }
+        assert!(change > 0.1, "what is fed back changes the response: {change}");
     }
 }
 

@@ -4,7 +4,7 @@
 use std::sync::{Arc, OnceLock};
 
 use num_complex::Complex64;
-use phea_dynamics::linear::{HeldFactors, HeldModes, HeldPoint, Polynomial};
+use phea_dynamics::linear::{HeldFactors, HeldModes, HeldPoint, Polynomial, TransferFunction};
 use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember, RationalCoefficients};
 
 use super::{Compensation, FedForward, Member, moved_rate};
@@ -24,6 +24,8 @@ pub struct HeldPlant {
     command: HeldModes,
     /// `None` where the output itself is fed back.
     with_sensor: Option<HeldModes>,
+    /// P_p and H of an inner signal; `None` where none is fed back.
+    inner: Option<(HeldModes, TransferFunction)>,
     pub(crate) disturbance: Option<RationalCoefficients<f64>>,
     pub(crate) fed_forward: FedForward,
     plant: PlantCoefficients<f64>,
@@ -73,12 +75,12 @@ impl Compensation {
         }
     }
 
-    /// A rational plant of a sampled loop by its modes; `None` where they are not apart, and where
-    /// something is fed back within the plant.
+    /// A rational plant of a sampled loop by its modes; `None` where they are not apart, and where a
+    /// rate is fed back within the plant.
     fn held(&self, plant: &PlantCoefficients<f64>) -> Option<HeldPlant> {
         let sample_time_s = self.sample_time_s?;
         let fed_back = self.rate_feed_forward != 0.0 && moved_rate(plant).is_some();
-        if fed_back || self.inner_feedback.is_some() || plant.dead_time_s < 0.0 {
+        if fed_back || plant.dead_time_s < 0.0 {
             return None;
         }
         let denominator = Polynomial::new(plant.command.denominator.clone());
@@ -105,12 +107,20 @@ impl Compensation {
                 sample_time_s,
             )?),
         };
-        let inner = self.inner_feedback.as_ref();
+        let signal = plant.rate.as_ref().and_then(|rate| rate.inner.as_ref());
+        let inner = match self.inner_feedback.as_ref().zip(signal) {
+            Some((feedback, [numerator, _])) => {
+                Some((HeldModes::new(HeldFactors { numerator, ..own }, sample_time_s)?, feedback.clone()))
+            }
+            None => None,
+        };
+        let fed_back = self.inner_feedback.as_ref();
         Some(HeldPlant {
+            inner,
             command: HeldModes::new(own, sample_time_s)?,
             with_sensor,
             disturbance: plant.disturbance.clone(),
-            fed_forward: FedForward::of(self.rate_feed_forward, self.rate_sensor, inner, plant),
+            fed_forward: FedForward::of(self.rate_feed_forward, self.rate_sensor, fed_back, plant),
             plant: plant.clone(),
             whole: OnceLock::new(),
         })
@@ -131,11 +141,22 @@ impl HeldPlant {
     /// At a frequency; `None` where the modes do not say.
     pub fn at(&self, frequency_rad_per_s: f64) -> Option<HeldResponse> {
         let HeldPoint { response, denominator } = self.command.at(frequency_rad_per_s)?;
-        let Some(with_sensor) = &self.with_sensor else {
-            return Some(HeldResponse { plant: response, with_sensor: response, denominator });
+        let back = self.fed_back(frequency_rad_per_s)?;
+        let closed = |with_sensor: Complex64, denominator: Complex64| HeldResponse {
+            plant: response / back,
+            with_sensor: with_sensor / back,
+            denominator: denominator * back,
         };
+        let Some(with_sensor) = &self.with_sensor else { return Some(closed(response, denominator)) };
         let seen = with_sensor.at(frequency_rad_per_s)?;
-        Some(HeldResponse { plant: response, with_sensor: seen.response, denominator: seen.denominator })
+        Some(closed(seen.response, seen.denominator))
+    }
+
+    /// 1 + H P_p, one where nothing is fed back.
+    fn fed_back(&self, frequency_rad_per_s: f64) -> Option<Complex64> {
+        let Some((modes, feedback)) = &self.inner else { return Some(Complex64::ONE) };
+        let signal = modes.at(frequency_rad_per_s)?.response;
+        Some(1.0 + feedback.at_frequency(frequency_rad_per_s) * signal)
     }
 
     /// Whether its factors were needed.
