@@ -45,6 +45,7 @@ pub use driver::drive;
 pub use equilibrium::{EquilibriumError, equilibrium};
 pub use frozen::{Frozen, FrozenMode, FrozenWatch, SampledLaw};
 pub use growth::Sliding;
+pub use history::WaveHistory;
 pub use method::Method;
 pub use profile::{Harmonic, Moment, Profile, ProfileError, ProfilePiece, schroeder_phases};
 pub use quartic::{Quartic, gauss_points};

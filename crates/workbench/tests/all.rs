@@ -110,3 +110,4 @@ mod verify_contract;
 mod verify_margins;
 mod waves_in_the_loop;
 mod what_moves_what;
+mod within_lines;

@@ -118,7 +118,8 @@ fn a_line_cavitates_where_its_waves_meet() {
         assert_eq!(run["status"], "outside_model", "{model}");
         let one = exceeded(&run, "vapour_pressure", "line_a").unwrap();
         let number = |key: &str| one[key].as_f64().unwrap();
-        assert!((number("distance_m") - 5.0).abs() < 1e-9, "{model}: {one}");
+        // the pulse of the valve is a little longer than that of the chamber
+        assert!((number("distance_m") - 5.0).abs() < 0.25, "{model}: {one}");
         // 10 m at 1283 m/s: half of that after the valve opened and shut
         // ORIGIN: analytic, c = sqrt(1.4e9/850)
         let half_s = 5.0 / (1.4e9_f64 / 850.0).sqrt();

@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 
 use super::growth::GrowingMode;
-use super::history::History;
+use super::history::WaveHistory;
 use super::{Attention, Event, Input, InputSchedule, ProfilePiece, Sampler, Status, StepCounts};
 use crate::order::sorted_distinct;
 use crate::portable;
@@ -55,7 +55,7 @@ pub(super) struct Passage<'a> {
     pub(super) step_s: f64,
     /// Times to restart at, rising, with how many delays each has been through.
     breaks: VecDeque<(f64, u8)>,
-    pub(super) histories: Vec<History>,
+    pub(super) histories: Vec<WaveHistory>,
     sample: u64,
     pending: VecDeque<(f64, f64)>,
     command: f64,
@@ -116,7 +116,8 @@ impl<'a> Passage<'a> {
 
     /// Waves in delays, each with what it was before time zero.
     pub(super) fn with_waves(mut self, delays_s: &[f64], initial: &[f64]) -> Passage<'a> {
-        self.histories = delays_s.iter().zip(initial).map(|(&d, &value)| History::new(d, value)).collect();
+        self.histories =
+            delays_s.iter().zip(initial).map(|(&d, &value)| WaveHistory::new(d, value)).collect();
         for &delay in delays_s {
             self.longest_s = self.longest_s.min(delay);
             self.meet_again(0.0, 0);

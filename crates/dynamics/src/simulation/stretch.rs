@@ -1,3 +1,4 @@
+use super::history::WaveHistory;
 use super::passage::Passage;
 use super::quartic::Quartic;
 
@@ -24,11 +25,9 @@ impl Stretch<'_> {
         self.passage.still
     }
 
-    /// The wave of this number that arrives at a time in s, from its start until as long after its
-    /// end as the wave travels; NaN where there is none.
-    pub fn arriving(&self, wave: usize, time_s: f64) -> f64 {
-        let waves = self.passage.histories.get(wave);
-        waves.map_or(f64::NAN, |wave| wave.arriving(time_s, time_s)[0])
+    /// The wave of this number, with what is sent until its end.
+    pub fn wave(&self, number: usize) -> Option<&WaveHistory> {
+        self.passage.histories.get(number)
     }
 
     /// All inputs at a part of it, from 0 to 1.

@@ -256,9 +256,8 @@ impl WatchedLimit {
     pub(super) fn follow(&mut self, [start_s, end_s]: [f64; 2], value: &Quartic, place: LimitPlace) {
         let time_s = |part: f64| start_s + part * (end_s - start_s);
         for (sign, limit) in [(1.0, self.high), (-1.0, self.low)] {
-            let edge = sign * limit + self.rounding();
+            let [edge, worst] = self.edges(sign, limit);
             let beyond = Quartic::constant(0.0).plus(sign, value);
-            let worst = self.found.map_or(edge, |found| edge.max(sign * limit + self.excess(found.peak)));
             if !limit.is_finite() || beyond.bounds()[1] <= worst {
                 continue;
             }
@@ -269,6 +268,20 @@ impl WatchedLimit {
                 self.note([time_s(first), time_s(at)], sign * peak, place);
             }
         }
+    }
+
+    /// Whether a value between these may be farther beyond it than those that were taken.
+    pub(super) fn may_exceed(&self, [least, most]: [f64; 2]) -> bool {
+        let ways = [(1.0, self.high, most), (-1.0, self.low, least)];
+        ways.into_iter()
+            .any(|(sign, limit, value)| limit.is_finite() && sign * value > self.edges(sign, limit)[1])
+    }
+
+    /// From where on a value counts as beyond this limit of a sign, and from where on as farther
+    /// beyond it than any before; both times the sign.
+    fn edges(&self, sign: f64, limit: f64) -> [f64; 2] {
+        let edge = sign * limit + self.rounding();
+        [edge, self.found.map_or(edge, |found| edge.max(sign * limit + self.excess(found.peak)))]
     }
 
     /// Notes a value beyond the limit, with the times of crossing it and of the value.

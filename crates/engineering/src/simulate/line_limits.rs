@@ -1,6 +1,6 @@
 //! Limits of lines and chambers: vapour pressure, the pressures that hoses and pipes bear, and the
 //! Reynolds number up to which their friction is that of the equations. They are watched at every
-//! node of a line, at its quarters where waves travel along it, in necks and in the line of a
+//! node of a line, over its whole length where waves travel along it, in necks and in the line of a
 //! transmission, over the solution itself, between its rows too.
 //!
 //! ```text
@@ -18,7 +18,7 @@ use super::bench::ControlledMachine;
 use super::exceeded::{Exceeded, LimitPlace, RigLimit, WatchedLimit};
 use super::sum::SignalSum;
 use crate::project::{DeclaredLine, LineMotion, Project};
-use waves::{WaveLine, WithinLine};
+use waves::{WaveLine, WithinBounds, WithinLine, WithinSearch};
 
 /// The Reynolds number above which flow in a round pipe is no longer laminar.
 pub const LAMINAR_UP_TO: f64 = 2300.0;
@@ -99,6 +99,11 @@ struct WatchedPoint {
 /// A line along which waves travel, with the limits of its pressure and flow.
 struct WatchedWaves {
     line: WaveLine,
+    own: LimitsOfWaves,
+}
+
+/// Limits of a line along which waves travel.
+struct LimitsOfWaves {
     side: char,
     length_m: f64,
     /// Reynolds number over flow, s/m3.
@@ -132,7 +137,10 @@ impl LineWatch {
         let of_side = |side: usize| {
             let (chamber, line) = places(bench, side);
             let (pressures, flows) = bench.line_limits[side].states(line.len());
+            let lines = bench.machine.lines();
+            let late = lines.get(side).map_or(vec![], |line| line.smearing()).into_iter().flatten();
             let own = pressures.into_iter().map(|(number, _)| number).chain(flows);
+            let own = own.chain(late.map(|(number, _)| number));
             let own = own.filter_map(|number| line.get(number).copied());
             let watched = bench.line_limits[side].is_watched();
             chamber.into_iter().chain(own).filter(|_| watched).collect::<Vec<usize>>()
@@ -178,12 +186,10 @@ impl LineWatch {
         let scale = reynolds_over_flow(bench, bore_m);
         let count = flows.len();
         if let (LineNodes::Waves, [at_valve, at_chamber]) = (own.nodes, &flows[..]) {
-            let state = |number: usize| line.get(number).map(|place| at(*place));
-            let ends = state(*at_valve).zip(state(*at_chamber));
-            self.waves.extend(ends.and_then(|(at_valve, at_chamber)| {
-                let line = WaveLine::of(bench, side, [at_valve, at_chamber])?;
+            self.waves.extend(WaveLine::of(bench, side, wanted, [*at_valve, *at_chamber]).map(|line| {
                 let pressures = [&[in_line], &borne[..]].concat();
-                Some(WatchedWaves { line, side: name, length_m, scale, pressures, flow: laminar })
+                let own = LimitsOfWaves { side: name, length_m, scale, pressures, flow: laminar };
+                WatchedWaves { line, own }
             }));
         }
         for (index, number) in flows.into_iter().enumerate() {
@@ -244,25 +250,45 @@ impl LineWatch {
                 }
             }
         }
-        for WatchedWaves { line, side, length_m, scale, pressures, flow } in &self.waves {
-            for WithinLine { part, pressure, flow: along } in line.within(stretch) {
-                let place = LimitPlace::Line { side: *side, distance_m: part * length_m };
-                for limit in pressures {
-                    if let Some(limit) = self.limits.get_mut(*limit) {
-                        limit.follow(times_s, &pressure, place);
-                    }
-                }
-                let reynolds = along.map(|along| Quartic::constant(0.0).plus(*scale, &along));
-                if let (Some(reynolds), Some(limit)) = (reynolds, self.limits.get_mut(*flow)) {
-                    limit.follow(times_s, &reynolds, place);
-                }
-            }
+        for WatchedWaves { line, own } in &mut self.waves {
+            line.search(stretch, &mut WavesWatch { own, limits: &mut self.limits });
         }
     }
 
     /// The limits that were exceeded.
     pub(crate) fn found(&self) -> impl Iterator<Item = Exceeded> + '_ {
         self.limits.iter().filter_map(WatchedLimit::found)
+    }
+}
+
+/// The limits of a line while it is searched.
+struct WavesWatch<'a> {
+    own: &'a LimitsOfWaves,
+    limits: &'a mut [WatchedLimit],
+}
+
+impl WithinSearch for WavesWatch<'_> {
+    fn wants(&self, bounds: &WithinBounds) -> bool {
+        let exceeds = |limit: &usize, bounds: [f64; 2]| {
+            self.limits.get(*limit).is_some_and(|limit| limit.may_exceed(bounds))
+        };
+        let flow = bounds.flow.map(|flow| flow.map(|flow| self.own.scale * flow));
+        self.own.pressures.iter().any(|limit| exceeds(limit, bounds.pressure))
+            || flow.is_some_and(|flow| exceeds(&self.own.flow, flow))
+    }
+
+    fn take(&mut self, found: &WithinLine) {
+        let LimitsOfWaves { side, length_m, scale, pressures, flow } = self.own;
+        let place = LimitPlace::Line { side: *side, distance_m: found.part * length_m };
+        for limit in pressures {
+            if let Some(limit) = self.limits.get_mut(*limit) {
+                limit.follow(found.times_s, &found.pressure, place);
+            }
+        }
+        let reynolds = found.flow.map(|flow| Quartic::constant(0.0).plus(*scale, &flow));
+        if let (Some(reynolds), Some(limit)) = (reynolds, self.limits.get_mut(*flow)) {
+            limit.follow(found.times_s, &reynolds, place);
+        }
     }
 }
 

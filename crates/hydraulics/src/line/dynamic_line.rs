@@ -86,6 +86,20 @@ impl<S: Scalar> DynamicLine<S> {
         }
     }
 
+    /// For each wave that is sent, in order, the numbers of the states X whose shares a of it are
+    /// late, with these shares; empty without waves.
+    ///
+    /// ```text
+    /// sent = (1 - sum a) h + sum a X                             of TravellingWaves
+    /// ```
+    pub fn smearing(&self) -> Vec<Vec<(usize, S)>> {
+        match self {
+            DynamicLine::Segments(_) => Vec::new(),
+            DynamicLine::TransmissionLine(line) => line.smearing(),
+            DynamicLine::TwoWave(line) => line.smearing(),
+        }
+    }
+
     /// The contribution of the line to the compliance of the chamber, in m3/Pa.
     pub fn chamber_compliance(&self) -> S {
         match self {

@@ -129,6 +129,19 @@ impl<const M: usize, S: Scalar> TravellingWaves<M, S> {
         self.half_resistance
     }
 
+    /// For each wave that is sent, in order, the numbers of the states X_ik with their weights
+    /// a_ik.
+    pub fn smearing(&self) -> Vec<Vec<(usize, S)>> {
+        let first = |end: usize, wave: usize| 1 + (end * M + wave) * FILTERS + TERMS;
+        let of = |end: usize, (number, wave): (usize, &Wave<S>)| {
+            wave.weights.iter().enumerate().map(|(k, weight)| (first(end, number) + k, *weight)).collect()
+        };
+        [0, 1]
+            .into_iter()
+            .flat_map(|end| self.waves.iter().enumerate().map(move |wave| of(end, wave)))
+            .collect()
+    }
+
     /// State and arriving waves of a steady flow in m3/s into a chamber at this pressure in Pa.
     ///
     /// Waves share the pressure as capacities in series do, by T_i/Z_i.
