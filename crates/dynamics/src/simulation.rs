@@ -38,7 +38,7 @@ mod vector;
 pub use commanded_plant::{CommandedPlant, LoopSignals};
 pub use course::{
     Amplification, Attention, Event, GrowthCause, Input, InputSchedule, Observer, Outcome, Sampler,
-    SimulationError, SimulationSettings, Status, StepCounts,
+    SimulationError, SimulationSettings, Status, StepCounts, UnfollowedCause, UnfollowedKinks,
 };
 pub use derivatives::DIRECTIONS;
 pub use driver::drive;

@@ -35,6 +35,7 @@ mod ideal_valve;
 mod impedance;
 mod impossible;
 mod json_contract;
+mod kinks_unfollowed;
 mod line_coverage;
 mod line_identification;
 mod line_limits;

@@ -273,6 +273,27 @@ impl Amplification {
     }
 }
 
+/// Kinks that a run passed without a deviation being carried from one to the next: what they
+/// amplify together is not known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UnfollowedKinks {
+    /// Steps within which some kink was passed.
+    pub steps: u64,
+    /// Why nothing was carried.
+    pub cause: UnfollowedCause,
+}
+
+/// What keeps a deviation from being carried along a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnfollowedCause {
+    /// A controller acts at samples.
+    Samples,
+    /// A delay holds a part of the deviation: of a command, or of a wave.
+    Delays,
+    /// The method has no matrix for it.
+    Method,
+}
+
 /// The outcome of one simulation, apart from what its observer received.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
@@ -286,6 +307,8 @@ pub struct Outcome {
     pub end: Vec<f64>,
     /// What grew most; `None` where nothing did.
     pub amplification: Option<Amplification>,
+    /// `None` where a deviation was carried along, or fewer than two steps passed a kink.
+    pub unfollowed: Option<UnfollowedKinks>,
 }
 
 /// Why a simulation did not start.

@@ -307,6 +307,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         self.send_waves(system, lane);
         self.find_events(system, lane);
         self.observe(lane);
+        self.count_kinks(lane);
         self.keep_marks(lane);
         let Some(slot) = &mut self.slots[lane] else { return };
         for (state, end) in self.state.iter_mut().zip(&self.between.end) {
@@ -439,7 +440,8 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
     /// Takes a machine that is done out of its lane.
     fn leave(&mut self, lane: usize) -> Option<(Outcome, O)> {
         let status = self.slots[lane].as_ref()?.passage.status?;
-        let Slot { passage, observer, .. } = self.slots[lane].take()?;
+        let Slot { passage, observer, sampler, .. } = self.slots[lane].take()?;
+        let unfollowed = self.unfollowed(&passage, sampler.is_some());
         let mut events = passage.events;
         sort_by_number(&mut events, |event| event.time_s);
         let end = self.state.iter().map(|state| state.lane(lane)).collect();
@@ -449,7 +451,7 @@ impl<'a, S: Lane, O: Observer> Drive<'a, S, O> {
         ]);
         let of_motion = self.carried.amplification(lane);
         let amplification = Amplification::named(of_mode, of_motion, self.settings.tolerance);
-        Some((Outcome { status, events, work: passage.work, end, amplification }, observer))
+        Some((Outcome { status, events, work: passage.work, end, amplification, unfollowed }, observer))
     }
 }
 

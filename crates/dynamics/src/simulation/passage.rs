@@ -48,6 +48,8 @@ pub(super) struct Passage<'a> {
     target_s: Option<f64>,
     /// The part of the step being tried just after the first kink of the rates in it.
     pub(super) kink: Option<f64>,
+    /// Steps within which some kink was passed.
+    pub(super) passed_kinks: u64,
     /// A kink at which a step is to end.
     kink_s: Option<f64>,
     /// The next break, sample or arrival.
@@ -108,6 +110,7 @@ impl<'a> Passage<'a> {
             attention: Attention::Rows,
             rejected: false,
             before: 1.0,
+            passed_kinks: 0,
             work: StepCounts::default(),
             events: Vec::new(),
             status: None,

@@ -5,7 +5,7 @@ use std::cell::{Cell, RefCell};
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::simulation::{
     Amplification, Attention, Event, Input, InputSchedule, Outcome, Sampler, SimulationSettings, Status,
-    StepCounts, Task,
+    StepCounts, Task, UnfollowedKinks,
 };
 use phea_hydraulics::machine::INDICATORS;
 use phea_machine::{Control, ControllerSamples, Digital, DigitalMemory, Waking, Watcher};
@@ -73,6 +73,8 @@ pub struct ScenarioRun {
     /// A mode that grew so much that errors within the tolerance of the first pass may be visible;
     /// `None` if there is none.
     pub errors_amplified: Option<Amplification>,
+    /// Kinks along which no deviation was carried, so that what they amplify is not known.
+    pub unfollowed: Option<UnfollowedKinks>,
     /// Whether a stated command drove the valve, and no controller.
     pub open_loop: bool,
     /// Chambers whose pressure exceeded that up to which the expansion of their hose was measured.
@@ -254,7 +256,6 @@ pub(super) fn run<'t>(
     let outcome = bench.control.drive(task, &settings, &mut watch).map_err(named)?;
     let seen = looking.finish()?;
     let occurrences = found((bench, course), &outcome, &samples.borrow(), &seen.exceeded);
-    let windows = course.windows.iter().copied().zip(seen.metrics).collect();
     let outside_model_s = outside_model_s(&occurrences, bench.machine.has_end_stops());
     let memory = memory.into_inner();
     let memory = matches!(bench.control, Control::Sampled(_)).then_some(&memory);
@@ -272,12 +273,13 @@ pub(super) fn run<'t>(
         looks_per_row,
         look_s,
         attention: output.attention,
-        windows,
+        windows: course.windows.iter().copied().zip(seen.metrics).collect(),
         occurrences,
         outside_model_s,
         settling_band_percent: band,
         measured: seen.measured,
         errors_amplified: amplification.filter(|grown| grown.may_show_errors(plan.tolerance)),
+        unfollowed: outcome.unfollowed,
         open_loop: scenario.is_open_loop(),
         beyond_expansion: beyond_expansion(bench, seen.peak_pressures_pa),
         exceeded: seen.exceeded,

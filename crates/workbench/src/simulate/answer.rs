@@ -60,6 +60,7 @@ fn adjustment(run: &ScenarioRun) -> Object {
 }
 
 const NOT_AMPLIFIED: &str = "no mode grew so much that errors within the tolerance may be visible";
+const FOLLOWED: &str = "a deviation was carried along the run, or fewer than two steps pass a kink";
 /// Why there is no work of an adjustment, or no temperature.
 const NOT_ADJUSTED: &str = "no setting of an accumulator moves, and no valve leads to its gas";
 const NO_GAS_VALVE: &str = "no valve lies between a chamber and its gas";
@@ -83,6 +84,9 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
             .told("frequency_rad_per_s", of_mode(&grown).ok_or("no single mode grows"))
             .with("growth_logarithm", grown.logarithm)
             .with("cause", repetition::cause_word(grown.cause))
+    });
+    let unfollowed = run.unfollowed.map(|kinks| {
+        Object::new().with("steps", kinks.steps).with("cause", repetition::unfollowed_word(kinks.cause))
     });
     let repetition = run.repetition.as_ref().map(repetition::row);
     let divergence = run.divergence.as_ref().map(repetition::divergence_row);
@@ -108,6 +112,7 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
         .told("outside_model_s", run.outside_model_s.ok_or("its equations hold throughout"))
         .each("measured", &run.measured, overlay)
         .told("errors_amplified", amplified.ok_or(NOT_AMPLIFIED))
+        .told("kinks_unfollowed", unfollowed.ok_or(FOLLOWED))
         .told("repetition", repetition.ok_or("one pass was enough"))
         .told("check", run.check.as_ref().map(check::row).ok_or("it was not checked"))
         .each("beyond_expansion", &run.beyond_expansion, |beyond| {

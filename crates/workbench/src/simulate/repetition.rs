@@ -3,7 +3,7 @@
 use super::{Divergence, Pass, PassAgreement, PassSpread, Repetition, ScenarioRun, metric_of};
 use crate::answer::{Object, significant};
 use crate::quantity::{DisplayUnit, Units, VOLTAGE, display};
-use phea_dynamics::simulation::GrowthCause;
+use phea_dynamics::simulation::{GrowthCause, UnfollowedCause, UnfollowedKinks};
 
 /// The object `repetition` of a scenario.
 pub(super) fn row(repetition: &Repetition) -> Object {
@@ -105,8 +105,31 @@ pub(super) fn sentences(run: &ScenarioRun) -> Vec<String> {
     let repeated = run.repetition.as_ref().map(|repetition| agreement_words(run, repetition));
     let unknown = "the run was not repeated: `--check` estimates how far its result depends on them";
     let doubt = grown.is_some() && repeated.is_none();
+    let judged = repeated.is_some() || doubt || run.check.is_some();
+    let unfollowed = run.unfollowed.filter(|_| !judged).map(unfollowed_words);
     let sentences = grown.into_iter().chain(repeated);
-    sentences.chain(doubt.then(|| unknown.to_string())).collect()
+    sentences.chain(doubt.then(|| unknown.to_string())).chain(unfollowed).collect()
+}
+
+/// As an answer names it.
+pub(super) fn unfollowed_word(cause: UnfollowedCause) -> &'static str {
+    match cause {
+        UnfollowedCause::Samples => "samples",
+        UnfollowedCause::Delays => "delays",
+        UnfollowedCause::Method => "method",
+    }
+}
+
+fn unfollowed_words(kinks: UnfollowedKinks) -> String {
+    let cause = match kinks.cause {
+        UnfollowedCause::Samples => "in a sampled loop",
+        UnfollowedCause::Delays => "through a delay or a line with waves",
+        UnfollowedCause::Method => "by an explicit method",
+    };
+    format!(
+        "the motion passes kinks, as friction, stops and contacts have; {cause} the growth of a deviation from one to the next is not \
+         followed: `--check` estimates the error"
+    )
 }
 
 fn agreement_words(run: &ScenarioRun, repetition: &Repetition) -> String {

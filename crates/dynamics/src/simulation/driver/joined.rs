@@ -2,8 +2,9 @@
 
 use super::Drive;
 use crate::simulation::kernel::{Kernel, StepTrial};
+use crate::simulation::passage::Passage;
 use crate::simulation::slot::Slot;
-use crate::simulation::{Attention, Lane, Observer};
+use crate::simulation::{Attention, Lane, Observer, UnfollowedCause, UnfollowedKinks};
 
 /// Largest error of a step with known matrices, in units of the tolerance: such errors have one
 /// sign for many samples and add up.
@@ -26,6 +27,28 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
                 self.carried.take(lane, passage.time_s, &self.method.scales);
             }
         }
+    }
+
+    /// Counts the step of a lane if it passed a kink.
+    pub(super) fn count_kinks(&mut self, lane: usize) {
+        let is_other = |(before, after): (&S, &S)| (before.lane(lane) > 0.0) != (after.lane(lane) > 0.0);
+        let passed = self.marks.iter().zip(&self.between.marks).any(is_other);
+        if let Some(Slot { passage, .. }) = self.slots[lane].as_mut().filter(|_| passed) {
+            passage.passed_kinks += 1;
+        }
+    }
+
+    /// The kinks of a run along which [`Drive::carry`] carried nothing: one alone has none to
+    /// amplify what it leaves.
+    pub(super) fn unfollowed(&self, passage: &Passage<'_>, sampled: bool) -> Option<UnfollowedKinks> {
+        let explicit = self.method.linearized().is_none();
+        let causes = [
+            (sampled, UnfollowedCause::Samples),
+            (!passage.histories.is_empty(), UnfollowedCause::Delays),
+            (explicit, UnfollowedCause::Method),
+        ];
+        let (_, cause) = causes.into_iter().find(|(holds, _)| *holds)?;
+        (passage.passed_kinks > 1).then_some(UnfollowedKinks { steps: passage.passed_kinks, cause })
     }
 
     /// Which lanes have matrices for the step to their next break.
