@@ -342,7 +342,11 @@ impl ProjectAudit {
     /// Delay and samples of the loop, in a sentence.
     pub fn loop_sentence(&self) -> String {
         let of_parts = self.dead_time.words();
+        let in_lines = self.without_polynomials == Some(LINES_IN_MOTION);
         let delay = match self.delay_s {
+            0.0 if of_parts.is_empty() && in_lines => {
+                "without delay but that of its lines in motion".to_string()
+            }
             0.0 if of_parts.is_empty() => "without delay".to_string(),
             0.0 => format!("without delay of its own, {of_parts}"),
             delay => {

@@ -4,15 +4,18 @@
 //! the verdict; where a specification depends on it, the verdict is not proven.
 
 mod fed;
+mod leakage_humps;
 mod moved_roots;
 mod null_sides;
 
 use phea_hydraulics::cross_port::Restrictor;
-use phea_hydraulics::operating_point::OperatingPoint;
+use phea_hydraulics::operating_point::{Condition, OperatingPoint};
 use phea_hydraulics::series::MOST_SEGMENTS;
 
 use fed::{fed_in_loop, feed_forward, impedance, measured_without_pressures, pressures_in_loop};
 use moved_roots::moved_roots;
+
+pub use leakage_humps::leakage_humps;
 
 use crate::family::{ShutGas, shut_gas};
 use crate::project::{CrossPortKind, DeclaredSeries, LineMotion, Load, Project, Pump, SupplyModel};
@@ -35,8 +38,31 @@ pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
         supply(setup).into_iter().chain(accumulator(setup)).chain(cross_port(setup)).chain(neck(setup));
     let of_rig = of_rig.chain(adjustment(setup)).chain(gas_valve(setup));
     let of_rig = apart_from_lines(setup).chain(of_rig).chain(progression(setup)).chain(segments(setup));
-    of_rig.chain(moved_roots(setup)).collect()
+    of_rig.chain(moved_roots(setup)).chain(blocked_piston(setup)).collect()
 }
+
+/// A region of positions alone under the force of a piston that is blocked at null.
+fn blocked_piston(setup: &Setup<'_>) -> Option<Caveat> {
+    let region = setup.project.family.as_ref()?.operating_region.as_ref()?;
+    let rig = setup.rig().ok()?;
+    let blocked = matches!(rig.condition, Condition::Command(command) if command == 0.0);
+    if region.load_force.is_some() || region.velocity.is_some() || !blocked {
+        return None;
+    }
+    let (force, parts) = (rig.point.hydraulic_force, rig.actuator.components());
+    let is_visible = force.abs() > LEAST_FORCE * parts.cylinder.greatest_areas()[0] * parts.supply.pressure;
+    is_visible.then(|| Caveat {
+        sentence: format!(
+            "family.operating_region has positions alone: its plants are those of a piston blocked at null, which pushes with {}, and not \
+             of zero force, for which operating_point.load_force = 0 is stated",
+            setup.project.units.force.short(force, 4)
+        ),
+        unproven: false,
+    })
+}
+
+/// Part of the largest force from which on it changes a plant.
+const LEAST_FORCE: f64 = 1e-3;
 
 /// Declared effects that no linear model includes, in sentences.
 pub fn of_models(setup: &Setup<'_>) -> Vec<String> {

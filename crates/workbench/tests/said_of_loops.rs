@@ -1,0 +1,140 @@
+//! What a verdict rests on, in words: every delay of the loop, the force of a region that states
+//! none, and a valve that leaks most beside null.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
+
+use phea_hydraulics::servovalve::blocked_ports;
+use phea_workbench::command::Request;
+use phea_workbench::setup::Setup;
+
+use super::ask::{HOSE, answer, json, near, number, project_of};
+
+const VERIFY: Request = Request::Verify { proof: false, on_machine: false };
+const VANE: &str = include_str!("../../../examples/rotary/vane.toml");
+
+const LOOP: &str = r#"
+schema = 1
+title = "Delays"
+[plant]
+numerator = "1"
+denominator = "s + 1"
+[controller]
+numerator = "1"
+denominator = "s"
+[[specification]]
+kind = "robust_stability"
+limit = 2
+frequencies = [0.1, 1]
+"#;
+
+fn loop_sentence(text: &str, settings: &[&str]) -> String {
+    let said = answer(text, settings, &[], &VERIFY).text;
+    said.lines().find(|line| line.trim_start().starts_with("Loop: ")).unwrap().trim().to_string()
+}
+
+/// Dead time of plant, sensor, controller and lines, each where it is.
+#[test]
+fn every_delay_of_a_loop_is_named() {
+    let sensor = "sensor={ numerator = \"1\", denominator = \"0.01*s + 1\", delay = \"20 ms\" }";
+    let range = ["plant.delay=T", "uncertainty.T={ nominal = 0.015, minimum = 0.01, maximum = 0.03 }"];
+    for (settings, expected) in [
+        (&[][..], "Loop: continuous, without delay."),
+        (
+            &["plant.delay=0.1 s"],
+            "Loop: continuous, without delay of its own, with a dead time of 100 ms in the plant.",
+        ),
+        (
+            &range,
+            "Loop: continuous, without delay of its own, with a dead time of 10.0 ms to 30.0 ms in the plant.",
+        ),
+        (&[sensor], "Loop: continuous, without delay of its own, with a dead time of 20.0 ms in the sensor."),
+        (
+            &[sensor, "plant.delay=0.1 s", "controller.delay=5 ms"],
+            "Loop: continuous, with a delay of 5.00 ms, with a dead time of 100 ms in the plant and 20.0 ms in the sensor.",
+        ),
+        (
+            &["plant.delay=0.1 s", "controller.sample_time=50 ms"],
+            "Loop: sampled every 50.0 ms with a zero-order hold, without delay of its own, with a dead time of 100 ms in the plant.",
+        ),
+    ] {
+        assert_eq!(loop_sentence(LOOP, settings), expected, "{settings:?}");
+    }
+    assert_eq!(loop_sentence(HOSE, &[]), "Loop: continuous, without delay.");
+    let waves = loop_sentence(HOSE, &["line.model=transmission_line"]);
+    assert_eq!(waves, "Loop: continuous, without delay but that of its lines in motion.");
+}
+
+const ALONE: &str = "family.operating_region has positions alone";
+
+/// A region of positions alone is one of a piston that is blocked at null; its force is stated, and
+/// zero force is another one.
+#[test]
+fn a_region_of_positions_alone_states_its_force() {
+    let region = |text: &str| format!("family.operating_region={{ position = {text} }}");
+    let positions = region("[\"50 mm\", \"400 mm\"]");
+    let none = "uncertainty={}";
+    let said = |text: &str, settings: &[&str]| {
+        let told = answer(text, settings, &[], &VERIFY).text;
+        told.lines().find(|line| line.contains(ALONE)).map(str::to_string)
+    };
+    let project = project_of(HOSE, &[none]);
+    let parts = *Setup::new(&project).unwrap().rig().unwrap().actuator.components();
+    let ports = blocked_ports(&parts.valve, &parts.supply, 0.0);
+    let [area_a, area_b] = parts.cylinder.greatest_areas();
+    // ORIGIN: analytic, A_A p_A - A_B p_B of blocked ports
+    let force_kn = 1e-3 * (area_a * ports.pressure_a - area_b * ports.pressure_b);
+    let told = said(HOSE, &[none, &positions]).unwrap();
+    assert!(told.contains(&format!("{force_kn:.3} kN")), "{told} {force_kn}");
+    // the stages of a telescopic piston, and valves with equal edges on a piston with one rod
+    let equal = [
+        "valve.flow_coefficients=[3e-7, 3e-7, 3e-7, 3e-7]",
+        "valve.leakage_coefficients=[2.4e-9, 2.4e-9, 2.4e-9, 2.4e-9]",
+    ];
+    let [one, other] = equal;
+    assert_eq!(said(HOSE, &[none, &positions, one, other]), None);
+    let one_rod = HOSE.replace("rod_diameter = \"22 mm\"", "rod_diameters = [\"0 mm\", \"22 mm\"]");
+    assert!(said(&one_rod, &[none, &positions, one, other]).unwrap().contains("kN"));
+    // with a force, or a velocity, or zero force that is stated
+    let at_rest = "operating_point.load_force=0";
+    assert_eq!(said(HOSE, &[none, &positions, at_rest]), None);
+    let moving = "family.operating_region={ position = [\"50 mm\", \"400 mm\"], velocity = [0, \"1 mm/s\"] }";
+    assert_eq!(said(HOSE, &[none, moving]), None);
+    let worst =
+        |settings: &[&str]| number(&json(HOSE, settings, &[], &VERIFY), "specifications.0.worst_margin_db");
+    let without_force = "family.operating_region={ position = [\"50 mm\", \"400 mm\"], load_force = [0, 0] }";
+    let [stated, region] = [worst(&[none, &positions, at_rest]), worst(&[none, without_force])];
+    near(stated, region, 1e-3);
+    assert!((worst(&[none, &positions]) - stated).abs() > 0.5);
+}
+
+const BESIDE: &str = "the valve leaks most beside null";
+
+/// Two humps of the leakage are stated with the numbers of the blocked valve, of a cylinder's and
+/// of a motor's; one that is highest at null says nothing.
+#[test]
+fn a_valve_that_leaks_most_beside_null_is_told() {
+    let told = |text: &str, settings: &[&str]| {
+        let said = answer(text, settings, &[], &Request::Check).text;
+        said.lines().find(|line| line.contains(BESIDE)).map(str::to_string)
+    };
+    for (text, shape) in [(HOSE, "40"), (super::against_the_load::RIG, "30"), (VANE, "60")] {
+        let shape = format!("valve.leakage_shape={shape}");
+        let told = told(text, &[&shape]).unwrap_or_else(|| panic!("{shape}"));
+        let project = project_of(text, &[&shape]);
+        let parts = *Setup::new(&project).unwrap().rig().unwrap().actuator.components();
+        let leak = |opening: f64| blocked_ports(&parts.valve, &parts.supply, opening).supply_flow;
+        let steps = (0..40_000).map(|step| 5e-5 * f64::from(step));
+        let sides =
+            [1.0, -1.0].map(|side| steps.clone().map(|opening| leak(side * opening)).fold(0.0, f64::max));
+        // ORIGIN: analytic, the lower of both humps in L/min
+        let lower = 6e4 * sides[0].min(sides[1]);
+        let (_, after) = told.split_once("beside null, ").unwrap();
+        let printed: f64 = after.split_once(" L/min").unwrap().0.parse().unwrap();
+        near(printed, lower, 6e-3);
+    }
+    for (text, shape) in [(HOSE, "400"), (super::against_the_load::RIG, "2000"), (VANE, "900")] {
+        let shape = format!("valve.leakage_shape={shape}");
+        assert_eq!(told(text, &[&shape]), None, "{shape}");
+    }
+}
