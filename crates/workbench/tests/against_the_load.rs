@@ -206,6 +206,29 @@ fn sizing_has_the_specimen_in_series() {
     }
 }
 
+/// The same of a piston with one rod, of another time constant, and behind a spring on the rod.
+#[test]
+fn a_specimen_takes_its_gain_whatever_the_rig() {
+    let one_rod = HOSE.replace("rod_diameter = \"22 mm\"", "rod_diameters = [\"22 mm\", \"0 mm\"]");
+    let spring = format!("{HOSE}\n[series]\nstiffness = \"3 kN/mm\"\n");
+    let load = specimen("8e6 N/m");
+    for (text, settings, time_constant) in [
+        (&one_rod, vec![], 0.05),
+        (&spring, vec![], 0.05),
+        (&spring, vec!["sizing.time_constant=0.2 s"], 0.2),
+        (&one_rod, vec!["sizing.flow_gain=4e-5"], 0.05),
+    ] {
+        let gain = |more: &[&str]| {
+            let size = size_for_length(text, &[&settings[..], more].concat(), "1.5 m");
+            number(&size["candidates"][0], "proportional_gain_v_per_n")
+        };
+        let area = derived(&check(text, &settings), "linear.piston_area");
+        let flow_gain = if settings.iter().any(|one| one.contains("flow_gain")) { 4e-5 } else { 5.62e-5 };
+        // ORIGIN: analytic, A/(tau k K_qU)
+        near(gain(&[&load]) - gain(&[]), area / (time_constant * 8e6 * flow_gain), 1e-6);
+    }
+}
+
 /// A load that no stiffness holds is not in series with anything, and this is said.
 #[test]
 fn a_free_mass_is_held_still_and_named() {

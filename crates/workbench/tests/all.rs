@@ -72,6 +72,7 @@ mod required_step;
 mod response_identification;
 mod rest;
 mod rising_progress;
+mod runs_alike;
 mod said_of_loops;
 mod sampled_notch;
 mod scenarios;

@@ -66,3 +66,40 @@ fn where_a_search_decides_the_parameters_are_named() {
     let still = json(&format!("{RIG}{LOOP}"), &settings[..1], &[], &verify);
     assert!(still["stability"]["leading_coefficient"].is_null());
 }
+
+/// Over other ranges, of air itself and of the force, and around a continuous controller: as a
+/// dense sample of the range has it.
+#[test]
+fn stability_is_decided_over_other_ranges_of_a_fluid_with_air() {
+    let verify = Request::Verify { proof: false, on_machine: false };
+    let text = format!("{RIG}{LOOP}");
+    let air = "fluid.entrained_air=0.005";
+    let continuous = "controller={ numerator = \"3e-5*s + 4.5e-5\", denominator = \"s\" }";
+    let cases: [(&str, [f64; 2], &[&str]); 4] = [
+        ("operating_point.load_force", [1e4, 6e4], &[]),
+        ("fluid.entrained_air", [1e-3, 1e-2], &[]),
+        ("operating_point.position", [0.05, 0.25], &[]),
+        ("supply.pressure", [180e5, 220e5], &[continuous]),
+    ];
+    for (name, [low, high], more) in cases {
+        let range = |low: f64, high: f64| {
+            let nominal = 0.5 * (low + high);
+            format!(
+                "uncertainty={{ \"{name}\" = {{ nominal = {nominal}, minimum = {low}, maximum = {high}, points = 2 }} }}"
+            )
+        };
+        let margin = |low: f64, high: f64| {
+            let own = range(low, high);
+            let found = json(&text, &[&[air, own.as_str()], more].concat(), &[], &verify);
+            assert_eq!(found["stable"], true, "{name}: {found}");
+            number(&found, "delay_margin_s")
+        };
+        let whole = margin(low, high);
+        let pieces = [0.0, 0.25, 0.5, 0.75].map(|part| {
+            let at = |part: f64| low + part * (high - low);
+            margin(at(part), at(part + 0.25))
+        });
+        let least = pieces.into_iter().fold(f64::INFINITY, f64::min);
+        assert!((whole / least - 1.0).abs() < 1e-3, "{name}: {whole} {pieces:?}");
+    }
+}

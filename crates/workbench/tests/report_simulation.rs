@@ -176,17 +176,26 @@ const IN_TIME: &str = "[[specification]]\nkind = \"tracking\"\nfrequencies = [0.
     [specification.lower]\nsettling_time = \"0.8 s\"\nsettling_band_percent = 1\npole = \"60 rad/s\"\n";
 
 /// What the first page says of a requirement in time is the worst over the runs of the campaign
-/// too.
+/// too, of a sampled loop and of a late one as of a continuous one, and over other numbers.
 #[test]
 fn the_first_page_takes_the_worst_of_the_campaign() {
     let text = format!("{CAMPAIGN}\n{IN_TIME}");
-    let report = reported(&text, &["scenario.0.duration=2.9 s", "campaign.runs=24"]);
-    let settling = row(chapter(&report, "campaign"), "settling to 1 % (s)");
-    let (worst, run) = settling[6].split_once(" (").expect("a run");
-    let (_, page) = report.html.split_once("id=\"decision\">").expect("the first page");
-    let page = page.split("</section>").next().unwrap();
-    let worst = format!("{:.3} s at worst (campaign, run {run}", worst.parse::<f64>().unwrap());
-    assert!(page.replace('\u{a0}', " ").contains(&worst), "{worst}");
+    let cases: [&[&str]; 4] = [
+        &[],
+        &["controller.sample_time=1 ms"],
+        &["controller.delay=1 ms"],
+        &["campaign.parameters={ \"supply.pressure\" = { minimum = \"50 bar\", maximum = \"100 bar\" } }"],
+    ];
+    for more in cases {
+        let settings = [&["scenario.0.duration=2.9 s", "campaign.runs=12"], more].concat();
+        let report = reported(&text, &settings);
+        let settling = row(chapter(&report, "campaign"), "settling to 1 % (s)");
+        let (worst, run) = settling[6].split_once(" (").expect("a run");
+        let (_, page) = report.html.split_once("id=\"decision\">").expect("the first page");
+        let page = page.split("</section>").next().unwrap();
+        let worst = format!("{:.3} s at worst (campaign, run {run}", worst.parse::<f64>().unwrap());
+        assert!(page.replace('\u{a0}', " ").contains(&worst), "{more:?}: {worst}");
+    }
 }
 
 /// A report makes as many runs as its steps of integration suffice for, judged by the first of
