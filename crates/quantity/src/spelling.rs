@@ -4,7 +4,8 @@
 ///
 /// A name that differs only in case wins; otherwise the fewest insertions, deletions, substitutions
 /// and swaps of neighbours, at most a third of the name's length (one for two or three characters,
-/// two from four on). Ties go to the earlier one. Another word for a candidate is taken for it.
+/// two from four on). Ties go to the earlier one. Another word for a candidate is taken for it. Where
+/// none is near, the shortest candidate that begins with all words of the name is.
 ///
 /// # Example
 /// ```
@@ -13,6 +14,7 @@
 /// assert_eq!(nearest("BAR", ["mbar", "bar"]), Some("bar"));
 /// assert_eq!(nearest("gaussian", ["uniform", "normal"]), Some("normal"));
 /// assert_eq!(nearest("temperature", ["flow", "pressure"]), None);
+/// assert_eq!(nearest("settling", ["settling_band_percent", "settling_time"]), Some("settling_time"));
 /// ```
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let wanted: Vec<char> = name.chars().take(MAXIMUM_LENGTH).flat_map(char::to_lowercase).collect();
@@ -22,10 +24,15 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         length => (length / 3).max(2),
     };
     let mut best: Option<(usize, &str)> = None;
+    let mut begun: Option<&str> = None;
     let lowered: String = wanted.iter().collect();
     for candidate in candidates.into_iter().take(MAXIMUM_CANDIDATES) {
         if OTHER_WORDS.contains(&(lowered.as_str(), candidate)) {
             return Some(candidate);
+        }
+        let is_begun = candidate.strip_prefix(name).is_some_and(|rest| rest.starts_with('_'));
+        if is_begun && allowed > 1 && begun.is_none_or(|known| candidate.len() < known.len()) {
+            begun = Some(candidate);
         }
         let letters: Vec<char> = candidate.chars().flat_map(char::to_lowercase).collect();
         if letters.len().abs_diff(wanted.len()) > allowed {
@@ -36,7 +43,7 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
             best = Some((distance, candidate));
         }
     }
-    best.map(|(_, candidate)| candidate)
+    best.map(|(_, candidate)| candidate).or(begun)
 }
 
 /// Synonyms of names.
