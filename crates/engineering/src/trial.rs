@@ -50,7 +50,7 @@ pub enum TrialError {
 }
 
 /// The stage of a trial, for the watch.
-const STAGE: &str = "on the machine";
+const STAGE: &str = "nonlinear simulation";
 
 /// Every run, in the order in which they were driven: the rig as it is declared first.
 #[derive(Clone, Debug, PartialEq)]

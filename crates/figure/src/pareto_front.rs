@@ -97,7 +97,7 @@ impl ParetoFront {
         let places = [
             (FrontPlace::OnFront, "on the front"),
             (FrontPlace::Dominated, "dominated"),
-            (FrontPlace::NotToBeHad, "not satisfied, or contradicted by the machine"),
+            (FrontPlace::NotToBeHad, "not satisfied, or contradicted by the nonlinear simulation"),
         ];
         let used = |place: FrontPlace| {
             self.curves.iter().flat_map(|curve| &curve.points).any(|point| point.place == place)

@@ -4,8 +4,8 @@
 ///
 /// A name that differs only in case wins; otherwise the fewest insertions, deletions, substitutions
 /// and swaps of neighbours, at most a third of the name's length (one for two or three characters,
-/// two from four on). Ties go to the earlier one. Another word for a candidate is taken for it. Where
-/// none is near, the shortest candidate that begins with all words of the name is.
+/// two from four on). Ties go to the earlier one. Another word for a candidate is taken for it.
+/// Where none is near, the shortest candidate that begins with all words of the name is.
 ///
 /// # Example
 /// ```

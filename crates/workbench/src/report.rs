@@ -229,12 +229,17 @@ fn verdict_facts(judged: &Judged) -> Facts {
     let mut facts = Vec::new();
     facts.extend(judged.given.as_ref().map(|view| ("Audit of the controller", audit_words(view))));
     facts.extend(
-        judged.given_trial.as_ref().map(|trial| ("Controller on the machine", crate::trial::words(trial))),
+        judged
+            .given_trial
+            .as_ref()
+            .map(|trial| ("Controller in the nonlinear simulation", crate::trial::words(trial))),
     );
     if let Some(designed) = &judged.designed {
         facts.push(("Designed controller", designed.words()));
         facts.extend(
-            designed.trial().map(|trial| ("Designed controller on the machine", crate::trial::words(trial))),
+            designed
+                .trial()
+                .map(|trial| ("Designed controller in the nonlinear simulation", crate::trial::words(trial))),
         );
     }
     facts

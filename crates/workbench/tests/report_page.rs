@@ -356,13 +356,16 @@ fn controllers_are_shown_on_the_machine() {
     let fact =
         |name: &str| report.summary.iter().find(|(known, _)| *known == name).map(|(_, text)| text.as_str());
     assert!(fact("Audit of the controller").unwrap().starts_with("met"));
-    assert_eq!(fact("Controller on the machine"), Some("contradicts: the rig with waves in its lines"));
+    assert_eq!(
+        fact("Controller in the nonlinear simulation"),
+        Some("contradicts: the rig with waves in its lines")
+    );
     assert!(report.figures.iter().any(|found| found.name == "machine_steps"));
     // by word, form and colour
     for shown in [
         "<span class=\"mark good\"><svg",
         "<span class=\"mark bad\"><svg",
-        "The machine contradicts the verdict",
+        "The nonlinear simulation contradicts the verdict",
     ] {
         assert!(report.html.contains(shown), "{shown}");
     }
@@ -370,12 +373,14 @@ fn controllers_are_shown_on_the_machine() {
     assert_eq!((given.verdict, given.machine), (Some("met"), Some("contradicts")));
     let next = report.decision.next.join("\n");
     assert!(
-        report.decision.next[0]
-            .contains("do not rely on it before the machine, which contradicts the verdict, agrees"),
+        report.decision.next[0].contains(
+            "do not rely on it before the nonlinear simulation, which contradicts the verdict, agrees"
+        ),
         "{next}"
     );
     assert!(
-        next.contains("Shorten the hose") && next.contains("the machine contradicts the verdict"),
+        next.contains("Shorten the hose")
+            && next.contains("the nonlinear simulation contradicts the verdict"),
         "{next}"
     );
 }

@@ -23,7 +23,7 @@ fn told(text: &str, settings: &[&str], request: &Request) -> Vec<Progress> {
 #[test]
 fn the_audit_leaves_room_for_the_machine() {
     let told = told(HOSE, &[], &Request::Verify { proof: false, on_machine: true });
-    let first = told.iter().find(|one| one.stage == "on the machine").unwrap();
+    let first = told.iter().find(|one| one.stage == "nonlinear simulation").unwrap();
     assert!((0.4..0.6).contains(&first.share), "{first:?}");
     assert_eq!(told.first().unwrap().stage, "auditing");
 }

@@ -73,7 +73,7 @@ fn a_met_verdict_that_waves_contradict_is_no() {
         (object["verdict"].as_str(), object["machine"]["verdict"].as_str()),
         (Some("met"), Some("contradicts"))
     );
-    assert!(!yes && text.contains("On the machine: contradicts"));
+    assert!(!yes && text.contains("Nonlinear simulation: contradicts"));
     let waves = run(&object, "the rig with waves in its lines");
     assert_eq!(waves["machine"]["settling_time_s"], Value::Null);
     assert!(overshoot(waves, "machine") > 100.0, "{waves}");
@@ -97,7 +97,7 @@ fn declared_waves_are_the_rig() {
     assert!(object["stability"]["reason"].as_str().unwrap().contains("unstable closed-loop poles"));
     let first = &object["machine"]["runs"][0];
     assert_eq!((&first["agrees"], &first["linear"]), (&Value::from(true), &Value::Null));
-    assert_eq!(first["reason"], "neither the linear loop nor the machine settles");
+    assert_eq!(first["reason"], "neither the linear loop nor the nonlinear simulation settles");
     // the first step of each machine decides: no other follows, and none that is larger
     let runs = object["machine"]["runs"].as_array().unwrap();
     for run in runs {

@@ -203,7 +203,7 @@ fn without_result(run: &ScenarioRun) -> Option<String> {
     }
     match (run.status_word(), run.outside_model_s) {
         (UNDETERMINED, _) => Some("no solver determines the result of the run".to_string()),
-        (_, Some(time_s)) => Some(format!("from {time_s} s on the equations of the machine do not hold")),
+        (_, Some(time_s)) => Some(format!("from {time_s} s on the equations of the simulation do not hold")),
         _ => None,
     }
 }

@@ -24,7 +24,7 @@ const SETTLING_RATIO: f64 = 2.0;
 /// small step.
 const OVERSHOOT_ROOM_PERCENT: f64 = 5.0;
 
-const NEITHER_SETTLES: &str = "neither the linear loop nor the machine settles";
+const NEITHER_SETTLES: &str = "neither the linear loop nor the nonlinear simulation settles";
 
 /// A run of a machine, its steps, and what is known of the linear loop.
 pub(super) struct Driven<'a> {
@@ -77,7 +77,7 @@ impl Driven<'_> {
 pub(super) fn not_started(error: &SimulateError, view: &ProjectAudit) -> (Agreement, String) {
     let agreement =
         if view.audit.verdict == Verdict::Met { Agreement::Contradicts } else { Agreement::Differs };
-    (agreement, format!("the machine does not start: {error}"))
+    (agreement, format!("the nonlinear simulation does not start: {error}"))
 }
 
 /// How well it agrees, and why.
@@ -94,7 +94,7 @@ pub(super) fn judge(
         }
         let time = DisplayUnit::MILLISECOND.text(stopped.time_s, 3);
         let words = match stopped.word {
-            DIVERGED => format!("the machine diverges from {time} on"),
+            DIVERGED => format!("the nonlinear simulation diverges from {time} on"),
             word => format!("the run ended after {time} as {word}"),
         };
         return (broken, words);

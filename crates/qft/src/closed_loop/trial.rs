@@ -75,8 +75,8 @@ impl Compensation {
         }
     }
 
-    /// A rational plant of a sampled loop by its modes; `None` where they are not apart, and where a
-    /// rate is fed back within the plant.
+    /// A rational plant of a sampled loop by its modes; `None` where they are not apart, and where
+    /// a rate is fed back within the plant.
     fn held(&self, plant: &PlantCoefficients<f64>) -> Option<HeldPlant> {
         let sample_time_s = self.sample_time_s?;
         let fed_back = self.rate_feed_forward != 0.0 && moved_rate(plant).is_some();

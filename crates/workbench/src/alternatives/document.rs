@@ -79,7 +79,7 @@ fn table(found: &Alternatives) -> Table {
         if part == ColumnPart::Loop {
             rows.row(words("feasible", found, feasible));
             rows.row(words("stable with its load", found, stable));
-            rows.row(words("on the machine", found, machine));
+            rows.row(words("nonlinear simulation", found, machine));
         }
         let settling = summary::settling(found.judged.iter(), |run| is_of(run, &part));
         for (key, name) in keys {

@@ -168,7 +168,7 @@ fn lacking(one: &JudgedAlternative) -> Vec<(&str, String)> {
             1 => ", and in another run".to_string(),
             count => format!(", and in {count} further runs"),
         };
-        format!("the machine contradicts the verdict: {}: {reason}{further}", first.what)
+        format!("the nonlinear simulation contradicts the verdict: {}: {reason}{further}", first.what)
     });
     let caveats = view.map(|view| view.designed.view.caveats.as_slice()).unwrap_or_default();
     let caveats = caveats.iter().map(|caveat| caveat.sentence.clone());
@@ -235,7 +235,7 @@ fn best(comparable: &MeasuredAlternatives) -> Option<String> {
     });
     let each: Vec<String> = each.collect();
     Some(format!(
-        "best of those that satisfy every specification and that the machine does not contradict: {}",
+        "best of those that satisfy every specification and that the nonlinear simulation does not contradict: {}",
         each.join("; ")
     ))
 }

@@ -73,7 +73,10 @@ pub(super) fn findings(front: &Front) -> Vec<String> {
             vec!["no point is on a front: none has a value in every column".to_string()]
         }
         [] => {
-            vec!["no point is on a front: none satisfies every specification, on the machine too".to_string()]
+            vec![
+                "no point is on a front: none satisfies every specification, in the nonlinear simulation too"
+                    .to_string(),
+            ]
         }
         [only] => vec![format!("{} dominates every other feasible point", name_of(front, only))],
         several => several.windows(2).map(|pair| step(front, pair[0], pair[1])).collect(),

@@ -21,7 +21,7 @@ pub(super) fn table(found: &Alternatives) -> Table {
         "settling_time_s" => settling.clone(),
         _ => (*words).to_string(),
     });
-    let headings = ["alternative", "specifications", "on the machine"].map(String::from);
+    let headings = ["alternative", "specifications", "nonlinear simulation"].map(String::from);
     let headings = headings.into_iter().chain(words);
     let mut rows = match groups.len() {
         1 => Table::new(headings),

@@ -37,7 +37,7 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
             .with("objective_db", starts.objectives_db)
     });
     let no_machine = match view.stopped {
-        true => "the design was stopped before it was tried on the machine",
+        true => "the design was stopped before it was tried in the nonlinear simulation",
         false => "the project describes a plant and no machine",
     };
     let no_repair = match view.agreement() {

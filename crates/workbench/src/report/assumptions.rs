@@ -38,7 +38,7 @@ fn supply(actuator: &DeclaredActuator) -> &'static str {
             "Pressures are gauge; tank and supply stay at the declared pressures, whatever the valve takes."
         }
         SupplyModel::PumpLimited(_) => {
-            "Pressures are gauge; the tank stays at the declared pressure; the supply pressure falls with the demand in the machine and in the plant of the loop, and is constant in the other linear models."
+            "Pressures are gauge; the tank stays at the declared pressure; the supply pressure falls with the demand in the simulation and in the plant of the loop, and is constant in the other linear models."
         }
     }
 }
@@ -83,8 +83,9 @@ fn lines(actuator: &DeclaredActuator) -> Vec<&'static str> {
 
 fn friction(actuator: &DeclaredActuator) -> Option<&'static str> {
     let law = &actuator.friction()?.law;
-    (*law != FrictionLaw::Viscous)
-        .then_some("Friction enters the linear models by its viscous part alone; the machine has all of it.")
+    (*law != FrictionLaw::Viscous).then_some(
+        "Friction enters the linear models by its viscous part alone; the simulation has all of it.",
+    )
 }
 
 /// How the pressures of the chambers are known, where they are fed back.

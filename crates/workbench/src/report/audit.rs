@@ -19,7 +19,10 @@ pub(super) fn chapter(
     let mut out = document(view, figures);
     out.explanations(refused.map(|reason| format!("No step responses of the family: {reason}.")));
     if let Some(tried) = tried {
-        out.append(trial::document(tried, Some(["machine_steps", "The controller on the machine"])));
+        out.append(trial::document(
+            tried,
+            Some(["machine_steps", "The controller in the nonlinear simulation"]),
+        ));
     }
     Ok(Chapter::of("audit", "Audit of the controller", out))
 }

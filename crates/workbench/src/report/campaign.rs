@@ -64,7 +64,7 @@ pub(super) fn driven(
     if loaded.project.campaign.is_none() {
         return Ok(None);
     }
-    let (anchor, title) = ("campaign", "Campaign: the machine with drawn numbers");
+    let (anchor, title) = ("campaign", "Campaign: simulations with drawn numbers");
     let asked = loaded.project.campaign.as_ref().and_then(|campaign| campaign.runs).map_or(RUNS, u64::from);
     let mut told = || -> Result<_, CampaignError> {
         let plan = Plan::new(source, loaded, SEED)?;

@@ -150,7 +150,7 @@ fn chapter(found: &FoundDesign) -> Result<Chapter, CommandError> {
     if let Some(trial) = &view.trial {
         out.append(trial::document(
             trial,
-            Some(["design_machine_steps", "The designed controller on the machine"]),
+            Some(["design_machine_steps", "The designed controller in the nonlinear simulation"]),
         ));
     }
     out.heading("The designed controller");

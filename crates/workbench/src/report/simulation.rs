@@ -28,7 +28,7 @@ pub(super) fn chapter(project: &Project, driven: &MachineChapter) -> Chapter {
         }
     }
     let any = (0..project.scenarios.len()).any(|index| !driven.of_scenario(index).is_empty());
-    out.explanations(any.then(|| "The machine as a whole: spool with saturation, the flow of each edge, chambers that grow and shrink, friction as declared, load cell and load, under the controller as it is deployed. Peaks and settling times are those of the solution over each step of the integration, so that they do not depend on the rows of the table.".to_string()));
+    out.explanations(any.then(|| "The rig as a whole, simulated: spool with saturation, the flow of each edge, chambers that grow and shrink, friction as declared, load cell and load, under the controller as it is deployed. Peaks and settling times are those of the solution over each step of the integration, so that they do not depend on the rows of the table.".to_string()));
     for (index, declared) in project.scenarios.iter().enumerate() {
         let runs = driven.of_scenario(index);
         let wish = driven.wish.as_ref();
@@ -54,7 +54,7 @@ pub(super) fn inside(project: &Project, driven: &MachineChapter) -> Option<Chapt
     let mut out = Document::default();
     out.explanation("What the figures of both controllers leave out: the spool and the command, both chambers, and hydraulic and measured force, between which lie the friction and the acceleration of the piston; in the order of Figure 6.17 of Ledezma (2019).");
     out.figures(figures);
-    Some(Chapter::of("inside", "Inside the machine at each event", out))
+    Some(Chapter::of("inside", "Inside the simulated rig at each event", out))
 }
 
 /// All controllers in one figure; a single controller with all signals.

@@ -66,7 +66,7 @@ fn overlaid(run: &ScenarioRun, number: usize, span_s: [f64; 2]) -> Option<Figure
     let words = Words::new(
         format!("simulation-{number}-measured"),
         format!("Measured and simulated: {}", run.name),
-        "What was measured on the rig, on what the machine of the project does.",
+        "What was measured on the rig, on what the nonlinear simulation of the project does.",
     );
     let legend = ["simulated", "measured"].map(String::from);
     let events = instants(&run.windows, span_s);

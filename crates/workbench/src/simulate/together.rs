@@ -76,7 +76,7 @@ pub(crate) fn close_ups(named: NamedRun<'_>, number: usize) -> Vec<Figure> {
         let words = Words::new(
             format!("simulation-{number}-{name}-event-{}", index + 1),
             format!(
-                "Inside the machine, {name} controller: {}, {}",
+                "Inside the simulated rig, {name} controller: {}, {}",
                 run.name,
                 cause_words(window, run.record.units)
             ),

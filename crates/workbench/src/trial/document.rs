@@ -14,18 +14,18 @@ use phea_qft::verification::Verdict;
 pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Document {
     let mut out = Document::default();
     let agreement = trial.agreement();
-    out.verdict(agreement.into(), format!("On the machine: {}", agreement_word(agreement)), vec![]);
+    out.verdict(agreement.into(), format!("Nonlinear simulation: {}", agreement_word(agreement)), vec![]);
     let did = match agreement {
         Agreement::Agrees => "agrees with the linear loop",
         Agreement::Differs => "differs from the linear loop",
         Agreement::Contradicts => "contradicts the verdict",
     };
     out.explanation(format!(
-        "The machine {did}. The nonlinear rig under this controller: steps of the reference there, back and there again, by a tenth of the force that the supply can produce and then as large as the command allows, compared with those of the linear loop. Of the three steps the worst numbers are given; a force within {BAND_PERCENT} % of the step has settled."
+        "The nonlinear simulation {did}. The nonlinear rig under this controller: steps of the reference there, back and there again, by a tenth of the force that the supply can produce and then as large as the command allows, compared with those of the linear loop. Of the three steps the worst numbers are given; a force within {BAND_PERCENT} % of the step has settled."
     ));
     let settles = format!("settles in ({BAND_PERCENT} %)");
     out.table(
-        Table::new(["machine", "step", "", "overshoot", "linear", &settles, "linear", "remains"])
+        Table::new(["run", "step", "", "overshoot", "linear", &settles, "linear", "remains"])
             .with(trial.runs.iter().map(cells)),
     );
     out.sentences(reasons(trial));

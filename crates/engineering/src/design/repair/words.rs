@@ -49,10 +49,13 @@ fn whole(view: Option<&ProjectAudit>) -> String {
 fn before(view: &ProjectAudit) -> String {
     match view.audit.stability.verdict {
         Verdict::Met => {
-            format!("the linear loop reproduces the machine once its plant includes waves: {}", margins(view))
+            format!(
+                "the linear loop reproduces the nonlinear simulation once its plant includes waves: {}",
+                margins(view)
+            )
         }
         _ => format!(
-            "the linear loop reproduces the machine once its plant includes waves: {}",
+            "the linear loop reproduces the nonlinear simulation once its plant includes waves: {}",
             stability_sentence(&view.audit.stability, &view.names)
         ),
     }
@@ -160,7 +163,7 @@ fn nearest(found: &ProjectDesign) -> Option<String> {
     let trial = found.trial.as_ref()?;
     let waves = trial.runs.iter().find(|run| run.quarter_wave_rad_per_s.is_some())?;
     Some(format!(
-        "under the nearest controller (`{NEAREST_PROJECT}`) the machine with waves {} with its linear loop: {}",
+        "under the nearest controller (`{NEAREST_PROJECT}`) the nonlinear simulation with waves {} with its linear loop: {}",
         agreement_word(waves.agreement),
         waves.reason
     ))
@@ -194,7 +197,7 @@ fn advice(run: &TrialRun) -> String {
     let step = run.units.force.short((to - from).abs(), 3);
     let met = |names: &[&str]| run.met.iter().any(|one| names.iter().any(|name| one.starts_with(name)));
     if run.machine.is_none() {
-        return "no linear plant has this; the machine must first find an equilibrium, at a reference and a position that it can hold".to_string();
+        return "no linear plant has this; the nonlinear simulation must first find an equilibrium, at a reference and a position that it can hold".to_string();
     }
     if met(&["cavitation", "empty", "supply_lost"]) {
         return format!(

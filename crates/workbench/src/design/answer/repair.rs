@@ -18,7 +18,7 @@ pub(super) fn row(repair: &Repair) -> Object {
         RepairStatus::Infeasible { relaxation_db } => Some(relaxation_db),
         _ => None,
     };
-    let no_plant = "no linear plant is known that does what the machine does";
+    let no_plant = "no linear plant is known that does what the nonlinear simulation does";
     let nearest = repair.nearest();
     let before = repair.other.as_deref().filter(|_| repair.status == RepairStatus::Met);
     let rounds = nearest.map(|design| design.design.rounds.iter().map(round).collect::<Vec<_>>());

@@ -71,7 +71,8 @@ fn controller(contents: &Contents<'_>, sides: &[Side<'_>]) -> Option<String> {
             "add `[design]` to the project, and `phea design` looks for one that holds".to_string()
         }
         _ if given.is_some_and(contradicted) => {
-            "do not rely on it before the machine, which contradicts the verdict, agrees".to_string()
+            "do not rely on it before the nonlinear simulation, which contradicts the verdict, agrees"
+                .to_string()
         }
         _ if given.is_some_and(Side::is_met) => "keep it".to_string(),
         _ => "remove the reason why the verdict is open".to_string(),
@@ -150,7 +151,7 @@ fn plant_words(view: &ProjectAudit, plant: &phea_qft::verification::PlantPoint) 
 fn designed_words(view: &ProjectDesign, given_is_met: bool) -> String {
     match &view.design.status {
         DesignStatus::Met if view.agreement() == Agreement::Contradicts => format!(
-            "do not use the designed one (`{DESIGNED_PROJECT}`) before the machine agrees: it satisfies every specification over the family, and the machine contradicts it; `phea design` goes on from there with the plant that does, or states what cannot be achieved"
+            "do not use the designed one (`{DESIGNED_PROJECT}`) before the nonlinear simulation agrees: it satisfies every specification over the family, and the simulation contradicts it; `phea design` goes on from there with the plant that does, or states what cannot be achieved"
         ),
         DesignStatus::Met if given_is_met => {
             format!("keep it, or take the designed one of `{DESIGNED_PROJECT}` where its numbers are better")
@@ -210,7 +211,7 @@ fn machine_words(side: &Side<'_>, run: &TrialRun) -> String {
     let why = run.reason.split(". The lines are").next().unwrap_or_default();
     let why = why.split(": at the end it swings").next().unwrap_or_default();
     let verdict = match run.agreement {
-        Agreement::Contradicts => "the machine contradicts the verdict, ",
+        Agreement::Contradicts => "the nonlinear simulation contradicts the verdict, ",
         Agreement::Differs | Agreement::Agrees => "",
     };
     match run.quarter_wave_rad_per_s {
