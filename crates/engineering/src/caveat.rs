@@ -18,7 +18,7 @@ use moved_roots::moved_roots;
 pub use leakage_humps::leakage_humps;
 
 use crate::family::{ShutGas, shut_gas};
-use crate::project::{CrossPortKind, DeclaredSeries, LineMotion, Load, Project, Pump, SupplyModel};
+use crate::project::{CrossPortKind, DeclaredSeries, Load, Project, Pump, SupplyModel};
 use crate::quantity::{DisplayUnit, PRESSURE, display, significant};
 use crate::rig::{ChargedRange, accumulator_place, charged_range, cross_port_at_point, waves_right_to};
 use crate::setup::Setup;
@@ -218,9 +218,9 @@ fn moving(project: &Project) -> Option<(&'static str, &'static str)> {
     let line = &project.actuator.as_ref()?.line;
     let [a, b] = [&line.a, &line.b].map(|line| &line.motion);
     let (place, motion) = match (a, b) {
-        (LineMotion::Lumped, LineMotion::Lumped) => return None,
+        (a, b) if a.is_lumped() && b.is_lumped() => return None,
         (a, b) if a.model() == b.model() => ("line.model", a),
-        (LineMotion::Lumped, b) => ("line.b.model", b),
+        (a, b) if a.is_lumped() => ("line.b.model", b),
         (a, _) => ("line.a.model", a),
     };
     Some((place, motion.model()))

@@ -29,6 +29,7 @@ pub mod friction;
 pub mod identify;
 pub mod impossible;
 pub mod limit_kind;
+pub mod line_choice;
 pub mod line_test;
 pub mod linear_loop;
 pub mod linear_step;

@@ -50,6 +50,7 @@ pub(crate) use in_loop::{
 };
 pub use largest_flow::{FlowLimit, LargestFlow, largest_flow};
 pub use lines::{in_motion, line_model, lines};
+pub(crate) use lines::{quarter_wave, quarter_wave_of};
 pub use numbers::Numbers;
 pub(crate) use outside::outside;
 pub use parameters::{ParameterOrigin, ResolvedParameter};

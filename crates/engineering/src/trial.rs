@@ -15,8 +15,8 @@ pub use judge::percent_words;
 
 pub use crate::linear_step::StepResponse;
 pub use required::HeldRequirement;
+pub(crate) use rigs::waves_alone;
 pub use rigs::with_waves;
-pub(crate) use rigs::{quarter_wave, waves_alone};
 pub use run::{Agreement, BAND_PERCENT, Leg, StepSize, TrialRun, TrialStep, agreement_word};
 use run::{DrivenSteps, TriedMachine};
 

@@ -8,8 +8,10 @@ use phea_quantity::{MASS_PER_LENGTH, RATIO, STRAIN_PER_FORCE, STRAIN_PER_PRESSUR
 /// The dynamic model of a line with its parameters.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum LineMotion {
-    /// One pressure.
+    /// Chosen by the frequencies that loop and requirements reach; lumped until it is chosen.
     #[default]
+    Automatic,
+    /// One pressure.
     Lumped,
     /// One pressure, and a wall that creeps.
     Creeping {
@@ -74,6 +76,7 @@ impl Variants for LineMotion {
 
     fn all(&self) -> Vec<LineMotion> {
         vec![
+            LineMotion::Automatic,
             LineMotion::Lumped,
             LineMotion::Creeping { relaxation_time: 0.0 },
             LineMotion::Segments(LineSegments::default()),
@@ -84,6 +87,7 @@ impl Variants for LineMotion {
 
     fn word(&self) -> &'static str {
         match self {
+            LineMotion::Automatic => "automatic",
             LineMotion::Lumped => "lumped",
             LineMotion::Creeping { .. } => "creeping",
             LineMotion::Segments(_) => "segments",
@@ -92,11 +96,15 @@ impl Variants for LineMotion {
         }
     }
 
+    fn goes_without_saying(&self) -> bool {
+        *self == LineMotion::Automatic
+    }
+
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let share = key("end_share", &RATIO, "Share of the compliance at each end of a line with waves.");
         let share = share.positive().below(0.5);
         match self {
-            LineMotion::Lumped => {}
+            LineMotion::Automatic | LineMotion::Lumped => {}
             LineMotion::Creeping { relaxation_time } => v.quantity(RELAXATION, relaxation_time),
             LineMotion::Segments(segments) => segments.visit(v),
             LineMotion::TransmissionLine { end_share } => v.optional(share, end_share),
@@ -121,12 +129,20 @@ impl LineMotion {
         self.word()
     }
 
+    /// Whether the line has one pressure and a wall that does not creep.
+    pub fn is_lumped(&self) -> bool {
+        matches!(self, LineMotion::Automatic | LineMotion::Lumped)
+    }
+
     /// s, of a wall that creeps.
     pub fn relaxation_time(&self) -> Option<f64> {
         match self {
             LineMotion::Creeping { relaxation_time } => Some(*relaxation_time),
             LineMotion::Segments(segments) => segments.relaxation_time,
-            LineMotion::Lumped | LineMotion::TransmissionLine { .. } | LineMotion::TwoWave { .. } => None,
+            LineMotion::Automatic
+            | LineMotion::Lumped
+            | LineMotion::TransmissionLine { .. }
+            | LineMotion::TwoWave { .. } => None,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! A project with how it was read.
 
-use super::{Diagnostic, FromRecordings, Project};
+use super::{ChosenLines, Diagnostic, FromRecordings, Project};
 
 /// A project that was read, with information about the reading.
 #[derive(Clone, Debug)]
@@ -28,6 +28,8 @@ pub struct Loaded {
     pub catalogues: Vec<String>,
     /// What recordings gave in place of what the project declares; absent: nothing did.
     pub recorded: Option<FromRecordings>,
+    /// The model that was chosen for lines without a stated one; absent: none was chosen.
+    pub lines: Option<ChosenLines>,
 }
 
 impl Loaded {
@@ -36,6 +38,16 @@ impl Loaded {
     pub fn all_settings(&self) -> Vec<String> {
         let recorded = self.recorded.iter().flat_map(|recorded| &recorded.settings);
         recorded.chain(&self.settings).cloned().collect()
+    }
+
+    /// The same project with the model that was chosen for the lines of another reading of it.
+    #[must_use]
+    pub fn with_lines_of(mut self, other: &Loaded) -> Loaded {
+        if let Some(chosen) = &other.lines {
+            self.project = self.project.with_chosen_lines(chosen.with_waves);
+            self.lines = Some(chosen.clone());
+        }
+        self
     }
 }
 

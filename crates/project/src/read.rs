@@ -149,6 +149,7 @@ pub(super) fn read_bytes(
         provenance,
         catalogues,
         recorded: None,
+        lines: None,
     })
 }
 

@@ -3,6 +3,7 @@
 
 mod disc;
 mod fed_forward;
+mod folded;
 mod images;
 mod member;
 mod plant_response;

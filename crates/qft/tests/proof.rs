@@ -200,6 +200,7 @@ pub(crate) fn blind(problem: &RandomProblem, nominal: Vec<f64>) -> Audit {
         evidence: Evidence::Grid,
         tolerance_db: TOLERANCE_DB,
         stability: StabilityFinding {
+            folding: None,
             verdict: Verdict::NotProven,
             evidence: Evidence::Grid,
             largest_real_part: None,

@@ -108,6 +108,39 @@ fn compensation(state: &mut u64, natural: f64) -> Compensation {
     Compensation::new(&controller, sensor.unwrap()).unwrap()
 }
 
+/// Folding changes the return difference by no more than its bound, at any frequency, wherever a
+/// mode beyond pi/T folds to; 200 loops, and where the mode is what matters, not much less.
+#[test]
+fn folding_changes_no_more_than_its_bound() {
+    let mut state = 5;
+    let (mut sharpest, mut counted) = (0.0_f64, 0);
+    while counted < 200 {
+        let plant = hidden(&mut state);
+        let sample_time_s = (1.2 + 3.0 * share(&mut state)) * std::f64::consts::PI / plant.natural;
+        let plant = Hidden { slow: 0.1 * share(&mut state) * plant.natural, dead_time_s: 0.0, ..plant };
+        let gain = 0.3 * share(&mut state) / plant.gain * plant.natural.powi(2) / sample_time_s;
+        let feedback = Compensator::new(vec![Element::Gain(gain)]);
+        let timing = Timing { sample_time_s: Some(sample_time_s), ..Timing::default() };
+        let controller = Controller { feedback, timing, ..Controller::default() };
+        let around = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
+        let bound = around.responding(Arc::new(plant)).folding(&around).unwrap();
+        let shown = around.member(plant.shown()).unwrap();
+        let half = std::f64::consts::PI / sample_time_s;
+        let mut most = 0.0_f64;
+        for frequency in logarithmic_grid(1e-3 * plant.slow, half, 2000).unwrap() {
+            let found = 1.0 + gain * shown.response(frequency).unwrap().plant;
+            let turn = 0.5 * frequency * sample_time_s;
+            let held = Complex64::new(turn.cos(), -turn.sin()) * (turn.sin() / turn);
+            let own = 1.0 + gain * held * plant.at(Complex64::new(0.0, frequency))[0];
+            most = most.max(magnitude(found - own) / magnitude(own));
+        }
+        assert!(most <= bound, "{plant:?} {most} {bound}");
+        sharpest = sharpest.max(most / bound);
+        counted += 1;
+    }
+    assert!(sharpest > 0.3, "{sharpest}");
+}
+
 /// Unstable poles by enclosures, and by the turns of the characteristic function: independent
 /// counts, of 400 loops, some of them with more than one unstable pair.
 #[test]

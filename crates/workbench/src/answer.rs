@@ -3,6 +3,7 @@
 //! Each command has one typed output; this module gives all of them the same envelope and the same
 //! treatment of numbers that do not exist.
 
+mod chosen_lines;
 mod number;
 mod object;
 mod pictures;
@@ -17,6 +18,7 @@ pub(crate) use phea_engineering::csv::{Csv, quoted};
 pub use phea_engineering::number_table::{NumberTable, TableFormat};
 
 pub use crate::source::OutputFile;
+use chosen_lines::body_of_lines;
 pub use pictures::picture_of;
 pub(crate) use pictures::{part_files, picture_files};
 pub(crate) use recorded::body_in_use;
@@ -53,6 +55,7 @@ pub(crate) fn envelope(command: &'static str, loaded: &Loaded) -> Object {
         // of a rig that turns: its torques are in N m and its angles in rad
         .maybe("motion", loaded.project.motion().is_rotary().then_some("rotary"))
         .maybe("identified", loaded.recorded.as_ref().map(body_in_use))
+        .maybe("line_model", loaded.lines.as_ref().map(body_of_lines))
 }
 
 /// A number with this many significant digits as TOML writes it.

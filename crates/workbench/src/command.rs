@@ -31,7 +31,10 @@ pub use response::{ResponseRequest, response_watched};
 pub use schema::{SCHEMA_FILE, schema};
 pub use simulate::{FrequencyOptions, SimulateRequest};
 
+use std::borrow::Cow;
+
 use phea_dynamics::watch::{Stopped, rising, within};
+use phea_engineering::line_choice::{LoopInQuestion, with_chosen_lines};
 use phea_qft::verification::Verdict;
 
 use crate::alternatives::{AlternativesOptions as AskedOfAlternatives, judge};
@@ -187,7 +190,8 @@ pub fn answer_into(
     });
     let answer = identified.and_then(|identified| {
         let from = if identified.is_some() { IDENTIFYING } else { 0.0 };
-        let loaded = identified.as_ref().unwrap_or(loaded);
+        let chosen = with_lines(source, identified.as_ref().unwrap_or(loaded), request);
+        let loaded = chosen.as_ref();
         let mut rest = within(&mut rising, [from, 1.0]);
         answer_as_read(source, loaded, catalogues, request, destination, &mut rest)
     });
@@ -205,7 +209,9 @@ pub fn robust_problem_of(
     watch: Watch<'_>,
 ) -> Result<RobustProblem, CommandError> {
     let problem = with_recordings(source, loaded, watch).and_then(|identified| {
-        let project = &identified.as_ref().unwrap_or(loaded).project;
+        let loaded = identified.as_ref().unwrap_or(loaded);
+        let chosen = with_chosen_lines(source, loaded, LoopInQuestion::Given);
+        let project = &chosen.as_ref().unwrap_or(loaded).project;
         Ok(robust_problem(source, &Setup::new(project)?)?)
     });
     problem.map_err(|error| error.into_refusal(source, loaded))
@@ -218,6 +224,19 @@ fn with_recordings(
     watch: Watch<'_>,
 ) -> Result<Option<Loaded>, CommandError> {
     Ok(in_use(source, loaded, watch)?)
+}
+
+/// The project with a model for each line without a stated one. Sizing finds a line and the bench
+/// tests it: both leave it open.
+fn with_lines<'a>(source: &dyn Source, loaded: &'a Loaded, request: &Request) -> Cow<'a, Loaded> {
+    let question = match request {
+        Request::Size { .. } | Request::Bench => return Cow::Borrowed(loaded),
+        Request::Design { .. } | Request::Report { .. } | Request::Alternatives(_) => {
+            LoopInQuestion::Designed
+        }
+        _ => LoopInQuestion::Given,
+    };
+    with_chosen_lines(source, loaded, question).map_or(Cow::Borrowed(loaded), Cow::Owned)
 }
 
 fn answer_as_read(
@@ -404,7 +423,10 @@ pub fn compare_watched(
     motor::refuse_mixture(projects)?;
     let identified = projects
         .iter()
-        .map(|loaded| Ok(with_recordings(source, loaded, watch)?.unwrap_or_else(|| loaded.clone())))
+        .map(|loaded| {
+            let loaded = with_recordings(source, loaded, watch)?.unwrap_or_else(|| loaded.clone());
+            Ok(with_chosen_lines(source, &loaded, LoopInQuestion::Given).unwrap_or(loaded))
+        })
         .collect::<Result<Vec<Loaded>, CommandError>>()?;
     let projects = identified.as_slice();
     let comparison = compare_projects(source, projects, watch).map_err(|(index, error)| {

@@ -7,6 +7,7 @@
 //! ```text
 //! command::Request, project::Loaded     what is asked, of which project
 //!   identify::in_use -> Loaded          read again with what its recordings tell
+//!   line_choice -> Loaded               lines without a stated model get one
 //!   setup::Setup                        the rig, the controller, the sensor: the input of every procedure
 //!   engineering procedure -> values     ProjectAudit, Linearization, ScenarioRun, ...
 //!     X/document.rs -> document::Document   for people: blocks, tables of typed cells
@@ -34,6 +35,7 @@ pub(crate) mod error;
 pub mod friction;
 mod grouped;
 pub mod identify;
+mod line_choice;
 pub mod line_test;
 pub mod linearize;
 pub(crate) mod motion;

@@ -36,6 +36,7 @@ mod impedance;
 mod impossible;
 mod json_contract;
 mod kinks_unfollowed;
+mod line_choice;
 mod line_coverage;
 mod line_identification;
 mod line_limits;

@@ -5,6 +5,7 @@ use super::AlternativesError;
 use super::by_other_means::OtherPart;
 use super::recentred::{self, MovedRange};
 use crate::catalogue::{self, Catalogue, CatalogueKind};
+use crate::line_choice::{LoopInQuestion, with_chosen_lines};
 use crate::parts::PartsCounted;
 use crate::project::{
     self, AS_DECLARED, Alternative, Component, DeclaredLine, Loaded, read_alternative, refused_alternative,
@@ -33,6 +34,14 @@ impl AskedAlternative {
     pub(super) fn new(name: &str, loaded: Loaded, no_hose: Option<String>) -> AskedAlternative {
         let rig = Setup::rig_of(&loaded.project);
         AskedAlternative { name: name.to_string(), loaded, rig, no_hose, moved: vec![] }
+    }
+
+    /// The same with a model for each line without a stated one, by its own loop and lengths.
+    fn with_lines(self, source: &dyn Source) -> AskedAlternative {
+        match with_chosen_lines(source, &self.loaded, LoopInQuestion::Designed) {
+            Some(loaded) => AskedAlternative { rig: Setup::rig_of(&loaded.project), loaded, ..self },
+            None => self,
+        }
     }
 
     /// The parameters of its rig that lie outside of their ranges in `[uncertainty]`, in words;
@@ -103,9 +112,9 @@ pub fn asked(
         if alternative.recentre {
             one = one.recentred(&again, &itself)?;
         }
-        found.push(one);
+        found.push(one.with_lines(source));
     }
-    found.insert(0, itself);
+    found.insert(0, itself.with_lines(source));
     let counted = counted(&found)?;
     Ok((found, counted))
 }

@@ -242,7 +242,7 @@ fn at(
     path: &str,
     value: f64,
 ) -> Result<AskedAlternative, AlternativesError> {
-    let loaded = again.with(&one.loaded, &[format!("{path}={value:e}")])?;
+    let loaded = again.with(&one.loaded, &[format!("{path}={value:e}")])?.with_lines_of(&one.loaded);
     let there = AskedAlternative::new(&one.name, loaded, one.no_hose.clone());
     match there.loaded.project.actuator {
         Some(_) => there.recentred(again, one),

@@ -7,6 +7,7 @@ use phea_qft::closed_loop::Member;
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::verification::{Audit, PlantPoint, SpecificationFinding, Verdict};
 
+use super::margins::{corners, spread};
 use crate::linear_step::linear_step;
 use crate::robust::RobustProblem;
 use crate::simulate::{ReachedStep, TimeRequirement, TrackingWish};
@@ -79,6 +80,7 @@ const EXTENSIONS: usize = 3;
 /// cost a hundred times as much.
 const MEMBERS: usize = 150;
 const MEMBERS_OF_RESPONSES: usize = 12;
+const CORNERS_OF_RESPONSES: usize = 16;
 /// First step of the search between the members, as a share of the box; it is halved this often.
 const FIRST_SHARE: f64 = 0.25;
 const HALVINGS: usize = 3;
@@ -160,11 +162,16 @@ fn outcome(
 }
 
 /// The nominal plant, members spread over the family, and the plants that the audit found worst.
+/// The members of plants without polynomials are without the corners of the box: these are visited
+/// too.
 fn visited(family: &UncertainFamily, audit: &Audit) -> Vec<Vec<f64>> {
-    let most = if family.plant().is_rational() { MEMBERS } else { MEMBERS_OF_RESPONSES };
-    let members = family.members();
-    let spread = members.iter().step_by(members.len().div_ceil(most).max(1)).chain(members.last());
-    let mut found: Vec<Vec<f64>> = std::iter::once(family.plant().nominal()).chain(spread.cloned()).collect();
+    let is_rational = family.plant().is_rational();
+    let most = if is_rational { MEMBERS } else { MEMBERS_OF_RESPONSES };
+    let mut found = vec![family.plant().nominal()];
+    found.extend(spread(family.members(), most));
+    if !is_rational {
+        found.extend(spread(&corners(family), CORNERS_OF_RESPONSES));
+    }
     for plant in audit.specifications.iter().flat_map(worst_plants) {
         if let PlantPoint::Parameters(values) = plant {
             found.push(values.clone());

@@ -197,13 +197,14 @@ fn visited(problem: &RobustProblem, audit: &Audit) -> Vec<PlantPoint> {
     distinct
 }
 
-fn spread(plants: &[Vec<f64>], most: usize) -> impl Iterator<Item = Vec<f64>> {
+/// Plants spread over these, and the last.
+pub(super) fn spread(plants: &[Vec<f64>], most: usize) -> impl Iterator<Item = Vec<f64>> {
     let step = plants.len().div_ceil(most).max(1);
     plants.iter().step_by(step).chain(plants.last()).cloned()
 }
 
 /// The corners of the box, at most those of its first eight coordinates.
-fn corners(family: &UncertainFamily) -> Vec<Vec<f64>> {
+pub(super) fn corners(family: &UncertainFamily) -> Vec<Vec<f64>> {
     let dimension = family.coordinates().len();
     if family.extent() != Extent::Box || dimension == 0 || dimension > 8 {
         return Vec::new();
@@ -270,12 +271,39 @@ impl MarginSearch<'_> {
     }
 }
 
+/// Members and corners whose crossover is computed.
+const CROSSOVERS: usize = 8;
+
+/// The highest frequency at which |L| = 1, of the nominal plant, members and corners spread over
+/// the family, rad/s; `None` where |L| of none is 1, or the response of none is known.
+pub(crate) fn highest_crossover(problem: &RobustProblem) -> Option<f64> {
+    let mut plants = vec![nominal_point(problem)];
+    match &problem.family {
+        Family::Measured(family) => {
+            plants = (0..family.plants().len()).map(PlantPoint::Measured).collect();
+        }
+        Family::Uncertain(family) => {
+            plants.extend(spread(family.members(), CROSSOVERS).map(PlantPoint::Parameters));
+            plants.extend(spread(&corners(family), CROSSOVERS).map(PlantPoint::Parameters));
+        }
+    }
+    let crossover = |plant: &PlantPoint| {
+        let found = margins_of(problem, plant)?.phase_margins;
+        found.iter().map(|margin| margin.frequency_rad_per_s).reduce(f64::max)
+    };
+    plants.iter().filter_map(crossover).reduce(f64::max)
+}
+
 /// The margins of the loop of one plant; `None` where its response is not known.
 fn of_plant(problem: &RobustProblem, plant: &PlantPoint) -> Option<MarginSet> {
+    Some(MarginSet::of(&margins_of(problem, plant)?, plant))
+}
+
+fn margins_of(problem: &RobustProblem, plant: &PlantPoint) -> Option<Margins> {
     let member = problem.member(plant)?;
     match open_loop(problem, &member) {
-        Ok(Some(open_loop)) => Some(MarginSet::of(&margins(&open_loop), plant)),
-        Ok(None) => Some(MarginSet::of(&response::margins(problem, &member)?, plant)),
+        Ok(Some(open_loop)) => Some(margins(&open_loop)),
+        Ok(None) => response::margins(problem, &member),
         Err(_) => None,
     }
 }

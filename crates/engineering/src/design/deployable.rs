@@ -16,9 +16,9 @@ use phea_qft::verification::{Audit, SpecificationFinding};
 
 use crate::limit_kind::{DesignLimitKind, limit_words};
 use crate::project::{DeclaredDesign, UnstatedLimits};
+use crate::rig::quarter_wave;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
-use crate::trial::quarter_wave;
 
 /// Part of the nominal voltage that noise may take, rms.
 const NOISE_SHARE: f64 = 0.01;

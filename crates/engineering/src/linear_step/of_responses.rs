@@ -28,7 +28,8 @@ pub(super) fn real_parts(
 ) -> Result<Vec<(f64, f64)>, LinearError> {
     let member = compensation.responding(plant.clone());
     let highest = compensation.highest_frequency_rad_per_s();
-    let own = tabulated(plant.as_ref(), plant.range_rad_per_s(), FINE).frequencies_rad_per_s;
+    let [from, to] = plant.range_rad_per_s();
+    let own = tabulated(plant.as_ref(), [from, to.min(highest)], FINE).frequencies_rad_per_s;
     let lowest = own.first().copied().unwrap_or(highest);
     let below = (1..=HALVINGS).rev().map(|halvings| lowest / f64::from(1_u32 << halvings));
     let grid: Vec<f64> = below.chain(own).collect();

@@ -119,7 +119,7 @@ pub fn sweep(
         settings.push(format!("{path}={value:e}"));
         let there =
             project::read(source, &loaded.path, &settings, catalogues).map_err(SweepError::Refused)?;
-        found.push((value, linearized(&there)));
+        found.push((value, linearized(&there.with_lines_of(loaded))));
     }
     let plant_follows = moves(&found);
     let points = found

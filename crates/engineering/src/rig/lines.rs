@@ -1,10 +1,12 @@
 //! The lines of a rig in motion, as they are declared.
 
+use std::f64::consts::FRAC_PI_2;
+
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::fluid::Fluid;
 use phea_hydraulics::line::{
-    BraidedWall, DynamicLine, END_SHARE, Hose, LaminarFriction, Line, LineError, LineModel, Stiffening,
-    StiffeningMember,
+    BraidedWall, Conduit, DynamicLine, END_SHARE, Hose, LaminarFriction, Line, LineError, LineModel,
+    Stiffening, StiffeningMember,
 };
 use phea_hydraulics::operating_point::OperatingPoint;
 use phea_hydraulics::plant::{BehindLines, LinearPlant, PlantInMotion};
@@ -12,6 +14,7 @@ use phea_hydraulics::servovalve::Supply;
 use phea_hydraulics::stiffness::compliance_at;
 use phea_hydraulics::two_pressure::TwoPressureLinearParameters;
 
+use super::Rig;
 use super::plant::without_branches;
 use crate::project::{self, LineMotion, LineSegments, LineWall};
 
@@ -82,7 +85,7 @@ pub fn lines(
     pressure: f64,
 ) -> Result<Option<[DynamicLine; 2]>, LineError> {
     let [a, b] = [&declared.a.motion, &declared.b.motion];
-    if *a == LineMotion::Lumped && *b == LineMotion::Lumped {
+    if a.is_lumped() && b.is_lumped() {
         return Ok(None);
     }
     let of = |line: &Line, motion: &LineMotion| {
@@ -96,7 +99,7 @@ pub fn lines(
 pub fn line_model(motion: &LineMotion, line: &Line) -> LineModel {
     let share = |stated: &Option<f64>| stated.unwrap_or(END_SHARE);
     match motion {
-        LineMotion::Lumped => LineModel::Lumped,
+        LineMotion::Automatic | LineMotion::Lumped => LineModel::Lumped,
         LineMotion::Creeping { relaxation_time } => LineModel::Creeping { relaxation_time: *relaxation_time },
         LineMotion::Segments(segments) => segmented(segments),
         LineMotion::TransmissionLine { end_share } => {
@@ -131,4 +134,19 @@ fn braided_wall(declared: &LineWall, hose: &Hose) -> BraidedWall {
         pressure_compliance: declared.pressure_compliance.unwrap_or(wall.pressure_compliance),
         ..wall
     }
+}
+
+/// Where the slower line of a rig is a quarter of a wave long, rad/s; `None` without lines.
+pub(crate) fn quarter_wave(rig: &Rig) -> Option<f64> {
+    let components = rig.actuator.components();
+    quarter_wave_of(rig, [&components.line_a, &components.line_b].into_iter())
+}
+
+/// pi/(2 T), T the longest time that a wave takes through one of these lines.
+pub(crate) fn quarter_wave_of<'a>(rig: &'a Rig, lines: impl Iterator<Item = &'a Line>) -> Option<f64> {
+    let fluid = &rig.actuator.components().fluid;
+    let delay = |line| Conduit::of_line(line, fluid, rig.actuator.mean_pressure(), StiffeningMember::Nominal);
+    let delays = lines.filter_map(|line| delay(line).ok());
+    let longest = delays.map(|conduit| conduit.delay()).fold(0.0, f64::max);
+    (longest > 0.0).then(|| FRAC_PI_2 / longest)
 }

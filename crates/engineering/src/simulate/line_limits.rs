@@ -55,7 +55,7 @@ impl LineLimits {
 
     fn of_line(line: &DeclaredLine) -> LineLimits {
         let nodes = match &line.motion {
-            LineMotion::Lumped | LineMotion::Creeping { .. } => LineNodes::Lumped,
+            LineMotion::Automatic | LineMotion::Lumped | LineMotion::Creeping { .. } => LineNodes::Lumped,
             LineMotion::Segments(segments) => LineNodes::Segments(segments.count() as usize),
             LineMotion::TransmissionLine { .. } | LineMotion::TwoWave { .. } => LineNodes::Waves,
         };

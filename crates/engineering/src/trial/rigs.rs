@@ -1,11 +1,9 @@
 //! Which machines a verdict is tried on: the declared one, the worst plants of the audit made into
 //! rigs, and the rig with waves in its lumped lines.
 
-use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use phea_dynamics::uncertain_plant::PlantMember;
-use phea_hydraulics::line::{Conduit, StiffeningMember};
 use phea_hydraulics::series::MOST_SEGMENTS;
 use phea_qft::family::Family;
 use phea_qft::verification::PlantPoint;
@@ -16,7 +14,7 @@ use crate::project::{
     Component, DeclaredActuator, DeclaredLine, DeclaredSeries, LINEAR_PARAMETERS, LineMotion, Linear,
     Project, ValveCoefficients,
 };
-use crate::rig::{Rig, with_controller_of};
+use crate::rig::{Rig, quarter_wave, with_controller_of};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
@@ -137,7 +135,7 @@ pub fn with_waves(project: &Project) -> Option<Project> {
         transmission.segments = MOST_SEGMENTS as u32;
     }
     for side in [&mut line.a, &mut line.b] {
-        if side.length().is_some() && side.motion == LineMotion::Lumped {
+        if side.length().is_some() && side.motion.is_lumped() {
             side.motion = LineMotion::TransmissionLine { end_share: None };
             moved = true;
         }
@@ -152,18 +150,6 @@ pub(crate) fn waves_alone(setup: &Setup<'_>) -> Option<Project> {
     let alone = with_controller_of(with_waves(setup.project)?, rig);
     let operating_point = setup.project.resolved_operating_point();
     Some(Project { linear: Linear::default(), operating_point, ..alone.without_uncertainty() })
-}
-
-/// Where the slower line is a quarter of a wave long, rad/s: pi/(2 T), T the time that a wave takes
-/// through it.
-pub(crate) fn quarter_wave(rig: &Rig) -> Option<f64> {
-    let components = rig.actuator.components();
-    let delay = |line| {
-        Conduit::of_line(line, &components.fluid, rig.actuator.mean_pressure(), StiffeningMember::Nominal)
-    };
-    let delays = [&components.line_a, &components.line_b].into_iter().filter_map(|line| delay(line).ok());
-    let longest = delays.map(|conduit| conduit.delay()).fold(0.0, f64::max);
-    (longest > 0.0).then(|| FRAC_PI_2 / longest)
 }
 
 /// A project whose rig has these parameters: numbers of the project and of its operating point

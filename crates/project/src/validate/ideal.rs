@@ -1,7 +1,7 @@
 //! Limits of a part that textbooks take: what is left out must leave a rig.
 
 use super::Check;
-use crate::{Component, DeclaredActuator, Load, Project, ValveCoefficients};
+use crate::{Component, DeclaredActuator, Project, ValveCoefficients};
 
 /// A line, a leakage or a stiffness of zero.
 pub(super) fn limits(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
@@ -54,8 +54,7 @@ fn shut_valve(project: &Project, actuator: &DeclaredActuator, check: &mut Check<
 
 /// A mass that no stiffness holds takes no force at rest.
 fn free_mass(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
-    let Load::SpringMassDamper { stiffness: 0.0, .. } = actuator.load else { return };
-    if project.uncertainty.iter().any(|one| one.name == "load.stiffness") || actuator.linkage.is_some() {
+    if !project.has_free_load() {
         return;
     }
     let point = project.resolved_operating_point();
@@ -66,8 +65,7 @@ fn free_mass(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'
         let help = "state `load_force = 0`, or a `load.stiffness`";
         check.error_with_help("operating_point.load_force", message, help);
     }
-    let moving_line =
-        [&actuator.line.a, &actuator.line.b].into_iter().any(|line| line.motion != crate::LineMotion::Lumped);
+    let moving_line = [&actuator.line.a, &actuator.line.b].into_iter().any(|line| !line.motion.is_lumped());
     if moving_line {
         let message = "a load without stiffness is not computed behind lines in motion: the plant has no polynomials whose common factor could be left out";
         let help = "state `line.model = \"lumped\"`, or a small `load.stiffness`";

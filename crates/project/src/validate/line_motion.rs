@@ -28,7 +28,7 @@ fn fits(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
     let motion = &line.motion;
     let (at, model) = (format!("{path}.model"), motion.model());
     match (&line.component, motion) {
-        (_, LineMotion::Lumped) => {}
+        (_, LineMotion::Automatic | LineMotion::Lumped) => {}
         (Component::Volume(_), _) => {
             let message =
                 format!("model \"{model}\" needs a hose or a pipe: a volume has neither length nor bore");

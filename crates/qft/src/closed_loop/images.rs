@@ -128,8 +128,15 @@ impl SamplingImages<'_> {
         self.inner_feedback.map_or([Complex64::ZERO; 2], |_| plant.inner(frequency))
     }
 
+    /// P, K H_v P_v and P_p at one frequency, without hold and delay.
+    pub(super) fn unfolded(&self, plant: &dyn RespondingPlant, frequency: f64) -> [Complex64; 3] {
+        let ([output, _], [rate, _]) = (plant.response(frequency), self.rate(plant, frequency));
+        let [signal, _] = self.inner(plant, frequency);
+        [output, self.rate_feed_forward * rate, signal]
+    }
+
     /// H_p at the samples.
-    fn inner_at(&self, frequency: f64) -> Complex64 {
+    pub(super) fn inner_at(&self, frequency: f64) -> Complex64 {
         self.inner_feedback.map_or(Complex64::ZERO, |feedback| feedback.at_frequency(frequency))
     }
 
@@ -216,7 +223,7 @@ fn sampled([plant, with_sensor]: [Complex64; 2], load_motion: Complex64) -> Memb
 }
 
 /// sin(v T/2)/(v T/2)
-fn hold(v: f64, sample_time_s: f64) -> f64 {
+pub(super) fn hold(v: f64, sample_time_s: f64) -> f64 {
     let half = v * sample_time_s / 2.0;
     if half == 0.0 { 1.0 } else { portable::sin(half) / half }
 }

@@ -60,7 +60,7 @@ impl Member {
         self.images()?.fed_back(plant.as_ref(), frequency_rad_per_s)
     }
 
-    fn images(&self) -> Option<SamplingImages<'_>> {
+    pub(super) fn images(&self) -> Option<SamplingImages<'_>> {
         match self {
             Member::Responding {
                 sensor,

@@ -25,6 +25,10 @@ use crate::verdict::{Evidence, PlantPoint, Verdict};
 
 /// Starts of the search for each worst case.
 const STARTS: usize = 4;
+/// Relative change of 1 + L by folding below which plants between those examined are not followed
+/// through it; of as many plants.
+const FOLDED_LITTLE: f64 = 0.25;
+const FOLDING_PLANTS: usize = 40;
 /// Value of |1 + L| below which it is not distinguished from zero.
 const ZERO: f64 = 1e-6;
 
@@ -107,6 +111,8 @@ pub(crate) struct StabilityAudit<'a> {
     plants: Vec<PlantPoint>,
     /// The last of them, once the others were examined.
     folded: Folded,
+    /// Bound of what folding changes, where plants between need not be followed through it.
+    folding: Option<f64>,
     /// Real part, closeness and delay sensitivity of each plant, as far as it was examined.
     badness: Vec<[f64; 3]>,
     /// Plants of a sampled loop whose critical delay is still an estimate.
@@ -141,6 +147,7 @@ impl<'a> StabilityAudit<'a> {
             path: FeedbackPath::new(compensation),
             plants,
             folded: Folded::none(0),
+            folding: None,
             badness: Vec::new(),
             estimated: Vec::new(),
             resampled: false,
@@ -287,7 +294,11 @@ impl<'a> StabilityAudit<'a> {
             return Folded::none(dimension);
         };
         if !family.plant().is_rational() {
-            self.record.doubt(Irresolution::FoldingUnknown, self.nominal());
+            let folding = self.most_folding();
+            self.folding = Some(folding).filter(|folding| *folding <= FOLDED_LITTLE);
+            if self.folding.is_none() {
+                self.record.doubt(Irresolution::FoldingUnknown, self.nominal());
+            }
             return Folded::none(dimension);
         }
         let mut bases = vec![vec![0.5; dimension]];
@@ -299,6 +310,16 @@ impl<'a> StabilityAudit<'a> {
             self.record.doubt(Irresolution::Folding, self.nominal());
         }
         folded
+    }
+
+    /// Bound of the relative change of 1 + L by modes beyond half the sampling rate, wherever they
+    /// fold to: of the nominal plant, of corners and of members spread over the family; infinite
+    /// where it is not known of one.
+    fn most_folding(&self) -> f64 {
+        let step = self.plants.len().div_ceil(FOLDING_PLANTS).max(1);
+        let folding = |plant| self.member(plant).ok().and_then(|member| member.folding(self.compensation));
+        let each = self.plants.iter().step_by(step).map(|plant| folding(plant).unwrap_or(f64::INFINITY));
+        each.fold(0.0, f64::max)
     }
 
     /// The plants that are of interest to other audits: those whose modes fold, and those nearest
@@ -372,6 +393,7 @@ impl<'a> StabilityAudit<'a> {
         let stable = verdict == Verdict::Met;
         FamilyStability {
             finding: StabilityFinding {
+                folding: self.folding,
                 verdict,
                 evidence: if self.searched() { Evidence::Search } else { Evidence::Grid },
                 largest_real_part: record.real_part.as_ref().map(|(real_part, _)| *real_part),

@@ -19,6 +19,9 @@ pub struct StabilityFinding {
     pub closest_approach: Option<ClosestApproach>,
     /// Where a search, and no enclosure, finds that no pole passes through infinity inside the box.
     pub infinity: Option<SearchedInfinity>,
+    /// Bound of the relative change of 1 + L by modes beyond half the sampling rate, in a box of
+    /// plants without polynomials: between those examined no margin is known any better.
+    pub folding: Option<f64>,
     /// How it was decided.
     pub reason: StabilityReason,
 }

@@ -12,7 +12,8 @@ use super::{
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::figure::Figure;
 use crate::grouped::grouped;
-use crate::quantity::DisplayUnit;
+use crate::quantity::{DisplayUnit, significant};
+use crate::robust::DEFAULT_TOLERANCE_DB;
 use crate::trial::{self, Trial};
 
 /// The tables and sentences of `verify` for people, with the trial on the machine where there is
@@ -216,6 +217,7 @@ pub(crate) fn basis(view: &ProjectAudit) -> Vec<String> {
         tolerance(view),
     ];
     sentences.extend(infinity_sentence(&audit.stability, &view.names));
+    sentences.extend(audit.stability.folding.and_then(folding));
     sentences.extend(margins::sentence(view));
     sentences.extend(remarks(view));
     sentences
@@ -231,6 +233,19 @@ fn tolerance(view: &ProjectAudit) -> String {
         false => "",
     };
     format!("A margin of -{met} dB still counts as met{fitted}.")
+}
+
+/// What modes that fold leave unknown between the plants examined; `None` where it is less than
+/// what counts as met by default.
+fn folding(change: f64) -> Option<String> {
+    let db = -20.0 * portable::log10(1.0 - change);
+    (db > DEFAULT_TOLERANCE_DB).then(|| {
+        format!(
+            "Modes beyond half of the sampling rate change 1 + L by at most {} %, wherever they fold to: between the plants examined no margin is known to better than {} dB.",
+            significant(100.0 * change, 2),
+            significant(db, 2)
+        )
+    })
 }
 
 /// Each remark once, with the specifications that it concerns.

@@ -9,6 +9,7 @@ use crate::setup::Setup;
 use crate::simulate::{self, RunOutput, ScenarioRun, simulate_into};
 use crate::source::{Destination, Source};
 use phea_dynamics::simulation::Attention;
+use phea_engineering::line_choice::{LoopInQuestion, with_chosen_lines};
 
 /// A request on the campaign that a project declares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +47,8 @@ pub fn campaign_watched(
 ) -> Result<Answer, CommandError> {
     let identified = with_recordings(source, loaded, watch)?;
     let loaded = identified.as_ref().unwrap_or(loaded);
+    let chosen = with_chosen_lines(source, loaded, LoopInQuestion::Given);
+    let loaded = chosen.as_ref().unwrap_or(loaded);
     let plan = Plan::new(source, loaded, request.seed)
         .map_err(|error| CommandError::from(error).into_refusal(source, loaded))?;
     let wanted = match request.asked {
@@ -86,7 +89,8 @@ fn one(
     let settings = plan.settings(&draw);
     let all: Vec<String> = loaded.all_settings().into_iter().chain(settings.iter().cloned()).collect();
     let mut drawn = project::read(source, &loaded.path, &all, catalogues)
-        .map_err(|report| CampaignError::Settings(Box::new(report)))?;
+        .map_err(|report| CampaignError::Settings(Box::new(report)))?
+        .with_lines_of(loaded);
     drawn.project.scenarios.retain(|scenario| scenario.name == plan.scenario());
     let table = destination.map(|destination| (destination, TableFormat::Csv));
     let output = RunOutput { ledger: true, attention: Attention::Steps, ..RunOutput::new(false, table) };

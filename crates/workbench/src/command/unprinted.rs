@@ -3,6 +3,7 @@
 use crate::answer::{Answer, Object, OutputFile, envelope};
 use crate::document::Document;
 use crate::identify::in_use_above;
+use crate::line_choice::chosen_above;
 use crate::motion;
 use crate::project::Loaded;
 
@@ -19,7 +20,10 @@ impl Unprinted {
     /// motion.
     pub(super) fn print(self, command: &'static str, projects: &[Loaded]) -> Answer {
         let mut document = Document::default();
-        projects.iter().for_each(|loaded| document.append(in_use_above(loaded)));
+        for loaded in projects {
+            document.append(in_use_above(loaded));
+            document.append(chosen_above(loaded));
+        }
         document.append(self.document);
         let envelope = projects.first().map_or(Object::new(), |first| envelope(command, first));
         let words = motion::vocabulary_of(projects);

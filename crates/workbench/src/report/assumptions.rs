@@ -50,13 +50,13 @@ fn lines(actuator: &DeclaredActuator) -> Vec<&'static str> {
     let creeps = |line: &DeclaredLine| match line.motion {
         LineMotion::Creeping { .. } => true,
         LineMotion::Segments(segments) => segments.relaxation_time.is_some(),
-        LineMotion::Lumped | LineMotion::TransmissionLine { .. } | LineMotion::TwoWave { .. } => false,
+        _ => false,
     };
     let stiffens = |line: &DeclaredLine| {
         line.hose().is_some() && line.dynamic_stiffening.as_ref().is_some_and(|ratio| ratio.nominal != 1.0)
     };
     let is_lumped =
-        |line: &DeclaredLine| matches!(line.motion, LineMotion::Lumped | LineMotion::Creeping { .. });
+        |line: &DeclaredLine| line.motion.is_lumped() || matches!(line.motion, LineMotion::Creeping { .. });
     let mut told = Vec::new();
     if any(&|line| line.hose().is_some()) {
         told.push("Volumetric expansion and wall modulus of a hose are taken at the supply pressure; between the stated point and another pressure the expansion follows the slope of the catalogue, and a supply beyond the point causes a warning.");

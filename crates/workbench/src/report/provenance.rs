@@ -4,6 +4,7 @@ use super::assumptions::assumptions;
 use super::chapter::Chapter;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::identify::tell_in_use;
+use crate::line_choice;
 use crate::project::{Loaded, Origin, Project};
 
 pub(super) fn chapter(loaded: &Loaded) -> Chapter {
@@ -37,7 +38,7 @@ pub(super) fn chapter(loaded: &Loaded) -> Chapter {
         out.explanation(format!("Not stated by the project: {}", coded(&defaults)));
     }
     out.heading("Assumptions");
-    out.sentences(assumptions(&loaded.project));
+    out.sentences(loaded.lines.iter().map(line_choice::sentence).chain(assumptions(&loaded.project)));
     out.heading("Not proven here");
     out.explanation(not_proven(&loaded.project));
     Chapter::of("provenance", "Provenance and assumptions", out)

@@ -1,0 +1,66 @@
+//! The model of lines whose project states none, as it was chosen.
+
+use crate::{DeclaredLine, LineMotion, Load, Project};
+
+/// The model that was chosen for the lines without a stated one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChosenLines {
+    /// Whether they have waves; otherwise they are lumped.
+    pub with_waves: bool,
+    /// Where the slower of them is a quarter of a wave long, rad/s.
+    pub quarter_wave_rad_per_s: f64,
+    /// The highest frequency that loop and requirements reach, and what reaches it; `None` where
+    /// there is neither.
+    pub reach: Option<(f64, ReachedBy)>,
+    /// Why they are lumped although waves are reached.
+    pub hindrance: Option<String>,
+}
+
+/// What reaches a frequency.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ReachedBy {
+    /// The crossover of the given loop, over the plants that were examined.
+    Crossover,
+    /// The bandwidth of a required settling or rise time, of the specification with this number.
+    RequiredTime(usize),
+    /// The highest design frequency of the specification with this number.
+    DesignFrequency(usize),
+    /// The highest bandwidth that a design may have.
+    HighestBandwidth,
+}
+
+impl Project {
+    /// The hoses and pipes whose project states no model.
+    pub fn lines_without_model(&self) -> impl Iterator<Item = &DeclaredLine> {
+        let lines = self.actuator.iter().flat_map(|actuator| [&actuator.line.a, &actuator.line.b]);
+        lines.filter(|line| line.leaves_model_open())
+    }
+
+    /// Whether its load is a mass that nothing holds, whose plant is not computed behind lines with
+    /// waves.
+    pub fn has_free_load(&self) -> bool {
+        let Some(actuator) = &self.actuator else { return false };
+        let is_uncertain = self.uncertainty.iter().any(|one| one.name == "load.stiffness");
+        let is_free = matches!(actuator.load, Load::SpringMassDamper { stiffness: 0.0, .. });
+        is_free && !is_uncertain && actuator.linkage.is_none()
+    }
+
+    /// The same project with waves in these, or with these lumped.
+    #[must_use]
+    pub fn with_chosen_lines(mut self, with_waves: bool) -> Project {
+        let lines = self.actuator.iter_mut().flat_map(|own| [&mut own.line.a, &mut own.line.b]);
+        for line in lines.filter(|line| line.leaves_model_open()) {
+            line.motion = match with_waves {
+                true => LineMotion::TransmissionLine { end_share: None },
+                false => LineMotion::Lumped,
+            };
+        }
+        self
+    }
+}
+
+impl DeclaredLine {
+    fn leaves_model_open(&self) -> bool {
+        self.motion == LineMotion::Automatic && self.length().is_some()
+    }
+}

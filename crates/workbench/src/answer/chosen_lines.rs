@@ -1,0 +1,29 @@
+//! The model that was chosen for lines without a stated one, for programs.
+
+use phea_engineering::line_choice::LUMPED_FROM;
+
+use super::Object;
+use crate::project::{ChosenLines, ReachedBy};
+
+/// The model, and what it follows from.
+pub(crate) fn body_of_lines(lines: &ChosenLines) -> Object {
+    let by = |(_, by): &(f64, ReachedBy)| match by {
+        ReachedBy::Crossover => "crossover",
+        ReachedBy::RequiredTime(_) => "required_time",
+        ReachedBy::DesignFrequency(_) => "design_frequency",
+        ReachedBy::HighestBandwidth => "highest_bandwidth",
+    };
+    let specification = |(_, by): &(f64, ReachedBy)| match by {
+        ReachedBy::RequiredTime(number) | ReachedBy::DesignFrequency(number) => Some(*number),
+        ReachedBy::Crossover | ReachedBy::HighestBandwidth => None,
+    };
+    let nothing = "neither loop nor requirement reaches a frequency";
+    Object::new()
+        .with("model", if lines.with_waves { "transmission_line" } else { "lumped" })
+        .with("quarter_wave_rad_per_s", lines.quarter_wave_rad_per_s)
+        .known("reached_rad_per_s", lines.reach.as_ref().map(|(reached, _)| *reached), nothing)
+        .maybe("reached_by", lines.reach.as_ref().map(by))
+        .maybe("specification", lines.reach.as_ref().and_then(specification))
+        .with("lumped_from", LUMPED_FROM)
+        .maybe("hindrance", lines.hindrance.as_deref())
+}

@@ -1,0 +1,65 @@
+//! The model that was chosen for lines without a stated one, for people.
+
+use crate::answer::significant;
+use crate::document::Document;
+use crate::project::{ChosenLines, Loaded, ReachedBy};
+use crate::quantity::DisplayUnit;
+use phea_engineering::line_choice::LUMPED_FROM;
+
+/// What precedes the answer of every command; nothing where no model was chosen.
+pub(crate) fn chosen_above(loaded: &Loaded) -> Document {
+    let mut out = Document::default();
+    if let Some(lines) = &loaded.lines {
+        out.line(sentence(lines));
+        out.gap();
+    }
+    out
+}
+
+/// The model with what it follows from, and the key that states another.
+pub(crate) fn sentence(lines: &ChosenLines) -> String {
+    let quarter_wave = frequency(lines.quarter_wave_rad_per_s);
+    let factor = significant(LUMPED_FROM, 2);
+    let of_reach = match &lines.reach {
+        None => format!("no loop and no requirement comes near their quarter wave at {quarter_wave}"),
+        Some((reached, by)) => {
+            let side = if is_near(lines) { "within" } else { "beyond" };
+            format!(
+                "their quarter wave at {quarter_wave} is {side} {factor} times the {} of {}",
+                frequency(*reached),
+                by_words(by)
+            )
+        }
+    };
+    let stated = |model: &str| format!("`line.model = \"{model}\"` states it otherwise");
+    match (&lines.hindrance, lines.with_waves) {
+        (Some(reason), _) => {
+            format!("Lines: lumped, although {of_reach}: no model with waves is computed ({reason}).")
+        }
+        (None, true) => format!("Lines: with waves, since {of_reach}; {}.", stated("lumped")),
+        (None, false) => format!("Lines: lumped, since {of_reach}; {}.", stated("transmission_line")),
+    }
+}
+
+fn is_near(lines: &ChosenLines) -> bool {
+    lines.with_waves || lines.hindrance.is_some()
+}
+
+fn frequency(rad_per_s: f64) -> String {
+    format!("{} rad/s ({})", significant(rad_per_s, 3), DisplayUnit::HERTZ.text(rad_per_s, 3))
+}
+
+fn by_words(by: &ReachedBy) -> String {
+    match by {
+        ReachedBy::Crossover => "the crossover of the given loop".to_string(),
+        ReachedBy::RequiredTime(number) => {
+            format!("the bandwidth that the times of [[specification]] {number} require")
+        }
+        ReachedBy::DesignFrequency(number) => {
+            format!("the highest design frequency of [[specification]] {number}")
+        }
+        ReachedBy::HighestBandwidth => {
+            "the highest bandwidth of a design (`design.highest_bandwidth`)".to_string()
+        }
+    }
+}
