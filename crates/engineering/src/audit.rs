@@ -22,6 +22,7 @@ pub use in_time::{TimeFinding, TimeOutcome, Unexamined, WorstStep};
 pub(crate) use margins::highest_crossover;
 pub use margins::{AuditMargins, LoopMargin, MarginSet};
 pub use nominal::NominalMargins;
+pub(crate) use nominal::nominal_margins;
 pub use prefilter::PrefilterGain;
 pub use proven::{prove_audit, standing_word, try_to_prove, why_not_proven};
 pub use remark::remark_sentences;

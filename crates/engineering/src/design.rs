@@ -7,6 +7,7 @@ mod deployable;
 mod driven;
 mod explanation;
 mod factors;
+mod manual;
 mod problem;
 mod proven;
 mod repair;
@@ -14,10 +15,12 @@ mod rounding;
 mod search;
 mod side;
 mod step_aim;
+mod structures;
 mod words;
 pub use crate::limit_kind::{DesignLimitKind, limit_key, limit_words};
 pub use deployable::{DesignLimit, LimitFinding, LimitOrigin, design_limits};
 pub use factors::factored;
+pub use manual::{ManualGap, ManualLaw, ManualPart};
 pub use words::{objective_key, part_key, repair_key, repair_words, status_key};
 
 pub use explanation::Explanation;
@@ -25,6 +28,7 @@ pub use problem::{design_options, design_problem};
 pub use repair::{Repair, RepairStatus};
 pub use rounding::Rounding;
 pub use side::{AuditedController, LoopFigures, NominalMargins};
+pub use structures::{ReachedStructure, structure_key};
 
 pub use comparison::compared;
 pub use words::{status_sentence, structure_words};
@@ -32,7 +36,9 @@ pub use words::{status_sentence, structure_words};
 use phea_dynamics::controller::{Controller, RateSensor, Timing};
 use phea_dynamics::linear::LinearError;
 use phea_qft::closed_loop::Compensation;
-use phea_qft::design::{Design, DesignOptions, DesignOutcome, DesignProblem, DesignStatus, PrefilterChoice};
+use phea_qft::design::{
+    ControllerChoice, Design, DesignOptions, DesignOutcome, DesignProblem, DesignStatus, PrefilterChoice,
+};
 use phea_qft::verification::Verdict;
 
 use self::deployable::{limited, split};
@@ -41,7 +47,7 @@ use crate::audit::{
     PrefilterGain, ProjectAudit, audit_problem, audit_request, caveat_of_rig, try_to_prove, unexamined_rig,
 };
 use crate::project::{self, Project};
-use crate::quantity;
+use crate::quantity::{self, DisplayUnit};
 use crate::robust::{RobustError, RobustProblem, robust_problem};
 use crate::setup::{ControlError, Setup, is_of_position};
 use crate::source::Source;
@@ -139,6 +145,14 @@ pub struct ProjectDesign {
     /// What was done about a machine that contradicts the design; absent where none does, or where
     /// this was not requested.
     pub repair: Option<Repair>,
+    /// The designed controller in the words of a controller's manual: before it was sampled and
+    /// rounded.
+    pub manual: Result<ManualLaw, ManualGap>,
+    /// The unit of the measured quantity, under that of the command in a gain; absent for a plant
+    /// without units.
+    pub gain_per: Option<DisplayUnit>,
+    /// The structures that were tried, in turn.
+    pub structures: Vec<ReachedStructure>,
     /// The designed controller as a project declares it.
     pub declared_controller: project::DeclaredController,
     /// The designed prefilter likewise; absent where none was designed.
@@ -173,9 +187,15 @@ impl ProjectDesign {
         let of_rig = caveat_of_rig(&problem, watch).unwrap_or_else(|Stopped| unexamined_rig(&problem));
         let view = ProjectAudit::new(&problem, audit, of_rig);
         let rounding = rounding::rounding(setup, &problem)?;
+        let manual = ManualLaw::new(&law.feedback, design.name);
         let declared = project.controller.clone().unwrap_or_default();
         let declared_controller = project::DeclaredController {
-            transfer: factors::declared(&law.feedback.transfer_function()?),
+            transfer: match &manual {
+                Ok(words) if design.name.is_some() => {
+                    project::Transfer { elements: words.declared(), ..project::Transfer::default() }
+                }
+                _ => factors::declared(&law.feedback.transfer_function()?),
+            },
             ..declared
         };
         let declared_prefilter = match options.prefilter {
@@ -202,6 +222,9 @@ impl ProjectDesign {
             rounding,
             trial: None,
             repair: None,
+            manual,
+            gain_per: project.actuator.as_ref().map(|_| project.units.force),
+            structures: vec![],
             declared_controller,
             declared_prefilter,
         })
@@ -405,8 +428,13 @@ fn continuous_as_sampled(
     };
     let problem = DesignProblem { timing: at_once, ..sampled.clone() };
     let stage = "designing without samples";
-    let outcome = phea_qft::design::design(&problem, &told.options, &mut part(watch, stage, [0.0, 1.0]));
-    let outcome = outcome?;
+    let controller = match told.design.name {
+        // the same structure, so that the samples are all that differs
+        Some(_) => ControllerChoice::Given(told.design.structure.clone()),
+        None => told.options.controller.clone(),
+    };
+    let options = DesignOptions { controller, ..told.options.clone() };
+    let outcome = phea_qft::design::design(&problem, &options, &mut part(watch, stage, [0.0, 1.0]))?;
     let Some(design) = outcome.design.filter(|_| !outcome.stopped) else { return Ok(None) };
     let controller = Controller { timing, ..design.law };
     let compensation = setup.compensation(&controller)?;

@@ -3,7 +3,7 @@
 use super::controller::DeclaredElement;
 use super::key::{key, plain};
 use super::visitor::{Variants, Visitor};
-use phea_dynamics::controller::Objective;
+use phea_dynamics::controller::{NamedStructure, Objective};
 use phea_quantity::{ANGULAR_FREQUENCY, GAIN, RATIO, TIME};
 
 /// What is optimised, and among which controllers.
@@ -39,8 +39,14 @@ pub struct DeclaredDesign {
     pub reserve: Option<f64>,
     /// Least and greatest gain of `structure`; both negative for a controller of negative sign.
     pub gain: Option<[f64; 2]>,
-    /// The controller's factors; empty: structures of growing order are tried.
+    /// Which structures are tried, unless `structure` holds factors.
+    pub structure_choice: StructureChoice,
+    /// The controller's factors.
     pub structure: Vec<StructurePart>,
+    /// Factor by which each further pole must lower what the command takes from the noise, or what
+    /// the objective is, for a longer structure to be taken in place of one that is met; absent: 2,
+    /// which is 6 dB.
+    pub earned_per_pole: Option<f64>,
 }
 
 /// Which limits of what may be built hold where the project states none.
@@ -52,6 +58,33 @@ pub enum UnstatedLimits {
     /// None: a design has its specifications alone.
     None,
 }
+
+/// Which structures are tried.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StructureChoice {
+    /// Those that have a name, the shortest first, then structures of growing order.
+    Any,
+    /// Structures of growing order alone.
+    #[default]
+    Free,
+    /// One by its name.
+    Named(NamedStructure),
+}
+
+/// The words of `structure`.
+pub static STRUCTURES: [(&str, StructureChoice); 11] = [
+    ("any", StructureChoice::Any),
+    ("p", StructureChoice::Named(NamedStructure::Proportional)),
+    ("i", StructureChoice::Named(NamedStructure::Integral)),
+    ("pi", StructureChoice::Named(NamedStructure::ProportionalIntegral)),
+    ("pi_low_pass", StructureChoice::Named(NamedStructure::PiLowPass)),
+    ("pid", StructureChoice::Named(NamedStructure::Pid)),
+    ("pi_notch", StructureChoice::Named(NamedStructure::PiNotch)),
+    ("pi_notch_low_pass", StructureChoice::Named(NamedStructure::PiNotchLowPass)),
+    ("pi_notch_lead", StructureChoice::Named(NamedStructure::PiNotchLead)),
+    ("pi_two_notches", StructureChoice::Named(NamedStructure::PiTwoNotches)),
+    ("free", StructureChoice::Free),
+];
 
 /// The words of `objective`.
 pub static DESIGN_OBJECTIVES: [(&str, Objective); 3] = [
@@ -117,7 +150,9 @@ impl Default for DeclaredDesign {
             prefilter_gain: None,
             reserve: None,
             gain: None,
+            structure_choice: StructureChoice::Free,
             structure: vec![],
+            earned_per_pole: None,
         }
     }
 }
@@ -158,8 +193,13 @@ impl DeclaredDesign {
         let doc = "Margin that the design keeps to every limit; absent: what recordings leave open.";
         v.optional(key("reserve", &GAIN, doc).at_least(1.0).at_most(2.0), &mut self.reserve);
         v.pair(key("gain", &RATIO, "Least and greatest gain of `structure`."), &mut self.gain);
-        let k = plain("structure", "Factors of the controller; absent: structures of growing order.");
-        v.tables(k, &mut self.structure, |one, v| v.variant(plain("kind", "Which factor."), one, true));
+        let k = plain("structure", "Which controllers are tried, by a name, or factors of one.");
+        v.word_or_tables(k, &STRUCTURES, &mut self.structure_choice, &mut self.structure, |one, v| {
+            v.variant(plain("kind", "Which factor."), one, true);
+        });
+        let doc = "What a further pole must gain in place of a shorter structure that is met; absent: 6 dB.";
+        let k = key("earned_per_pole", &GAIN, doc).at_least(1.0).or_infinite();
+        v.optional(k, &mut self.earned_per_pole);
     }
 }
 

@@ -253,6 +253,20 @@ impl Visitor for Printer {
         self.part(field, visit);
     }
 
+    fn word_or_tables<W: Copy + PartialEq, T: Default>(
+        &mut self,
+        key: Key,
+        words: &'static [(&'static str, W)],
+        word: &mut W,
+        tables: &mut Vec<T>,
+        visit: impl Fn(&mut T, &mut Self),
+    ) {
+        match tables.is_empty() {
+            true => self.choice(key, words, word, false),
+            false => self.tables(key, tables, visit),
+        }
+    }
+
     fn tables<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self)) {
         let path = self.path(key.name);
         let mut sections = Vec::new();

@@ -88,7 +88,13 @@ pub fn snippet(controller: &DeclaredController, prefilter: Option<&Prefilter>) -
 fn law_lines(transfer: &Transfer) -> KeyValues {
     let mut printer = Printer::new(BTreeMap::new());
     transfer.clone().visit(&mut printer);
-    printer.lines()
+    printer.lines().into_iter().chain(element_lines(transfer)).collect()
+}
+
+/// The elements of a transfer function, one a line; `None` where it has none.
+fn element_lines(transfer: &Transfer) -> Option<(String, String)> {
+    let rows: String = transfer.elements.iter().map(|one| format!("  {},\n", one.print())).collect();
+    (!rows.is_empty()).then(|| ("elements".to_string(), format!("[\n{rows}]")))
 }
 
 /// Keys with their default values are left out.
@@ -99,5 +105,9 @@ fn controller_lines(controller: &DeclaredController) -> KeyValues {
         printer.lines()
     };
     let absent = lines(DeclaredController::default());
-    lines(controller.clone()).into_iter().filter(|line| !absent.contains(line)).collect()
+    let elements = element_lines(&controller.transfer);
+    elements
+        .into_iter()
+        .chain(lines(controller.clone()).into_iter().filter(|line| !absent.contains(line)))
+        .collect()
 }

@@ -122,6 +122,18 @@ pub(crate) trait Visitor: Sized {
     }
     /// An array of tables.
     fn tables<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self));
+    /// One of several words, or an array of tables.
+    fn word_or_tables<W: Copy + PartialEq, T: Default>(
+        &mut self,
+        key: Key,
+        words: &'static [(&'static str, W)],
+        word: &mut W,
+        tables: &mut Vec<T>,
+        visit: impl Fn(&mut T, &mut Self),
+    ) {
+        self.choice(key, words, word, false);
+        self.tables(key, tables, visit);
+    }
     /// One table, or an array of them.
     fn one_or_more<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self));
     /// A table whose keys name numbers of the project; each is passed to `visit` with its

@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! diagnose      a limit that no controller meets: the structures below are tried for the smallest relaxation alone
+//! named         the controllers of a manual, the shortest first, until one meets every limit; longer ones that earn it
 //! grow          structures of growing order, each begun from the controller before, until one meets every limit
 //! fewer zeros   of the order that was found, as long as every limit is still met: the last such design is kept
 //! relax         where none was found: the structure that came nearest, for the smallest relaxation
@@ -15,12 +16,15 @@ mod candidates;
 mod counterexample;
 mod diagnosis;
 mod feedback_sign;
+mod named;
 mod outcome;
 mod problem;
 pub mod quantization;
+mod queue;
 mod result;
 mod run;
 mod stabilising;
+mod tried;
 
 pub use attempt::LoopDesignError;
 pub use candidates::gain_range;
@@ -29,6 +33,7 @@ pub use outcome::DesignOutcome;
 pub use problem::{ControllerChoice, DesignOptions, PoleRange, PrefilterChoice};
 
 pub use crate::loop_shaping::DesignProblem;
-pub use phea_dynamics::controller::Objective;
+pub use phea_dynamics::controller::{NamedStructure, Objective};
 pub use result::{BindingLimit, Conflict, Design, DesignRound, DesignStatus, Relaxation, Starts};
 pub use run::{design, design_again};
+pub use tried::{StructureEnding, TriedStructure};

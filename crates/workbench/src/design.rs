@@ -3,7 +3,9 @@
 mod answer;
 mod document;
 mod limits;
+mod manual;
 mod stages;
+mod structures;
 
 pub use phea_engineering::design::*;
 
@@ -11,5 +13,7 @@ pub use answer::body;
 pub use document::output;
 pub(crate) use document::{costs, explanation_words, laws, side_by_side, status};
 pub(crate) use limits::document as limits;
+pub(crate) use manual::document as manual;
 pub(crate) use stages::bound_files;
 pub use stages::{files, stage_files};
+pub(crate) use structures::document as structures;

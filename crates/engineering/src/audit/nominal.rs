@@ -18,6 +18,8 @@ pub struct NominalMargins {
     pub phase_margin_deg: f64,
     /// The highest frequency at which |L| = 1, rad/s; zero if |L| never is 1.
     pub crossover_rad_per_s: f64,
+    /// The least delay that makes it unstable, s.
+    pub delay_margin_s: f64,
 }
 
 impl NominalMargins {
@@ -39,7 +41,7 @@ impl NominalMargins {
 ///
 /// # Errors
 /// [`LinearError`] for a nominal plant that is not a transfer function.
-pub(super) fn nominal_margins(problem: &RobustProblem) -> Result<Option<NominalMargins>, LinearError> {
+pub(crate) fn nominal_margins(problem: &RobustProblem) -> Result<Option<NominalMargins>, LinearError> {
     let Some(member) = problem.nominal()? else { return Ok(None) };
     let Some(open_loop) = open_loop(problem, &member)? else { return Ok(None) };
     let found = margins(&open_loop);
@@ -49,5 +51,6 @@ pub(super) fn nominal_margins(problem: &RobustProblem) -> Result<Option<NominalM
         gain_reduction_db: decibels(found.gain_decrease_factor()),
         phase_margin_deg: found.phase_margin_deg(),
         crossover_rad_per_s: crossover,
+        delay_margin_s: found.delay_margin_s(),
     }))
 }

@@ -9,13 +9,15 @@ use phea_qft::loop_shaping::{Structure, StructureFactor};
 use super::DesignError;
 use super::deployable::{design_limits, limit_value, pole_range};
 use crate::limit_kind::DesignLimitKind;
-use crate::project::StructurePart;
+use crate::project::{DeclaredDesign, StructureChoice, StructurePart};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::setup::{ControlError, element};
 
 /// How far corner frequencies may lie below and above the design frequencies.
 const FREQUENCY_FACTORS: [f64; 2] = [0.1, 100.0];
+/// Factor by which a further pole must lower what the command takes from the noise: 6 dB.
+const EARNED_PER_POLE: f64 = 2.0;
 /// Damping ratios of a pair for which the project states none.
 const DAMPING_RATIOS: [f64; 2] = [0.1, 5.0];
 
@@ -46,12 +48,19 @@ pub fn design_options(
     seed: Option<u32>,
 ) -> Result<DesignOptions, DesignError> {
     let design = setup.project.design.clone().unwrap_or_default();
-    let controller = if design.structure.is_empty() {
-        ControllerChoice::Grow { maximum_order: count(design.maximum_order) }
-    } else {
-        let problem = design_problem(setup, given);
-        let frequencies = given.design_frequencies();
-        ControllerChoice::Given(structure(&design.structure, design.gain, &problem, &frequencies)?)
+    let maximum_order = count(design.maximum_order);
+    let controller = match design.structure_choice {
+        _ if !design.structure.is_empty() => {
+            let problem = design_problem(setup, given);
+            let frequencies = given.design_frequencies();
+            ControllerChoice::Given(structure(&design.structure, design.gain, &problem, &frequencies)?)
+        }
+        StructureChoice::Named(name) => ControllerChoice::Named(name),
+        StructureChoice::Free => ControllerChoice::Grow { maximum_order },
+        StructureChoice::Any => {
+            let earned_per_pole_db = earned_per_pole_db(&design);
+            ControllerChoice::Any { maximum_order, from: None, earned_per_pole_db }
+        }
     };
     Ok(DesignOptions {
         objective: design.objective,
@@ -63,6 +72,11 @@ pub fn design_options(
         poles: pole_range(&design_limits(setup, given)),
         coefficients: setup.quantization.coefficients,
     })
+}
+
+/// What a further pole must gain, dB.
+fn earned_per_pole_db(design: &DeclaredDesign) -> f64 {
+    20.0 * portable::log10(design.earned_per_pole.unwrap_or(EARNED_PER_POLE))
 }
 
 fn count(number: u32) -> usize {

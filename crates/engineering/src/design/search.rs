@@ -2,12 +2,12 @@
 //! required in time, and stricter where the steps of what was found still miss it.
 
 use phea_dynamics::watch::{Stopped, Watch, within};
-use phea_qft::design::{DesignStatus, Finding};
+use phea_qft::design::{ControllerChoice, DesignStatus, Finding, NamedStructure};
 use phea_qft::verification::Verdict;
 
 use super::problem::{design_options, design_problem};
 use super::step_aim::{REPETITIONS, StepAim, excess};
-use super::{DesignError, DesignRun, Explanation, ProjectDesign, proven};
+use super::{DesignError, DesignRun, Explanation, ProjectDesign, ReachedStructure, proven, structures};
 use crate::limit_kind::limit_words;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
@@ -24,7 +24,9 @@ pub(super) fn found(
     for repetition in 0..=REPETITIONS {
         let aimed = aim.of(setup.project, given)?;
         let share = [repetition, repetition + 1].map(|done| done as f64 / (REPETITIONS + 1) as f64);
-        match searched(setup, (given, &aimed), seed, &mut within(&mut *watch, share)) {
+        // what is too short for the limits before is too short for stricter ones
+        let from = found.last().and_then(|(.., told)| told.design.name);
+        match searched(setup, (given, &aimed), (seed, from), &mut within(&mut *watch, share)) {
             Ok((run, told)) => found.push((aim, run, told)),
             // what was found before remains
             Err(error) if found.is_empty() => return Err(error),
@@ -40,7 +42,10 @@ pub(super) fn found(
         let (one, other) = (rank(one), rank(other));
         one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
     };
-    found.into_iter().min_by(|(.., one), (.., other)| by_rank(one, other)).ok_or(Stopped.into())
+    let tried: Vec<ReachedStructure> = found.iter().flat_map(|(.., told)| told.structures.clone()).collect();
+    let best = found.into_iter().min_by(|(.., one), (.., other)| by_rank(one, other));
+    let (aim, run, told) = best.ok_or(Stopped)?;
+    Ok((aim, run, told.with_shorter(tried)))
 }
 
 /// What makes one of several designs the better one, the least the best: its verdict over frequency
@@ -63,11 +68,14 @@ pub(super) fn rank(told: &ProjectDesign) -> (u8, f64) {
 fn searched(
     setup: &Setup<'_>,
     (given, aimed): (&RobustProblem, &RobustProblem),
-    seed: Option<u32>,
+    (seed, from): (Option<u32>, Option<NamedStructure>),
     watch: Watch<'_>,
 ) -> Result<(DesignRun, ProjectDesign), DesignError> {
     let problem = design_problem(setup, aimed);
-    let options = design_options(setup, aimed, seed)?;
+    let mut options = design_options(setup, aimed, seed)?;
+    if let ControllerChoice::Any { from: first, .. } = &mut options.controller {
+        *first = from;
+    }
     let mut outcome = phea_qft::design::design(&problem, &options, watch)?;
     outcome.conclude()?;
     let run = DesignRun { aimed: aimed.clone(), problem, outcome };
@@ -92,6 +100,7 @@ fn searched(
         told = told.judged_by(given, watch)?;
     }
     told = told.met_where_it_is(known);
+    told.structures = structures::reached(&run, &told)?;
     Ok((run, ProjectDesign { stopped, explanations, ..told }))
 }
 

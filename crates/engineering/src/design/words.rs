@@ -81,7 +81,10 @@ pub fn repair_words(repair: &Repair) -> String {
 fn tried(choice: &ControllerChoice) -> String {
     match choice {
         ControllerChoice::Given(_) => ", all of the given structure,".to_string(),
-        ControllerChoice::Grow { maximum_order } => format!(", of order {maximum_order} at most,"),
+        ControllerChoice::Named(name) => format!(", all of the structure {},", name.words()),
+        ControllerChoice::Any { maximum_order, .. } | ControllerChoice::Grow { maximum_order } => {
+            format!(", of order {maximum_order} at most,")
+        }
     }
 }
 
@@ -105,5 +108,6 @@ pub fn part_key(part: &StructureFactor) -> &'static str {
         StructureFactor::RealPole { .. } => "pole",
         StructureFactor::ZeroPair { .. } => "zero_pair",
         StructureFactor::PolePair { .. } => "pole_pair",
+        StructureFactor::Notch { .. } => "notch",
     }
 }

@@ -331,6 +331,20 @@ impl Visitor for Reader<'_> {
         self.each_table(key, &items, hit, field, visit);
     }
 
+    fn word_or_tables<W: Copy + PartialEq, T: Default>(
+        &mut self,
+        key: Key,
+        words: &'static [(&'static str, W)],
+        word: &mut W,
+        tables: &mut Vec<T>,
+        visit: impl Fn(&mut T, &mut Self),
+    ) {
+        match self.find(key).map(|hit| &hit.node.value) {
+            Some(Value::List(_)) => self.tables(key, tables, visit),
+            _ => self.choice(key, words, word, false),
+        }
+    }
+
     fn one_or_more<T: Default>(&mut self, key: Key, field: &mut Vec<T>, visit: impl Fn(&mut T, &mut Self)) {
         let Some(hit) = self.find(key) else { return };
         let items: Vec<&TreeNode> = match &hit.node.value {
@@ -469,29 +483,6 @@ impl Visitor for Reader<'_> {
             Value::Table(_) => ValueForm::Table,
             Value::Text(text) if self.reads_as_formula(key, text) => ValueForm::Text,
             _ => ValueForm::Number,
-        }
-    }
-}
-
-impl<'a> Reader<'a> {
-    /// Reads the tables of a list.
-    fn each_table<T: Default>(
-        &mut self,
-        key: Key,
-        items: &[&'a TreeNode],
-        hit: Hit<'a>,
-        field: &mut Vec<T>,
-        visit: impl Fn(&mut T, &mut Self),
-    ) {
-        for (index, &node) in items.iter().enumerate() {
-            let path = format!("{}[{index}]", self.path(key.name));
-            self.item_places.insert(path.clone(), node.place);
-            if self.enter(key, Hit { node, entry: hit.entry }, path) {
-                let mut value = T::default();
-                visit(&mut value, self);
-                self.close();
-                field.push(value);
-            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Numbers and formulas, and their errors.
 
-use super::Reader;
+use super::{Hit, Reader};
 use crate::formula::{Formula, Ratio};
 use crate::key::Key;
 use crate::text::{Place, RawFinding};
@@ -238,4 +238,27 @@ fn objection(key: Key, value: f64) -> String {
         (false, _, false) => format!("at most {}", show(range.maximum)),
     };
     format!("`{name}` must be {side}; it is {}", show(value))
+}
+
+impl<'a> Reader<'a> {
+    /// Reads the tables of a list.
+    pub(super) fn each_table<T: Default>(
+        &mut self,
+        key: Key,
+        items: &[&'a TreeNode],
+        hit: Hit<'a>,
+        field: &mut Vec<T>,
+        visit: impl Fn(&mut T, &mut Self),
+    ) {
+        for (index, &node) in items.iter().enumerate() {
+            let path = format!("{}[{index}]", self.path(key.name));
+            self.item_places.insert(path.clone(), node.place);
+            if self.enter(key, Hit { node, entry: hit.entry }, path) {
+                let mut value = T::default();
+                visit(&mut value, self);
+                self.close();
+                field.push(value);
+            }
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::Check;
 use super::linear_loop::{element_excess, one_element};
-use crate::{DeclaredElement, Project, StructurePart};
+use crate::{DeclaredElement, Project, StructureChoice, StructurePart};
 
 /// Most factors of a structure.
 const MAXIMUM_PARTS: usize = 40;
@@ -18,13 +18,18 @@ pub(super) fn design(project: &Project, check: &mut Check<'_, '_>) {
         }
         gain => check.ascending("design.gain", gain),
     }
-    if design.structure.is_empty() {
-        if design.gain.is_some() {
-            check.warning("design.gain", "`gain` has no effect without `structure`");
-        }
-    } else if check.declared("design.maximum_order") {
+    if design.structure.is_empty() && design.gain.is_some() {
+        check.warning("design.gain", "`gain` has no effect without factors in `structure`");
+    }
+    let is_one = !design.structure.is_empty() || matches!(design.structure_choice, StructureChoice::Named(_));
+    if is_one && check.declared("design.maximum_order") {
         let message = "`maximum_order` has no effect: `structure` says which controllers are tried";
         check.warning("design.maximum_order", message);
+    }
+    let compares = design.structure.is_empty() && design.structure_choice == StructureChoice::Any;
+    if !compares && check.declared("design.earned_per_pole") {
+        let message = "`earned_per_pole` has no effect: it compares the structures of `structure = \"any\"`";
+        check.warning("design.earned_per_pole", message);
     }
     let law = project.controller.as_ref().is_some_and(|controller| controller.has_law());
     if project.prefilter.is_some() && !law && check.declared("design.prefilter_maximum_order") {

@@ -9,11 +9,12 @@ mod auditing;
 mod beginning;
 mod deployment;
 mod error;
+mod reached;
 
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::watch::{Watch, part};
 
-pub(super) use self::beginning::StartingPoints;
+pub(super) use self::beginning::{SearchEffort, StartingPoints};
 use self::beginning::{best_of, search_options};
 pub use self::error::LoopDesignError;
 use super::Objective;
@@ -63,6 +64,8 @@ pub(super) enum AttemptEnding {
     Missed { worst_margin_db: f64, audit: Option<Box<Audit>> },
     /// No stable controller of the structure was found.
     NotStabilised,
+    /// What it reaches does not earn its poles.
+    NotEarned,
     /// Search and audit did not come to agree.
     NotConverged(Box<Audit>),
 }
@@ -80,7 +83,7 @@ impl<E: Into<LoopDesignError>> From<E> for Leave {
 }
 
 /// Name of the stage in progress reports.
-const SHAPING: &str = "shaping the loop";
+pub(super) const SHAPING: &str = "shaping the loop";
 const CHECKING: &str = "looking between the samples";
 const AUDITING: &str = "auditing";
 const WHOLE: [f64; 2] = [0.0, 1.0];
@@ -110,7 +113,9 @@ pub(super) struct Attempt {
     given: Vec<Vec<f64>>,
     /// Points at which the nominal plant is stabilised.
     stabilising: Vec<Vec<f64>>,
-    is_hard: bool,
+    effort: SearchEffort,
+    /// What it must reach on its samples to be worth its poles, see [`Attempt::reached_db`].
+    earns: Option<f64>,
     /// Where the starts of its last search ended.
     starts: Option<Starts>,
     x: Vec<f64>,
@@ -143,13 +148,14 @@ impl Attempt {
             _ => None,
         };
         let mut shaping = Shaping::new(structure.clone(), given, options.objective, samples)?;
-        let StartingPoints { mut simpler, stabilising, is_hard } = beginning;
+        let StartingPoints { mut simpler, stabilising, effort } = beginning;
         let stabilising = best_of(&mut shaping, stabilising);
         simpler.extend_from_slice(&stabilising);
         Ok(Attempt {
             shaping,
             stabilising,
-            is_hard,
+            effort,
+            earns: None,
             starts: None,
             structure,
             options: options.clone(),
@@ -187,6 +193,12 @@ impl Attempt {
     fn until_agreed(&mut self, kept: &KeptPlants, watch: Watch<'_>) -> Result<AttemptEnding, Leave> {
         let given = std::mem::take(&mut self.given);
         self.search(given, self.options.seed, watch)?;
+        if self
+            .earns
+            .is_some_and(|most_db| !self.reached_db().is_some_and(|reached_db| reached_db <= most_db))
+        {
+            return Ok(AttemptEnding::NotEarned);
+        }
         loop {
             self.draw_in(watch)?;
             if !self.learns_between_samples(kept, watch)?
@@ -196,6 +208,12 @@ impl Attempt {
             }
             self.shape_again(watch)?;
         }
+    }
+
+    /// The same structure, given up where its samples show that it does not come down to this value
+    /// of [`Attempt::reached_db`].
+    pub(super) fn that_earns(self, most_db: Option<f64>) -> Attempt {
+        Attempt { earns: most_db, ..self }
     }
 
     pub(super) fn structure(&self) -> &Structure {
@@ -237,7 +255,7 @@ impl Attempt {
 
     /// Searches, and fits a prefilter to what was found.
     fn search(&mut self, given: Vec<Vec<f64>>, seed: u64, watch: Watch<'_>) -> Result<(), Leave> {
-        let options = search_options(self.aim, seed, self.relaxes, self.is_hard);
+        let options = search_options(self.aim, seed, self.relaxes, self.effort);
         let mut seen = BestSeen::new(&mut self.shaping, self.aim);
         let found = search(&mut seen, given, &options, &mut part(watch, SHAPING, WHOLE));
         if found.is_err() {

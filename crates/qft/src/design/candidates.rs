@@ -139,12 +139,23 @@ impl Ground {
         points
     }
 
+    /// The structure of these parts.
+    pub(super) fn with_gain(&self, parts: Vec<StructureFactor>) -> Structure {
+        Structure { sign: self.sign, gain: self.gain, parts }
+    }
+
+    /// Where corners and natural frequencies may lie.
+    pub(super) fn corners(&self) -> Corners {
+        let [lowest, highest] = self.corner;
+        let fastest = highest.min(self.poles.fastest_rad_per_s).max(lowest);
+        Corners { of_zeros: self.corner, of_poles: [lowest, fastest] }
+    }
+
     /// The structure of this order with this number of zeros.
     pub(super) fn structure(&self, order: usize, zeros: usize) -> Structure {
         let integrator = std::iter::repeat_n(StructureFactor::Fixed(Element::Integrator), self.integrators);
         let poles = order.saturating_sub(self.integrators);
-        let [lowest, highest] = self.corner;
-        let of_poles = [lowest, highest.min(self.poles.fastest_rad_per_s).max(lowest)];
+        let Corners { of_zeros, of_poles } = self.corners();
         let [least, greatest] = DAMPING_RATIOS;
         // a pair of poles under a pair of zeros is a notch
         let notches = zeros / 2;
@@ -156,13 +167,11 @@ impl Ground {
                 let damping_ratio = [least.max(self.poles.least_damping_ratio), greatest];
                 StructureFactor::PolePair { natural_frequency: of_poles, damping_ratio }
             }
-            false => {
-                StructureFactor::ZeroPair { natural_frequency: self.corner, damping_ratio: DAMPING_RATIOS }
-            }
+            false => StructureFactor::ZeroPair { natural_frequency: of_zeros, damping_ratio: DAMPING_RATIOS },
         };
         let single = |is_pole: bool| match is_pole {
             true => StructureFactor::RealPole { frequency: of_poles },
-            false => StructureFactor::RealZero { frequency: self.corner },
+            false => StructureFactor::RealZero { frequency: of_zeros },
         };
         let factors = |count: usize, is_pole: bool| {
             (0..count / 2)
@@ -171,8 +180,14 @@ impl Ground {
                 .collect::<Vec<StructureFactor>>()
         };
         let parts = integrator.chain(factors(zeros, false)).chain(factors(poles, true)).collect();
-        Structure { sign: self.sign, gain: self.gain, parts }
+        self.with_gain(parts)
     }
+}
+
+/// Least and greatest corner or natural frequency, rad/s.
+pub(super) struct Corners {
+    pub(super) of_zeros: [f64; 2],
+    pub(super) of_poles: [f64; 2],
 }
 
 /// The point of a structure at which it is a simpler controller with poles and zeros added at this

@@ -6,6 +6,7 @@ use super::attempt::{Attempt, LoopDesignError};
 use super::diagnosis::Finding;
 use super::result::{Design, DesignRound, DesignStatus};
 use super::run::design_of;
+use super::tried::TriedStructure;
 use crate::kept_plants::KeptPlants;
 use crate::loop_shaping::Samples;
 
@@ -24,6 +25,11 @@ pub struct DesignOutcome {
 }
 
 impl DesignOutcome {
+    /// Every structure that was tried, in turn, with what it reached.
+    pub fn tried(&self) -> &[TriedStructure] {
+        &self.known.tried
+    }
+
     /// If it was stopped before any design existed, audits the present controller, which becomes a
     /// design that has not converged.
     ///
@@ -49,4 +55,5 @@ pub(super) struct LearntPlants {
     /// The plants that audits sampled.
     pub(super) plants: KeptPlants,
     pub(super) rounds: Vec<DesignRound>,
+    pub(super) tried: Vec<TriedStructure>,
 }

@@ -2,8 +2,8 @@
 
 use phea_dynamics::linear::TransferFunction;
 
-use super::Objective;
 use super::quantization::CoefficientFormat;
+use super::{NamedStructure, Objective};
 use crate::loop_shaping::Structure;
 
 /// Which controllers are tried.
@@ -11,6 +11,19 @@ use crate::loop_shaping::Structure;
 pub enum ControllerChoice {
     /// Those of one structure.
     Given(Structure),
+    /// Those of one name.
+    Named(NamedStructure),
+    /// Those of every name that suits the problem, the shortest first; where none meets every
+    /// specification, structures of growing order.
+    Any {
+        /// Largest number of poles.
+        maximum_order: usize,
+        /// The first name that is tried, where shorter ones are known to fail.
+        from: Option<NamedStructure>,
+        /// How much a longer one must gain for each of its further poles to be taken in place of
+        /// one that is met, dB; infinite: the shortest is taken.
+        earned_per_pole_db: f64,
+    },
     /// Structures of growing order, up to this one, until one meets every specification.
     Grow {
         /// Largest number of poles.

@@ -3,6 +3,7 @@
 use phea_dynamics::controller::Controller;
 use phea_dynamics::order::sort_numbers;
 
+use super::NamedStructure;
 use crate::loop_shaping::{SearchResult, Structure};
 use crate::verification::{Audit, PlantPoint};
 
@@ -128,6 +129,8 @@ pub struct Design {
     pub law: Controller,
     /// What was shaped.
     pub structure: Structure,
+    /// Its name; `None` for one of growing order or a given one.
+    pub name: Option<NamedStructure>,
     /// Where the starts of its last search ended; `None` before a search has ended.
     pub starts: Option<Starts>,
     /// Its objective, dB.

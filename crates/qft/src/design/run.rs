@@ -5,14 +5,18 @@ use std::collections::VecDeque;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::watch::{Progress, Watch};
 
-use super::attempt::{Attempt, AttemptEnding, LoopDesignError, StartingPoints};
+use super::NamedStructure;
+use super::attempt::{Attempt, AttemptEnding, LoopDesignError, SHAPING, StartingPoints};
 use super::binding::{all_conflicts, binding_limits};
 use super::candidates::Ground;
 use super::diagnosis::{FindingSeverity, diagnose};
+use super::named::stage as named_stage;
 use super::outcome::{DesignOutcome, LearntPlants};
 use super::problem::{ControllerChoice, DesignOptions};
+use super::queue::{WaitingStructure, fewer_zeros, longer, structures_to_try};
 use super::result::{Design, DesignRound, DesignStatus, Relaxation};
 use super::stabilising::has_poles_to_move;
+use super::tried::{StructureEnding, TriedStructure};
 use crate::family::{Extent, Family, corners, random};
 use crate::kept_plants::KeptPlants;
 use crate::loop_shaping::{DesignProblem, Samples, Structure, search_frequencies};
@@ -30,9 +34,10 @@ const SEED_AGAIN: u64 = 1000;
 /// A larger order is worth its poles where it lowers the relaxation by more than this, dB.
 const RELAXATION_GAINED_DB: f64 = 0.01;
 
-/// Designs a controller and its prefilter: structures of growing order are tried, each by search
-/// and audit, until one meets every specification; then with fewer zeros, as long as these also
-/// satisfy the specifications. Where none does, the smallest relaxation is looked for.
+/// Designs a controller and its prefilter: structures of growing length are tried, each by search
+/// and audit, until one meets every specification; then longer ones that may be worth their poles,
+/// and of those of growing order fewer zeros, as long as these also satisfy the specifications.
+/// Where none does, the smallest relaxation is looked for.
 ///
 /// # Errors
 /// [`LoopDesignError`] where a part of the problem is not a transfer function, or cannot be put
@@ -118,17 +123,17 @@ fn design_knowing(
     watch: Watch<'_>,
 ) -> Result<DesignOutcome, LoopDesignError> {
     let findings = diagnose(problem);
-    let LearntPlants { samples, plants, rounds } = known;
+    let LearntPlants { samples, plants, rounds, tried } = known;
     let mut run = DesignProgress::new(problem, options, &plants);
     // where no controller of any order suffices, it remains to find by how much
     run.relaxing = findings.iter().any(|finding| finding.severity() == FindingSeverity::Impossible);
-    (run.samples, run.rounds) = (samples, rounds);
+    (run.samples, run.rounds, run.tried) = (samples, rounds, tried);
     if let Some(found) = found {
         run.begin_at(&found);
     }
     let at_hand = run.try_structures(watch)?.map(Box::new);
-    let DesignProgress { design, samples, rounds, .. } = run;
-    let known = LearntPlants { samples, plants, rounds };
+    let DesignProgress { design, samples, rounds, tried, .. } = run;
+    let known = LearntPlants { samples, plants, rounds, tried };
     Ok(DesignOutcome { design, findings, stopped: at_hand.is_some(), at_hand, known })
 }
 
@@ -137,8 +142,10 @@ struct DesignProgress<'a> {
     problem: &'a DesignProblem,
     options: &'a DesignOptions,
     ground: Ground,
-    /// (order, zeros) that are still to be tried.
-    waiting: VecDeque<(usize, usize)>,
+    /// What is still to be tried.
+    waiting: VecDeque<WaitingStructure>,
+    /// What is being tried.
+    now: WaitingStructure,
     all: usize,
     /// Whether plants have poles that the loop has to move: every structure is tried twice, for a
     /// search may miss what is there.
@@ -154,13 +161,16 @@ struct DesignProgress<'a> {
     again: Option<(Structure, Option<TransferFunction>)>,
     begun_again: bool,
     /// The attempt that came nearest, with its worst margin over rate.
-    nearest: Option<(f64, Box<Attempt>)>,
+    nearest: Option<(f64, WaitingStructure, Box<Attempt>)>,
     /// The controller of the attempt before.
     before: Option<TransferFunction>,
     /// The last attempt that found no stable loop.
     unstable: Option<Attempt>,
     samples: Option<Samples>,
     rounds: Vec<DesignRound>,
+    tried: Vec<TriedStructure>,
+    /// The name of the design, where it has one, and what it reached.
+    met: Option<(NamedStructure, Option<f64>)>,
     kept: &'a KeptPlants,
     design: Option<Design>,
 }
@@ -180,6 +190,7 @@ impl<'a> DesignProgress<'a> {
             ground,
             all: waiting.len(),
             waiting,
+            now: WaitingStructure::Given,
             is_hard,
             last: None,
             found: false,
@@ -191,17 +202,27 @@ impl<'a> DesignProgress<'a> {
             unstable: None,
             samples: None,
             rounds: vec![],
+            tried: vec![],
+            met: None,
             kept,
             design: None,
         }
     }
 
-    /// Skips structures with fewer poles than the design for fewer plants, and begins with its
+    /// Skips structures that failed before the design for fewer plants, and begins with its
     /// controller.
     fn begin_at(&mut self, found: &Design) {
-        if let ControllerChoice::Grow { .. } = self.options.controller {
-            let order = found.structure.roots(-1.0);
-            self.waiting.retain(|(own, _)| *own >= order);
+        let order = found.structure.roots(-1.0);
+        let own = |one: &WaitingStructure| one.name().is_some() && one.name() == found.name;
+        match (&self.options.controller, self.waiting.iter().position(own)) {
+            (ControllerChoice::Given(_) | ControllerChoice::Named(_), _) => {}
+            (ControllerChoice::Any { .. } | ControllerChoice::Grow { .. }, Some(place)) => {
+                self.waiting.drain(..place);
+            }
+            (ControllerChoice::Any { .. } | ControllerChoice::Grow { .. }, None) => {
+                let is_left = |one: &WaitingStructure| matches!(one, WaitingStructure::Free { order: own, .. } if *own >= order);
+                self.waiting.retain(is_left);
+            }
         }
         self.all = self.waiting.len();
         self.before = found.law.feedback.transfer_function().ok();
@@ -214,7 +235,9 @@ impl<'a> DesignProgress<'a> {
             match attempt.run(self.kept, &mut self.part(watch)) {
                 Err(LoopDesignError::Stopped(_)) => return Ok(Some(self.nearer(attempt))),
                 ending => {
-                    if self.is_done_with(attempt, ending?)? {
+                    let ending = ending?;
+                    self.note(&attempt, &ending);
+                    if self.is_done_with(attempt, ending)? {
                         return Ok(None);
                     }
                 }
@@ -238,15 +261,13 @@ impl<'a> DesignProgress<'a> {
         if let Some(again) = self.again.take() {
             return Some(again);
         }
-        if let Some((order, zeros)) = self.waiting.pop_front() {
-            let structure = match &self.options.controller {
-                ControllerChoice::Given(structure) => structure.clone(),
-                ControllerChoice::Grow { .. } => self.ground.structure(order, zeros),
-            };
+        if let Some(candidate) = self.waiting.pop_front() {
+            self.now = candidate;
+            let structure = candidate.structure(&self.options.controller, &self.ground);
             return Some((structure, self.before.clone()));
         }
-        let (_, nearest) = self.nearest.take().filter(|_| !self.found && !self.relaxing)?;
-        self.relaxing = true;
+        let (_, candidate, nearest) = self.nearest.take().filter(|_| !self.found && !self.relaxing)?;
+        (self.relaxing, self.now) = (true, candidate);
         Some((nearest.structure().clone(), nearest.feedback()))
     }
 
@@ -254,7 +275,7 @@ impl<'a> DesignProgress<'a> {
     fn nearer(&mut self, mut stopped: Attempt) -> Attempt {
         let reached_db = stopped.worst_margin_db().unwrap_or(f64::NEG_INFINITY);
         match self.nearest.take() {
-            Some((worst_margin_db, nearest)) if worst_margin_db > reached_db => *nearest,
+            Some((worst_margin_db, _, nearest)) if worst_margin_db > reached_db => *nearest,
             _ => stopped,
         }
     }
@@ -265,8 +286,13 @@ impl<'a> DesignProgress<'a> {
         let left = self.waiting.len() as f64 + 1.0;
         let share = (1.0 - left / (self.all as f64 + 1.0)).max(0.0);
         let relaxing = self.relaxing;
+        let named = self.now.name().map(named_stage);
         move |Progress { stage, .. }| {
-            let stage = if relaxing { "looking for the smallest relaxation" } else { stage };
+            let stage = match named {
+                _ if relaxing => "looking for the smallest relaxation",
+                Some(named) if stage == SHAPING => named,
+                _ => stage,
+            };
             watch(Progress { stage, share })
         }
     }
@@ -282,9 +308,31 @@ impl<'a> DesignProgress<'a> {
             None => self.first_samples()?,
         };
         let stabilising = self.ground.stabilising(&structure, self.problem);
-        let beginning = StartingPoints { simpler, stabilising, is_hard: self.is_hard };
+        let effort = self.now.effort(&structure, self.is_hard);
+        let beginning = StartingPoints { simpler, stabilising, effort };
         let options = self.options_of(&structure);
-        Attempt::new(structure, samples, &options, self.relaxing, beginning)
+        let attempt = Attempt::new(structure, samples, &options, self.relaxing, beginning)?;
+        Ok(attempt.that_earns(self.to_be_reached_db()))
+    }
+
+    /// What a longer structure than the one that is met must reach, dB.
+    fn to_be_reached_db(&self) -> Option<f64> {
+        let ControllerChoice::Any { earned_per_pole_db, .. } = self.options.controller else { return None };
+        let (met, reached_db) = self.met?;
+        let further = self.now.name()?.order().saturating_sub(met.order());
+        Some(reached_db? - earned_per_pole_db * further as f64)
+    }
+
+    /// Keeps what an attempt reached for the comparison of structures; one that is tried again
+    /// takes the place of its trial before.
+    fn note(&mut self, attempt: &Attempt, ending: &AttemptEnding) {
+        let own = TriedStructure::new(self.now.name(), attempt, ending);
+        match self.tried.iter_mut().find(|known| known.structure == own.structure) {
+            // a relaxation is no better news than that it was missed
+            Some(known) if known.ending == StructureEnding::Met && own.ending != StructureEnding::Met => {}
+            Some(known) => *known = own,
+            None => self.tried.push(own),
+        }
     }
 
     /// Those of the design; the same structure again begins at other random points.
@@ -314,9 +362,19 @@ impl<'a> DesignProgress<'a> {
         self.before = attempt.feedback().or(self.before.take());
         match ending {
             AttemptEnding::Met(audit) => {
+                // the margins of its last samples, more than it was searched with, still earn it
+                let reached_db = attempt.reached_db();
+                let earns = self.to_be_reached_db().zip(reached_db).is_none_or(|(most, own)| own <= most);
+                if !earns {
+                    return Ok(self.waiting.is_empty());
+                }
                 self.take(&attempt, DesignStatus::Met, *audit)?;
                 self.found = true;
-                self.waiting = fewer_zeros(&self.options.controller, attempt.structure());
+                self.met = self.now.name().map(|name| (name, reached_db));
+                self.waiting = match self.now.name() {
+                    Some(name) => longer(name, &self.options.controller, &self.ground),
+                    None => fewer_zeros(self.now, attempt.structure()),
+                };
                 Ok(self.relaxing || self.waiting.is_empty())
             }
             AttemptEnding::Missed { worst_margin_db, audit: Some(_) }
@@ -332,23 +390,30 @@ impl<'a> DesignProgress<'a> {
                 Ok(self.waiting.is_empty())
             }
             AttemptEnding::Missed { worst_margin_db, audit: None } => {
-                if self.nearest.as_ref().is_none_or(|(best, _)| worst_margin_db > *best) {
-                    self.nearest = Some((worst_margin_db, Box::new(attempt)));
+                if self.nearest.as_ref().is_none_or(|(best, ..)| worst_margin_db > *best) {
+                    self.nearest = Some((worst_margin_db, self.now, Box::new(attempt)));
                 }
-                Ok(self.found)
+                Ok(self.is_done_without())
             }
             AttemptEnding::NotConverged(audit) => {
                 let status = DesignStatus::NotConverged { rounds: attempt.rounds().len() };
                 if self.design.is_none() {
                     self.take(&attempt, status, *audit)?;
                 }
-                Ok(self.found || self.relaxing)
+                Ok(self.is_done_without() || self.relaxing)
             }
             AttemptEnding::NotStabilised => {
                 self.unstable = Some(attempt);
-                Ok(self.found)
+                Ok(self.is_done_without())
             }
+            AttemptEnding::NotEarned => Ok(self.waiting.is_empty()),
         }
+    }
+
+    /// Whether nothing is left to be tried once a structure beyond the one that is met has failed:
+    /// other names may still be worth their poles, fewer zeros are not.
+    fn is_done_without(&self) -> bool {
+        self.found && (self.met.is_none() || self.waiting.is_empty())
     }
 
     fn take_relaxation(
@@ -367,7 +432,8 @@ impl<'a> DesignProgress<'a> {
     }
 
     fn take(&mut self, attempt: &Attempt, status: DesignStatus, audit: Audit) -> Result<(), LoopDesignError> {
-        self.design = Some(design_of(attempt, status, audit, &self.rounds)?);
+        let design = design_of(attempt, status, audit, &self.rounds)?;
+        self.design = Some(Design { name: self.now.name(), ..design });
         Ok(())
     }
 }
@@ -383,6 +449,7 @@ pub(super) fn design_of(
         controller: attempt.deployed()?,
         law: attempt.shaping().controller(attempt.x()),
         structure: attempt.structure().clone(),
+        name: None,
         starts: attempt.starts().cloned(),
         objective_db: rounds.last().map_or(f64::NAN, |round| round.objective_db),
         binding: binding_limits(&audit),
@@ -390,49 +457,6 @@ pub(super) fn design_of(
         beside: attempt.beside().to_vec(),
         rounds: rounds.to_vec(),
     })
-}
-
-/// (order, zeros) in the order in which they are tried.
-fn structures_to_try(
-    problem: &DesignProblem,
-    options: &DesignOptions,
-    ground: &Ground,
-    is_hard: bool,
-) -> VecDeque<(usize, usize)> {
-    let ControllerChoice::Grow { maximum_order } = options.controller else {
-        return VecDeque::from([(0, 0)]);
-    };
-    let sampled = problem.timing.sample_time_s.is_some();
-    let orders = ground.integrators..=maximum_order;
-    let usual = orders.clone().flat_map(|order| degrees(order, ground.integrators, sampled));
-    let biproper = orders.filter(|order| !sampled && is_worth_as_many_zeros(*order, ground));
-    let each = usual.chain(biproper.map(|order| (order, order)));
-    each.flat_map(|degrees| std::iter::repeat_n(degrees, if is_hard { 2 } else { 1 })).collect()
-}
-
-/// (order, zeros) of an order: one pole more than zeros; as many for a gain alone, for
-/// proportional-integral control, and where the loop is sampled and its gain ends at pi/T anyway.
-fn degrees(order: usize, integrators: usize, sampled: bool) -> Vec<(usize, usize)> {
-    match order {
-        0 => vec![(0, 0)],
-        _ if sampled || (order == 1 && integrators == 1) => vec![(order, order - 1), (order, order)],
-        _ => vec![(order, order - 1)],
-    }
-}
-
-/// Whether a continuous controller of this order is also tried with as many zeros as poles, once
-/// none with fewer zeros has succeeded: a lead of first order, or a pair of zeros over a pair of
-/// poles, say, which has the phase of the zeros at every frequency above.
-fn is_worth_as_many_zeros(order: usize, ground: &Ground) -> bool {
-    order > ground.integrators
-}
-
-/// The same order with one zero fewer, where structures grow: a larger relative degree has less
-/// gain at high frequency than any smaller one.
-fn fewer_zeros(choice: &ControllerChoice, structure: &Structure) -> VecDeque<(usize, usize)> {
-    let [order, zeros] = [structure.roots(-1.0), structure.roots(1.0)];
-    let fewer = zeros.checked_sub(1).filter(|_| matches!(choice, ControllerChoice::Grow { .. }));
-    fewer.map(|zeros| (order, zeros)).into_iter().collect()
 }
 
 /// The plants that a search begins with, the nominal one first.

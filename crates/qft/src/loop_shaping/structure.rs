@@ -42,6 +42,16 @@ pub enum StructureFactor {
         /// zeta
         damping_ratio: [f64; 2],
     },
+    /// (s^2/w^2 + 2 d zeta s/w + 1)/(s^2/w^2 + 2 zeta s/w + 1); two real poles where zeta is 1 or
+    /// more
+    Notch {
+        /// w
+        natural_frequency: [f64; 2],
+        /// zeta of the poles
+        damping_ratio: [f64; 2],
+        /// d, the magnitude at w
+        depth: [f64; 2],
+    },
 }
 
 /// A controller with free numbers: a gain of known sign and factors in series.
@@ -50,8 +60,9 @@ pub enum StructureFactor {
 /// G(s; x) = sign k part_1(s) part_2(s) ...,      x = (ln k, ln of each free number in turn)
 /// ```
 ///
-/// The numbers of a pair are its natural frequency, then its damping ratio. A number whose least
-/// and greatest value are the same, the gain among them, is not free: it has no x.
+/// The numbers of a pair are its natural frequency, then its damping ratio; of a notch, its depth
+/// follows. A number whose least and greatest value are the same, the gain among them, is not free:
+/// it has no x.
 ///
 /// # Example
 /// Integral control with a lead, its two corners free:
@@ -92,28 +103,60 @@ struct Factor {
     pair: bool,
 }
 
+/// A factor with its natural frequency and its damping ratio, 0 for a single root.
+type NumberedFactor = (Factor, [f64; 2]);
+
+const ZERO: Factor = Factor { power: 1.0, pair: false };
+const POLE: Factor = Factor { power: -1.0, pair: false };
+const ZERO_PAIR: Factor = Factor { power: 1.0, pair: true };
+const POLE_PAIR: Factor = Factor { power: -1.0, pair: true };
+
 impl StructureFactor {
-    /// `None` for an element without free numbers.
-    fn factor(&self) -> Option<Factor> {
+    /// The factors of its transfer function; none for an element without free numbers.
+    fn factors(&self) -> &'static [Factor] {
         match self {
-            StructureFactor::Fixed(_) => None,
-            StructureFactor::RealZero { .. } => Some(Factor { power: 1.0, pair: false }),
-            StructureFactor::RealPole { .. } => Some(Factor { power: -1.0, pair: false }),
-            StructureFactor::ZeroPair { .. } => Some(Factor { power: 1.0, pair: true }),
-            StructureFactor::PolePair { .. } => Some(Factor { power: -1.0, pair: true }),
+            StructureFactor::Fixed(_) => &[],
+            StructureFactor::RealZero { .. } => &[ZERO],
+            StructureFactor::RealPole { .. } => &[POLE],
+            StructureFactor::ZeroPair { .. } => &[ZERO_PAIR],
+            StructureFactor::PolePair { .. } => &[POLE_PAIR],
+            StructureFactor::Notch { .. } => &[POLE_PAIR, ZERO_PAIR],
         }
     }
 
+    /// The same with these numbers.
+    fn numbered(
+        &self,
+        numbers: &mut std::vec::IntoIter<f64>,
+    ) -> impl Iterator<Item = NumberedFactor> + use<> {
+        let mut next = || numbers.next().unwrap_or(f64::NAN);
+        let two = match self {
+            StructureFactor::Fixed(_) => [None, None],
+            StructureFactor::RealZero { .. } => [Some((ZERO, [next(), 0.0])), None],
+            StructureFactor::RealPole { .. } => [Some((POLE, [next(), 0.0])), None],
+            StructureFactor::ZeroPair { .. } => [Some((ZERO_PAIR, [next(), next()])), None],
+            StructureFactor::PolePair { .. } => [Some((POLE_PAIR, [next(), next()])), None],
+            StructureFactor::Notch { .. } => {
+                let [frequency, damping, depth] = [next(), next(), next()];
+                [Some((POLE_PAIR, [frequency, damping])), Some((ZERO_PAIR, [frequency, damping * depth]))]
+            }
+        };
+        two.into_iter().flatten()
+    }
+
     /// Least and greatest value of each number.
-    fn ranges(&self) -> impl Iterator<Item = [f64; 2]> {
+    fn ranges(&self) -> impl Iterator<Item = [f64; 2]> + use<> {
         let ranges = match *self {
-            StructureFactor::Fixed(_) => [None; 2],
+            StructureFactor::Fixed(_) => [None; 3],
             StructureFactor::RealZero { frequency } | StructureFactor::RealPole { frequency } => {
-                [Some(frequency), None]
+                [Some(frequency), None, None]
             }
             StructureFactor::ZeroPair { natural_frequency, damping_ratio }
             | StructureFactor::PolePair { natural_frequency, damping_ratio } => {
-                [Some(natural_frequency), Some(damping_ratio)]
+                [Some(natural_frequency), Some(damping_ratio), None]
+            }
+            StructureFactor::Notch { natural_frequency, damping_ratio, depth } => {
+                [Some(natural_frequency), Some(damping_ratio), Some(depth)]
             }
         };
         ranges.into_iter().flatten()
@@ -132,6 +175,23 @@ impl StructureFactor {
             StructureFactor::PolePair { .. } => {
                 Element::ComplexPoles { natural_frequency: next(), damping_ratio: next() }
             }
+            StructureFactor::Notch { .. } => {
+                let [natural_frequency, pole_damping_ratio, depth] = [next(), next(), next()];
+                let zero_damping_ratio = depth * pole_damping_ratio;
+                Element::Notch { natural_frequency, zero_damping_ratio, pole_damping_ratio }
+            }
+        }
+    }
+
+    /// Nepers of high-frequency gain per unit of the logarithm of each number.
+    fn high_frequency_slopes(&self) -> &'static [f64] {
+        match self {
+            StructureFactor::Fixed(_) => &[],
+            StructureFactor::RealZero { .. } => &[-1.0],
+            StructureFactor::RealPole { .. } => &[1.0],
+            StructureFactor::ZeroPair { .. } => &[-2.0, 0.0],
+            StructureFactor::PolePair { .. } => &[2.0, 0.0],
+            StructureFactor::Notch { .. } => &[0.0, 0.0, 0.0],
         }
     }
 }
@@ -226,10 +286,7 @@ impl Structure {
     }
 
     fn all_high_frequency_slopes_db(&self) -> Vec<f64> {
-        let slopes = self.factors().flat_map(|factor| match factor.pair {
-            false => vec![-factor.power],
-            true => vec![-2.0 * factor.power, 0.0],
-        });
+        let slopes = self.parts.iter().flat_map(StructureFactor::high_frequency_slopes).copied();
         std::iter::once(1.0).chain(slopes).map(|slope| DECIBELS_PER_NEPER * slope).collect()
     }
 
@@ -239,9 +296,9 @@ impl Structure {
         if power > 0.0 { degrees[0] } else { degrees[1] }
     }
 
-    /// The parts with free numbers, in turn.
+    /// The factors of the parts with free numbers, in turn.
     fn factors(&self) -> impl Iterator<Item = Factor> {
-        self.parts.iter().filter_map(StructureFactor::factor)
+        self.parts.iter().flat_map(StructureFactor::factors).copied()
     }
 
     /// The product of the parts without free numbers.

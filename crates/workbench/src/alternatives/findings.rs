@@ -127,8 +127,10 @@ fn specifications(judged: &[JudgedAlternative], not_reached: usize) -> Vec<Strin
 /// The greatest order, where the orders were free and the same for all.
 fn tried(judged: &[JudgedAlternative]) -> String {
     let orders = judged.iter().filter_map(|one| match one.design.as_ref().ok()?.options.controller {
-        ControllerChoice::Grow { maximum_order } => Some(maximum_order),
-        ControllerChoice::Given(_) => None,
+        ControllerChoice::Grow { maximum_order } | ControllerChoice::Any { maximum_order, .. } => {
+            Some(maximum_order)
+        }
+        ControllerChoice::Given(_) | ControllerChoice::Named(_) => None,
     });
     let orders: Vec<usize> = orders.collect();
     match orders.first() {

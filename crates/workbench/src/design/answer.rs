@@ -8,9 +8,9 @@ use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::verification::PlantPoint;
 
 use super::AuditedController;
-use super::limits;
 use super::{Explanation, ProjectDesign};
-use super::{objective_key, part_key, status_key};
+use super::{limits, manual, structures};
+use super::{objective_key, part_key, status_key, structure_key};
 use crate::answer::{Json, Object};
 use crate::audit;
 use crate::trial::{self, Agreement};
@@ -54,7 +54,7 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
         .known("prefilter", prefilter, "no prefilter is needed or requested")
         .maybe("continuous_law", continuous_law(side)?)
         .with("figures", figures(side))
-        .with("structure", structure(&design.structure))
+        .and(of_structures(view))
         .with("verification", audit::body(&side.view))
         .with("published", published)
         .maybe("continuous_as_sampled", view.continuous.as_ref().map(audited))
@@ -77,6 +77,19 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
         .maybe("rounding", view.rounding.as_ref().map(|rounding| rounding::row(rounding, &side.view.names)))
         .known("machine", view.trial.as_ref().map(trial::body), no_machine)
         .known("repair", view.repair.as_ref().map(repair::row), no_repair))
+}
+
+/// The structure, what others reached, and the law in the words of a manual.
+fn of_structures(view: &ProjectDesign) -> Object {
+    let design = &view.design;
+    let name = design.name.map(|name| structure_key(Some(name)));
+    let gap = view.manual.as_ref().err().map_or(String::new(), ToString::to_string);
+    let manual = view.manual.as_ref().map(manual::object).map_err(|_| gap.as_str());
+    Object::new()
+        .with("structure", structure(&design.structure).maybe("name", name))
+        .told("manual", manual)
+        .with("structures", structures::rows(view))
+        .maybe("earned_per_pole_db", structures::earned_per_pole_db(view))
 }
 
 /// k Π(s - z)/Π(s - p), or the same in z.
@@ -130,20 +143,24 @@ fn structure(structure: &Structure) -> Object {
         "parts",
         &structure.parts,
         |part| {
-            let (frequency, damping_ratio) = match part {
-                StructureFactor::Fixed(_) => (None, None),
+            let (frequency, damping_ratio, depth) = match *part {
+                StructureFactor::Fixed(_) => (None, None, None),
                 StructureFactor::RealZero { frequency } | StructureFactor::RealPole { frequency } => {
-                    (Some(*frequency), None)
+                    (Some(frequency), None, None)
                 }
                 StructureFactor::ZeroPair { natural_frequency, damping_ratio }
                 | StructureFactor::PolePair { natural_frequency, damping_ratio } => {
-                    (Some(*natural_frequency), Some(*damping_ratio))
+                    (Some(natural_frequency), Some(damping_ratio), None)
+                }
+                StructureFactor::Notch { natural_frequency, damping_ratio, depth } => {
+                    (Some(natural_frequency), Some(damping_ratio), Some(depth))
                 }
             };
             Object::new()
                 .with("kind", part_key(part))
                 .maybe("frequency_rad_per_s", frequency)
                 .maybe("damping_ratio", damping_ratio)
+                .maybe("depth", depth)
         },
     )
 }

@@ -67,6 +67,7 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
     }
     out.heading("Controller");
     out.append(laws(&view.designed)?);
+    out.append(super::manual(view));
     out.append(side_by_side(view));
     let caution = match view.designed.view.verdict() {
         _ if view.is_met() => "",
@@ -75,6 +76,7 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
     };
     out.heading(format!("To be pasted into the project{caution}"));
     out.preformatted(snippet(&view.declared_controller, view.declared_prefilter.as_ref()));
+    out.append(super::structures(view));
     out.append(super::limits(view));
     out.append(costs(view));
     out.heading("Audit of the designed controller");

@@ -15,7 +15,8 @@ use super::family_steps;
 use crate::answer::{OutputFile, significant};
 use crate::audit::basis;
 use crate::design::{
-    DesignError, ProjectDesign, costs, design_project, files, laws, limits, side_by_side, status,
+    DesignError, ProjectDesign, costs, design_project, files, laws, limits, manual, side_by_side, status,
+    structures,
 };
 use crate::document::{Document, StatusMark};
 use crate::error::CommandError;
@@ -155,6 +156,7 @@ fn chapter(found: &FoundDesign) -> Result<Chapter, CommandError> {
     }
     out.heading("The designed controller");
     out.append(laws(side)?);
+    out.append(manual(view));
     if let Some(published) = &view.published {
         out.heading("The given controller");
         out.append(laws(published)?);
@@ -175,6 +177,7 @@ fn chapter(found: &FoundDesign) -> Result<Chapter, CommandError> {
         Some(Err(reason)) => out.explanation(format!("No step responses of the family: {reason}.")),
         None => {}
     }
+    out.append(structures(view));
     out.append(limits(view));
     out.append(costs(view));
     out.heading("What this rests on");

@@ -145,7 +145,9 @@ fn help(project: &Project, repair: &Repair, told: &ProjectDesign) -> String {
                 .to_string(),
         );
     }
-    if let ControllerChoice::Grow { maximum_order } = told.options.controller {
+    if let ControllerChoice::Grow { maximum_order } | ControllerChoice::Any { maximum_order, .. } =
+        told.options.controller
+    {
         ways.push(format!("a controller of higher order (`design.maximum_order`, now {maximum_order})"));
     }
     let wider = match repair.status {

@@ -12,8 +12,19 @@ pub(in crate::design) struct StartingPoints {
     pub(in crate::design) simpler: Vec<Vec<f64>>,
     /// What stabilises the nominal plant.
     pub(in crate::design) stabilising: Vec<Vec<f64>>,
-    /// Whether the plants are hard to stabilise.
-    pub(in crate::design) is_hard: bool,
+    /// How widely is searched.
+    pub(in crate::design) effort: SearchEffort,
+}
+
+/// How widely a search looks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::design) enum SearchEffort {
+    /// Few starts, for a structure of few numbers.
+    Small,
+    #[default]
+    Usual,
+    /// Many starts, for plants that are hard to stabilise.
+    Great,
 }
 
 /// The best of these points: those that stabilise every plant by their worst margin, then the
@@ -32,12 +43,13 @@ pub(super) fn best_of(shaping: &mut Shaping, points: Vec<Vec<f64>>) -> Vec<Vec<f
 /// The gain is scanned, because hardly any gain suits a random shape. More descents are completed
 /// for a relaxation, whose result is a number, and for a plant that is hard to stabilise, which has
 /// many local optima.
-pub(super) fn search_options(aim: Aim, seed: u64, relaxes: bool, is_hard: bool) -> SearchOptions {
+pub(super) fn search_options(aim: Aim, seed: u64, relaxes: bool, effort: SearchEffort) -> SearchOptions {
     let descent = DescentOptions { reserve_db: 0.0, ..DescentOptions::new(aim) };
-    let (samples, starts, finished) = match (is_hard, relaxes) {
-        (true, _) => (96, 16, 8),
-        (false, true) => (48, 12, 6),
-        (false, false) => (48, 8, 5),
+    let (samples, starts, finished) = match (effort, relaxes) {
+        (SearchEffort::Great, _) => (96, 16, 8),
+        (SearchEffort::Small | SearchEffort::Usual, true) => (48, 12, 6),
+        (SearchEffort::Usual, false) => (48, 8, 5),
+        (SearchEffort::Small, false) => (24, 4, 3),
     };
     SearchOptions { samples, scanned: 14, starts, finished, descent, ..SearchOptions::new(aim, seed) }
 }

@@ -39,11 +39,23 @@ impl Structure {
         if !continuous || function.dead_time_s() != fixed.dead_time_s() {
             return None;
         }
-        let mut zeros = self.assigned(1.0, &without(function.zeros(), fixed.zeros())?)?.into_iter();
-        let mut poles = self.assigned(-1.0, &without(function.poles(), fixed.poles())?)?.into_iter();
+        let mut others =
+            [without(function.zeros(), fixed.zeros())?, without(function.poles(), fixed.poles())?];
+        let notches = self.parts.iter().filter(|part| matches!(part, StructureFactor::Notch { .. }));
+        let notches: Option<Vec<[f64; 3]>> = notches.map(|part| taken_notch(part, &mut others)).collect();
+        let mut notches = notches?.into_iter();
+        let mut zeros = self.assigned(1.0, &others[0])?.into_iter();
+        let mut poles = self.assigned(-1.0, &others[1])?.into_iter();
         let mut gain = self.sign * function.gain() / fixed.gain();
         let mut numbers = Vec::new();
-        for factor in self.factors() {
+        for part in &self.parts {
+            let &[factor] = part.factors() else {
+                // its gain is 1 at zero frequency and at infinity
+                if !part.factors().is_empty() {
+                    numbers.extend(notches.next()?);
+                }
+                continue;
+            };
             let own = if factor.power > 0.0 { zeros.next()? } else { poles.next()? };
             let frequency = *own.first()?;
             let leading = if factor.pair { frequency * frequency } else { frequency };
@@ -123,7 +135,8 @@ impl Structure {
 
     /// The free numbers of each factor of this power, in turn, from the roots.
     fn assigned(&self, power: f64, roots: &[Complex64]) -> Option<Vec<Vec<f64>>> {
-        let ranges = self.parts.iter().filter(|part| part.factor().is_some_and(|own| own.power == power));
+        let single = |part: &&StructureFactor| matches!(part.factors(), [own] if own.power == power);
+        let ranges = self.parts.iter().filter(single);
         let ranges: Vec<Vec<[f64; 2]>> = ranges.map(|part| part.ranges().collect()).collect();
         let upper: Vec<Complex64> = roots.iter().copied().filter(|root| root.im >= 0.0).collect();
         assigned(&ranges, &upper)
@@ -154,6 +167,50 @@ fn assigned(ranges: &[Vec<[f64; 2]>], roots: &[Complex64]) -> Option<Vec<Vec<f64
         }),
         _ => None,
     })
+}
+
+/// Natural frequency, damping ratio and depth of a notch within the ranges of this part, and its
+/// roots taken from the zeros and poles: the deepest one whose pairs have the same natural
+/// frequency.
+fn taken_notch(part: &StructureFactor, [zeros, poles]: &mut [Vec<Complex64>; 2]) -> Option<[f64; 3]> {
+    let ranges: Vec<[f64; 2]> = part.ranges().collect();
+    let mut best: Option<([f64; 3], [[usize; 2]; 2])> = None;
+    for (of_zeros, zero_numbers) in pairs(zeros) {
+        for (of_poles, pole_numbers) in pairs(poles) {
+            let [frequency, damping] = pole_numbers;
+            let numbers = [frequency, damping, zero_numbers[1] / damping];
+            let same = (zero_numbers[0] / frequency - 1.0).abs() <= SAME;
+            let inside = |(value, [low, high]): (&f64, &[f64; 2])| {
+                low * (1.0 - SAME) <= *value && *value <= high * (1.0 + SAME)
+            };
+            if same
+                && numbers.iter().zip(&ranges).all(inside)
+                && best.is_none_or(|(known, _)| numbers[2] < known[2])
+            {
+                best = Some((numbers, [of_zeros, of_poles]));
+            }
+        }
+    }
+    let (numbers, taken) = best?;
+    for (roots, taken) in [zeros, poles].into_iter().zip(taken) {
+        let kept = roots.iter().enumerate().filter(|(index, _)| !taken.contains(index));
+        *roots = kept.map(|(_, root)| *root).collect();
+    }
+    Some(numbers)
+}
+
+/// Every two roots that may be a pair, with their natural frequency and damping ratio.
+fn pairs(roots: &[Complex64]) -> Vec<([usize; 2], [f64; 2])> {
+    let mut found = Vec::new();
+    for (first, &one) in roots.iter().enumerate() {
+        for (second, &other) in roots.iter().enumerate().skip(first + 1) {
+            if (one.im == 0.0 && other.im == 0.0) || one == other.conj() {
+                let numbers = of_pair([one, other]);
+                found.push(([first, second], [numbers[0], numbers[1]]));
+            }
+        }
+    }
+    found
 }
 
 /// Natural frequency and damping ratio of a pair of roots.

@@ -5,7 +5,7 @@ use phea_dynamics::controller::Timing;
 use phea_dynamics::linear::{Discretization, LinearError, TimeDomain, TransferFunction};
 use phea_dynamics::portable;
 
-use super::{Factor, Structure};
+use super::{Factor, NumberedFactor, Structure, StructureFactor};
 
 /// Step of x for slopes of a controller that is sampled at each x.
 const DIFFERENCE: f64 = 1e-5;
@@ -135,7 +135,7 @@ impl StructureResponse {
         match &self.evaluation {
             Evaluation::Factors(points) => {
                 let (_, numbers) = self.numbers(x);
-                let own = |s| self.structure.of_free(factor_slopes(&numbers, s));
+                let own = |s| self.structure.of_free(self.factor_slopes(&numbers, s));
                 Ok(points.iter().map(|(s, _)| own(*s)).collect())
             }
             Evaluation::Sampling { .. } => self.differences(x),
@@ -159,13 +159,44 @@ impl StructureResponse {
     }
 
     /// The gain, and the factors with frequency and damping ratio.
-    fn numbers(&self, x: &[f64]) -> (f64, Vec<(Factor, [f64; 2])>) {
+    fn numbers(&self, x: &[f64]) -> (f64, Vec<NumberedFactor>) {
         let mut numbers = self.structure.numbers(x).into_iter();
-        let mut next = || numbers.next().unwrap_or(f64::NAN);
-        let gain = next();
-        let factors = self.structure.factors();
-        let factors = factors.map(|factor| (factor, [next(), if factor.pair { next() } else { 0.0 }]));
-        (gain, factors.collect())
+        let gain = numbers.next().unwrap_or(f64::NAN);
+        let parts = self.structure.parts.iter();
+        (gain, parts.flat_map(|part| part.numbered(&mut numbers)).collect())
+    }
+
+    /// 1 for ln k; for a factor of power m
+    ///
+    /// ```text
+    /// d ln q^m/d ln w = -m u q'(u)/q(u),      d ln q^m/d ln zeta = m 2 zeta u/q(u)
+    /// ```
+    ///
+    /// The zeros of a notch have its natural frequency, and its damping ratio times its depth.
+    fn factor_slopes(&self, numbers: &[NumberedFactor], s: Complex64) -> Vec<Complex64> {
+        let mut slopes = Vec::with_capacity(1 + 2 * numbers.len());
+        slopes.push(Complex64::ONE);
+        let mut factors = numbers.iter().map(|&(factor, [frequency, damping])| {
+            let u = s / frequency;
+            let relative = factor.power * u / factor.value(u, damping);
+            match factor.pair {
+                true => [-relative * (2.0 * (u + damping)), relative * (2.0 * damping)],
+                false => [-relative, Complex64::ZERO],
+            }
+        });
+        let mut next = || factors.next().unwrap_or([Complex64::ZERO; 2]);
+        for part in &self.structure.parts {
+            match part {
+                StructureFactor::Fixed(_) => {}
+                StructureFactor::RealZero { .. } | StructureFactor::RealPole { .. } => slopes.push(next()[0]),
+                StructureFactor::ZeroPair { .. } | StructureFactor::PolePair { .. } => slopes.extend(next()),
+                StructureFactor::Notch { .. } => {
+                    let [of_poles, of_zeros] = [next(), next()];
+                    slopes.extend([of_poles[0] + of_zeros[0], of_poles[1] + of_zeros[1], of_zeros[1]]);
+                }
+            }
+        }
+        slopes
     }
 }
 
@@ -174,24 +205,4 @@ impl Factor {
     fn value(self, u: Complex64, damping: f64) -> Complex64 {
         if self.pair { u * u + 2.0 * damping * u + 1.0 } else { u + 1.0 }
     }
-}
-
-/// 1 for ln k; for a factor of power m
-///
-/// ```text
-/// d ln q^m/d ln w = -m u q'(u)/q(u),      d ln q^m/d ln zeta = m 2 zeta u/q(u)
-/// ```
-fn factor_slopes(numbers: &[(Factor, [f64; 2])], s: Complex64) -> Vec<Complex64> {
-    let mut slopes = Vec::with_capacity(1 + 2 * numbers.len());
-    slopes.push(Complex64::ONE);
-    for &(factor, [frequency, damping]) in numbers {
-        let u = s / frequency;
-        let relative = factor.power * u / factor.value(u, damping);
-        if factor.pair {
-            slopes.extend([-relative * (2.0 * (u + damping)), relative * (2.0 * damping)]);
-        } else {
-            slopes.push(-relative);
-        }
-    }
-    slopes
 }

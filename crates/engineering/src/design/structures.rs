@@ -1,0 +1,110 @@
+//! The structures that were tried, with what each reaches.
+
+use phea_dynamics::frequency::decibels;
+use phea_dynamics::linear::LinearError;
+use phea_qft::closed_loop::Compensation;
+use phea_qft::design::{NamedStructure, StructureEnding, TriedStructure};
+use phea_qft::loop_shaping::{SampledMargin, Structure};
+
+use super::{DesignError, DesignRun, NominalMargins, ProjectDesign};
+use crate::audit::nominal_margins;
+use crate::project::{STRUCTURES, StructureChoice, word_of};
+use crate::robust::RobustProblem;
+
+/// A structure with what it reaches.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReachedStructure {
+    /// Its name; `None` for one of growing order or a given one.
+    pub name: Option<NamedStructure>,
+    /// Its factors.
+    pub structure: Structure,
+    /// Number of poles.
+    pub order: usize,
+    /// How its trial ended.
+    pub ending: StructureEnding,
+    /// Whether the design has it.
+    pub is_chosen: bool,
+    /// The least margin, to the limits that were searched with, of the plants and frequencies that
+    /// were searched with: what binds; absent where no controller makes them stable.
+    pub least: Option<SampledMargin>,
+    /// What that limit is called.
+    pub binding: Option<String>,
+    /// Margins of the nominal loop.
+    pub nominal: Option<NominalMargins>,
+    /// lim s^r G(s) for the relative degree r, dB.
+    pub high_frequency_gain_db: Option<f64>,
+    /// Poles less zeros.
+    pub relative_degree: i32,
+    /// By which it is compared with others, dB, the less the better: the largest gain from the
+    /// noise of the sensor to the command of the nominal loop, or the objective.
+    pub compared_db: Option<f64>,
+}
+
+/// The word of a structure in a project; empty for one without a name.
+pub fn structure_key(name: Option<NamedStructure>) -> &'static str {
+    name.map_or("", |name| word_of(&STRUCTURES, &StructureChoice::Named(name)))
+}
+
+/// The structures of a design.
+pub(super) fn reached(run: &DesignRun, told: &ProjectDesign) -> Result<Vec<ReachedStructure>, DesignError> {
+    let each = run.outcome.tried().iter().map(|tried| reached_by(run, told, tried));
+    Ok(each.collect::<Result<Vec<ReachedStructure>, LinearError>>()?)
+}
+
+fn reached_by(
+    run: &DesignRun,
+    told: &ProjectDesign,
+    tried: &TriedStructure,
+) -> Result<ReachedStructure, LinearError> {
+    let law = tried.law.as_ref().filter(|_| tried.least.is_some());
+    let nominal = match law {
+        Some(law) => {
+            let compensation = Compensation::new(law, run.problem.sensor.clone())?;
+            nominal_margins(&RobustProblem { compensation, ..run.aimed.clone() })?
+        }
+        None => None,
+    };
+    let high_frequency_gain_db = match law {
+        Some(law) => {
+            let gain = law.feedback.transfer_function()?.gain();
+            Some(decibels(gain.abs()))
+        }
+        None => None,
+    };
+    let least = tried.least.clone();
+    let own = run.aimed.specifications.len() - run.aimed.design_limits.len();
+    let name_of = |margin: &SampledMargin| match margin.specification {
+        index if index < own => Some(told.named(index)),
+        index => run.aimed.specification_names.get(index).cloned(),
+    };
+    Ok(ReachedStructure {
+        name: tried.name,
+        order: tried.structure.order()?,
+        relative_degree: tried.structure.relative_degree()?,
+        is_chosen: tried.structure == told.design.structure,
+        structure: tried.structure.clone(),
+        ending: tried.ending,
+        binding: least.as_ref().and_then(name_of),
+        least,
+        nominal,
+        high_frequency_gain_db,
+        compared_db: tried.reached_db,
+    })
+}
+
+impl ProjectDesign {
+    /// The same with the structures that were tried for less strict limits and not again.
+    pub(super) fn with_shorter(mut self, tried: Vec<ReachedStructure>) -> ProjectDesign {
+        let is_same = |one: &ReachedStructure, other: &ReachedStructure| one.structure == other.structure;
+        let mut all: Vec<ReachedStructure> = Vec::new();
+        for one in tried {
+            let own = self.structures.iter().find(|own| is_same(own, &one)).cloned();
+            let one = own.unwrap_or(ReachedStructure { is_chosen: false, ..one });
+            if !all.iter().any(|known| is_same(known, &one)) {
+                all.push(one);
+            }
+        }
+        self.structures = all;
+        self
+    }
+}

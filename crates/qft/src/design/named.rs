@@ -1,0 +1,60 @@
+//! The controllers of a manual as structures with free numbers.
+
+use phea_dynamics::controller::{Element, NamedStructure};
+
+use super::candidates::{Corners, Ground};
+use crate::loop_shaping::{Structure, StructureFactor};
+
+/// Damping ratios of the poles of a notch, which are exempt from the least one of other poles, and
+/// its depths: -40 dB to none.
+const NOTCH_DAMPING_RATIOS: [f64; 2] = [0.1, 3.0];
+const NOTCH_DEPTHS: [f64; 2] = [0.01, 1.0];
+/// Damping ratios of the zeros of a PID; beyond 1 they are two real ones.
+const PID_DAMPING_RATIOS: [f64; 2] = [0.2, 20.0];
+
+/// Name of the stage in which it is tried.
+pub(super) fn stage(name: NamedStructure) -> &'static str {
+    match name {
+        NamedStructure::Proportional => "trying P",
+        NamedStructure::Integral => "trying I",
+        NamedStructure::ProportionalIntegral => "trying PI",
+        NamedStructure::PiLowPass => "trying PI with low pass",
+        NamedStructure::Pid => "trying PID with filter",
+        NamedStructure::PiNotch => "trying PI with notch",
+        NamedStructure::PiNotchLowPass => "trying PI with notch and low pass",
+        NamedStructure::PiNotchLead => "trying PI with notch and lead",
+        NamedStructure::PiTwoNotches => "trying PI with two notches",
+    }
+}
+
+/// Whether structures of growing order with these poles and zeros are of this kind too.
+pub(super) fn is_named(order: usize, zeros: usize, integrators: usize) -> bool {
+    matches!((integrators, order, zeros), (0, 0, 0) | (1, 1, 0 | 1) | (1, 2, 1 | 2))
+}
+
+/// With free numbers between the corners of the problem.
+pub(super) fn named_structure(name: NamedStructure, ground: &Ground) -> Structure {
+    let Corners { of_zeros, of_poles } = ground.corners();
+    let zero = StructureFactor::RealZero { frequency: of_zeros };
+    let pole = StructureFactor::RealPole { frequency: of_poles };
+    let notch = StructureFactor::Notch {
+        natural_frequency: of_poles,
+        damping_ratio: NOTCH_DAMPING_RATIOS,
+        depth: NOTCH_DEPTHS,
+    };
+    let zero_pair =
+        StructureFactor::ZeroPair { natural_frequency: of_zeros, damping_ratio: PID_DAMPING_RATIOS };
+    let behind = match name {
+        NamedStructure::Proportional => return ground.with_gain(vec![]),
+        NamedStructure::Integral => vec![],
+        NamedStructure::ProportionalIntegral => vec![zero],
+        NamedStructure::PiLowPass => vec![zero, pole],
+        NamedStructure::Pid => vec![zero_pair, pole],
+        NamedStructure::PiNotch => vec![zero, notch],
+        NamedStructure::PiNotchLowPass => vec![zero, notch, pole],
+        NamedStructure::PiNotchLead => vec![zero.clone(), notch, zero, pole],
+        NamedStructure::PiTwoNotches => vec![zero, notch.clone(), notch],
+    };
+    let integrator = StructureFactor::Fixed(Element::Integrator);
+    ground.with_gain(std::iter::once(integrator).chain(behind).collect())
+}

@@ -1,0 +1,147 @@
+//! Which structures wait to be tried, in which order.
+
+use std::collections::VecDeque;
+
+use super::NamedStructure;
+use super::attempt::SearchEffort;
+use super::candidates::Ground;
+use super::named::{is_named, named_structure};
+use super::problem::{ControllerChoice, DesignOptions};
+use crate::loop_shaping::{DesignProblem, Structure};
+
+/// Most free numbers of a structure that is searched with few starts.
+const FEW_NUMBERS: usize = 4;
+/// How many poles a longer structure may have beyond those of one that is met.
+const FURTHER_POLES: usize = 2;
+
+/// A structure that waits to be tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum WaitingStructure {
+    /// The one that is given.
+    Given,
+    /// One by its name.
+    Named(NamedStructure),
+    /// One of growing order.
+    Free { order: usize, zeros: usize },
+}
+
+impl WaitingStructure {
+    /// The structure itself.
+    pub(super) fn structure(self, choice: &ControllerChoice, ground: &Ground) -> Structure {
+        match (self, choice) {
+            (WaitingStructure::Given, ControllerChoice::Given(structure)) => structure.clone(),
+            (WaitingStructure::Given, _) => ground.structure(0, 0),
+            (WaitingStructure::Named(name), _) => named_structure(name, ground),
+            (WaitingStructure::Free { order, zeros }, _) => ground.structure(order, zeros),
+        }
+    }
+
+    pub(super) fn name(self) -> Option<NamedStructure> {
+        match self {
+            WaitingStructure::Named(name) => Some(name),
+            WaitingStructure::Given | WaitingStructure::Free { .. } => None,
+        }
+    }
+
+    /// How widely is searched.
+    pub(super) fn effort(self, structure: &Structure, is_hard: bool) -> SearchEffort {
+        match self {
+            _ if is_hard => SearchEffort::Great,
+            WaitingStructure::Named(_) if structure.dimension() <= FEW_NUMBERS => SearchEffort::Small,
+            _ => SearchEffort::Usual,
+        }
+    }
+}
+
+/// The structures in the order in which they are tried.
+pub(super) fn structures_to_try(
+    problem: &DesignProblem,
+    options: &DesignOptions,
+    ground: &Ground,
+    is_hard: bool,
+) -> VecDeque<WaitingStructure> {
+    let sampled = problem.timing.sample_time_s.is_some();
+    let times = if is_hard { 2 } else { 1 };
+    let each: Vec<WaitingStructure> = match options.controller {
+        ControllerChoice::Given(_) => vec![WaitingStructure::Given],
+        ControllerChoice::Named(name) => vec![WaitingStructure::Named(name)],
+        ControllerChoice::Grow { maximum_order } => growing(maximum_order, ground, sampled).collect(),
+        ControllerChoice::Any { maximum_order, from, .. } => {
+            let is_shorter = |name: &NamedStructure| from.is_some_and(|from| *name != from);
+            let named = named(maximum_order, ground).skip_while(is_shorter).map(WaitingStructure::Named);
+            let is_new = |one: &WaitingStructure| match *one {
+                WaitingStructure::Free { order, zeros } => !is_named(order, zeros, ground.integrators),
+                WaitingStructure::Given | WaitingStructure::Named(_) => true,
+            };
+            named.chain(growing(maximum_order, ground, sampled).filter(is_new)).collect()
+        }
+    };
+    match options.controller {
+        ControllerChoice::Given(_) => VecDeque::from(each),
+        _ => each.into_iter().flat_map(|one| std::iter::repeat_n(one, times)).collect(),
+    }
+}
+
+/// The names that suit the problem: a gain where the specifications require no integrator, those
+/// with one where they require one.
+fn named(maximum_order: usize, ground: &Ground) -> impl Iterator<Item = NamedStructure> {
+    let integrators = ground.integrators;
+    NamedStructure::ALL.into_iter().filter(move |name| {
+        let own = usize::from(*name != NamedStructure::Proportional);
+        own == integrators && name.order() <= maximum_order
+    })
+}
+
+/// Longer names than one that is met, whose further poles may be worth it.
+pub(super) fn longer(
+    name: NamedStructure,
+    choice: &ControllerChoice,
+    ground: &Ground,
+) -> VecDeque<WaitingStructure> {
+    let ControllerChoice::Any { maximum_order, earned_per_pole_db, .. } = *choice else {
+        return VecDeque::new();
+    };
+    if !earned_per_pole_db.is_finite() {
+        return VecDeque::new();
+    }
+    let most = (name.order() + FURTHER_POLES).min(maximum_order);
+    let longer = named(most, ground).filter(|one| one.order() > name.order());
+    longer.map(WaitingStructure::Named).collect()
+}
+
+/// Structures of growing order.
+fn growing(maximum_order: usize, ground: &Ground, sampled: bool) -> impl Iterator<Item = WaitingStructure> {
+    let integrators = ground.integrators;
+    let orders = integrators..=maximum_order;
+    let usual = orders.clone().flat_map(move |order| degrees(order, integrators, sampled));
+    let biproper = orders.filter(move |order| !sampled && is_worth_as_many_zeros(*order, integrators));
+    usual
+        .chain(biproper.map(|order| (order, order)))
+        .map(|(order, zeros)| WaitingStructure::Free { order, zeros })
+}
+
+/// (order, zeros) of an order: one pole more than zeros; as many for a gain alone, for
+/// proportional-integral control, and where the loop is sampled and its gain ends at pi/T anyway.
+fn degrees(order: usize, integrators: usize, sampled: bool) -> Vec<(usize, usize)> {
+    match order {
+        0 => vec![(0, 0)],
+        _ if sampled || (order == 1 && integrators == 1) => vec![(order, order - 1), (order, order)],
+        _ => vec![(order, order - 1)],
+    }
+}
+
+/// Whether a continuous controller of this order is also tried with as many zeros as poles, once
+/// none with fewer zeros has succeeded: a lead of first order, or a pair of zeros over a pair of
+/// poles, say, which has the phase of the zeros at every frequency above.
+fn is_worth_as_many_zeros(order: usize, integrators: usize) -> bool {
+    order > integrators
+}
+
+/// The same order with one zero fewer, where structures grow: a larger relative degree has less
+/// gain at high frequency than any smaller one.
+pub(super) fn fewer_zeros(candidate: WaitingStructure, structure: &Structure) -> VecDeque<WaitingStructure> {
+    let order = structure.roots(-1.0);
+    let fewer = structure.roots(1.0).checked_sub(1);
+    let fewer = fewer.filter(|_| matches!(candidate, WaitingStructure::Free { .. }));
+    fewer.map(|zeros| WaitingStructure::Free { order, zeros }).into_iter().collect()
+}

@@ -1,0 +1,62 @@
+//! What each structure reached.
+
+use phea_dynamics::controller::Controller;
+
+use super::NamedStructure;
+use super::attempt::{Attempt, AttemptEnding};
+use crate::loop_shaping::{SampledMargin, Structure};
+
+/// How the trial of a structure ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StructureEnding {
+    /// The audit finds every specification met.
+    Met,
+    /// No controller of the structure meets every specification.
+    Missed,
+    /// What it gains over a shorter one that is met is not worth its poles.
+    NotEarned,
+    /// Search and audit did not come to agree.
+    NotConverged,
+    /// No controller of the structure stabilises every plant.
+    NotStabilised,
+}
+
+/// A structure that was tried.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TriedStructure {
+    /// Its name; `None` for one of growing order or a given one.
+    pub name: Option<NamedStructure>,
+    /// Its free numbers.
+    pub structure: Structure,
+    /// How it ended.
+    pub ending: StructureEnding,
+    /// The controller that it ended with; `None` where it found none.
+    pub law: Option<Controller>,
+    /// The least margin of the plants and frequencies that it was searched with: what binds.
+    pub least: Option<SampledMargin>,
+    /// What a longer structure is compared by, dB, the less the better: see
+    /// [`ControllerChoice::Any`](super::ControllerChoice::Any).
+    pub reached_db: Option<f64>,
+}
+
+impl TriedStructure {
+    pub(super) fn new(name: Option<NamedStructure>, attempt: &Attempt, ending: &AttemptEnding) -> Self {
+        let ending = match ending {
+            AttemptEnding::Met(_) => StructureEnding::Met,
+            AttemptEnding::Missed { .. } => StructureEnding::Missed,
+            AttemptEnding::NotEarned => StructureEnding::NotEarned,
+            AttemptEnding::NotConverged(_) => StructureEnding::NotConverged,
+            AttemptEnding::NotStabilised => StructureEnding::NotStabilised,
+        };
+        let has_margins = !attempt.x().is_empty() && ending != StructureEnding::NotStabilised;
+        let margins = if has_margins { attempt.shaping().margins(attempt.x()) } else { vec![] };
+        TriedStructure {
+            name,
+            structure: attempt.structure().clone(),
+            ending,
+            law: (!attempt.x().is_empty()).then(|| attempt.shaping().controller(attempt.x())),
+            least: margins.into_iter().min_by(|one, other| one.margin_db.total_cmp(&other.margin_db)),
+            reached_db: if has_margins { attempt.reached_db() } else { None },
+        }
+    }
+}

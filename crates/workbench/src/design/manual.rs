@@ -1,0 +1,216 @@
+//! The designed controller in the words of a controller's manual.
+
+use std::f64::consts::TAU;
+
+use phea_dynamics::frequency::decibels;
+use phea_engineering::design::{ManualLaw, ManualPart};
+
+use super::ProjectDesign;
+use crate::answer::{Object, significant};
+use crate::document::{Cell, Document, Table};
+use crate::quantity::DisplayUnit;
+
+/// Digits of the settings, for people.
+const DIGITS: usize = 4;
+
+/// The parts of the controller with their settings; empty for one of no name.
+pub(crate) fn document(view: &ProjectDesign) -> Document {
+    let mut out = Document::default();
+    if view.design.name.is_none() {
+        return out;
+    }
+    out.heading("In the words of a controller's manual");
+    let words = match &view.manual {
+        Ok(words) => words,
+        Err(gap) => {
+            out.sentences([format!("{gap}: its zeros and poles are its settings")]);
+            return out;
+        }
+    };
+    let of_gain = Gain::of(view);
+    let row = |part: &ManualPart| [Cell::from(name(part)), Cell::from(settings(part, of_gain))];
+    out.table(Table::new(["part", "settings"]).with(words.parts.iter().map(row)));
+    out.explanation(
+        "The parts act in series: PI is K_p (1 + 1/(T_i s)), PID is K_p (1 + 1/(T_i s) + T_d s/(T_f s + 1)), the standard form (ISA) with one gain for all terms; a low pass is 1/(T_f s + 1); the depth of a notch is that of its magnitude at its frequency, its width the frequency times twice the damping ratio of its poles.",
+    );
+    if view.designed.problem.compensation.sample_time_s().is_some() {
+        out.sentences(["these are the settings of the continuous law, which is then sampled".to_string()]);
+    }
+    out
+}
+
+/// The words in JSON.
+pub(super) fn object(words: &ManualLaw) -> Object {
+    Object::new()
+        .with(
+            "form",
+            "parts in series; PI: K_p (1 + 1/(T_i s)); PID: K_p (1 + 1/(T_i s) + T_d s/(T_f s + 1))",
+        )
+        .each("parts", &words.parts, part)
+}
+
+fn part(part: &ManualPart) -> Object {
+    let own = Object::new().with("kind", key(part));
+    match *part {
+        ManualPart::Proportional { gain } => own.with("proportional_gain", gain),
+        ManualPart::Integral { gain } => own.with("integral_gain", gain),
+        ManualPart::ProportionalIntegral { gain, integral_time_s } => {
+            own.with("proportional_gain", gain).with("integral_time_s", integral_time_s)
+        }
+        ManualPart::ProportionalIntegralDerivative {
+            gain,
+            integral_time_s,
+            derivative_time_s,
+            filter_time_s,
+        } => own
+            .with("proportional_gain", gain)
+            .with("integral_time_s", integral_time_s)
+            .with("derivative_time_s", derivative_time_s)
+            .with("filter_time_s", filter_time_s),
+        ManualPart::LowPass { time_s } => own.with("filter_time_s", time_s),
+        ManualPart::SecondOrderLowPass { frequency_rad_per_s, damping_ratio } => {
+            own.with("frequency_rad_per_s", frequency_rad_per_s).with("damping_ratio", damping_ratio)
+        }
+        ManualPart::Lead { zero_rad_per_s, pole_rad_per_s }
+        | ManualPart::Lag { zero_rad_per_s, pole_rad_per_s } => {
+            own.with("zero_rad_per_s", zero_rad_per_s).with("pole_rad_per_s", pole_rad_per_s)
+        }
+        ManualPart::Notch {
+            frequency_rad_per_s,
+            pole_frequency_rad_per_s,
+            zero_damping_ratio,
+            pole_damping_ratio,
+        } => own
+            .with("frequency_hz", frequency_rad_per_s / TAU)
+            .with("depth_db", depth_db(part))
+            .with("width_hz", width_hz(part))
+            .with("frequency_rad_per_s", frequency_rad_per_s)
+            .with("pole_frequency_rad_per_s", pole_frequency_rad_per_s)
+            .with("zero_damping_ratio", zero_damping_ratio)
+            .with("pole_damping_ratio", pole_damping_ratio),
+    }
+}
+
+/// The unit of a gain.
+#[derive(Clone, Copy)]
+struct Gain {
+    /// Of the measured quantity; `None` for a plant without units.
+    per: Option<DisplayUnit>,
+}
+
+impl Gain {
+    fn of(view: &ProjectDesign) -> Gain {
+        Gain { per: view.gain_per }
+    }
+
+    fn text(self, name: &str, gain: f64, then: &str) -> String {
+        match self.per {
+            Some(unit) => {
+                let under =
+                    if unit.symbol.contains('.') { format!("({})", unit.symbol) } else { unit.symbol.into() };
+                format!("{name} = {} V/{under}{then}", significant(gain * unit.in_si, DIGITS))
+            }
+            None => format!("{name} = {}", significant(gain, DIGITS)),
+        }
+    }
+}
+
+fn key(part: &ManualPart) -> &'static str {
+    match part {
+        ManualPart::Proportional { .. } => "p",
+        ManualPart::Integral { .. } => "i",
+        ManualPart::ProportionalIntegral { .. } => "pi",
+        ManualPart::ProportionalIntegralDerivative { .. } => "pid",
+        ManualPart::LowPass { .. } => "low_pass",
+        ManualPart::SecondOrderLowPass { .. } => "second_order_low_pass",
+        ManualPart::Lead { .. } => "lead",
+        ManualPart::Lag { .. } => "lag",
+        ManualPart::Notch { .. } => "notch",
+    }
+}
+
+fn name(part: &ManualPart) -> &'static str {
+    match part {
+        ManualPart::Proportional { .. } => "P",
+        ManualPart::Integral { .. } => "I",
+        ManualPart::ProportionalIntegral { .. } => "PI",
+        ManualPart::ProportionalIntegralDerivative { .. } => "PID with filter",
+        ManualPart::LowPass { .. } => "low pass",
+        ManualPart::SecondOrderLowPass { .. } => "low pass of second order",
+        ManualPart::Lead { .. } => "lead",
+        ManualPart::Lag { .. } => "lag",
+        ManualPart::Notch { .. } => "notch",
+    }
+}
+
+fn settings(part: &ManualPart, of_gain: Gain) -> String {
+    let time = |name: &str, time_s: f64| format!("{name} = {} s", significant(time_s, DIGITS));
+    let at = |rad_per_s: f64| {
+        let [rad_per_s, hz] = [rad_per_s, rad_per_s / TAU].map(|value| significant(value, DIGITS));
+        format!("{rad_per_s} rad/s ({hz} Hz)")
+    };
+    match *part {
+        ManualPart::Proportional { gain } => of_gain.text("K_p", gain, ""),
+        ManualPart::Integral { gain } => of_gain.text("K_i", gain, "/s"),
+        ManualPart::ProportionalIntegral { gain, integral_time_s } => {
+            [of_gain.text("K_p", gain, ""), time("T_i", integral_time_s)].join(", ")
+        }
+        ManualPart::ProportionalIntegralDerivative {
+            gain,
+            integral_time_s,
+            derivative_time_s,
+            filter_time_s,
+        } => [
+            of_gain.text("K_p", gain, ""),
+            time("T_i", integral_time_s),
+            time("T_d", derivative_time_s),
+            time("T_f", filter_time_s),
+        ]
+        .join(", "),
+        ManualPart::LowPass { time_s } => format!("{}, {}", time("T_f", time_s), at(1.0 / time_s)),
+        ManualPart::SecondOrderLowPass { frequency_rad_per_s, damping_ratio } => {
+            format!("{}, damping ratio {}", at(frequency_rad_per_s), significant(damping_ratio, DIGITS))
+        }
+        ManualPart::Lead { zero_rad_per_s, pole_rad_per_s }
+        | ManualPart::Lag { zero_rad_per_s, pole_rad_per_s } => {
+            format!("zero at {}, pole at {}", at(zero_rad_per_s), at(pole_rad_per_s))
+        }
+        ManualPart::Notch {
+            frequency_rad_per_s,
+            pole_frequency_rad_per_s,
+            zero_damping_ratio,
+            pole_damping_ratio,
+        } => {
+            let [zeros, poles] =
+                [zero_damping_ratio, pole_damping_ratio].map(|value| significant(value, DIGITS));
+            let poles_at = match frequency_rad_per_s == pole_frequency_rad_per_s {
+                true => String::new(),
+                false => format!(", its poles at {}", at(pole_frequency_rad_per_s)),
+            };
+            format!(
+                "{} Hz, depth {} dB, width {} Hz (damping ratios {zeros} over {poles}){poles_at}",
+                significant(frequency_rad_per_s / TAU, DIGITS),
+                significant(depth_db(part), 3),
+                significant(width_hz(part), DIGITS)
+            )
+        }
+    }
+}
+
+fn depth_db(part: &ManualPart) -> f64 {
+    match part {
+        ManualPart::Notch { zero_damping_ratio, pole_damping_ratio, .. } => {
+            decibels(zero_damping_ratio / pole_damping_ratio)
+        }
+        _ => f64::NAN,
+    }
+}
+
+fn width_hz(part: &ManualPart) -> f64 {
+    match part {
+        ManualPart::Notch { pole_frequency_rad_per_s, pole_damping_ratio, .. } => {
+            2.0 * pole_damping_ratio * pole_frequency_rad_per_s / TAU
+        }
+        _ => f64::NAN,
+    }
+}

@@ -1,0 +1,166 @@
+//! The structures that were tried against what each reaches.
+
+use phea_engineering::design::{ReachedStructure, structure_key, structure_words};
+use phea_qft::design::{ControllerChoice, Objective, StructureEnding};
+
+use super::ProjectDesign;
+use crate::answer::{Object, significant};
+use crate::document::{Cell, Document, Table};
+use crate::quantity::DisplayUnit;
+
+/// A table of the structures; empty where none has a name.
+pub(crate) fn document(view: &ProjectDesign) -> Document {
+    let mut out = Document::default();
+    if view.structures.iter().all(|one| one.name.is_none()) {
+        return out;
+    }
+    out.heading("The structures that were tried");
+    out.explanation(
+        "The shortest structure that is met is taken. The least margin, and the limit that binds, are those of the plants and frequencies that the search evaluated; crossover and delay margin are those of the nominal loop; the noise gain is its largest |G/(1+L)|, from the noise of the sensor to the command.",
+    );
+    let compares_noise = view.options.objective == Objective::LeastHighFrequencyGain;
+    let headings = [
+        "structure",
+        "poles",
+        "",
+        "least margin",
+        "binds",
+        "crossover",
+        "delay margin",
+        "high-frequency gain",
+        if compares_noise { "noise gain" } else { "compared" },
+        "overshoot",
+        "settles in",
+    ];
+    out.table(Table::new(headings).with(view.structures.iter().map(|one| row(view, one))));
+    out.sentences(earned_sentence(view));
+    out
+}
+
+/// What a longer structure must gain, dB, where that decides.
+pub(super) fn earned_per_pole_db(view: &ProjectDesign) -> Option<f64> {
+    match view.options.controller {
+        ControllerChoice::Any { earned_per_pole_db, .. } => Some(earned_per_pole_db),
+        ControllerChoice::Given(_) | ControllerChoice::Named(_) | ControllerChoice::Grow { .. } => None,
+    }
+}
+
+fn earned_sentence(view: &ProjectDesign) -> Option<String> {
+    let by = match view.options.objective {
+        Objective::LeastHighFrequencyGain => "lowers the noise gain",
+        Objective::LeastBandwidth => "lowers the crossover",
+        Objective::BestWorstMargin => "raises the worst margin",
+    };
+    Some(match earned_per_pole_db(view)? {
+        most_db if most_db.is_finite() => format!(
+            "a longer structure of these names takes the place of one that is met where it {by} by {} dB for each further pole (`design.earned_per_pole`)",
+            significant(most_db, 3)
+        ),
+        _ => "no longer structure takes the place of one that is met (`design.earned_per_pole`)".to_string(),
+    })
+}
+
+fn words(one: &ReachedStructure) -> String {
+    one.name.map_or_else(|| structure_words(&one.structure), |name| name.words().to_string())
+}
+
+fn row(view: &ProjectDesign, one: &ReachedStructure) -> Vec<Cell> {
+    let or_missing = |text: Option<String>| text.map_or(Cell::Missing, Cell::from);
+    let decibel = |value: Option<f64>, after: &str| {
+        or_missing(value.map(|value| format!("{} dB{after}", significant(value, 4))))
+    };
+    let of_gain = match one.relative_degree {
+        0 => String::new(),
+        1 => ", s G".to_string(),
+        degree => format!(", s^{degree} G"),
+    };
+    let crossover = one.nominal.map(|margins| match margins.crossover_rad_per_s {
+        0.0 => "none".to_string(),
+        crossover => format!("{} rad/s", significant(crossover, 3)),
+    });
+    let delay = one.nominal.map(|margins| match margins.delay_margin_s {
+        f64::INFINITY => "unlimited".to_string(),
+        delay_s => DisplayUnit::MILLISECOND.text(delay_s, 3),
+    });
+    let [overshoot, settling] = steps(view, one);
+    vec![
+        words(one).into(),
+        Cell::count(one.order),
+        ending_words(one).into(),
+        one.least.as_ref().map_or(Cell::Missing, |least| Cell::margin(least.margin_db)),
+        or_missing(one.binding.clone()),
+        or_missing(crossover),
+        or_missing(delay),
+        decibel(one.high_frequency_gain_db, &of_gain),
+        decibel(one.compared_db, ""),
+        or_missing(overshoot),
+        or_missing(settling),
+    ]
+}
+
+/// The worst overshoot and settling time, of the structure that the design has.
+fn steps(view: &ProjectDesign, one: &ReachedStructure) -> [Option<String>; 2] {
+    let Some(reached) = reached_steps(view, one) else { return [None, None] };
+    let [overshoot, settling] = reached;
+    [
+        overshoot.map(|percent| format!("{} %", significant(percent, 3))),
+        settling.map(|time_s| DisplayUnit::MILLISECOND.text(time_s, 3)),
+    ]
+}
+
+/// Percent and s, as far as they are required.
+fn reached_steps(view: &ProjectDesign, one: &ReachedStructure) -> Option<[Option<f64>; 2]> {
+    let finding = view.designed.view.in_time.iter().find(|_| one.is_chosen)?;
+    let (reached, wish) = (finding.reached()?, finding.requirement.wish);
+    Some([
+        wish.overshoot_percent.map(|_| reached.overshoot_percent),
+        wish.settling_time_s.map(|_| reached.settling_time_s),
+    ])
+}
+
+fn ending_words(one: &ReachedStructure) -> &'static str {
+    match one.ending {
+        StructureEnding::Met if one.is_chosen => "met, taken",
+        StructureEnding::Met => "met",
+        StructureEnding::Missed if one.is_chosen => "missed, nearest",
+        StructureEnding::Missed => "missed",
+        StructureEnding::NotEarned => "not worth its poles",
+        StructureEnding::NotConverged => "not converged",
+        StructureEnding::NotStabilised => "not stabilised",
+    }
+}
+
+fn ending_key(ending: StructureEnding) -> &'static str {
+    match ending {
+        StructureEnding::Met => "met",
+        StructureEnding::Missed => "missed",
+        StructureEnding::NotEarned => "not_earned",
+        StructureEnding::NotConverged => "not_converged",
+        StructureEnding::NotStabilised => "not_stabilised",
+    }
+}
+
+/// The structures in JSON.
+pub(super) fn rows(view: &ProjectDesign) -> Vec<Object> {
+    let row = |one: &ReachedStructure| {
+        let [overshoot, settling] = reached_steps(view, one).unwrap_or_default();
+        let name = structure_key(one.name);
+        Object::new()
+            .maybe("name", (!name.is_empty()).then_some(name))
+            .with("words", words(one))
+            .with("order", one.order)
+            .with("status", ending_key(one.ending))
+            .with("taken", one.is_chosen)
+            .maybe("worst_margin_db", one.least.as_ref().map(|least| least.margin_db))
+            .maybe("binding", one.binding.clone())
+            .maybe("binding_rad_per_s", one.least.as_ref().map(|least| least.frequency_rad_per_s))
+            .maybe("crossover_rad_per_s", one.nominal.map(|margins| margins.crossover_rad_per_s))
+            .maybe("delay_margin_s", one.nominal.map(|margins| margins.delay_margin_s))
+            .maybe("high_frequency_gain_db", one.high_frequency_gain_db)
+            .with("relative_degree", i64::from(one.relative_degree))
+            .maybe("compared_db", one.compared_db)
+            .maybe("worst_overshoot_percent", overshoot)
+            .maybe("worst_settling_time_s", settling)
+    };
+    view.structures.iter().map(row).collect()
+}
