@@ -218,3 +218,34 @@ fn algebra() {
     assert_eq!(Polynomial::new(vec![7.0]).derivative().coefficients(), [0.0]);
     assert_eq!(p.product(&q).evaluate(Complex64::new(0.0, 2.0)), Complex64::new(-8.0, 0.0));
 }
+
+/// Roots from points near them are those from nowhere, wherever they are found: of random
+/// polynomials with an integrator or none, whose coefficients change by up to a tenth.
+#[test]
+fn roots_from_near_are_those_from_nowhere() {
+    let mut seeded = Seeded(11);
+    let (mut found, mut all) = (0, 0);
+    for case in 0..200 {
+        let mut within = |low: f64, high: f64| low * pow(high / low, seeded.next());
+        let mut polynomial = Polynomial::new(if case % 3 == 0 { vec![1.0, 0.0] } else { vec![1.0] });
+        for _ in 0..1 + case % 5 {
+            let size = within(0.1, 3000.0);
+            let factor = match case % 2 {
+                0 => vec![1.0 / (size * size), 2.0 * within(0.01, 0.9) / size, 1.0],
+                _ => vec![1.0 / size, 1.0],
+            };
+            polynomial = polynomial.product(&Polynomial::new(factor));
+        }
+        let moved = polynomial.coefficients().iter().map(|one| one * within(0.95, 1.05)).collect();
+        let (from, moved) = (polynomial.roots().unwrap(), Polynomial::new(moved));
+        let expected = moved.roots().unwrap();
+        all += 1;
+        let Some(near) = moved.roots_near(&from) else { continue };
+        found += 1;
+        for (one, other) in near.iter().zip(&expected) {
+            let distance = magnitude(one - other);
+            assert!(distance <= 1e-13 * magnitude(*other), "case {case}: {one} is not {other}");
+        }
+    }
+    assert!(found > 150, "{found} of {all}");
+}

@@ -24,7 +24,7 @@ pub(crate) use disc::DiscFactors;
 use fed_forward::{FedBack, inner_path, rate_path};
 pub use fed_forward::{FedForward, InnerPath};
 pub(crate) use fed_forward::{closed, closed_at_rest, moved_rate};
-pub use trial::{HeldPlant, HeldResponse, TrialPlant};
+pub use trial::{HeldResponse, ModalPlant, TrialPlant};
 
 /// The part of the loop that is the same for every plant: G, F, H, the delay of the loop, and its
 /// sampling.

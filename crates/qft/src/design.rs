@@ -35,5 +35,5 @@ pub use problem::{ControllerChoice, DesignOptions, PoleRange, PrefilterChoice};
 pub use crate::loop_shaping::DesignProblem;
 pub use phea_dynamics::controller::{NamedStructure, Objective};
 pub use result::{BindingLimit, Conflict, Design, DesignRound, DesignStatus, Relaxation, Starts};
-pub use run::{design, design_again};
+pub use run::{design, design_after, design_again};
 pub use tried::{StructureEnding, TriedStructure};

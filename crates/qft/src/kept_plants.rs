@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use phea_dynamics::expression::EvaluationMemo;
 use phea_dynamics::linear::LinearError;
@@ -13,12 +14,15 @@ use super::closed_loop::{Compensation, Member, TrialPlant};
 const PLANTS_MAXIMUM: usize = 100_000;
 
 /// Plants of one family within one loop. Plants that were already sampled are kept, by the bits of
-/// their parameter values: sampling costs more than a thousand responses.
+/// their parameter values: sampling costs more than a thousand responses. A clone has the same
+/// plants, and what either adds.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct KeptPlants {
-    sampled: RefCell<BTreeMap<Vec<u64>, Result<Member, LinearError>>>,
+    sampled: Rc<RefCell<BTreeMap<Vec<u64>, Result<Member, LinearError>>>>,
     /// Plants that a search tried, likewise.
-    tried: RefCell<BTreeMap<Vec<u64>, Option<TrialPlant>>>,
+    tried: Rc<RefCell<BTreeMap<Vec<u64>, Option<TrialPlant>>>>,
+    /// The last of them that was built: the next one has nearly the same poles.
+    last: RefCell<Option<TrialPlant>>,
     memo: RefCell<EvaluationMemo>,
 }
 
@@ -64,7 +68,12 @@ impl KeptPlants {
         plant: &UncertainPlant,
         values: &[f64],
     ) -> Option<TrialPlant> {
-        let build = || compensation.trial(plant.member_by(&mut self.memo.borrow_mut(), values)?);
+        let build = || {
+            let member = plant.member_by(&mut self.memo.borrow_mut(), values)?;
+            let found = compensation.trial(member, self.last.borrow().as_ref());
+            *self.last.borrow_mut() = found.clone();
+            found
+        };
         if compensation.sample_time_s().is_none() {
             return build();
         }

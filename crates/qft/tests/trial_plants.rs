@@ -40,7 +40,7 @@ fn modes_respond_as_the_whole_member() {
         let timing = Timing { sample_time_s: Some(sample_time_s), delay_s, ..Timing::default() };
         for dead_time_s in [0.0, 0.4e-3] {
             let (around, plant) = placed(timing, dead_time_s);
-            let tried = around.trial(PlantMember::Rational(plant)).unwrap();
+            let tried = around.trial(PlantMember::Rational(plant), None).unwrap();
             let TrialPlant::Held(held) = &tried else { panic!("its modes are apart") };
             let whole = tried.whole(&around).unwrap();
             for step in 0..=60 {
@@ -70,9 +70,10 @@ fn modes_respond_as_the_whole_member_with_an_inner_signal_fed_back() {
         let signal = Polynomial::new(vec![1.0 / (150.0 * 150.0), 0.08 / 150.0, 1.0, 0.0]).scaled(1.3e4);
         let inner = [signal.coefficients().to_vec(), vec![2e3, 0.0]];
         let rate = RateNumerators { command: vec![0.0], disturbance: vec![0.0], inner: Some(inner) };
-        let alone = around.without_inner_paths().trial(PlantMember::Rational(plant.clone())).unwrap();
-        let tried =
-            around.trial(PlantMember::Rational(PlantCoefficients { rate: Some(rate), ..plant })).unwrap();
+        let alone = around.without_inner_paths().trial(PlantMember::Rational(plant.clone()), None).unwrap();
+        let tried = around
+            .trial(PlantMember::Rational(PlantCoefficients { rate: Some(rate), ..plant }), None)
+            .unwrap();
         let (TrialPlant::Held(held), TrialPlant::Held(alone)) = (&tried, &alone) else {
             panic!("its modes are apart")
         };
@@ -100,7 +101,7 @@ fn equal_poles_and_continuous_loops_are_whole() {
     let plant = PlantCoefficients { command: equal, disturbance: None, dead_time_s: 0.0, rate: None };
     for sample_time_s in [Some(1e-3), None] {
         let (around, _) = placed(Timing { sample_time_s, ..Timing::default() }, 0.0);
-        let tried = around.trial(PlantMember::Rational(plant.clone())).unwrap();
+        let tried = around.trial(PlantMember::Rational(plant.clone()), None).unwrap();
         assert!(matches!(tried, TrialPlant::Whole(_)), "{tried:?}");
     }
 }

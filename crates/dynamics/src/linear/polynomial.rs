@@ -155,6 +155,22 @@ impl Polynomial {
     pub fn roots(&self) -> Result<Vec<Complex64>, LinearError> {
         roots::of_polynomial(self)
     }
+
+    /// All roots from points near them, such as those of a polynomial with nearly the same
+    /// coefficients, for a share of the work; `None` where they are not found from there. A
+    /// multiple root stays a cluster.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::linear::Polynomial;
+    /// let [one, other] = [26.0, 27.0].map(|last| Polynomial::new(vec![1.0, 2.0, last]));
+    /// let near = other.roots_near(&one.roots()?).ok_or("a pair again")?;
+    /// assert!((near[1] - other.roots()?[1]).norm_sqr() < 1e-29);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn roots_near(&self, guesses: &[Complex64]) -> Option<Vec<Complex64>> {
+        roots::near(self, guesses)
+    }
 }
 
 /// Coefficients of gain (s - r_1) (s - r_2) ... in twice the working precision, conjugate pairs

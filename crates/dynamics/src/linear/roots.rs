@@ -16,6 +16,8 @@ use crate::order::sort_by_number;
 use crate::portable::{self, magnitude};
 
 const MAXIMUM_SWEEPS: usize = 300;
+/// Sweeps from points that are said to be near; the usual way takes over beyond them.
+const SWEEPS_FROM_NEAR: usize = 12;
 /// A pair whose imaginary part is more than this share of it is not a double root on the axis.
 const FAR_FROM_AXIS: f64 = 0.5;
 
@@ -75,6 +77,83 @@ fn iterate(polynomial: &Polynomial) -> Result<Vec<Complex64>, LinearError> {
         .and_then(|()| sweep(&mut roots, |z| evaluate_widely(polynomial, z)))
         .map(|()| symmetrise(&on_the_axis(roots)))
         .ok_or(LinearError::RootsNotConverged { degree: polynomial.degree() })
+}
+
+/// All roots, sorted and in exact conjugate pairs, from points near them, such as the roots of a
+/// polynomial with nearly the same coefficients; `None` where they are not found from there.
+///
+/// Of a pair only the member in the upper half plane moves, the other with it.
+pub(crate) fn near(polynomial: &Polynomial, guesses: &[Complex64]) -> Option<Vec<Complex64>> {
+    let coefficients = polynomial.coefficients();
+    let at_origin = coefficients.iter().rev().take_while(|&&c| c == 0.0).count();
+    let largest = coefficients.iter().fold(0.0_f64, |largest, c| largest.max(c.abs()));
+    let (_, exponent) = libm::frexp(largest);
+    let kept = coefficients.get(..coefficients.len() - at_origin)?;
+    let deflated = Polynomial::new(kept.iter().map(|&c| libm::ldexp(c, -exponent)).collect());
+    let zero = Complex64::new(0.0, 0.0);
+    let moving: Vec<Complex64> =
+        guesses.iter().copied().filter(|root| root.im >= 0.0 && *root != zero).collect();
+    let count: usize = moving.iter().map(|root| if root.im > 0.0 { 2 } else { 1 }).sum();
+    if !largest.is_finite() || count != deflated.degree() || count == 0 {
+        return None;
+    }
+    let mut upper = moving;
+    settle(&mut upper, |z| evaluate_locally(&deflated, z))?;
+    settle(&mut upper, |z| evaluate_widely(&deflated, z))?;
+    let mut roots = vec![zero; at_origin];
+    for root in on_the_axis(upper) {
+        roots.push(root);
+        roots.extend((root.im > 0.0).then(|| root.conj()));
+    }
+    sort(&mut roots);
+    roots.iter().all(|root| root.is_finite()).then_some(roots)
+}
+
+/// Moves the roots of the closed upper half plane, and their mirror images with them, until each is
+/// at the rounding level of its residual or moves no more; a real root stays real, and a pair must
+/// stay one.
+fn settle<F: Fn(Complex64) -> LocalValue>(upper: &mut [Complex64], evaluate: F) -> Option<()> {
+    let mut done = vec![false; upper.len()];
+    for _ in 0..SWEEPS_FROM_NEAR {
+        for index in 0..upper.len() {
+            if done[index] {
+                continue;
+            }
+            let local = evaluate(upper[index]);
+            if local.at_rounding_level {
+                done[index] = true;
+                continue;
+            }
+            let (root, newton) = (upper[index], local.newton_step?);
+            let step = newton / (1.0 - newton * repulsion(upper, index));
+            let next = root - step;
+            let is_paired = root.im > 0.0;
+            if !step.is_finite() || (is_paired && next.im <= 0.0) {
+                return None;
+            }
+            upper[index] = if is_paired { next } else { Complex64::new(next.re, 0.0) };
+            done[index] = magnitude(step) <= f64::EPSILON * magnitude(next);
+        }
+        if done.iter().all(|&flag| flag) {
+            return Some(());
+        }
+    }
+    None
+}
+
+/// Sum of 1/(z_i - z_j) over all other roots, mirror images included.
+fn repulsion(upper: &[Complex64], index: usize) -> Complex64 {
+    let root = upper[index];
+    let mut sum = Complex64::new(0.0, 0.0);
+    for (other, &position) in upper.iter().enumerate() {
+        if other != index {
+            sum += (root - position).inv();
+        }
+        if position.im > 0.0 {
+            sum += (root - position.conj()).inv();
+        }
+    }
+    sum
 }
 
 /// Moves all roots until each is at the rounding level of its residual or moves no more.

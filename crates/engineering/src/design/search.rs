@@ -2,7 +2,7 @@
 //! required in time, and stricter where the steps of what was found still miss it.
 
 use phea_dynamics::watch::{Stopped, Watch, within};
-use phea_qft::design::{ControllerChoice, DesignStatus, Finding, NamedStructure};
+use phea_qft::design::{ControllerChoice, DesignStatus, Finding};
 use phea_qft::verification::Verdict;
 
 use super::problem::{design_options, design_problem};
@@ -24,9 +24,8 @@ pub(super) fn found(
     for repetition in 0..=REPETITIONS {
         let aimed = aim.of(setup.project, given)?;
         let share = [repetition, repetition + 1].map(|done| done as f64 / (REPETITIONS + 1) as f64);
-        // what is too short for the limits before is too short for stricter ones
-        let from = found.last().and_then(|(.., told)| told.design.name);
-        match searched(setup, (given, &aimed), (seed, from), &mut within(&mut *watch, share)) {
+        let before = found.last().map(|(_, run, told)| (run, told));
+        match searched(setup, (given, &aimed), (seed, before), &mut within(&mut *watch, share)) {
             Ok((run, told)) => found.push((aim, run, told)),
             // what was found before remains
             Err(error) if found.is_empty() => return Err(error),
@@ -64,19 +63,24 @@ pub(super) fn rank(told: &ProjectDesign) -> (u8, f64) {
     (verdict, excess(&told.designed.view.in_time))
 }
 
-/// A design of the problem that is aimed at, judged as the given one.
+/// A design of the problem that is aimed at, judged as the given one; plants that a design before
+/// sampled are not sampled again.
 fn searched(
     setup: &Setup<'_>,
     (given, aimed): (&RobustProblem, &RobustProblem),
-    (seed, from): (Option<u32>, Option<NamedStructure>),
+    (seed, before): (Option<u32>, Option<(&DesignRun, &ProjectDesign)>),
     watch: Watch<'_>,
 ) -> Result<(DesignRun, ProjectDesign), DesignError> {
     let problem = design_problem(setup, aimed);
     let mut options = design_options(setup, aimed, seed)?;
     if let ControllerChoice::Any { from: first, .. } = &mut options.controller {
-        *first = from;
+        // what is too short for the limits before is too short for stricter ones
+        *first = before.and_then(|(_, told)| told.design.name);
     }
-    let mut outcome = phea_qft::design::design(&problem, &options, watch)?;
+    let mut outcome = match before {
+        Some((run, _)) => phea_qft::design::design_after(&problem, &options, &run.outcome, watch)?,
+        None => phea_qft::design::design(&problem, &options, watch)?,
+    };
     outcome.conclude()?;
     let run = DesignRun { aimed: aimed.clone(), problem, outcome };
     let (run, proven) = proven::proven((setup, aimed), run, &options, watch)?;

@@ -1,7 +1,8 @@
 //! A plant that a search tries and leaves again: of a sampled one the response at a frequency, from
 //! its modes, without the zeros that its factors would take.
 
-use std::sync::{Arc, OnceLock};
+use std::cell::OnceCell;
+use std::rc::Rc;
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{HeldFactors, HeldModes, HeldPoint, Polynomial, TransferFunction};
@@ -13,14 +14,15 @@ use super::{Compensation, FedForward, Member, moved_rate};
 #[derive(Clone, Debug)]
 pub enum TrialPlant {
     /// A whole member.
-    Whole(Arc<Member>),
+    Whole(Rc<Member>),
     /// A sampled plant by its modes.
-    Held(Arc<HeldPlant>),
+    Held(Rc<ModalPlant>),
 }
 
 /// A held and sampled plant by its modes, and as a whole once that is needed.
 #[derive(Debug)]
-pub struct HeldPlant {
+pub struct ModalPlant {
+    poles: Vec<Complex64>,
     command: HeldModes,
     /// `None` where the output itself is fed back.
     with_sensor: Option<HeldModes>,
@@ -29,7 +31,7 @@ pub struct HeldPlant {
     pub(crate) disturbance: Option<RationalCoefficients<f64>>,
     pub(crate) fed_forward: FedForward,
     plant: PlantCoefficients<f64>,
-    whole: OnceLock<Option<Arc<Member>>>,
+    whole: OnceCell<Option<Rc<Member>>>,
 }
 
 /// P and P H of a held plant at a frequency, and the denominator of P H.
@@ -44,7 +46,8 @@ pub struct HeldResponse {
 }
 
 impl Compensation {
-    /// A plant of a family within this loop, to be tried; `None` where it cannot be sampled.
+    /// A plant of a family within this loop, to be tried; `None` where it cannot be sampled. The
+    /// poles are looked for near those of another plant, if one is given.
     ///
     /// # Example
     /// 4/(s + 2), sampled every 0.1 s, at 2 rad/s: the response that its factors give.
@@ -58,33 +61,37 @@ impl Compensation {
     /// let around = Compensation::new(&controller, TransferFunction::gain_only(1.0))?;
     /// let command = RationalCoefficients { numerator: vec![4.0], denominator: vec![1.0, 2.0] };
     /// let plant = PlantCoefficients { command, disturbance: None, dead_time_s: 0.0, rate: None };
-    /// let tried = around.trial(PlantMember::Rational(plant)).ok_or("it can be sampled")?;
+    /// let tried = around.trial(PlantMember::Rational(plant), None).ok_or("it can be sampled")?;
     /// let TrialPlant::Held(held) = &tried else { return Err("it has a mode".into()) };
     /// let (found, whole) = (held.at(2.0).ok_or("a mode")?, tried.whole(&around).ok_or("factors")?);
     /// assert!((found.plant - whole.response(2.0).ok_or("factors")?.plant).norm_sqr() < 1e-28);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn trial(&self, plant: PlantMember) -> Option<TrialPlant> {
+    pub fn trial(&self, plant: PlantMember, near: Option<&TrialPlant>) -> Option<TrialPlant> {
         let held = match &plant {
-            PlantMember::Rational(coefficients) => self.held(coefficients),
+            PlantMember::Rational(coefficients) => self.held(coefficients, near),
             PlantMember::Responding(_) => None,
         };
         match held {
-            Some(held) => Some(TrialPlant::Held(Arc::new(held))),
-            None => self.around(plant).ok().map(|whole| TrialPlant::Whole(Arc::new(whole))),
+            Some(held) => Some(TrialPlant::Held(Rc::new(held))),
+            None => self.around(plant).ok().map(|whole| TrialPlant::Whole(Rc::new(whole))),
         }
     }
 
     /// A rational plant of a sampled loop by its modes; `None` where they are not apart, and where
     /// a rate is fed back within the plant.
-    fn held(&self, plant: &PlantCoefficients<f64>) -> Option<HeldPlant> {
+    fn held(&self, plant: &PlantCoefficients<f64>, near: Option<&TrialPlant>) -> Option<ModalPlant> {
         let sample_time_s = self.sample_time_s?;
         let fed_back = self.rate_feed_forward != 0.0 && moved_rate(plant).is_some();
         if fed_back || plant.dead_time_s < 0.0 {
             return None;
         }
         let denominator = Polynomial::new(plant.command.denominator.clone());
-        let poles = denominator.roots().ok()?;
+        let known = match near {
+            Some(TrialPlant::Held(near)) => denominator.roots_near(&near.poles),
+            _ => None,
+        };
+        let poles = known.or_else(|| denominator.roots().ok())?;
         let sensor = &self.sensor;
         let own = HeldFactors {
             numerator: &plant.command.numerator,
@@ -115,29 +122,30 @@ impl Compensation {
             None => None,
         };
         let fed_back = self.inner_feedback.as_ref();
-        Some(HeldPlant {
+        Some(ModalPlant {
             inner,
             command: HeldModes::new(own, sample_time_s)?,
             with_sensor,
             disturbance: plant.disturbance.clone(),
             fed_forward: FedForward::of(self.rate_feed_forward, self.rate_sensor, fed_back, plant),
             plant: plant.clone(),
-            whole: OnceLock::new(),
+            whole: OnceCell::new(),
+            poles,
         })
     }
 }
 
 impl TrialPlant {
     /// The whole member; `None` where it cannot be sampled.
-    pub fn whole(&self, compensation: &Compensation) -> Option<Arc<Member>> {
+    pub fn whole(&self, compensation: &Compensation) -> Option<Rc<Member>> {
         match self {
-            TrialPlant::Whole(member) => Some(Arc::clone(member)),
+            TrialPlant::Whole(member) => Some(Rc::clone(member)),
             TrialPlant::Held(held) => held.whole(compensation),
         }
     }
 }
 
-impl HeldPlant {
+impl ModalPlant {
     /// At a frequency; `None` where the modes do not say.
     pub fn at(&self, frequency_rad_per_s: f64) -> Option<HeldResponse> {
         let HeldPoint { response, denominator } = self.command.at(frequency_rad_per_s)?;
@@ -165,8 +173,8 @@ impl HeldPlant {
     }
 
     /// The whole member with its factors, of the loop that this plant was placed in.
-    pub fn whole(&self, compensation: &Compensation) -> Option<Arc<Member>> {
-        let build = || compensation.member(self.plant.clone()).ok().map(Arc::new);
+    pub fn whole(&self, compensation: &Compensation) -> Option<Rc<Member>> {
+        let build = || compensation.member(self.plant.clone()).ok().map(Rc::new);
         self.whole.get_or_init(build).clone()
     }
 }

@@ -116,7 +116,7 @@ fn halved(certificate: &Certificate, of_box: usize) -> Option<(Halves, [f64; 2])
     });
     let mut candidates: Vec<(usize, Halves, [f64; 2])> = candidates.collect();
     if candidates.iter().all(|(_, _, shares)| greatest(shares).is_infinite()) {
-        candidates.sort_by_key(|(variable, halves, _)| halvings(halves, *variable, &mut share_of));
+        candidates.sort_by_cached_key(|(variable, halves, _)| halvings(halves, *variable, &mut share_of));
     } else {
         sort_by_number(&mut candidates, |(.., shares)| greatest(shares));
     }

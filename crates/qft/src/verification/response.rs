@@ -11,7 +11,7 @@ use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 
 use super::criterion::{Criterion, MarginSide};
-use crate::closed_loop::{Compensation, DiscFactors, HeldPlant, Member};
+use crate::closed_loop::{Compensation, DiscFactors, Member, ModalPlant};
 use crate::specification::ClosedLoop;
 
 /// A complex number as a quotient whose denominator may be zero.
@@ -195,7 +195,7 @@ impl LoopAt {
     }
 
     /// The same around a sampled plant by its modes; `None` where these do not say.
-    pub(super) fn closed_held(&self, held: &HeldPlant) -> Option<LoopAround> {
+    pub(super) fn closed_held(&self, held: &ModalPlant) -> Option<LoopAround> {
         let found = held.at(self.frequency)?;
         let over = |response: Complex64| Fraction {
             numerator: response * found.denominator,

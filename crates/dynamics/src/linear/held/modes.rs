@@ -103,7 +103,7 @@ impl HeldModes {
         }
         let (whole, fraction_s) = split_dead_time(dead_time_s, sample_time_s);
         let plant = HeldFactors { numerator, ..plant };
-        let sections = Arch::new().dispatch(Sections { plant, sample_time_s, fraction_s });
+        let sections = Arch::new().dispatch(AllModes { plant, sample_time_s, fraction_s });
         let finite = |section: &ModeSection| section.numerator.iter().all(|part| part.value().is_finite());
         Some(HeldModes {
             feedthrough: if degree == poles.len() { gain * numerator.first()? } else { 0.0 },
@@ -153,18 +153,18 @@ fn are_apart(poles: &[Complex64]) -> bool {
 }
 
 /// All modes of a plant, with the instructions of the processor at hand.
-struct Sections<'a> {
+struct AllModes<'a> {
     plant: HeldFactors<'a>,
     sample_time_s: f64,
     fraction_s: f64,
 }
 
-impl WithSimd for Sections<'_> {
+impl WithSimd for AllModes<'_> {
     type Output = Vec<ModeSection>;
 
     #[inline(always)]
     fn with_simd<D: Simd>(self, _: D) -> Vec<ModeSection> {
-        let Sections { plant, sample_time_s, fraction_s } = self;
+        let AllModes { plant, sample_time_s, fraction_s } = self;
         let mut series = [DoubleDouble::from(1.0); TERMS];
         for term in 1..TERMS {
             series[term] = series[term - 1].divided_by((term + 1) as f64);

@@ -30,8 +30,11 @@ const ROUNDING: f64 = 1e-12;
 #[derive(Clone, Copy, Debug)]
 struct LoopValue {
     column: usize,
-    logarithm_of_frequency: f64,
+    /// rad/s
+    frequency: f64,
     open: Complex64,
+    /// |L|^2
+    square: f64,
 }
 
 /// ln|L| through zero between two columns.
@@ -64,37 +67,51 @@ pub(crate) struct DelayMargins {
     pub(crate) peaks: Vec<ColumnDependence>,
 }
 
-/// The margins of this number of plants to a delay in s; empty where no delay is required.
+/// The margins of this number of plants to a delay in s, one plant after the other, each at the
+/// centre where it is known within discs; empty where no delay is required.
 pub(crate) fn delay_margins(
     columns: &[FrequencyColumn],
     feedback: &[Complex64],
     plants: usize,
     delay_s: f64,
 ) -> DelayMargins {
-    let mut margins = DelayMargins::default();
     if delay_s <= 0.0 {
-        return margins;
+        return DelayMargins::default();
     }
-    for path in paths(columns, feedback, plants) {
-        margins.crossovers.extend(path.windows(2).filter_map(|pair| match pair {
-            [lower, upper] => Some(delay_at(crossover(lower, upper)?, [lower, upper], delay_s)),
-            _ => None,
-        }));
-        margins.peaks.extend(path.windows(3).filter_map(|three| match three {
-            [before, point, after] => peak(before, point, after, delay_s),
-            _ => None,
-        }));
+    let mut trails: Vec<[Option<LoopValue>; 2]> = vec![[None; 2]; plants];
+    let mut crossovers: Vec<(usize, ColumnDependence)> = Vec::new();
+    let mut peaks: Vec<(usize, ColumnDependence)> = Vec::new();
+    for (index, (column, feedback)) in columns.iter().zip(feedback).enumerate() {
+        for (place, &plant) in column.plants.iter().enumerate() {
+            let Some(trail) = trails.get_mut(plant) else { continue };
+            let [before, last] = *trail;
+            if last.is_some_and(|last| last.column == index) {
+                continue;
+            }
+            let value = LoopValue::of(index, column, place, *feedback);
+            if let Some(last) = &last {
+                let crossed = crossover(last, &value);
+                crossovers.extend(crossed.map(|at| (plant, delay_at(at, [last, &value], delay_s))));
+                let peak = before.and_then(|before| peak(&before, last, &value, delay_s));
+                peaks.extend(peak.map(|peak| (plant, peak)));
+            }
+            *trail = [last, Some(value)];
+        }
     }
-    margins
+    let of_plants = |mut found: Vec<(usize, ColumnDependence)>| {
+        found.sort_by_key(|(plant, _)| *plant);
+        found.into_iter().map(|(_, margin)| margin).collect()
+    };
+    DelayMargins { crossovers: of_plants(crossovers), peaks: of_plants(peaks) }
 }
 
 /// The highest gain crossover of the nominal loop, 20 log10 of its frequency in rad/s; beyond the
 /// columns |L| is assumed to fall as 1/w. `None` where the nominal plant is not evaluated.
 pub(crate) fn bandwidth(columns: &[FrequencyColumn], feedback: &[Complex64]) -> Option<ColumnDependence> {
-    let path = paths(columns, feedback, 1).into_iter().next()?;
+    let path = nominal_path(columns, feedback);
     let (first, last) = (path.first()?, path.last()?);
     let outside = |point: &LoopValue| ColumnDependence {
-        value_db: DECIBELS_PER_NEPER * (point.logarithm_of_frequency + point.size()),
+        value_db: DECIBELS_PER_NEPER * (point.logarithm_of_frequency() + point.size()),
         terms: vec![(point.column, Complex64::new(DECIBELS_PER_NEPER, 0.0))],
     };
     if last.size() >= 0.0 {
@@ -113,26 +130,29 @@ pub(crate) fn bandwidth(columns: &[FrequencyColumn], feedback: &[Complex64]) -> 
     })
 }
 
-/// L of this number of plants along the columns; the centre of a plant that is known within discs.
-fn paths(columns: &[FrequencyColumn], feedback: &[Complex64], plants: usize) -> Vec<Vec<LoopValue>> {
-    let mut paths = vec![Vec::with_capacity(columns.len()); plants];
-    for (index, (column, feedback)) in columns.iter().zip(feedback).enumerate() {
-        let logarithm_of_frequency = portable::ln(column.frequency);
-        for (place, &plant) in column.plants.iter().enumerate() {
-            let open = column.loop_at(place) * feedback;
-            let is_centre = |path: &&mut Vec<LoopValue>| path.last().is_none_or(|last| last.column != index);
-            if let Some(path) = paths.get_mut(plant).filter(is_centre) {
-                path.push(LoopValue { column: index, logarithm_of_frequency, open });
-            }
-        }
-    }
-    paths
+/// L of the nominal plant along the columns; its centre where it is known within discs.
+fn nominal_path(columns: &[FrequencyColumn], feedback: &[Complex64]) -> Vec<LoopValue> {
+    let values = columns.iter().zip(feedback).enumerate().filter_map(|(index, (column, feedback))| {
+        let place = column.plants.iter().position(|plant| *plant == 0)?;
+        Some(LoopValue::of(index, column, place, *feedback))
+    });
+    values.collect()
 }
 
 impl LoopValue {
+    fn of(index: usize, column: &FrequencyColumn, place: usize, feedback: Complex64) -> LoopValue {
+        let open = column.loop_at(place) * feedback;
+        LoopValue { column: index, frequency: column.frequency, open, square: open.norm_sqr() }
+    }
+
+    /// ln w
+    fn logarithm_of_frequency(&self) -> f64 {
+        portable::ln(self.frequency)
+    }
+
     /// ln|L|
     fn size(&self) -> f64 {
-        0.5 * portable::ln(self.open.norm_sqr())
+        0.5 * portable::ln(self.square)
     }
 
     /// arg L + pi, in (-pi, pi].
@@ -145,14 +165,14 @@ impl LoopValue {
 /// share = a/(a - b),   a, b = ln|L| at the lower and the upper column
 /// ```
 fn crossover(lower: &LoopValue, upper: &LoopValue) -> Option<Crossover> {
-    if (lower.open.norm_sqr() >= 1.0) == (upper.open.norm_sqr() >= 1.0) {
+    if (lower.square >= 1.0) == (upper.square >= 1.0) {
         return None;
     }
     let (a, b) = (lower.size(), upper.size());
-    let width = upper.logarithm_of_frequency - lower.logarithm_of_frequency;
+    let width = upper.logarithm_of_frequency() - lower.logarithm_of_frequency();
     let share = a / (a - b);
     Some(Crossover {
-        logarithm: lower.logarithm_of_frequency + share * width,
+        logarithm: lower.logarithm_of_frequency() + share * width,
         width,
         share,
         share_slopes: [-b, a].map(|size| size / ((a - b) * (a - b))),
@@ -178,7 +198,7 @@ fn delay_at(crossover: Crossover, [lower, upper]: [&LoopValue; 2], delay_s: f64)
 
 /// |L| at a peak below 1 or a dip above it, where the phase alone would not tolerate the delay.
 fn peak(before: &LoopValue, point: &LoopValue, after: &LoopValue, delay_s: f64) -> Option<ColumnDependence> {
-    let [low, here, high] = [before, point, after].map(|point| point.open.norm_sqr());
+    let [low, here, high] = [before, point, after].map(|point| point.square);
     let sign = if here < 1.0 && low < here && high <= here {
         -1.0
     } else if here > 1.0 && low > here && high >= here {
@@ -187,7 +207,7 @@ fn peak(before: &LoopValue, point: &LoopValue, after: &LoopValue, delay_s: f64) 
         return None;
     };
     let size = point.size();
-    let tolerates = positive(point.angle()) > portable::exp(point.logarithm_of_frequency) * delay_s;
+    let tolerates = positive(point.angle()) > portable::exp(point.logarithm_of_frequency()) * delay_s;
     (!tolerates && size.abs() < NEAR).then(|| ColumnDependence {
         value_db: DECIBELS_PER_NEPER * size.abs(),
         terms: vec![(point.column, Complex64::new(sign * DECIBELS_PER_NEPER, 0.0))],
