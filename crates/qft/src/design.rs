@@ -29,11 +29,11 @@ mod tried;
 pub use attempt::LoopDesignError;
 pub use candidates::gain_range;
 pub use diagnosis::{Constraint, ConstraintPlace, Finding, FindingSeverity, Party, SharedLimit, diagnose};
-pub use outcome::DesignOutcome;
+pub use outcome::{DesignOutcome, design_after};
 pub use problem::{ControllerChoice, DesignOptions, PoleRange, PrefilterChoice};
 
 pub use crate::loop_shaping::DesignProblem;
 pub use phea_dynamics::controller::{NamedStructure, Objective};
 pub use result::{BindingLimit, Conflict, Design, DesignRound, DesignStatus, Relaxation, Starts};
-pub use run::{design, design_after, design_again};
+pub use run::{design, design_again};
 pub use tried::{StructureEnding, TriedStructure};

@@ -1,14 +1,15 @@
 //! What a design ended with, and what it is continued from.
 
-use phea_dynamics::watch::unwatched;
+use phea_dynamics::watch::{Watch, unwatched};
 
 use super::attempt::{Attempt, LoopDesignError};
 use super::diagnosis::Finding;
+use super::problem::DesignOptions;
 use super::result::{Design, DesignRound, DesignStatus};
-use super::run::design_of;
+use super::run::{design_knowing, design_of};
 use super::tried::TriedStructure;
 use crate::kept_plants::KeptPlants;
-use crate::loop_shaping::Samples;
+use crate::loop_shaping::{DesignProblem, Samples};
 
 /// What a design ended with.
 #[derive(Clone, Debug)]
@@ -45,6 +46,22 @@ impl DesignOutcome {
         }
         Ok(())
     }
+}
+
+/// A design for other specifications of the same plants in the same loop as those of a design
+/// before: what that sampled is not sampled again. But for rounding the result is that of
+/// [`design`](super::design).
+///
+/// # Errors
+/// Those of [`design`](super::design).
+pub fn design_after(
+    problem: &DesignProblem,
+    options: &DesignOptions,
+    before: &DesignOutcome,
+    watch: Watch<'_>,
+) -> Result<DesignOutcome, LoopDesignError> {
+    let known = LearntPlants { plants: before.known.plants.clone(), ..LearntPlants::default() };
+    design_knowing(problem, options, None, known, watch)
 }
 
 /// What was learnt about the plants.

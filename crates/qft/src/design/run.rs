@@ -94,22 +94,6 @@ pub fn design(
     design_knowing(problem, options, None, LearntPlants::default(), watch)
 }
 
-/// The same for other specifications of the same plants in the same loop as those of a design
-/// before: what that sampled is not sampled again. But for rounding the result is that of
-/// [`design`].
-///
-/// # Errors
-/// Those of [`design`].
-pub fn design_after(
-    problem: &DesignProblem,
-    options: &DesignOptions,
-    before: &DesignOutcome,
-    watch: Watch<'_>,
-) -> Result<DesignOutcome, LoopDesignError> {
-    let known = LearntPlants { plants: before.known.plants.clone(), ..LearntPlants::default() };
-    design_knowing(problem, options, None, known, watch)
-}
-
 /// Continues a finished design with additional plants that the loop must control (the nominal one
 /// of each). A structure that failed without these plants also fails with them, so the search
 /// begins with structures of the order that was found, and reuses its samples.
@@ -131,7 +115,7 @@ pub fn design_again(
     design_knowing(problem, options, design, known, watch)
 }
 
-fn design_knowing(
+pub(super) fn design_knowing(
     problem: &DesignProblem,
     options: &DesignOptions,
     found: Option<Design>,
