@@ -7,6 +7,7 @@ mod wish;
 
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::LinearError;
+use phea_dynamics::order::sorted_distinct;
 use phea_qft::specification::{
     ClosedLoop, LimitError, MarginError, Requirement, Specification, TimeDomainError, WishCheck, WishOutcome,
 };
@@ -34,7 +35,7 @@ impl SpecificationError {
     pub fn at(&self) -> LateError {
         let help = match self.reason {
             SpecificationProblem::Crossed { .. } => {
-                "no loop is between them: raise `upper`, lower `lower`, or end `frequencies` and `band` below"
+                "no loop is between them: raise `upper`, lower `lower`, or leave these frequencies out of `frequencies` and `band`"
             }
             _ => "",
         };
@@ -66,7 +67,8 @@ pub enum SpecificationProblem {
     TimeDomain(#[from] TimeDomainError),
     /// The lower limit is above the upper one, so that no loop meets both.
     #[error(
-        "the limits cross: at {} rad/s the lower one is {}, above the upper one, {}",
+        "the limits cross from {} to {} rad/s: at {} rad/s the lower one is {}, above the upper one, {}",
+        significant(span_rad_per_s[0], 4), significant(span_rad_per_s[1], 4),
         significant(*frequency_rad_per_s, 4), significant(*lower, 3), significant(*upper, 3)
     )]
     Crossed {
@@ -76,6 +78,8 @@ pub enum SpecificationProblem {
         lower: f64,
         /// There.
         upper: f64,
+        /// The frequencies around it at which they cross, rad/s; an end of the band where that is one.
+        span_rad_per_s: [f64; 2],
     },
     /// A form of limit that belongs to another kind of specification.
     #[error("this kind of specification does not take {0}")]
@@ -234,15 +238,45 @@ fn crossed(
     let span = [low, high].map(|end| end.clamp(LEAST_FREQUENCY, MOST_FREQUENCY));
     let grid = logarithmic_grid(span[0], span[1], COMPARED).unwrap_or_default();
     let both = |frequency: f64| Some((frequency, lower.magnitude(frequency)?, upper.magnitude(frequency)?));
-    let all = frequencies.iter().copied().chain(grid).filter_map(both);
-    let above = all.filter(|(_, lower, upper)| *lower > *upper * (1.0 + ROUNDING));
+    let all: Vec<f64> = sorted_distinct(frequencies.iter().copied().chain(grid).collect());
+    let crosses =
+        |frequency: f64| both(frequency).is_some_and(|(_, lower, upper)| lower > upper * (1.0 + ROUNDING));
+    let above = all.iter().filter(|frequency| crosses(**frequency)).filter_map(|frequency| both(*frequency));
     let worst = above.max_by(|one, other| (one.1 / one.2).total_cmp(&(other.1 / other.2)));
     worst.map(|(frequency_rad_per_s, lower, upper)| SpecificationProblem::Crossed {
         frequency_rad_per_s,
         lower,
         upper,
+        span_rad_per_s: crossing_span(&all, frequency_rad_per_s, &crosses),
     })
 }
+
+/// The ends of the frequencies around this one at which limits cross, by halving between two of the
+/// compared ones.
+fn crossing_span(all: &[f64], inside: f64, crosses: &dyn Fn(f64) -> bool) -> [f64; 2] {
+    let end = |mut others: Box<dyn Iterator<Item = f64> + '_>| {
+        let mut crossing = inside;
+        for other in &mut others {
+            if crosses(other) {
+                crossing = other;
+                continue;
+            }
+            let mut outside = other;
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (crossing + outside);
+                if crosses(middle) { crossing = middle } else { outside = middle }
+            }
+            break;
+        }
+        crossing
+    };
+    let below = all.iter().copied().filter(|frequency| *frequency < inside).rev();
+    let above = all.iter().copied().filter(|frequency| *frequency > inside);
+    [end(Box::new(below)), end(Box::new(above))]
+}
+
+/// Halvings that find where limits begin to cross.
+const HALVINGS: usize = 40;
 
 /// Ends of the band over which limits are compared, rad/s.
 const LEAST_FREQUENCY: f64 = 1e-4;

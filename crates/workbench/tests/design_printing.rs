@@ -83,6 +83,7 @@ fn design(problem: &DesignProblem, coefficients: CoefficientFormat, status: Desi
         status,
         law,
         controller,
+        name: None,
         structure: structure.clone(),
         starts: None,
         objective_db: 34.0,

@@ -65,15 +65,16 @@ pub struct WorstStep {
     pub plant: PlantPoint,
 }
 
-/// Deviation that counts as none, percent of the step: the accuracy of a computed response.
+/// Overshoot that counts as none, percent of the step: the accuracy of a computed response.
 const ACCURACY_PERCENT: f64 = 0.01;
 /// The same for a plant without polynomials.
 const ACCURACY_OF_RESPONSE_PERCENT: f64 = 0.1;
 /// Duration of a step, in settling times that are required, and the points of a continuous one.
 const SETTLING_TIMES: f64 = 10.0;
 const POINTS: usize = 2000;
-/// A step that has not settled by then is computed for longer, by this factor and so often: every
-/// plant is stable.
+/// A step that has not settled in this share of it is computed for longer, by this factor and so
+/// often: every plant is stable.
+const SETTLED_BY: f64 = 0.5;
 const LONGER: f64 = 4.0;
 const EXTENSIONS: usize = 3;
 /// Most members of a family whose steps are computed; of plants without polynomials, whose steps
@@ -205,7 +206,7 @@ impl StepSearch<'_> {
     fn step(&self, values: &[f64]) -> Result<[f64; 3], TimeResponseError> {
         let compensation = &self.problem.compensation;
         let member = compensation.member_of(self.family.plant(), values)?;
-        let band = self.wish.band_percent + accuracy(&member);
+        let band = self.wish.band_percent;
         let within = |duration_s: f64| {
             let response = linear_step(&member, compensation, duration_s, POINTS)?;
             step_metrics(&response.times_s, &response.values, StepBaseline::unit(), band)
@@ -215,7 +216,8 @@ impl StepSearch<'_> {
         let mut overshoot_percent = metrics.overshoot_percent;
         let extensions = if matches!(member, Member::Responding { .. }) { 0 } else { EXTENSIONS };
         for _ in 0..extensions {
-            if metrics.settling.time_s().is_some() {
+            // a late swing may leave the band once more
+            if metrics.settling.time_s().is_some_and(|time_s| time_s < SETTLED_BY * duration_s) {
                 break;
             }
             duration_s *= LONGER;
@@ -234,7 +236,7 @@ impl StepSearch<'_> {
         let room =
             if self.family.plant().is_rational() { ACCURACY_PERCENT } else { ACCURACY_OF_RESPONSE_PERCENT };
         let TrackingWish { overshoot_percent, settling_time_s, rise_time_s, .. } = self.wish;
-        let most = [overshoot_percent.map(|most| most + room), settling_time_s, rise_time_s];
+        let most = [overshoot_percent.map(|most| most.max(room)), settling_time_s, rise_time_s];
         for (index, (value, most)) in found.into_iter().zip(most).enumerate() {
             let Some(most) = most else { continue };
             let known = self.worst[index].as_ref().map_or(f64::NEG_INFINITY, |worst| worst.value);
@@ -278,12 +280,5 @@ impl StepSearch<'_> {
             }
         }
         Ok(())
-    }
-}
-
-fn accuracy(member: &Member) -> f64 {
-    match member {
-        Member::Responding { .. } => ACCURACY_OF_RESPONSE_PERCENT,
-        _ => ACCURACY_PERCENT,
     }
 }

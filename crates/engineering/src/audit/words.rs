@@ -4,7 +4,7 @@ use phea_dynamics::portable;
 use phea_qft::specification::{ClosedLoop, Requirement};
 use phea_qft::verification::{Evidence, SpecificationFinding, Verdict, WorstCase};
 
-use super::{LimitSide, ReachedLimit};
+use super::{LimitSide, ProjectAudit, ReachedLimit};
 use crate::quantity::significant;
 use crate::quantity::{RATIO, display};
 
@@ -34,8 +34,22 @@ pub fn evidence_key(evidence: Evidence) -> &'static str {
     }
 }
 
-/// The evidence for a verdict, in a sentence.
-pub fn evidence_sentence(evidence: Evidence, verdict: Verdict, one_plant: bool) -> &'static str {
+/// The evidence for the limits over frequency, in a sentence, and for the steps where they are part
+/// of the verdict.
+pub fn evidence_sentence(view: &ProjectAudit) -> String {
+    let (evidence, verdict) = (view.audit.evidence, view.audit.verdict);
+    let over_frequency = limits_sentence(evidence, verdict, view.names.headings().is_empty());
+    match view.evidence() {
+        Evidence::Search if evidence == Evidence::Proof => {
+            format!(
+                "Over frequency: {over_frequency} The steps in time were searched for; a search is not a proof."
+            )
+        }
+        _ => over_frequency.to_string(),
+    }
+}
+
+fn limits_sentence(evidence: Evidence, verdict: Verdict, one_plant: bool) -> &'static str {
     match evidence {
         Evidence::Proof if verdict == Verdict::Violated => {
             "Refuted by a plant of the box and a frequency of the band, which can be checked again."

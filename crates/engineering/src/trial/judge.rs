@@ -51,11 +51,13 @@ impl Driven<'_> {
         }
     }
 
-    /// The leg that does not settle, or else overshoots most; the first of equals.
+    /// The leg that overshoots most, of those that do not settle where there are any; the first of
+    /// equals.
     pub(super) fn worst(&self) -> Leg {
+        let any = self.legs.iter().any(|leg| leg.settling_time_s.is_none());
         self.first_most(|leg| match leg.settling_time_s {
-            Some(_) => leg.overshoot_percent.unwrap_or(0.0),
-            None => f64::INFINITY,
+            Some(_) if any => f64::NEG_INFINITY,
+            _ => leg.overshoot_percent.unwrap_or(0.0),
         })
     }
 
@@ -102,10 +104,7 @@ pub(super) fn judge(
     let (whole, linear, force) = (driven.whole(), driven.linear, driven.run.record.units.force);
     if whole.settling_time_s.is_none() {
         let settles = !driven.grows && linear.is_none_or(|step| step.settling_time_s.is_some());
-        return match settles {
-            true => (broken, unsettled(driven)),
-            false => (Agreement::Agrees, NEITHER_SETTLES.to_string()),
-        };
+        return if settles { (broken, unsettled(driven)) } else { neither_settles(driven) };
     }
     let overshoot = whole.overshoot_percent.unwrap_or(0.0);
     let predicted = linear.and_then(|step| step.overshoot_percent);
@@ -143,6 +142,21 @@ pub(super) fn judge(
     match met(driven.run).first() {
         Some(kind) => (Agreement::Differs, format!("{told}, and meets {}", kind.replace('_', " "))),
         None => (Agreement::Agrees, told),
+    }
+}
+
+/// Two loops that do not settle within the run: both grow, or the overshoot of a slow one is
+/// compared, as far as it was seen.
+fn neither_settles(driven: &Driven<'_>) -> (Agreement, String) {
+    let own = driven.whole().overshoot_percent.unwrap_or(0.0);
+    let predicted = driven.linear.and_then(|step| step.overshoot_percent);
+    match predicted.filter(|predicted| !driven.grows && (own - predicted).abs() > OVERSHOOT_ROOM_PERCENT) {
+        Some(predicted) => {
+            let [own, predicted] = [own, predicted].map(percent_words);
+            let told = format!("it overshoots by {own}, where the linear loop has {predicted}");
+            (Agreement::Differs, format!("{told}, and {NEITHER_SETTLES} within the run"))
+        }
+        None => (Agreement::Agrees, NEITHER_SETTLES.to_string()),
     }
 }
 

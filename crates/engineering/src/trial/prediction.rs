@@ -10,7 +10,7 @@ use crate::linear_step::{StepResponse, linear_step};
 use crate::robust::RobustProblem;
 
 /// Durations that are tried until the response has settled, s, and the points of each.
-const DURATIONS_S: [f64; 3] = [0.5, 2.0, 10.0];
+const DURATIONS_S: [f64; 4] = [0.5, 2.0, 10.0, 40.0];
 const POINTS: usize = 4000;
 
 /// The response of the linear loop to a unit step of its reference.

@@ -399,7 +399,10 @@ impl LinearStep {
     /// How long a step is held, s.
     fn hold_s(&self) -> f64 {
         let [shortest, longest] = HOLD_S;
-        let settles_s = self.step.and_then(|step| step.settling_time_s).unwrap_or(shortest);
+        let settles_s = match self.step {
+            Some(step) => step.settling_time_s.unwrap_or(longest),
+            None => shortest,
+        };
         (SETTLING_TIMES * settles_s).clamp(shortest, longest)
     }
 }

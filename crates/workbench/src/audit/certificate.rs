@@ -55,15 +55,22 @@ fn checked(text: &str, problem: Option<&RobustProblem>) -> Result<Answer, Certif
     let certificate = file.certificate()?;
     let rejected = check(&certificate).err();
     let compared = problem.map(|problem| comparison::words(&certificate, problem));
-    Ok(answer(&title, &project_sha256, &certificate, rejected.as_ref(), compared))
+    let in_time = problem.map_or(vec![], in_time);
+    Ok(answer((&title, &project_sha256), &certificate, rejected.as_ref(), (compared, &in_time)))
+}
+
+/// The specifications, by their number in the file, that require something in time: nothing of that
+/// is claimed.
+fn in_time(problem: &RobustProblem) -> Vec<usize> {
+    let required = problem.in_time.iter().filter(|required| required.follows);
+    required.map(|required| required.number).collect()
 }
 
 fn answer(
-    title: &str,
-    project_sha256: &str,
+    (title, project_sha256): (&str, &str),
     certificate: &Certificate,
     rejected: Option<&(usize, Rejection)>,
-    differences: Option<Vec<String>>,
+    (differences, in_time): (Option<Vec<String>>, &[usize]),
 ) -> Answer {
     let claims: Vec<String> = certificate.claims.iter().map(|claim| sentence(certificate, claim)).collect();
     let mut out = Document::default();
@@ -85,11 +92,19 @@ fn answer(
     }
     if let Some(found) = &differences {
         out.line(match found.as_slice() {
-            [] => "It is the certificate of this project: plant, box, laws and specifications agree.",
+            [] if in_time.is_empty() => {
+                "It is the certificate of this project: plant, box, laws and specifications agree."
+            }
+            [] => {
+                "It is the certificate of this project: plant, box, laws and the limits over frequency agree."
+            }
             _ => "It is not the certificate of this project:",
         });
         out.sentences(found.iter().cloned());
     }
+    out.sentences(in_time.iter().map(|number| {
+        format!("Not claimed: what specification {number} requires in time, which `verify` searches for.")
+    }));
     let is_of_project = differences.as_ref().is_none_or(Vec::is_empty);
     let body = Object::new()
         .with("schema", SCHEMA)
@@ -101,6 +116,7 @@ fn answer(
         .with("claims", claims)
         .with("stability_claimed", certificate.claims_stability())
         .maybe("differences", differences)
+        .with("not_claimed_in_time", in_time)
         .maybe("rejected_claim", rejected.map(|(number, _)| *number))
         .maybe("reason", rejected.map(|(_, reason)| reason.to_string()));
     Answer {

@@ -210,12 +210,8 @@ fn violations(view: &ProjectAudit) -> Table {
 /// Family, loop, tolerance and everything that was not examined.
 pub(crate) fn basis(view: &ProjectAudit) -> Vec<String> {
     let audit = &view.audit;
-    let mut sentences = vec![
-        view.family_sentence(),
-        view.loop_sentence(),
-        evidence_sentence(audit.evidence, audit.verdict, view.names.headings().is_empty()).to_string(),
-        tolerance(view),
-    ];
+    let mut sentences =
+        vec![view.family_sentence(), view.loop_sentence(), evidence_sentence(view), tolerance(view)];
     sentences.extend(infinity_sentence(&audit.stability, &view.names));
     sentences.extend(audit.stability.folding.and_then(folding));
     sentences.extend(margins::sentence(view));

@@ -1,8 +1,11 @@
 //! Margins of the nominal loop, and the worst of the family, in words and in JSON.
 
+use phea_qft::verification::Remark;
+
 use super::{LoopMargin, MarginSet, ProjectAudit};
 use crate::answer::Object;
 use crate::document::{Cell, Table};
+use crate::plant_names::PlantNames;
 use crate::quantity::DisplayUnit;
 
 /// Why there are none of the nominal loop.
@@ -17,7 +20,7 @@ pub(super) fn object(view: &ProjectAudit) -> Object {
     let margins = &view.margins;
     let own = values(margins.family.as_ref(), NO_FAMILY);
     let set = |set: Option<&MarginSet>| set.map(|set| values(Some(set), "").with("at", places(view, set)));
-    own.with("evidence", "search")
+    own.with("evidence", if is_measured(view) { "grid" } else { "search" })
         .with("plants", margins.plants)
         .known("nominal", set(margins.nominal.as_ref()), NO_NOMINAL)
         .known("family", set(margins.family.as_ref()), NO_FAMILY)
@@ -101,9 +104,29 @@ fn cells(margin: &LoopMargin, unit: DisplayUnit) -> [Cell; 2] {
 pub(super) fn sentence(view: &ProjectAudit) -> Option<String> {
     view.margins.family.as_ref()?;
     let plants = view.margins.plants;
+    if is_measured(view) {
+        let discs = match has_discs(view) {
+            true => {
+                ": gain and phase those of the responses themselves, modulus and delay the worst within their discs"
+            }
+            false => "",
+        };
+        return Some(format!("The worst margins are those of the {plants} measured responses{discs}."));
+    }
     (plants > 1).then(|| {
         format!(
             "The worst margins are those of {plants} plants: members, corners, the worst of the audit, and a search from these."
         )
     })
+}
+
+/// Whether the family is measured: nothing is searched for between its responses.
+fn is_measured(view: &ProjectAudit) -> bool {
+    matches!(view.names, PlantNames::Measured(_))
+}
+
+/// Whether these responses are known within confidence discs.
+fn has_discs(view: &ProjectAudit) -> bool {
+    let mut remarks = view.audit.specifications.iter().flat_map(|finding| &finding.remarks);
+    remarks.any(|remark| matches!(remark, Remark::WorstWithinDiscs | Remark::OpenWithinDiscs { .. }))
 }
