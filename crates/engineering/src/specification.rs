@@ -78,7 +78,7 @@ pub enum SpecificationProblem {
         lower: f64,
         /// There.
         upper: f64,
-        /// The frequencies around it at which they cross, rad/s; an end of the band where that is one.
+        /// The frequencies around it at which they cross, rad/s, or the ends of the band.
         span_rad_per_s: [f64; 2],
     },
     /// A form of limit that belongs to another kind of specification.

@@ -13,12 +13,15 @@ use super::closed_loop::{Compensation, Member, TrialPlant};
 /// Plants that are kept, of less than a kilobyte each.
 const PLANTS_MAXIMUM: usize = 100_000;
 
+/// A plant within its loop, or why it has none.
+type SampledPlant = Result<Member, LinearError>;
+
 /// Plants of one family within one loop. Plants that were already sampled are kept, by the bits of
 /// their parameter values: sampling costs more than a thousand responses. A clone has the same
 /// plants, and what either adds.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct KeptPlants {
-    sampled: Rc<RefCell<BTreeMap<Vec<u64>, Result<Member, LinearError>>>>,
+    sampled: Rc<RefCell<BTreeMap<Vec<u64>, SampledPlant>>>,
     /// Plants that a search tried, likewise.
     tried: Rc<RefCell<BTreeMap<Vec<u64>, Option<TrialPlant>>>>,
     /// The last of them that was built: the next one has nearly the same poles.

@@ -10,7 +10,7 @@ use phea_dynamics::analytic::{Analytic, Disc, Jet};
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
-use phea_dynamics::portable::{exp, ln, magnitude};
+use phea_dynamics::portable::{cos, exp, ln, magnitude, sin};
 use phea_dynamics::random::share;
 use phea_dynamics::uncertain_plant::responding::{RespondingPlant, RespondingPlants};
 use phea_dynamics::uncertain_plant::{
@@ -118,7 +118,7 @@ fn folding_changes_no_more_than_its_bound() {
         let plant = hidden(&mut state);
         let sample_time_s = (1.2 + 3.0 * share(&mut state)) * std::f64::consts::PI / plant.natural;
         let plant = Hidden { slow: 0.1 * share(&mut state) * plant.natural, dead_time_s: 0.0, ..plant };
-        let gain = 0.3 * share(&mut state) / plant.gain * plant.natural.powi(2) / sample_time_s;
+        let gain = 0.3 * share(&mut state) / plant.gain * plant.natural * plant.natural / sample_time_s;
         let feedback = Compensator::new(vec![Element::Gain(gain)]);
         let timing = Timing { sample_time_s: Some(sample_time_s), ..Timing::default() };
         let controller = Controller { feedback, timing, ..Controller::default() };
@@ -130,7 +130,7 @@ fn folding_changes_no_more_than_its_bound() {
         for frequency in logarithmic_grid(1e-3 * plant.slow, half, 2000).unwrap() {
             let found = 1.0 + gain * shown.response(frequency).unwrap().plant;
             let turn = 0.5 * frequency * sample_time_s;
-            let held = Complex64::new(turn.cos(), -turn.sin()) * (turn.sin() / turn);
+            let held = Complex64::new(cos(turn), -sin(turn)) * (sin(turn) / turn);
             let own = 1.0 + gain * held * plant.at(Complex64::new(0.0, frequency))[0];
             most = most.max(magnitude(found - own) / magnitude(own));
         }

@@ -29,7 +29,7 @@ fn without_design(project: &str) -> String {
 
 /// The rig and its controller without specifications, design and scenarios: all that questions
 /// about the nominal loop need.
-fn nominal() -> String {
+pub(crate) fn nominal() -> String {
     let (rig, rest) = HOSE.split_once("[[specification]]").unwrap();
     let (_, rest) = rest.split_once("[controller]").unwrap();
     let (controller, _) = rest.split_once("[design]").unwrap();
@@ -457,7 +457,7 @@ fn report_with(settings: &[&str]) -> Report {
 }
 
 /// The report of a project with settings, without a sizing chapter.
-fn report_of(project: &str, settings: &[&str]) -> Report {
+pub(crate) fn report_of(project: &str, settings: &[&str]) -> Report {
     let loaded = load(project, settings, &[]);
     report(&Memory::default(), &loaded, &Setup::new(&loaded.project).unwrap(), None, &mut |_| true).unwrap()
 }
@@ -481,25 +481,4 @@ fn an_unstable_loop_is_called_unstable_and_not_measured() {
     // A proportional loop ends away from its reference: it does not settle in the band.
     let beside = report_of(&nominal(), &["controller.numerator=\"0.0001\"", "controller.denominator=\"1\""]);
     assert!(!beside.html.contains("settles in not"));
-}
-
-#[test]
-fn without_leakage_the_force_of_the_open_loop_remains() {
-    let caption = |settings: &[&str]| {
-        let report = report_of(&nominal(), settings);
-        report.figures.iter().find(|figure| figure.name == "load-motion").unwrap().caption.clone()
-    };
-    assert!(caption(&[]).contains("In the end nothing remains."));
-    let tight = caption(&[
-        "linear.flow_pressure_coefficient=0",
-        "uncertainty.flow_pressure_coefficient.minimum=0",
-        "uncertainty.flow_pressure_coefficient.spacing=linear",
-    ]);
-    assert!(tight.contains("In the end there remains -") && tight.contains("kN open loop"), "{tight}");
-}
-
-#[test]
-fn a_loop_with_dead_time_has_its_step() {
-    let html = report_of(&nominal(), &["controller.delay=\"1 ms\""]).html;
-    assert!(html.contains("The closed loop is stable.") && !html.contains("No step response"));
 }

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use crate::report_page::{nominal, report_of};
 use phea_workbench::project;
 use phea_workbench::report::{Report, report, runs_within_budget};
 use phea_workbench::setup::Setup;
@@ -209,4 +210,25 @@ fn a_campaign_keeps_its_budget_of_steps() {
     assert_eq!(runs_within_budget(500, [8, 8 * 10_000_000]), 8, "those that were made");
     assert_eq!(runs_within_budget(500, [8, 0]), 500, "none was completed");
     assert_eq!(runs_within_budget(5, [5, 5 * 3_000]), 5);
+}
+
+#[test]
+fn without_leakage_the_force_of_the_open_loop_remains() {
+    let caption = |settings: &[&str]| {
+        let report = report_of(&nominal(), settings);
+        report.figures.iter().find(|figure| figure.name == "load-motion").unwrap().caption.clone()
+    };
+    assert!(caption(&[]).contains("In the end nothing remains."));
+    let tight = caption(&[
+        "linear.flow_pressure_coefficient=0",
+        "uncertainty.flow_pressure_coefficient.minimum=0",
+        "uncertainty.flow_pressure_coefficient.spacing=linear",
+    ]);
+    assert!(tight.contains("In the end there remains -") && tight.contains("kN open loop"), "{tight}");
+}
+
+#[test]
+fn a_loop_with_dead_time_has_its_step() {
+    let html = report_of(&nominal(), &["controller.delay=\"1 ms\""]).html;
+    assert!(html.contains("The closed loop is stable.") && !html.contains("No step response"));
 }

@@ -54,6 +54,52 @@ impl DesignOutcome {
 ///
 /// # Errors
 /// Those of [`design`](super::design).
+///
+/// # Example
+/// A limit that is wider allows less gain, as a design from the beginning finds:
+/// ```
+/// # use phea_dynamics::controller::Timing;
+/// # use phea_dynamics::linear::TransferFunction;
+/// # use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+/// # use phea_dynamics::watch::unwatched;
+/// # use phea_qft::design::quantization::CoefficientFormat;
+/// # use phea_qft::design::*;
+/// # use phea_qft::family::{Extent, Family, UncertainFamily};
+/// # use phea_qft::loop_shaping::Structure;
+/// # use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
+/// # use phea_qft::verification::TOLERANCE_DB;
+/// # let gain = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 4.0 };
+/// # let plant = UncertainPlant::record(vec![gain], |p| {
+/// #     let command = RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] };
+/// #     PlantCoefficients { command, disturbance: None, dead_time_s: 0.0.into(), rate: None }
+/// # })?;
+/// # let members = vec![vec![1.0], vec![4.0]];
+/// # let family = Family::Uncertain(UncertainFamily::new(plant, vec![], members, Extent::Members)?);
+/// # let requirement = Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.5));
+/// # let problem = DesignProblem {
+/// #     family, // 1/s, 4/s
+/// #     beside: vec![],
+/// #     sensor: TransferFunction::gain_only(1.0),
+/// #     timing: Timing::default(),
+/// #     specifications: vec![Specification { requirement, frequencies_rad_per_s: vec![1.0], band_rad_per_s: [0.0, 1.0] }],
+/// #     minimum_delay_margin_s: 0.0,
+/// # };
+/// # let gain_alone = Structure { sign: 1.0, gain: [0.01, 100.0], parts: vec![] };
+/// # let options = DesignOptions {
+/// #     objective: Objective::LeastHighFrequencyGain,
+/// #     controller: ControllerChoice::Given(gain_alone),
+/// #     prefilter: PrefilterChoice::None,
+/// #     seed: 1, tolerance_db: TOLERANCE_DB, reserve_db: 0.0, poles: PoleRange::default(), coefficients: CoefficientFormat::Double,
+/// # };
+/// let before = design(&problem, &options, &mut unwatched)?;
+/// let mut wider = problem.clone();
+/// wider.specifications[0].requirement = Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.6));
+/// let after = design_after(&wider, &options, &before, &mut unwatched)?.design.ok_or("none was found")?;
+/// let gain = after.controller.feedback.transfer_function()?.gain();
+/// // |1/(1 + k/j)| = 0.6 of the plant 1/s at 1 rad/s
+/// assert!((gain / (1.0 / 0.36 - 1.0_f64).sqrt() - 1.0).abs() < 1e-2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn design_after(
     problem: &DesignProblem,
     options: &DesignOptions,
