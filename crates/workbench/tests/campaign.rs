@@ -378,10 +378,10 @@ fn the_parquet_table_says_what_the_text_says() {
     assert!(page.text.contains(",refused,"));
 }
 
-/// Quantiles are of the runs that have a number; those that never settle are counted where the
+/// Quantiles are of the runs that have a number; those that do not settle within their window are counted where the
 /// quantiles stand.
 #[test]
-fn runs_that_never_settle_are_told_beside_the_quantiles() {
+fn runs_that_do_not_settle_are_told_beside_the_quantiles() {
     let loaded = load(&SHORT);
     let asked = Request::Campaign(request(20, Shard::default()));
     let answer = command::answer(&source(), &loaded, &[], &asked).unwrap();
@@ -395,7 +395,7 @@ fn runs_that_never_settle_are_told_beside_the_quantiles() {
     let missing: Vec<u64> = events.iter().map(settling).collect();
     assert!(missing.iter().any(|missing| *missing > 1), "{missing:?}");
     for missing in missing.iter().filter(|missing| **missing > 1) {
-        let words = format!("settling to 1 % (s); {missing} of 20 never settle");
+        let words = format!("settling to 1 % (s); {missing} of 20 do not settle within their window");
         assert!(answer.text.contains(&words), "{}", answer.text);
     }
 }

@@ -48,8 +48,8 @@ pub(crate) fn counted(runs: usize) -> String {
 fn without(metric: usize, spread: Option<Spread>, driven: usize) -> Option<String> {
     let missing = spread.map_or(driven, |spread| spread.missing);
     let words = match (METRIC_NAMES.get(metric), missing) {
-        (Some(&"settling_time_s"), 1) => "never settles",
-        (Some(&"settling_time_s"), _) => "never settle",
+        (Some(&"settling_time_s"), 1) => "does not settle within its window",
+        (Some(&"settling_time_s"), _) => "do not settle within their window",
         (_, 1) => "has none",
         _ => "have none",
     };
