@@ -400,6 +400,40 @@ fn runs_that_do_not_settle_are_told_beside_the_quantiles() {
     }
 }
 
+/// A loop that overshoots, and a band within which no step ends.
+const OVERSHOOTING: [&str; 4] = [
+    "controller.numerator=0.001*s + 0.05",
+    "prefilter.numerator=1",
+    "prefilter.denominator=1",
+    "scenario.0.settling_band_percent=1e-6",
+];
+
+/// Runs none of which settles tie in the time to settle: the worst of them is the one that
+/// overshoots most.
+#[test]
+fn the_worst_of_runs_that_do_not_settle_overshoots_most() {
+    let band = "settling_band_percent = 1e-6";
+    let required = format!(
+        "[[specification]]\nkind = \"step\"\novershoot_percent = 1\nsettling_time = \"10 ms\"\n{band}\n"
+    );
+    let source = source().with("required.toml", format!("{CAMPAIGN}\n{required}").as_str());
+    let settings = [&SHORT[..], &OVERSHOOTING].concat();
+    let settings: Vec<String> = settings.iter().map(|text| (*text).to_string()).collect();
+    let loaded =
+        project::read(&source, "required.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
+    let plan = Plan::new(&source, &loaded, 1).unwrap();
+    let asked = RequestedRuns { runs: 20, shard: Shard::default(), effort: lanes(1) };
+    let rows = phea_workbench::campaign::campaign(&plan, asked, None, &mut |_| true).unwrap();
+    let summary = Summary::of(&plan, &rows);
+    let (run, reached) = summary.requirements[0].judged.unwrap().worst.unwrap();
+    assert_eq!(reached.settling_time_s, f64::INFINITY);
+    let place = METRIC_NAMES.iter().position(|name| *name == "overshoot_percent").unwrap();
+    let overshoots: Vec<f64> = rows.iter().map(|row| row.ran().unwrap().metrics[0][place].unwrap()).collect();
+    let most = overshoots.iter().copied().fold(0.0, f64::max);
+    assert!(overshoots[0] < most, "the first run is not the worst: {overshoots:?}");
+    assert_eq!((reached.overshoot_percent, overshoots[run as usize]), (most, most));
+}
+
 /// What is wrong with `[campaign]` is reported once, in the text that says it.
 #[test]
 fn what_is_refused_of_a_campaign_has_its_place_and_a_hint() {

@@ -22,7 +22,8 @@ pub struct SatisfiedRuns {
     pub satisfied: usize,
     /// Runs that were driven; one that was not completed does not satisfy it.
     pub runs: usize,
-    /// The run that is furthest from it, and what its worst step reaches.
+    /// The run that is furthest from it, and what its worst step reaches: by the property that is
+    /// furthest, where runs tie in it by the next one.
     pub worst: Option<(u64, ReachedStep)>,
 }
 
@@ -74,14 +75,14 @@ pub(super) fn required(plan: &Plan, rows: &[Row]) -> Vec<CampaignRequirement> {
 fn judged(plan: &Plan, rows: &[Row], one: &TimeRequirement) -> Result<SatisfiedRuns, NotJudged> {
     let concerned = concerned(one, plan.windows(), plan.scenario.settling_band_percent)?;
     let mut found = SatisfiedRuns { satisfied: 0, runs: 0, worst: None };
-    let mut most = f64::NEG_INFINITY;
+    let mut most = [f64::NEG_INFINITY; 3];
     for (run, ran) in rows.iter().filter_map(|row| Some((row.run, row.ran()?))) {
         let reached = reached(ran, &concerned);
-        let excess = one.wish.excess(&reached);
+        let excesses = one.wish.excesses(&reached);
         found.runs += 1;
         found.satisfied += usize::from(one.wish.is_satisfied(&reached));
-        if excess > most {
-            most = excess;
+        if excesses > most {
+            most = excesses;
             found.worst = Some((run, reached));
         }
     }

@@ -118,13 +118,22 @@ impl TrackingWish {
 
     /// The largest ratio of what a step reaches to what is required; zero where nothing is.
     pub fn excess(&self, reached: &ReachedStep) -> f64 {
+        self.excesses(reached)[0]
+    }
+
+    /// The ratio of what a step reaches to what is required, of each property; the largest first,
+    /// zero where nothing is required. Of two steps that never settle the one with the larger
+    /// second ratio is the worse.
+    pub fn excesses(&self, reached: &ReachedStep) -> [f64; 3] {
         let overshoot_percent = self.overshoot_percent.map(|most| most.max(NO_OVERSHOOT_PERCENT));
         let each = [
             (reached.overshoot_percent, overshoot_percent),
             (reached.settling_time_s, self.settling_time_s),
             (reached.rise_time_s, self.rise_time_s),
         ];
-        each.into_iter().filter_map(|(value, most)| Some(value / most?)).fold(0.0, f64::max)
+        let mut ratios = each.map(|(value, most)| most.map_or(0.0, |most| (value / most).max(0.0)));
+        ratios.sort_by(|one, other| other.total_cmp(one));
+        ratios
     }
 
     /// What a step does of what is required, in words.
