@@ -168,7 +168,26 @@ fn assumptions_are_those_of_the_rig() {
     let [hose, volumes] = [&hose, &volumes].map(|report| chapter(report, "provenance"));
     assert!(hose.contains("wall of a hose") && !volumes.contains("wall of a hose"));
     assert!(hose.contains("no waves travel in it"));
+    // the time constant is stated, and the hose judged by one modulus
+    assert!(hose.contains("its time constant is stated, and it settles to 2 % in 3.91 time constants"));
+    assert!(hose.contains("taken at the supply pressure"));
     assert!(!volumes.contains("no waves travel in it") && volumes.contains("by its viscous part alone"));
+}
+
+/// By volume a hose holds its oil at the mean pressure, and a stated settling time gives the time
+/// constant by its band.
+#[test]
+fn assumptions_follow_from_what_is_stated() {
+    let text = without(HOSE, "[[specification]]", "[controller] ");
+    let text = without(&text, "[design] ", "[[scenario]]")
+        .replace("time_constant = \"50 ms\"", "settling_time = \"200 ms\"\nsettling_band_percent = 1");
+    let (rig, _) = text.split_once("[[scenario]]").unwrap();
+    let report = reported(rig, &["line.compliance=by_volume"]);
+    let told = chapter(&report, "provenance");
+    assert!(told.contains("follows from the stated settling time, and it settles to 1 % in 4.61"), "{told}");
+    assert!(
+        told.contains("at the mean of supply and tank pressure") && !told.contains("at the supply pressure")
+    );
 }
 
 /// The step of a tracking specification, by its time.

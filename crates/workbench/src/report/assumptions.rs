@@ -1,8 +1,13 @@
 //! The assumptions of the models of a rig, each only where the project has what it speaks of.
 
+use phea_dynamics::portable;
 use phea_hydraulics::stiffness::StiffnessModel;
 
-use crate::project::{DeclaredActuator, DeclaredLine, FrictionLaw, LineMotion, Load, Project, SupplyModel};
+use crate::answer::significant;
+use crate::project::{
+    DeclaredActuator, DeclaredLine, FrictionLaw, LineMotion, Load, Project, SETTLING_BAND_PERCENT, Speed,
+    SupplyModel,
+};
 
 /// The assumptions of the models.
 pub(super) fn assumptions(project: &Project) -> Vec<String> {
@@ -14,6 +19,7 @@ pub(super) fn assumptions(project: &Project) -> Vec<String> {
     };
     let mut told: Vec<&str> = vec![supply(actuator)];
     told.extend(lines(actuator));
+    let sizing = project.sizing.as_ref().map(|sizing| first_order(sizing.speed));
     told.extend(friction(actuator));
     told.push(match actuator.load {
         Load::Prescribed => {
@@ -21,15 +27,28 @@ pub(super) fn assumptions(project: &Project) -> Vec<String> {
         }
         _ => "The load is the declared one; the force sensor's stiffness includes what it is mounted on.",
     });
-    if project.sizing.is_some() {
-        told.push("The sizing takes a response of first order; its settling time to 2 % is four time constants, to 1 % 4.6.");
-    }
+    told.extend(sizing.as_deref());
     if actuator.fluid.entrained_air.is_none_or(|fraction| fraction == 0.0) {
         told.push("The oil carries no free air.");
     }
     told.extend(velocity(project));
     told.extend(pressures(project));
     told.into_iter().map(str::to_string).collect()
+}
+
+/// The response that the sizing takes, whose deviation from its end is e^(-t/T).
+fn first_order(speed: Speed) -> String {
+    let (given, band_percent) = match speed {
+        Speed::TimeConstant(_) => ("its time constant is stated", SETTLING_BAND_PERCENT),
+        Speed::Settling(settling) => {
+            ("its time constant follows from the stated settling time", settling.band_percent)
+        }
+    };
+    let constants = portable::ln(100.0 / band_percent);
+    format!(
+        "The sizing takes a response of first order: {given}, and it settles to {band_percent} % in {} time constants.",
+        significant(constants, 3)
+    )
 }
 
 fn supply(actuator: &DeclaredActuator) -> &'static str {
@@ -59,7 +78,10 @@ fn lines(actuator: &DeclaredActuator) -> Vec<&'static str> {
         |line: &DeclaredLine| line.motion.is_lumped() || matches!(line.motion, LineMotion::Creeping { .. });
     let mut told = Vec::new();
     if any(&|line| line.hose().is_some()) {
-        told.push("Volumetric expansion and wall modulus of a hose are taken at the supply pressure; between the stated point and another pressure the expansion follows the slope of the catalogue, and a supply beyond the point causes a warning.");
+        told.push(match actuator.line.compliance {
+            StiffnessModel::Uniform => "Volumetric expansion and wall modulus of a hose are taken at the supply pressure (`uniform`); between the stated point and another pressure the expansion follows the slope of the catalogue, and a supply beyond the point causes a warning.",
+            StiffnessModel::ByVolume => "Volumetric expansion of a hose is taken at the mean of supply and tank pressure (`by_volume`), and its compliance is the slope of the catalogue; a supply beyond the stated point causes a warning.",
+        });
     }
     if any(&|line| stiffens(line) && creeps(line)) {
         told.push("The wall of a hose creeps: it has its dynamic modulus for fast motions, its static one at rest, and passes from one to the other with the declared relaxation time.");
