@@ -218,6 +218,34 @@ fn the_first_page_takes_the_worst_of_the_campaign() {
     }
 }
 
+/// A step in the required band of a settling time that no step keeps.
+const STEP: &str =
+    "[[specification]]\nkind = \"step\"\nsettling_time = \"10 ms\"\nsettling_band_percent = 1e-6\n";
+
+/// A run of several steps is one run; that a step does not settle is known of its window alone; and
+/// the advice is for a project with a required step, which has no limits of tracking to tighten.
+#[test]
+fn runs_are_counted_and_the_advice_is_for_a_required_step() {
+    let settings = [
+        "scenario.0.duration=0.6 s",
+        "scenario.0.settling_band_percent=1e-6",
+        "scenario.0.reference=[{ at = \"0.1 s\", force = \"1 kN\" }, { at = \"0.3 s\", force = \"2 kN\" }]",
+        "scenario.0.load_motion={ kind = \"smooth_step\", start = \"0.5 s\", duration = \"50 ms\", distance = \"1 mm\" }",
+        "campaign.runs=8",
+    ];
+    let report = reported(&format!("{CAMPAIGN}\n{STEP}"), &settings);
+    let (_, page) = report.html.split_once("id=\"decision\">").expect("the first page");
+    let page = page.split("</section>").next().unwrap().replace('\u{a0}', " ");
+    assert!(page.contains("missed by 100 % of 8 completed campaign runs"), "{page}");
+    assert!(page.contains("not settled within its window at worst"), "{page}");
+    let next = &report.decision.next;
+    let advice = next.iter().find(|step| step.contains("does not settle within its window")).unwrap();
+    assert!(!advice.contains("limits of tracking"), "{advice}");
+    assert!(advice.contains("of kind `step`") || advice.contains("by the linear loop too"), "{advice}");
+    let tracking = reported(&format!("{CAMPAIGN}\n{IN_TIME}"), &settings).decision.next;
+    assert!(!tracking.iter().any(|step| step.contains("of kind `step`")), "{tracking:?}");
+}
+
 /// A report makes as many runs as its steps of integration suffice for, judged by the first of
 /// them, and these at least.
 #[test]

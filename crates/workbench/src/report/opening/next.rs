@@ -2,18 +2,19 @@
 //! contradictions by the machine, effects that no verdict includes, wishes that are not met, and
 //! missing declarations.
 
+use phea_dynamics::closed_loop::ClosedLoop;
 use phea_dynamics::order::sort_by_number;
 use phea_qft::design::{DesignStatus, Relaxation};
 use phea_qft::verification::Verdict;
 
 use super::Contents;
 use super::side::Side;
-use super::steps::{StepProperty, steps};
+use super::steps::{NEVER_RISEN, NEVER_SETTLED, StepProperty, steps};
 use crate::answer::significant;
 use crate::audit::{ProjectAudit, frequency_words, in_time};
 use crate::caveat::caveats;
 use crate::design::{DESIGNED_PROJECT, ProjectDesign};
-use crate::project::Project;
+use crate::project::{DeclaredSpecification, Project, SpecificationKind};
 use crate::quantity::DisplayUnit;
 use crate::report::design::Designed;
 use crate::report::driven::{DESIGNED, GIVEN};
@@ -237,6 +238,10 @@ fn violates_tracking(view: &ProjectAudit) -> bool {
     all.any(|one| one.requirement.is_tracking() && one.verdict == Verdict::Violated)
 }
 
+fn is_tracking(specification: &DeclaredSpecification) -> bool {
+    specification.kind == SpecificationKind::ClosedLoop(ClosedLoop::Tracking)
+}
+
 /// A step of the machine that misses the wish, and the response of the tracking limits themselves.
 fn wishes(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
     let wish: &TrackingWish = contents.driven?.wish.as_ref()?;
@@ -245,18 +250,30 @@ fn wishes(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
         Some(all.worst_words())
     };
     let overshoot = missed(StepProperty::Overshoot).map(|words| format!("overshoots by {words}"));
-    let settling = missed(StepProperty::Settling).map(|words| match words.as_str() {
-        "not settled" => "does not settle".to_string(),
-        words => format!("takes {words} to settle"),
+    let settling = missed(StepProperty::Settling).map(|words| match words.strip_prefix(NEVER_SETTLED) {
+        Some(within) => format!("does not settle{within}"),
+        None => format!("takes {words} to settle"),
     });
-    let rise = missed(StepProperty::Rise).map(|words| format!("takes {words} to rise"));
+    let rise = missed(StepProperty::Rise).map(|words| match words.strip_prefix(NEVER_RISEN) {
+        Some(within) => format!("does not rise to 90 %{within}"),
+        None => format!("takes {words} to rise"),
+    });
     let told: Vec<String> = [overshoot, settling, rise].into_iter().flatten().collect();
     (!told.is_empty()).then(|| {
         let worst = format!("at worst a step under the {} controller {}.", side.name, told.join(" and "));
-        match side.view.is_some_and(violates_tracking) {
-            true => format!("What is required in time is missed with the limits of tracking: {worst}"),
-            false => format!(
+        let has_tracking = contents.setup.project.specifications.iter().any(is_tracking);
+        match side.view {
+            Some(view) if violates_tracking(view) => {
+                format!("What is required in time is missed with the limits of tracking: {worst}")
+            }
+            Some(view) if view.misses_in_time() => {
+                format!("What is required in time is missed by the linear loop too: {worst}")
+            }
+            _ if has_tracking => format!(
                 "Tighten the limits of tracking if what is required in time must be met exactly: {worst}"
+            ),
+            _ => format!(
+                "State stricter values in the specification of kind `step` and design for them (`phea design`) if every simulated step must satisfy what is required in time: {worst}"
             ),
         }
     })

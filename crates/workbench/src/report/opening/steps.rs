@@ -2,6 +2,8 @@
 //! required in time: the scenarios, the machines of the trial, the linear steps over the family,
 //! and the runs of the campaign.
 
+use std::collections::BTreeSet;
+
 use phea_dynamics::time_response::{StepBaseline, step_metrics};
 
 use super::side::Side;
@@ -52,6 +54,9 @@ pub(super) struct AllSteps {
     plants: usize,
 }
 
+/// Words for a step that does not settle, and for one that does not rise to 90 percent.
+pub(super) const NEVER_SETTLED: &str = "not settled";
+pub(super) const NEVER_RISEN: &str = "not risen to 90 %";
 /// Tolerance relative to what is required: printed numbers have three digits.
 const ROUNDED: f64 = 1e-6;
 /// Deviation of a linear step that counts as none, percent.
@@ -161,15 +166,18 @@ impl AllSteps {
     /// The worst value of all, with its unit.
     pub(super) fn worst_words(&self) -> String {
         let Some(worst) = self.worst() else { return String::new() };
-        self.value_words(worst.value)
+        self.value_words(worst)
     }
 
-    fn value_words(&self, value: f64) -> String {
+    /// The value of a step; a simulated one is known over its window alone.
+    fn value_words(&self, step: &OneStep) -> String {
+        let value = step.value;
+        let within = if step.origin == StepOrigin::Family { "" } else { " within its window" };
         match self.property {
             StepProperty::Overshoot if value < 0.01 => "no overshoot".to_string(),
             StepProperty::Overshoot => format!("{} %", significant(value, 3)),
-            StepProperty::Settling if value == f64::INFINITY => "not settled".to_string(),
-            StepProperty::Rise if value == f64::INFINITY => "not risen to 90 %".to_string(),
+            StepProperty::Settling if value == f64::INFINITY => format!("{NEVER_SETTLED}{within}"),
+            StepProperty::Rise if value == f64::INFINITY => format!("{NEVER_RISEN}{within}"),
             StepProperty::Settling | StepProperty::Rise => format!("{} s", significant(value, 3)),
         }
     }
@@ -181,16 +189,25 @@ impl AllSteps {
     /// The worst value with its place, and how many of which steps are above.
     pub(super) fn words(&self) -> String {
         let Some(worst) = self.worst() else { return String::new() };
-        let value = self.value_words(worst.value);
+        let value = self.value_words(worst);
         let mut told = vec![format!("{value} at worst ({})", worst.place)];
         let counts = [
             (StepOrigin::Scenario, "scenario steps"),
             (StepOrigin::Machine, "tested machines"),
-            (StepOrigin::Campaign, "campaign runs"),
+            (StepOrigin::Campaign, "completed campaign runs"),
         ];
         for (origin, what) in counts {
             let own = || self.steps.iter().filter(|step| step.origin == origin);
-            let (count, above) = (own().count(), own().filter(|step| self.is_above(step)).count());
+            let (count, above) = match origin {
+                // a run has several steps, and misses what is required by one of them
+                StepOrigin::Campaign => {
+                    let runs = |all: &mut dyn Iterator<Item = &OneStep>| -> usize {
+                        all.map(|step| step.place.as_str()).collect::<BTreeSet<_>>().len()
+                    };
+                    (runs(&mut own()), runs(&mut own().filter(|step| self.is_above(step))))
+                }
+                _ => (own().count(), own().filter(|step| self.is_above(step)).count()),
+            };
             if above > 0 && count > 1 {
                 let percent = significant(100.0 * above as f64 / count as f64, 2);
                 told.push(match origin {
