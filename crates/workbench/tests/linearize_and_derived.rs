@@ -24,6 +24,28 @@ fn lopsided() -> String {
     project
 }
 
+/// The pump drives a rod on one side faster in than out, and a rod through both ends alike.
+#[test]
+fn the_pump_drives_the_piston_in_both_directions() {
+    let pump = ["supply.model=pump_limited", "supply.flow=9.8 L/min"];
+    let flow = 9.8e-3 / 60.0;
+    let (differing, alike) = (check(&lopsided(), &pump), check(HOSE, &pump));
+    let piston = std::f64::consts::FRAC_PI_4 * 0.05 * 0.05;
+    let ring = |rod: f64| piston - std::f64::consts::FRAC_PI_4 * rod * rod;
+    near(derived(&differing, "supply.piston_speed"), flow / piston, 1e-12);
+    near(derived(&differing, "supply.piston_speed_retracting"), flow / ring(0.028), 1e-12);
+    near(derived(&alike, "supply.piston_speed"), flow / ring(0.022), 1e-12);
+    let row = |check: &Value, name: &str| -> Option<String> {
+        let rows = check["derived"].as_array().unwrap();
+        let row = rows.iter().find(|row| row["name"] == name)?;
+        Some(row["equation"].as_str().unwrap().to_string())
+    };
+    assert!(row(&differing, "supply.piston_speed").unwrap().ends_with("extending"));
+    assert!(row(&differing, "supply.piston_speed_retracting").unwrap().ends_with("retracting"));
+    assert!(row(&alike, "supply.piston_speed").unwrap().ends_with("in both directions"));
+    assert_eq!(row(&alike, "supply.piston_speed_retracting"), None);
+}
+
 /// Stiffness by the compliance of each volume; hose A of this length, hose B of that.
 fn stiffness(x: f64, lengths: [f64; 2], uniform: bool) -> f64 {
     let quarter = std::f64::consts::FRAC_PI_4;

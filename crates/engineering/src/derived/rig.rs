@@ -287,15 +287,28 @@ fn friction(rig: &Rig, list: &mut List) {
     );
 }
 
+/// The speed at which the flow of the pump drives the piston, in each direction where they differ.
+fn piston_speed(flow: f64, [area_a, area_b]: [f64; 2], list: &mut List) {
+    let unit = list.motion.symbol("m/s");
+    let differs = area_a.total_cmp(&area_b).is_ne();
+    let equation = match (list.motion.is_rotary(), differs) {
+        (true, _) => "v_{max} = q_{pump}/D",
+        (false, false) => "v_{max} = q_{pump}/A, in both directions",
+        (false, true) => "v_{max} = q_{pump}/A_A, extending",
+    };
+    list.add("supply.piston_speed", "v_max", flow / area_a, unit, equation);
+    if differs {
+        let equation = "v_{max} = q_{pump}/A_B, retracting";
+        list.add("supply.piston_speed_retracting", "v_max", flow / area_b, unit, equation);
+    }
+}
+
 fn flow(project: &Project, rig: &Rig, list: &mut List) {
     let Some(declared) = &project.actuator else { return };
     let components = rig.actuator.components();
     list.group("Flow");
     if let Some(flow) = declared.supply.flow() {
-        let [area_a, area_b] = components.cylinder.greatest_areas();
-        let speed = flow / area_a.max(area_b);
-        let equation = if list.motion.is_rotary() { "v_{max} = q_{pump}/D" } else { "v_{max} = q_{pump}/A" };
-        list.add("supply.piston_speed", "v_max", speed, list.motion.symbol("m/s"), equation);
+        piston_speed(flow, components.cylinder.greatest_areas(), list);
     }
     let largest = largest_flow(components, &declared.supply);
     let equation = match largest.limit {
