@@ -100,6 +100,8 @@ pub enum ProjectFamilyError {
     OperatingPoint {
         /// The parameters that determine it, with their values.
         member: String,
+        /// The names of these parameters.
+        numbers: Vec<String>,
         /// Why it does not exist.
         reason: String,
     },

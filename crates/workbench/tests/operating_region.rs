@@ -6,6 +6,7 @@
 use phea_dynamics::random::share;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, UncertainPlant};
 use phea_qft::family::{Extent, Family, UncertainFamily};
+use phea_workbench::command::{self, Request};
 use phea_workbench::family::{VisitedRange, family, visited_box};
 use phea_workbench::project::{self, Project};
 use phea_workbench::rig::Rig;
@@ -258,6 +259,29 @@ fn points_without_balance_are_refused_by_name() {
         ),
         "{sucked}"
     );
+}
+
+/// The refusal points to what names the point that nothing balances, with a cure.
+#[test]
+fn a_point_without_balance_has_its_place_and_a_cure() {
+    let refused = |text: &str| {
+        let source = Memory::default().with("p.toml", text);
+        let loaded = project::read(&source, "p.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}"));
+        let asked = Request::Verify { proof: false, on_machine: false };
+        let error = command::answer(&source, &loaded, &[], &asked).unwrap_err();
+        let place = error.refusal().unwrap_or_else(|| panic!("{error}")).diagnostics[0].clone();
+        let line = text.lines().nth(place.line - 1).unwrap().to_string();
+        assert!(place.message.starts_with("no operating point at ") && place.help.is_some(), "{place:?}");
+        (line, place.help.unwrap())
+    };
+    let region = "[family.operating_region]\nload_force = [\"0 N\", \"12 kN\"]\n";
+    let (line, help) = refused(&text("", region, ""));
+    assert_eq!(line, "load_force = [\"0 N\", \"12 kN\"]");
+    assert!(help.contains("narrow the region"), "{help}");
+    let (line, help) =
+        refused(&text(&ranges(&[("operating_point.load_force", [0.0, 1000.0, 12e3])]), "", ""));
+    assert!(line.starts_with("\"operating_point.load_force\""), "{line}");
+    assert!(help.contains("narrow the range"), "{help}");
 }
 
 fn range<'a>(ranges: &'a [VisitedRange], name: &str) -> &'a VisitedRange {

@@ -51,6 +51,7 @@ pub(crate) fn gain_slopes<const N: usize>(
         if let Some(reason) = visited.problem(&open, &values) {
             return Err(ProjectFamilyError::OperatingPoint {
                 member: visited.member(project, &values),
+                numbers: visited.numbers(),
                 reason,
             });
         }

@@ -159,6 +159,11 @@ impl Visited {
         named.join(", ")
     }
 
+    /// The names of the parameters that determine the operating point.
+    pub(super) fn numbers(&self) -> Vec<String> {
+        self.movers.iter().filter_map(|&index| self.names.get(index).cloned()).collect()
+    }
+
     /// The plants of a family, and the corners of its box, that differ in the numbers that
     /// determine the operating point.
     fn places(&self, family: &UncertainFamily) -> Vec<Vec<f64>> {
@@ -201,6 +206,7 @@ pub(super) fn check(setup: &Setup<'_>, family: &UncertainFamily) -> Result<(), P
         if let Some(reason) = visited.problem(&open, &values) {
             return Err(ProjectFamilyError::OperatingPoint {
                 member: visited.member(project, &values),
+                numbers: visited.numbers(),
                 reason,
             });
         }

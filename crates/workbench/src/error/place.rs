@@ -30,6 +30,9 @@ pub(super) fn late(error: &CommandError, project: &Project) -> Vec<LateError> {
             RigError::Accumulator(empty) => vec![empty.at()],
             error => named(&error.to_string(), project),
         },
+        CommandError::Family(error @ ProjectFamilyError::OperatingPoint { numbers, .. }) => {
+            vec![unbalanced(error, numbers, project)]
+        }
         CommandError::Control(_)
         | CommandError::Family(_)
         | CommandError::Sizing(_)
@@ -45,6 +48,45 @@ pub(super) fn late(error: &CommandError, project: &Project) -> Vec<LateError> {
         _ => vec![],
     }
 }
+
+/// A plant that nothing balances, at the range that first names one of the numbers that determine
+/// it: the numbers of the operating point first.
+fn unbalanced(error: &ProjectFamilyError, numbers: &[String], project: &Project) -> LateError {
+    let ranged = |name: &&String| {
+        project.uncertain_numbers().iter().any(|one| one.name == **name && one.minimum < one.maximum)
+    };
+    let (of_point, others): (Vec<&String>, Vec<&String>) =
+        numbers.iter().filter(ranged).partition(|name| name.starts_with(OF_POINT));
+    let path = of_point.into_iter().chain(others).next().map(|name| range_of(name, project));
+    let help = match &path {
+        Some(path) if path.starts_with(REGION) => {
+            "narrow the region to the points that the rig can hold, raise `supply.pressure`, or enlarge the areas of the piston"
+        }
+        Some(_) => {
+            "narrow the range to the points that the rig can hold, raise `supply.pressure`, or enlarge the areas of the piston"
+        }
+        None => {
+            "state an operating point that the rig can hold, raise `supply.pressure`, or enlarge the areas of the piston"
+        }
+    };
+    let path = path.unwrap_or_else(|| "operating_point".to_string());
+    LateError { path, message: error.to_string(), help: help.to_string() }
+}
+
+/// The key at which the range of a number is written.
+fn range_of(name: &str, project: &Project) -> String {
+    let is_listed = project.uncertainty.iter().any(|declared| declared.name == name);
+    let is_direction = project.directions.iter().any(|one| one.name == name);
+    match name.strip_prefix(OF_POINT) {
+        _ if is_direction => "uncertainty_direction".to_string(),
+        Some(own) if !is_listed => format!("{REGION}.{own}"),
+        _ => format!("uncertainty.{name}"),
+    }
+}
+
+/// Names of the numbers of the operating point begin with this; the table of their region.
+const OF_POINT: &str = "operating_point.";
+const REGION: &str = "family.operating_region";
 
 /// An error at the scenario or the tables that its sentence names.
 fn named(message: &str, project: &Project) -> Vec<LateError> {
