@@ -27,6 +27,7 @@ mod stabilising;
 mod tried;
 
 pub use attempt::LoopDesignError;
+pub use binding::BINDING_DB;
 pub use candidates::gain_range;
 pub use diagnosis::{Constraint, ConstraintPlace, Finding, FindingSeverity, Party, SharedLimit, diagnose};
 pub use outcome::{DesignOutcome, design_after};

@@ -220,6 +220,10 @@ impl Attempt {
         &self.structure
     }
 
+    pub(super) fn options(&self) -> &DesignOptions {
+        &self.options
+    }
+
     pub(super) fn shaping(&self) -> &Shaping {
         &self.shaping
     }

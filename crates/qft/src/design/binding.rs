@@ -1,23 +1,40 @@
 //! What the specification costs: which limit binds the loop at each frequency.
 
+use super::Objective;
+use super::problem::DesignOptions;
 use super::result::{BindingLimit, Conflict};
 use crate::verification::{Audit, PlantPoint, WorstCase};
 use phea_dynamics::order::sort_by_number;
 
-/// For each design frequency the specification that leaves the loop the least room, in order of
-/// increasing frequency.
-pub(super) fn binding_limits(audit: &Audit) -> Vec<BindingLimit> {
-    let mut limits: Vec<BindingLimit> = Vec::new();
+/// A limit that leaves the loop less room than this, dB, leaves it none.
+pub const BINDING_DB: f64 = 0.05;
+
+/// The limits that leave the loop no room, at the design frequencies and where each specification
+/// is worst over its band, in order of increasing frequency: those within [`BINDING_DB`] of the
+/// limit less the reserve that the design keeps to it, and those beyond. A design for the best
+/// worst margin is bound by the limits within as much of that margin.
+pub(super) fn binding_limits(audit: &Audit, options: &DesignOptions) -> Vec<BindingLimit> {
+    let mut cases: Vec<(f64, BindingLimit)> = Vec::new();
     for (specification, finding) in audit.specifications.iter().enumerate() {
-        for case in &finding.at_design_frequencies {
-            let found = limits.iter_mut().find(|limit| limit.frequency_rad_per_s == case.frequency_rad_per_s);
-            match found {
-                Some(limit) if limit.margin_db <= case.margin_db => {}
-                Some(limit) => *limit = binding(specification, case),
-                None => limits.push(binding(specification, case)),
+        for case in finding.at_design_frequencies.iter().chain(&finding.worst) {
+            let is_known = cases.iter().any(|(_, one)| {
+                one.specification == specification && one.frequency_rad_per_s == case.frequency_rad_per_s
+            });
+            let reserve_db = finding.requirement.reserve_at_db(options.reserve_db, case.frequency_rad_per_s);
+            // a spread has two limits
+            let limits = if case.other.is_some() { 2.0 } else { 1.0 };
+            if !is_known {
+                cases.push((case.margin_db - limits * reserve_db, binding(specification, case)));
             }
         }
     }
+    let least_db = match options.objective {
+        Objective::BestWorstMargin => cases.iter().map(|(room_db, _)| *room_db).fold(f64::INFINITY, f64::min),
+        Objective::LeastHighFrequencyGain | Objective::LeastBandwidth => 0.0,
+    };
+    let is_bound = |room_db: f64| room_db <= least_db.max(0.0) + BINDING_DB;
+    let mut limits: Vec<BindingLimit> =
+        cases.into_iter().filter(|(room_db, _)| is_bound(*room_db)).map(|(_, limit)| limit).collect();
     sort_by_number(&mut limits, |limit| limit.frequency_rad_per_s);
     limits
 }

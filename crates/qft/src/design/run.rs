@@ -452,7 +452,7 @@ pub(super) fn design_of(
         name: None,
         starts: attempt.starts().cloned(),
         objective_db: rounds.last().map_or(f64::NAN, |round| round.objective_db),
-        binding: binding_limits(&audit),
+        binding: binding_limits(&audit, attempt.options()),
         audit,
         beside: attempt.beside().to_vec(),
         rounds: rounds.to_vec(),

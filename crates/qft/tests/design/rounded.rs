@@ -6,7 +6,7 @@ use phea_qft::design::quantization::{
     CoefficientFormat, Converter, Quantization, QuantizationError, rounded,
 };
 use phea_qft::design::{
-    Design, DesignOptions, DesignProblem, DesignStatus, LoopDesignError, Objective, design,
+    BindingLimit, Design, DesignOptions, DesignProblem, DesignStatus, LoopDesignError, Objective, design,
 };
 use phea_qft::family::{Family, Spacing};
 use phea_qft::loop_shaping::{Structure, StructureFactor};
@@ -80,6 +80,31 @@ fn coarse_coefficients_are_designed_for() {
         }
         assert!(design.objective_db > exact.objective_db, "{} {}", design.objective_db, exact.objective_db);
         assert!(design.objective_db < exact.objective_db + 6.0, "{:?}", design.rounds);
+    }
+}
+
+/// The limits that bind a design are those that it touches: at the design frequencies, and where a
+/// specification is worst between them.
+#[test]
+fn binding_limits_are_touched_ones() {
+    let problem = regulation();
+    for objective in [Objective::LeastHighFrequencyGain, Objective::BestWorstMargin] {
+        let options = DesignOptions { objective, ..least_gain(proportional_integral(), 1) };
+        let design = designed(&problem, options);
+        let worst = design.audit.specifications.iter().map(|finding| finding.worst.as_ref().unwrap());
+        let least = worst.clone().map(|case| case.margin_db).fold(f64::INFINITY, f64::min);
+        let base = if objective == Objective::BestWorstMargin { least.max(0.0) } else { 0.0 };
+        assert!(design.binding.iter().all(|one| one.margin_db <= base + 0.05), "{:?}", design.binding);
+        // each specification where it is worst, if it leaves no room there
+        for (index, case) in worst.enumerate().filter(|(_, case)| case.margin_db <= base + 0.05) {
+            let is_it = |one: &BindingLimit| {
+                (one.specification, one.frequency_rad_per_s) == (index, case.frequency_rad_per_s)
+            };
+            assert!(design.binding.iter().any(is_it), "{case:?} of {:?}", design.binding);
+        }
+        // the search ended at a limit, which lies between the design frequencies
+        let at_design = |one: &BindingLimit| [0.1, 1.0, 10.0].contains(&one.frequency_rad_per_s);
+        assert!(design.binding.iter().any(|one| !at_design(one)), "{:?}", design.binding);
     }
 }
 

@@ -1,7 +1,7 @@
 //! A design for people.
 
 use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
-use phea_qft::design::{DesignRound, DesignStatus, Objective, Starts};
+use phea_qft::design::{BINDING_DB, DesignRound, DesignStatus, Objective, Starts};
 use phea_qft::verification::{PlantPoint, Verdict};
 
 use super::compared;
@@ -133,10 +133,18 @@ pub(crate) fn costs(view: &ProjectDesign) -> Document {
             .iter()
             .map(|one| (one.specification, one.frequency_rad_per_s, one.margin_db, &one.plant)),
     );
+    let touched = match view.options.objective {
+        Objective::BestWorstMargin => "the worst margin, which is as large as the search made it",
+        _ if view.options.reserve_db > 0.0 => "its limit with the reserve",
+        _ => "its limit",
+    };
+    let touches = !binding.is_empty();
     out.section("What the specifications cost: the limits that the loop touches", binding);
-    out.explanation(
-        "The specification that leaves the designed loop least room at each design frequency, with the plant that sets it. Where the margin is almost zero the limit costs: relaxed there it would allow a controller of less gain; relaxing any other gains nothing. The head of the chapter names where each specification is worst over its whole band, which may lie between these frequencies.",
-    );
+    if touches {
+        out.explanation(format!(
+            "The specifications that come within {BINDING_DB} dB of {touched}, at the design frequencies and where each is worst over its whole band, with the plant that sets it. These cost: relaxed there they would allow a better controller; relaxing any other gains nothing."
+        ));
+    }
     out.heading("Rounds of search and audit");
     out.explanation(
         "A search over some plants and frequencies, then an audit over the whole family and band, whose worst plants and frequencies the next search includes, until both agree. The same seed finds the same controller.",

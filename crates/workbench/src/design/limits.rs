@@ -1,6 +1,7 @@
 //! What may be built: the limits of a design beyond its specifications, with what it reaches.
 
 use phea_engineering::design::{DesignLimit, DesignLimitKind, LimitOrigin, limit_key, limit_words};
+use phea_qft::design::BINDING_DB;
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
 use super::ProjectDesign;
@@ -8,9 +9,6 @@ use crate::answer::{Object, significant};
 use crate::audit::PrefilterGain;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
-
-/// A margin below which a limit leaves the search no room, dB.
-const BINDS_DB: f64 = 0.05;
 
 /// A table of the limits; empty where there are none.
 pub(crate) fn document(view: &ProjectDesign) -> Document {
@@ -78,7 +76,7 @@ fn binds(view: &ProjectDesign, limit: &DesignLimit) -> Option<bool> {
         let margin_s = view.designed.figures.delay_margin_s?;
         return Some(margin_s <= (1.0 + DELAY_NEAR) * limit.value);
     }
-    Some(finding(view, limit.kind)?.worst.as_ref()?.margin_db < BINDS_DB)
+    Some(finding(view, limit.kind)?.worst.as_ref()?.margin_db < BINDING_DB)
 }
 
 /// Share of a required delay margin within which it binds.
