@@ -378,8 +378,8 @@ fn the_parquet_table_says_what_the_text_says() {
     assert!(page.text.contains(",refused,"));
 }
 
-/// Quantiles are of the runs that have a number; those that do not settle within their window are counted where the
-/// quantiles stand.
+/// Quantiles are of the runs that have a number; those that do not settle within their window are
+/// counted where the quantiles stand.
 #[test]
 fn runs_that_do_not_settle_are_told_beside_the_quantiles() {
     let loaded = load(&SHORT);
