@@ -112,12 +112,13 @@ pub fn worst_at_design(finding: &SpecificationFinding) -> Option<&WorstCase> {
     finding.at_design_frequencies.iter().min_by(|a, b| a.margin_db.total_cmp(&b.margin_db))
 }
 
-/// One sentence on a specification: what it requires, whether it holds, and where it is worst.
+/// One sentence on a specification: what it requires, whether it holds, and where it is worst; of a
+/// stable family with the tolerance within which a margin counts as met.
 pub fn finding_sentence(
     name: &str,
     finding: &SpecificationFinding,
     reached: Option<&ReachedLimit>,
-    stable: bool,
+    stable_within_db: Option<f64>,
 ) -> String {
     let Some(worst) = &finding.worst else {
         return match finding.verdict {
@@ -132,7 +133,7 @@ pub fn finding_sentence(
     match finding.verdict {
         Verdict::Violated => {
             let hidden = match worst_at_design(finding) {
-                Some(design) if stable && design.margin_db >= 0.0 => {
+                Some(design) if stable_within_db.is_some_and(|room| design.margin_db >= -room) => {
                     "; at the design frequencies alone it would have passed"
                 }
                 _ => "",

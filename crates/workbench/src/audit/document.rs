@@ -55,7 +55,7 @@ pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
     let findings = view.audit.specifications.iter().enumerate();
     sentences.extend(findings.map(|(index, finding)| {
         let reached = view.reached.get(index).and_then(Option::as_ref);
-        finding_sentence(&view.numbered(index), finding, reached, stable)
+        finding_sentence(&view.numbered(index), finding, reached, stable.then_some(view.audit.tolerance_db))
     }));
     sentences.extend(
         view.in_time
