@@ -84,10 +84,9 @@ fn of_structures(view: &ProjectDesign) -> Object {
     let design = &view.design;
     let name = design.name.map(|name| structure_key(Some(name)));
     let gap = view.manual.as_ref().err().map_or(String::new(), ToString::to_string);
-    let manual = view.manual.as_ref().map(manual::object).map_err(|_| gap.as_str());
     Object::new()
         .with("structure", structure(&design.structure).maybe("name", name))
-        .told("manual", manual)
+        .known("manual", view.manual.as_ref().ok().map(manual::object), &gap)
         .with("structures", structures::rows(view))
         .maybe("earned_per_pole_db", structures::earned_per_pole_db(view))
 }
