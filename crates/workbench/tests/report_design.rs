@@ -124,13 +124,12 @@ fn both_controllers_stand_side_by_side_as_their_audits_found_them() {
         assert!(report.html.contains(&format!("<b>{}.</b>", figure.title)), "{}", figure.name);
     }
     assert!(report.tables.iter().any(|file| file.name == "designed.toml"));
-    // every design frequency has its limit, once, with the plant in words
+    // every limit that the loop touches, once, with the plant in words
     let (_, cost) = chapter.split_once("What the specifications cost").unwrap();
     let (cost, _) = cost.split_once("Rounds of search and audit").unwrap();
-    for frequency in ["0.1", "1", "4", "10", "100"] {
-        assert_eq!(cost.matches(&format!("<td class=\"number\">{frequency}</td><td")).count(), 1, "{cost}");
-    }
-    assert_eq!((cost.matches(">k<").count(), cost.matches("<tr>").count()), (1, 6), "{cost}");
+    let row = |frequency: &str| cost.matches(&format!("<td class=\"number\">{frequency}</td><td")).count();
+    assert_eq!(["0.1", "1", "4", "10", "100"].map(row), [1, 1, 1, 0, 0], "{cost}");
+    assert_eq!((cost.matches(">k<").count(), cost.matches("<tr>").count()), (1, 4), "{cost}");
 }
 
 /// A sampled loop shows its law as it runs, and next to it the design that was made without
