@@ -56,3 +56,24 @@ fn a_command_that_nothing_limits_is_told() {
     assert_eq!(command["first_time_s"], Value::from(2.0));
     assert!((40.0..41.0).contains(&command["peak"].as_f64().unwrap()), "{command}");
 }
+
+/// A pump of less flow than the valve takes: its relief valve is shut at 205 bar, and the supply
+/// falls below while the rig moves; with enough flow nothing is told.
+#[test]
+fn a_pump_that_cannot_follow_is_told() {
+    let rig = include_str!("../../../examples/structural/rig.toml");
+    let rig = &rig[..rig.find("[[scenario]]").unwrap()];
+    let open = "[[scenario]]\nname = \"open\"\nduration = \"1 s\"\ncommand = [{ at = \"0.1 s\", voltage = \"8 V\" }]\n";
+    let of = |flow: &str| exceeded(&format!("{rig}{open}"), &[&format!("supply.flow={flow} L/min")]);
+    let pump = |found: &[Value]| found.iter().find(|one| one["what"] == "pump_flow").cloned();
+    let (found, text) = of("4");
+    let limit = pump(&found).unwrap();
+    assert_eq!(limit["limit"], 205e5);
+    assert!(limit["peak"].as_f64().unwrap() < 200e5, "{limit}");
+    assert!(limit["first_time_s"].as_f64().unwrap() > 0.1, "{limit}");
+    assert!(
+        text.contains("on the pump delivers less than the rig takes: its relief valve is shut below"),
+        "{text}"
+    );
+    assert_eq!(pump(&of("400").0), None);
+}

@@ -8,7 +8,7 @@ use phea_hydraulics::actuator::Actuator;
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::line::StiffeningMember;
-use phea_hydraulics::machine::{LoadModel, Machine, MachineOptions};
+use phea_hydraulics::machine::{LoadModel, Machine, MachineOptions, PowerUnit};
 use phea_hydraulics::servovalve::SpoolImperfection;
 use phea_machine::{Control, Sampled};
 
@@ -36,6 +36,8 @@ pub struct ControlledMachine {
     pub expansion_stated_at: [Option<f64>; 2],
     /// The capacity of the force sensor, N, if stated.
     pub force_capacity_n: Option<f64>,
+    /// Where the relief valve of a limited pump is shut, Pa; `None` for a constant pressure.
+    pub relief_shut_pa: Option<f64>,
     /// Working temperatures of the gas at chambers A and B in degC, if stated.
     pub gas_wall_celsius: [Option<f64>; 2],
     /// What lines A and B bear.
@@ -119,6 +121,7 @@ impl ControlledMachine {
             feed_forward,
             expansion_stated_at: expansion_stated_at(project),
             force_capacity_n: capacity(project),
+            relief_shut_pa: relief_shut_pa(project),
             gas_wall_celsius: gas_wall_celsius(project),
             line_limits: LineLimits::of(project),
             vapour_pressure_pa: project
@@ -149,6 +152,15 @@ fn rig_and_machine(
     let options = MachineOptions { external_force, moving_setting, ..options(setup.project, &rig.actuator)? };
     let machine = Machine::new(&rig.actuator, &options).map_err(SimulateError::Machine)?;
     Ok((rig.clone(), Sensed::new(machine, &setup.sensor)?))
+}
+
+/// Where the relief valve of a limited pump is shut, Pa.
+fn relief_shut_pa(project: &Project) -> Option<f64> {
+    let declared = project.actuator.as_ref()?;
+    match power_unit(declared, &Numbers::declared()) {
+        PowerUnit::PumpLimited(unit) => Some(declared.supply.pressure - unit.relief_override),
+        PowerUnit::Constant => None,
+    }
 }
 
 fn capacity(project: &Project) -> Option<f64> {

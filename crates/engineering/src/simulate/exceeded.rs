@@ -90,6 +90,9 @@ pub enum RigLimit {
     BurstPressure,
     /// The Reynolds number of a line whose friction is that of laminar flow.
     LaminarFlow,
+    /// The pressure at which the relief valve of a limited pump is shut: below it the rig takes
+    /// more than the pump delivers.
+    PumpFlow,
 }
 
 impl RigLimit {
@@ -103,6 +106,7 @@ impl RigLimit {
             RigLimit::WorkingPressure => "working_pressure",
             RigLimit::BurstPressure => "burst_pressure",
             RigLimit::LaminarFlow => "laminar_flow",
+            RigLimit::PumpFlow => "pump_flow",
         }
     }
 }
@@ -152,6 +156,8 @@ pub(super) struct LimitWatch {
     sensor: Option<(WatchedLimit, SensedForce)>,
     stall: WatchedLimit,
     command: WatchedLimit,
+    /// Of a limited pump.
+    pump: Option<WatchedLimit>,
 }
 
 /// The force through the sensor, wherever the measured one is taken from.
@@ -185,12 +191,15 @@ impl LimitWatch {
             sensor: bench.force_capacity_n.map(|capacity| (of_sensor(capacity), sensed)),
             stall: WatchedLimit::new(RigLimit::StallForce, cylinder.stall_forces(supply)),
             command: WatchedLimit::new(RigLimit::NominalVoltage, [-voltage, voltage]),
+            pump: bench
+                .relief_shut_pa
+                .map(|shut| WatchedLimit::new(RigLimit::PumpFlow, [shut, f64::INFINITY])),
         }
     }
 
     /// Whether it needs the signals of the machine.
     pub(super) fn wants_signals(&self) -> bool {
-        self.sensor.is_some()
+        self.sensor.is_some() || self.pump.is_some()
     }
 
     /// Takes what the loop asks for and gives out at a time: reference in N, if there is one, and
@@ -211,19 +220,25 @@ impl LimitWatch {
             };
             limit.take(time_s, through);
         }
+        if let Some(limit) = &mut self.pump {
+            limit.take(time_s, signals[SUPPLY_PLACE]);
+        }
     }
 
     /// The limits that were exceeded.
     pub(super) fn finish(self) -> Vec<Exceeded> {
         let sensor = self.sensor.and_then(|(limit, _)| limit.found);
-        [sensor, self.stall.found, self.command.found].into_iter().flatten().collect()
+        let pump = self.pump.and_then(|limit| limit.found);
+        [sensor, self.stall.found, self.command.found, pump].into_iter().flatten().collect()
     }
 }
 
-/// Places of the measured force and of the sensor's deflection in [`SIGNALS`].
+/// Places of the measured force, the supply's pressure and the sensor's deflection in [`SIGNALS`].
 const FORCE_PLACE: usize = 0;
+const SUPPLY_PLACE: usize = 4;
 const DEFLECTION_PLACE: usize = 7;
 const _: () = assert!(matches!(SIGNALS[FORCE_PLACE].as_bytes(), b"force_n"));
+const _: () = assert!(matches!(SIGNALS[SUPPLY_PLACE].as_bytes(), b"supply_pressure_pa"));
 const _: () = assert!(matches!(SIGNALS[DEFLECTION_PLACE].as_bytes(), b"deflection_m"));
 
 impl WatchedLimit {
@@ -302,9 +317,10 @@ pub fn words(exceeded: &Exceeded, units: Units) -> String {
     let in_unit = |value: f64| match exceeded.limit {
         RigLimit::SensorCapacity | RigLimit::StallForce => units.force.short(value, 4),
         RigLimit::NominalVoltage => display(value, &VOLTAGE, 4),
-        RigLimit::VapourPressure | RigLimit::WorkingPressure | RigLimit::BurstPressure => {
-            units.pressure.short(value, 4)
-        }
+        RigLimit::VapourPressure
+        | RigLimit::WorkingPressure
+        | RigLimit::BurstPressure
+        | RigLimit::PumpFlow => units.pressure.short(value, 4),
         RigLimit::LaminarFlow => significant(value.abs(), 4),
     };
     let [peak, limit] = [exceeded.peak, exceeded.limit_value].map(in_unit);
@@ -344,6 +360,9 @@ pub fn words(exceeded: &Exceeded, units: Units) -> String {
         RigLimit::WorkingPressure | RigLimit::BurstPressure => format!(
             "from {first} s on the pressure is above the {} of {limit}: {place} it comes to {peak} at {at} s",
             exceeded.limit.word().replace('_', " ")
+        ),
+        RigLimit::PumpFlow => format!(
+            "from {first} s on the pump delivers less than the rig takes: its relief valve is shut below {limit}, and the supply falls to {peak} at {at} s"
         ),
         RigLimit::LaminarFlow => format!(
             "from {first} s on the flow is turbulent where laminar friction is computed: {place} the Reynolds number comes to {peak} at \
