@@ -327,8 +327,8 @@ impl ProjectAudit {
             PlantNames::Measured(names) => format!("Family: {}.", counted(names.len(), "measured response")),
             PlantNames::Parameters(names) if names.is_empty() => format!("Family: one plant{moving}."),
             PlantNames::Parameters(names) if self.whole_box => format!(
-                "Family: {} plants of a box over {}, and everything between them{moving}.",
-                self.members,
+                "Family: {} of a box over {}, and everything between them{moving}.",
+                counted(self.members, "plant"),
                 counted(names.len(), "uncertain parameter")
             ),
             PlantNames::Parameters(names) => {

@@ -293,7 +293,7 @@ impl ProjectDesign {
             && self.keeps_its_limits()
     }
 
-    /// Whether every limit is kept by which a design is judged.
+    /// True where every limit is kept by which a design is judged.
     fn keeps_its_limits(&self) -> bool {
         self.limit_findings.iter().all(|(kind, finding)| kind.is_led_to() || finding.verdict == Verdict::Met)
     }

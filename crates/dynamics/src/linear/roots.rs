@@ -82,7 +82,7 @@ fn iterate(polynomial: &Polynomial) -> Result<Vec<Complex64>, LinearError> {
 /// All roots, sorted and in exact conjugate pairs, from points near them, such as the roots of a
 /// polynomial with nearly the same coefficients; `None` where they are not found from there.
 ///
-/// Of a pair only the member in the upper half plane moves, the other with it.
+/// A pair moves by its root in the upper half plane; the other one is its conjugate.
 pub(crate) fn near(polynomial: &Polynomial, guesses: &[Complex64]) -> Option<Vec<Complex64>> {
     let coefficients = polynomial.coefficients();
     let at_origin = coefficients.iter().rev().take_while(|&&c| c == 0.0).count();

@@ -283,7 +283,7 @@ pub struct UnfollowedKinks {
     pub cause: UnfollowedCause,
 }
 
-/// What keeps a deviation from being carried along a run.
+/// The reason why a deviation is not carried along a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnfollowedCause {
     /// A controller acts at samples.

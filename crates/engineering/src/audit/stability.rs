@@ -71,6 +71,7 @@ pub fn stability_reason(stability: &StabilityFinding) -> String {
             let stable = match (members, corners + between) {
                 (1, 0) => format!("the family is one plant, stable {way}"),
                 (_, 0) => format!("all {members} plants are stable {way}"),
+                (1, _) => format!("the member and {corners} corners of the box{folding} are stable {way}"),
                 _ => format!(
                     "all {members} members and {corners} corners of the box{folding} are stable {way}"
                 ),

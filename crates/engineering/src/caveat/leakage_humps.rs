@@ -26,8 +26,8 @@ pub fn leakage_humps(setup: &Setup<'_>) -> Option<String> {
     ))
 }
 
-/// Where the leakage of a valve has the lower of two maxima, its value there, and the least between
-/// both.
+/// The command of the lower of two maxima of a valve's leakage, the leakage there, and the least
+/// between both.
 fn humps(valve: &Servovalve, supply: &Supply) -> Option<[f64; 3]> {
     let widest = (WIDTHS * valve.nominal_voltage / valve.leakage_shape).min(valve.nominal_voltage);
     let openings: Vec<f64> =

@@ -1,4 +1,4 @@
-//! Whether the specifications ask for feedback at all.
+//! A search for specifications that ask for feedback at all.
 //!
 //! ```text
 //! largest |P| / least |P| <= upper/lower      at every design frequency: F alone could keep the limits, for any loop however slow

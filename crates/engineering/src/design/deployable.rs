@@ -65,7 +65,7 @@ pub struct DesignLimit {
     pub specification: Option<Specification>,
 }
 
-/// Whether anything is required of what follows the reference.
+/// True where something is required of the response to the reference.
 fn follows_reference(given: &RobustProblem) -> bool {
     given.specifications.iter().any(|one| one.requirement.is_tracking()) || !given.in_time.is_empty()
 }

@@ -71,8 +71,8 @@ fn excess(held: &HeldRequirement) -> f64 {
     held.wish.excess(&held.reached)
 }
 
-/// Whether one design is as good as another over frequency, and its worst run nearer to what is
-/// required.
+/// True where one design is as good as another over frequency, and its worst run is nearer to what
+/// is required.
 fn is_better(one: &ProjectDesign, other: &ProjectDesign) -> bool {
     let worst = |told: &ProjectDesign| {
         let runs = told.trial.iter().flat_map(|trial| &trial.runs);

@@ -74,7 +74,7 @@ pub fn design_options(
     })
 }
 
-/// What a further pole must gain, dB.
+/// The gain that a further pole must bring, dB.
 fn earned_per_pole_db(design: &DeclaredDesign) -> f64 {
     20.0 * portable::log10(design.earned_per_pole.unwrap_or(EARNED_PER_POLE))
 }

@@ -47,8 +47,8 @@ pub(super) fn found(
     Ok((aim, run, told.with_shorter(tried)))
 }
 
-/// What makes one of several designs the better one, the least the best: its verdict over frequency
-/// with a prefilter that keeps its gain, then how far its steps are from what is required.
+/// The rank of a design among several, the least the best: its verdict over frequency with a
+/// prefilter that keeps its gain, then the distance of its steps from what is required.
 pub(super) fn rank(told: &ProjectDesign) -> (u8, f64) {
     let verdict = match told.designed.view.audit.verdict {
         Verdict::Met

@@ -49,7 +49,7 @@ pub struct HeldModes {
     feedthrough: f64,
     poles: Vec<Complex64>,
     sample_time_s: f64,
-    /// Whether a fraction of a sample is left of the dead time, which adds a pole at z = 0.
+    /// True where a fraction of a sample is left of the dead time, which adds a pole at z = 0.
     has_fraction: bool,
     whole_s: f64,
 }
@@ -141,7 +141,7 @@ impl HeldModes {
     }
 }
 
-/// Whether no pole is so close to another that their modes nearly cancel.
+/// True where no pole is so close to another that their modes nearly cancel.
 fn are_apart(poles: &[Complex64]) -> bool {
     poles.iter().enumerate().all(|(index, one)| {
         let apart = |other: &Complex64| {
