@@ -72,6 +72,8 @@ const ACCURACY_OF_RESPONSE_PERCENT: f64 = 0.1;
 /// Duration of a step, in settling times that are required, and the points of a continuous one.
 const SETTLING_TIMES: f64 = 10.0;
 const POINTS: usize = 2000;
+/// The first part of a continuous one has as many points by itself, in settling times.
+const SOON: f64 = 2.0;
 /// A step that has not settled in this share of it is computed for longer, by this factor and so
 /// often: every plant is stable.
 const SETTLED_BY: f64 = 0.5;
@@ -82,9 +84,12 @@ const EXTENSIONS: usize = 3;
 const MEMBERS: usize = 150;
 const MEMBERS_OF_RESPONSES: usize = 12;
 const CORNERS_OF_RESPONSES: usize = 16;
-/// First step of the search between the members, as a share of the box; it is halved this often.
+/// Plants from which each property is followed between the members; first and last step, as shares
+/// of the box; most plants that are visited.
+const STARTS: usize = 3;
 const FIRST_SHARE: f64 = 0.25;
-const HALVINGS: usize = 3;
+const LEAST_SHARE: f64 = 0.01;
+const VISITED_MAXIMUM: usize = 600;
 
 impl TimeFinding {
     /// Whether a step misses what is part of the verdict.
@@ -150,16 +155,15 @@ fn outcome(
     if audit.stability.verdict != Verdict::Met {
         return Err(Unexamined::NotStable);
     }
-    let mut search =
-        StepSearch { problem, family, wish: requirement.wish, plants: 0, worst: [None, None, None] };
+    let mut search = StepSearch { problem, family, wish: requirement.wish, visited: vec![] };
     for values in visited(family, audit) {
         search.visit(&values).map_err(Unexamined::Step)?;
     }
     if family.extent() == Extent::Box && family.plant().is_rational() {
         search.between().map_err(Unexamined::Step)?;
     }
-    let StepSearch { plants, worst: [overshoot, settling, rise], .. } = search;
-    Ok(TimeOutcome::Searched { plants, overshoot, settling, rise })
+    let [overshoot, settling, rise] = [0, 1, 2].map(|property| search.worst(property));
+    Ok(TimeOutcome::Searched { plants: search.visited.len(), overshoot, settling, rise })
 }
 
 /// The nominal plant, members spread over the family, and the plants that the audit found worst.
@@ -192,13 +196,12 @@ fn worst_plants(finding: &SpecificationFinding) -> impl Iterator<Item = &PlantPo
     cases.flat_map(|case| std::iter::once(&case.plant).chain(&case.other))
 }
 
-/// Steps of plants, and the worst of each property so far: overshoot, settling time, rise time.
+/// Steps of plants: overshoot in percent, settling time and rise time in s, each computed once.
 struct StepSearch<'a> {
     problem: &'a RobustProblem,
     family: &'a UncertainFamily,
     wish: TrackingWish,
-    plants: usize,
-    worst: [Option<WorstStep>; 3],
+    visited: Vec<(Vec<f64>, [f64; 3])>,
 }
 
 impl StepSearch<'_> {
@@ -224,59 +227,91 @@ impl StepSearch<'_> {
             metrics = within(duration_s)?;
             overshoot_percent = overshoot_percent.max(metrics.overshoot_percent);
         }
-        let times_s = [metrics.settling.time_s(), metrics.rise_time_10_90_s];
+        let mut times_s = [metrics.settling.time_s(), metrics.rise_time_10_90_s];
+        if matches!(member, Member::Continuous { .. }) {
+            // the peak of a fast swing lies between the points of a long response
+            let soon_s = SOON * self.wish.horizon_s;
+            let soon = within(soon_s)?;
+            overshoot_percent = overshoot_percent.max(soon.overshoot_percent);
+            let finer = [soon.settling.time_s(), soon.rise_time_10_90_s];
+            for (time_s, finer) in times_s.iter_mut().zip(finer) {
+                *time_s = time_s.filter(|known| *known > soon_s).or(finer).or(*time_s);
+            }
+        }
         let [settling_s, rise_s] = times_s.map(|time_s| time_s.unwrap_or(f64::INFINITY));
         Ok([overshoot_percent, settling_s, rise_s])
     }
 
-    /// Takes a plant in where it is the worst so far of a property.
-    fn visit(&mut self, values: &[f64]) -> Result<(), TimeResponseError> {
+    /// The same, kept.
+    fn visit(&mut self, values: &[f64]) -> Result<[f64; 3], TimeResponseError> {
+        if let Some((_, known)) = self.visited.iter().find(|(known, _)| known == values) {
+            return Ok(*known);
+        }
         let found = self.step(values)?;
-        self.plants += 1;
+        self.visited.push((values.to_vec(), found));
+        Ok(found)
+    }
+
+    /// What is required of each property.
+    fn required(&self) -> [Option<f64>; 3] {
         let room =
             if self.family.plant().is_rational() { ACCURACY_PERCENT } else { ACCURACY_OF_RESPONSE_PERCENT };
         let TrackingWish { overshoot_percent, settling_time_s, rise_time_s, .. } = self.wish;
-        let most = [overshoot_percent.map(|most| most.max(room)), settling_time_s, rise_time_s];
-        for (index, (value, most)) in found.into_iter().zip(most).enumerate() {
-            let Some(most) = most else { continue };
-            let known = self.worst[index].as_ref().map_or(f64::NEG_INFINITY, |worst| worst.value);
-            if value > known {
-                let plant = PlantPoint::Parameters(values.to_vec());
-                self.worst[index] = Some(WorstStep { value, is_satisfied: value <= most, plant });
-            }
-        }
-        Ok(())
+        [overshoot_percent.map(|most| most.max(room)), settling_time_s, rise_time_s]
     }
 
-    /// Follows each property from its worst plant along the coordinates of the box, as long as it
-    /// becomes worse.
+    /// The worst of a property that is required.
+    fn worst(&self, property: usize) -> Option<WorstStep> {
+        let most = self.required().get(property).copied().flatten()?;
+        let (values, found) = self.worst_first(property).next()?;
+        let value = found[property];
+        let plant = PlantPoint::Parameters(values.clone());
+        Some(WorstStep { value, is_satisfied: value <= most, plant })
+    }
+
+    fn worst_first(&self, property: usize) -> impl Iterator<Item = &(Vec<f64>, [f64; 3])> {
+        let mut sorted: Vec<&(Vec<f64>, [f64; 3])> = self.visited.iter().collect();
+        sorted.sort_by(|(_, one), (_, other)| other[property].total_cmp(&one[property]));
+        sorted.into_iter()
+    }
+
+    /// Follows each property that is required from its worst plants along the coordinates of the
+    /// box, as long as it becomes worse.
     fn between(&mut self) -> Result<(), TimeResponseError> {
-        for index in 0..self.worst.len() {
-            let mut share = FIRST_SHARE;
-            for _ in 0..HALVINGS {
-                self.around(index, share)?;
-                share *= 0.5;
+        for property in 0..self.required().len() {
+            if self.required()[property].is_none() {
+                continue;
+            }
+            let starts: Vec<Vec<f64>> =
+                self.worst_first(property).take(STARTS).map(|(values, _)| values.clone()).collect();
+            for start in starts {
+                self.follow(property, start)?;
             }
         }
         Ok(())
     }
 
-    fn around(&mut self, index: usize, share: f64) -> Result<(), TimeResponseError> {
-        for coordinate in 0..self.family.coordinates().len() {
-            for step in [share, -share] {
-                let Some(PlantPoint::Parameters(values)) =
-                    self.worst[index].as_ref().map(|worst| &worst.plant)
-                else {
-                    return Ok(());
-                };
-                let mut shares = self.family.shares(values);
-                let Some(own) = shares.get_mut(coordinate) else { continue };
-                let moved = (*own + step).clamp(0.0, 1.0);
-                if moved == *own {
-                    continue;
+    /// Moves from a plant to a worse one beside it, one coordinate after the other, and in smaller
+    /// steps once none is worse.
+    fn follow(&mut self, property: usize, start: Vec<f64>) -> Result<(), TimeResponseError> {
+        let mut worst = self.visit(&start)?[property];
+        let mut shares = self.family.shares(&start);
+        let mut step = FIRST_SHARE;
+        while step >= LEAST_SHARE && worst.is_finite() && self.visited.len() < VISITED_MAXIMUM {
+            let before = worst;
+            for coordinate in 0..shares.len() {
+                for moved in [step, -step] {
+                    let mut beside = shares.clone();
+                    beside[coordinate] = (beside[coordinate] + moved).clamp(0.0, 1.0);
+                    let value = self.visit(&self.family.values(&beside))?[property];
+                    if value > worst {
+                        (worst, shares) = (value, beside);
+                        break;
+                    }
                 }
-                *own = moved;
-                self.visit(&self.family.values(&shares))?;
+            }
+            if worst <= before {
+                step *= 0.5;
             }
         }
         Ok(())
