@@ -11,8 +11,8 @@ use phea_dynamics::watch::{Stopped, Watch, part};
 use crate::kept_plants::KeptPlants;
 use crate::stability::{FamilyStability, StabilityAudit};
 use crate::verification::{
-    Audit, AuditProblem, Evidence, PlantPoint, Remark, SpecificationFinding, StabilityFinding, Verdict,
-    audit_among,
+    Audit, AuditEffort, AuditProblem, Evidence, PlantPoint, Remark, SpecificationFinding, StabilityFinding,
+    Verdict, audit_among,
 };
 
 /// Name of the stage in progress reports.
@@ -65,29 +65,31 @@ const STAGE: &str = "auditing";
 /// # }
 /// ```
 pub fn audit(problem: &AuditProblem<'_>, watch: Watch<'_>) -> Result<Audit, Stopped> {
-    audit_with(problem, &KeptPlants::default(), watch)
+    audit_with(problem, (&KeptPlants::default(), AuditEffort::Complete), watch).map(|(audit, _)| audit)
 }
 
 /// The same, given plants of this family that were already sampled in the same loop (with any
-/// controller), so that none is sampled twice.
+/// controller), so that none is sampled twice, and the part of the specifications' audit that is
+/// done. Also returns whether it is complete.
 pub(crate) fn audit_with(
     problem: &AuditProblem<'_>,
-    kept: &KeptPlants,
+    (kept, effort): (&KeptPlants, AuditEffort),
     watch: Watch<'_>,
-) -> Result<Audit, Stopped> {
+) -> Result<(Audit, bool), Stopped> {
     let mut stability = StabilityAudit::new(problem.family, problem.compensation, kept);
     stability.look(&mut part(watch, STAGE, [0.0, 0.4]))?;
     let found = stability.result();
     if is_unstable(&found.finding) {
         // an unstable loop has no margins to look for
-        return Ok(joined(problem, found, problem.unexamined()));
+        return Ok((joined(problem, found, problem.unexamined()), true));
     }
     let between = if stability.searched() { stability.plants_between() } else { vec![] };
-    let (specifications, _) = audit_among(problem, &between, kept, &mut part(watch, STAGE, [0.4, 0.98]))?;
+    let (specifications, work) =
+        audit_among(problem, &between, (kept, effort), &mut part(watch, STAGE, [0.4, 0.98]))?;
     if stability.searched() {
         stability.look_at(&suspects(&specifications), &mut part(watch, STAGE, [0.98, 1.0]))?;
     }
-    Ok(joined(problem, stability.result(), specifications))
+    Ok((joined(problem, stability.result(), specifications), work.skipped == 0))
 }
 
 /// One verdict of both.

@@ -14,7 +14,7 @@ mod search;
 mod start;
 
 pub(crate) use asymptote::{AxisEnd, tracking_ratio};
-pub(crate) use audit::audit_among;
+pub(crate) use audit::{AuditEffort, audit_among};
 pub use audit::{AuditProblem, AuditWork, TOLERANCE_DB, TrackingJudgement, audit_specifications};
 
 pub use crate::stability::{

@@ -29,7 +29,7 @@ use crate::loop_shaping::{
 };
 use crate::prefilter::{FittedPrefilter, PrefilterBand, PrefilterOptions, PrefilterOutcome, fit_prefilter};
 use crate::specification::Specification;
-use crate::verification::{Audit, AuditProblem, TrackingJudgement, audit_among};
+use crate::verification::{Audit, AuditEffort, AuditProblem, TrackingJudgement, audit_among};
 
 /// How far beyond the tolerance the worst margin of the samples may lie, the reserve taken off,
 /// before a structure counts as unable to meet the specifications, dB.
@@ -357,8 +357,9 @@ impl Attempt {
         }
     }
 
-    /// Searches between the samples, over the whole box, starting from the plants of the samples;
-    /// returns whether counterexamples were added.
+    /// Examines the plants of the samples between their frequencies, and the corners of the box;
+    /// what lies between the plants is left to the audit. Returns whether counterexamples were
+    /// added.
     fn learns_between_samples(&mut self, kept: &KeptPlants, watch: Watch<'_>) -> Result<bool, Leave> {
         let samples = self.shaping.samples();
         let problem = AuditProblem {
@@ -368,7 +369,8 @@ impl Attempt {
             tracking: self.shaping.tracking(),
             tolerance_db: self.options.tolerance_db,
         };
-        let (findings, _) = audit_among(&problem, &[], kept, &mut part(watch, CHECKING, WHOLE))?;
+        let known = (kept, AuditEffort::KnownPlants);
+        let (findings, _) = audit_among(&problem, &[], known, &mut part(watch, CHECKING, WHOLE))?;
         let judgement = self.judgement();
         let new = self.new_margins(&judgement);
         let examples = counterexamples(&findings, new, self.shaping.tracking());

@@ -44,6 +44,20 @@ pub struct AuditWork {
     pub sampled: u64,
     /// Number of plants of a sampled loop that searches tried.
     pub tried: u64,
+    /// Searches that were left out, because a plant was known to violate the specification.
+    pub(crate) skipped: u64,
+}
+
+/// The part of an audit that is done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum AuditEffort {
+    /// All of it.
+    Complete,
+    /// No search of the box for a specification of which a margin below this is known, dB.
+    UntilBelow(f64),
+    /// The plants of the family and the corners of its box at every frequency, without a search
+    /// between them.
+    KnownPlants,
 }
 
 /// What is audited, and how.
@@ -136,7 +150,7 @@ pub fn audit_specifications(
     problem: &AuditProblem<'_>,
     watch: Watch<'_>,
 ) -> Result<(Vec<SpecificationFinding>, AuditWork), Stopped> {
-    audit_among(problem, &[], &KeptPlants::default(), watch)
+    audit_among(problem, &[], (&KeptPlants::default(), AuditEffort::Complete), watch)
 }
 
 /// The same, with further plants that another audit of the same box found worth examining, and with
@@ -144,7 +158,7 @@ pub fn audit_specifications(
 pub(crate) fn audit_among(
     problem: &AuditProblem<'_>,
     others: &[Vec<f64>],
-    kept: &KeptPlants,
+    (kept, effort): (&KeptPlants, AuditEffort),
     watch: Watch<'_>,
 ) -> Result<(Vec<SpecificationFinding>, AuditWork), Stopped> {
     let before = kept.work();
@@ -153,12 +167,14 @@ pub(crate) fn audit_among(
     audit.look(&mut part(watch, STAGE, [0.2, 0.6]))?;
     audit.polish(&mut part(watch, STAGE, [0.6, 0.7]))?;
     audit.look_at_worst(&mut part(watch, STAGE, [0.7, 0.75]))?;
-    audit.search(&mut part(watch, STAGE, [0.75, 0.95]))?;
+    audit.search(effort, &mut part(watch, STAGE, [0.75, 0.95]))?;
     let findings = audit.findings(&mut part(watch, STAGE, [0.95, 1.0]))?;
     let (plants, searches) = (audit.plants.len() as u64, audit.searches as u64);
+    let skipped = audit.skipped as u64;
     let after = kept.work();
     let [sampled, tried] = [0, 1].map(|index: usize| (after[index] - before[index]) as u64);
-    Ok((findings, AuditWork { plants, searches, responses: audit.evaluator.responses(), sampled, tried }))
+    let responses = audit.evaluator.responses();
+    Ok((findings, AuditWork { plants, searches, responses, sampled, tried, skipped }))
 }
 
 /// Name of the stage in progress reports.
@@ -179,6 +195,7 @@ struct SpecificationAudit<'a> {
     /// For each specification: a frequency at which a plant found in a search has no margin.
     undefined: Vec<Option<f64>>,
     searches: usize,
+    skipped: usize,
 }
 
 impl<'a> SpecificationAudit<'a> {
@@ -217,6 +234,7 @@ impl<'a> SpecificationAudit<'a> {
             values,
             plants: Vec::new(),
             searches: 0,
+            skipped: 0,
         }
     }
 

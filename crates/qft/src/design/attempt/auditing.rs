@@ -12,10 +12,13 @@ use crate::design::counterexample::{
 use crate::family::{Family, UncertainFamily};
 use crate::kept_plants::KeptPlants;
 use crate::loop_shaping::{Aim, Judgement};
-use crate::verification::{Audit, AuditProblem, Verdict};
+use crate::verification::{Audit, AuditEffort, AuditProblem, Verdict};
 
 /// Accuracy to which a relaxation is found, dB.
 const RELAXATION_TOLERANCE_DB: f64 = 0.005;
+
+/// How far beyond a margin that is new one lies that ends an audit, dB.
+const CLEARLY_DB: f64 = 0.05;
 
 impl Attempt {
     /// The audits of the additional plants, once the attempt has ended with an audit.
@@ -26,9 +29,9 @@ impl Attempt {
     fn audit_of(
         &self,
         family: &Family,
-        kept: &KeptPlants,
+        (kept, effort): (&KeptPlants, AuditEffort),
         watch: Watch<'_>,
-    ) -> Result<Audit, LoopDesignError> {
+    ) -> Result<(Audit, bool), LoopDesignError> {
         let problem = AuditProblem {
             family,
             compensation: &self.compensation()?,
@@ -36,11 +39,38 @@ impl Attempt {
             tracking: self.shaping.tracking(),
             tolerance_db: self.options.tolerance_db,
         };
-        Ok(audit_with(&problem, kept, &mut part(watch, AUDITING, WHOLE))?)
+        Ok(audit_with(&problem, (kept, effort), &mut part(watch, AUDITING, WHOLE))?)
     }
 
-    fn audit_of_family(&self, kept: &KeptPlants, watch: Watch<'_>) -> Result<Audit, LoopDesignError> {
-        self.audit_of(&self.shaping.samples().problem().family, kept, watch)
+    /// The audit of the family, and whether it is complete.
+    fn audit_of_family(
+        &self,
+        kept: &KeptPlants,
+        effort: AuditEffort,
+        watch: Watch<'_>,
+    ) -> Result<(Audit, bool), LoopDesignError> {
+        self.audit_of(&self.shaping.samples().problem().family, (kept, effort), watch)
+    }
+
+    /// The audit of the family that the attempt ends with; `None` where an audit that stops at
+    /// counterexamples found some, which were added to the samples.
+    fn audit_or_learn(
+        &mut self,
+        kept: &KeptPlants,
+        watch: Watch<'_>,
+    ) -> Result<Option<Audit>, LoopDesignError> {
+        let judgement = self.judgement();
+        let until = AuditEffort::UntilBelow(self.clearly_new_db(&judgement));
+        let (audit, is_complete) = self.audit_of_family(kept, until, watch)?;
+        if is_complete {
+            return Ok(Some(audit));
+        }
+        let examples = self.examples(&audit, &judgement);
+        self.note(audited_margin_db(&audit), &judgement);
+        if self.takes_in(&examples)? {
+            return Ok(None);
+        }
+        Ok(Some(self.audit_of_family(kept, AuditEffort::Complete, watch)?.0))
     }
 
     /// The audits of the additional plants, one by one.
@@ -48,7 +78,8 @@ impl Attempt {
         let beside = &self.shaping.samples().problem().beside;
         let Some(plant) = beside.get(self.beside.len()) else { return Ok(None) };
         let alone = Family::Uncertain(UncertainFamily::of_nominal(plant.clone()));
-        self.audit_of(&alone, &KeptPlants::default(), watch).map(Some)
+        let (audit, _) = self.audit_of(&alone, (&KeptPlants::default(), AuditEffort::Complete), watch)?;
+        Ok(Some(audit))
     }
 
     /// The outcome of the attempt by its audits; `None` where they found counterexamples, which
@@ -70,7 +101,7 @@ impl Attempt {
             }
             self.beside.push(audit);
         }
-        let audit = Box::new(self.audit_of_family(kept, watch)?);
+        let Some(audit) = self.audit_or_learn(kept, watch)?.map(Box::new) else { return Ok(None) };
         let judgement = self.judgement();
         self.note(audited_margin_db(&audit), &judgement);
         let all = || self.beside.iter().chain([&*audit]);
@@ -115,7 +146,7 @@ impl Attempt {
         while let Some(audit) = self.audit_of_next(watch)? {
             self.beside.push(audit);
         }
-        self.audit_of_family(kept, watch)
+        Ok(self.audit_of_family(kept, AuditEffort::Complete, watch)?.0)
     }
 
     /// What an audit teaches the search.
@@ -141,5 +172,12 @@ impl Attempt {
         };
         let reserve_db = if self.relaxes { 0.0 } else { self.options.reserve_db };
         NewMargins { below_db, reserve_db }
+    }
+
+    /// A margin that is new by so much, even for two limits that count twice, that no worse one
+    /// need be searched for before the next descent, dB.
+    fn clearly_new_db(&self, judgement: &Judgement) -> f64 {
+        let NewMargins { below_db: [single, tracking], .. } = self.new_margins(judgement);
+        -2.0 * single.max(tracking) - CLEARLY_DB
     }
 }

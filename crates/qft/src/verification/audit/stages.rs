@@ -12,7 +12,7 @@ use super::super::scan::{Scan, ScannedPlant, WORTH_POLISHING};
 use super::super::search::{SearchOutcome, SearchTask, search};
 use super::super::start::{STARTS, interior_range, tasks};
 use super::super::{PlantPoint, SpecificationFinding};
-use super::{STAGE, SpecificationAudit, plant_at};
+use super::{AuditEffort, STAGE, SpecificationAudit, plant_at};
 use crate::family::{Extent, Family, UncertainFamily};
 use crate::minimum;
 
@@ -140,16 +140,34 @@ impl SpecificationAudit<'_> {
         cases
     }
 
-    /// Searches the box from the worst cases of each specification.
-    pub(super) fn search(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
+    /// Searches the box from the worst cases of each specification, as far as is worth the effort.
+    pub(super) fn search(&mut self, effort: AuditEffort, watch: Watch<'_>) -> Result<(), Stopped> {
         let Family::Uncertain(family) = self.problem.family else { return Ok(()) };
+        if effort == AuditEffort::KnownPlants {
+            return Ok(());
+        }
         let starts = self.starts(family);
-        self.searches = starts.len();
         for (done, (number, task)) in starts.iter().enumerate() {
             tell(watch, STAGE, done, starts.len())?;
-            self.search_from(family, *number, task);
+            match effort {
+                AuditEffort::UntilBelow(least_db) if self.worst_known_db(*number) < least_db => {
+                    self.skipped += 1;
+                }
+                _ => {
+                    self.searches += 1;
+                    self.search_from(family, *number, task);
+                }
+            }
         }
         Ok(())
+    }
+
+    /// The least margin of a specification that is known, dB.
+    fn worst_known_db(&self, number: usize) -> f64 {
+        let envelope = self.parts.get(number).map(|part| finding::envelope(*part, &self.scan));
+        let of_plants = envelope.iter().flatten().map(|point| point.margin_db);
+        let cases = self.cases.get(number).into_iter().flatten().map(|case| case.margin_db);
+        of_plants.chain(cases).fold(f64::INFINITY, f64::min)
     }
 
     /// Where searches start, each with the specification that it serves.
