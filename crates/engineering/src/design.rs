@@ -37,7 +37,7 @@ use phea_dynamics::controller::{Controller, RateSensor, Timing};
 use phea_dynamics::linear::LinearError;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{
-    ControllerChoice, Design, DesignOptions, DesignOutcome, DesignProblem, DesignStatus, PrefilterChoice,
+    Design, DesignOptions, DesignOutcome, DesignProblem, DesignStatus, PrefilterChoice, reshaped,
 };
 use phea_qft::verification::Verdict;
 
@@ -408,8 +408,9 @@ fn tried_design(
     Ok(tried(source, &Setup::new(&deployed)?, &told.designed.problem, &told.designed.view, watch)?)
 }
 
-/// The effect of sampling and delay on a design that ignores them: made for the continuous loop,
-/// audited in the sampled one. `None` where the loop is not sampled, or no such design is found.
+/// The effect of sampling and delay on a design that ignores them: its structure shaped for the
+/// continuous loop, from its controller, and audited in the sampled one. `None` where the loop is
+/// not sampled, or no such design is found.
 fn continuous_as_sampled(
     setup: &Setup<'_>,
     sampled: &DesignProblem,
@@ -428,15 +429,10 @@ fn continuous_as_sampled(
     };
     let problem = DesignProblem { timing: at_once, ..sampled.clone() };
     let stage = "designing without samples";
-    let controller = match told.design.name {
-        // the same structure, so that the samples are all that differs
-        Some(_) => ControllerChoice::Given(told.design.structure.clone()),
-        None => told.options.controller.clone(),
-    };
-    let options = DesignOptions { controller, ..told.options.clone() };
-    let outcome = phea_qft::design::design(&problem, &options, &mut part(watch, stage, [0.0, 1.0]))?;
-    let Some(design) = outcome.design.filter(|_| !outcome.stopped) else { return Ok(None) };
-    let controller = Controller { timing, ..design.law };
+    // the same structure, so that the samples are all that differs
+    let law = reshaped(&problem, &told.options, &told.design, &mut part(&mut *watch, stage, [0.0, 1.0]))?;
+    let Some(law) = law else { return Ok(None) };
+    let controller = Controller { timing, ..law };
     let compensation = setup.compensation(&controller)?;
     let problem = RobustProblem { compensation, ..told.designed.problem.clone() };
     let view = audit_problem(&problem, watch)?;

@@ -21,6 +21,7 @@ mod outcome;
 mod problem;
 pub mod quantization;
 mod queue;
+mod reshaped;
 mod result;
 mod run;
 mod stabilising;
@@ -35,6 +36,7 @@ pub use problem::{ControllerChoice, DesignOptions, PoleRange, PrefilterChoice};
 
 pub use crate::loop_shaping::DesignProblem;
 pub use phea_dynamics::controller::{NamedStructure, Objective};
+pub use reshaped::reshaped;
 pub use result::{BindingLimit, Conflict, Design, DesignRound, DesignStatus, Relaxation, Starts};
 pub use run::{design, design_again};
 pub use tried::{StructureEnding, TriedStructure};

@@ -10,6 +10,7 @@ mod beginning;
 mod deployment;
 mod error;
 mod reached;
+mod reshaping;
 
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::watch::{Watch, part};

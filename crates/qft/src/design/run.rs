@@ -138,7 +138,7 @@ pub(super) fn design_knowing(
 }
 
 /// A design on its way.
-struct DesignProgress<'a> {
+pub(super) struct DesignProgress<'a> {
     problem: &'a DesignProblem,
     options: &'a DesignOptions,
     ground: Ground,
@@ -155,7 +155,7 @@ struct DesignProgress<'a> {
     /// Whether a controller was found already, and fewer zeros are tried in its order.
     found: bool,
     /// Whether the smallest relaxation is looked for.
-    relaxing: bool,
+    pub(super) relaxing: bool,
     /// A structure that seemed infeasible and is tried again from this controller; this is done
     /// once.
     again: Option<(Structure, Option<TransferFunction>)>,
@@ -176,7 +176,7 @@ struct DesignProgress<'a> {
 }
 
 impl<'a> DesignProgress<'a> {
-    fn new(
+    pub(super) fn new(
         problem: &'a DesignProblem,
         options: &'a DesignOptions,
         kept: &'a KeptPlants,
@@ -297,7 +297,7 @@ impl<'a> DesignProgress<'a> {
         }
     }
 
-    fn attempt(
+    pub(super) fn attempt(
         &mut self,
         structure: Structure,
         feedback: Option<TransferFunction>,

@@ -1,0 +1,43 @@
+//! A structure that is shaped from a known controller, without an audit.
+
+use phea_dynamics::watch::Watch;
+
+use super::{Attempt, AttemptEnding, Leave, LoopDesignError, best_of};
+use crate::kept_plants::KeptPlants;
+use crate::loop_shaping::SearchProblem;
+
+impl Attempt {
+    /// Descends from the best of the points that it begins with, again with what the plants of the
+    /// samples violate between their frequencies. Returns whether a controller was found that makes
+    /// these plants stable.
+    pub(in crate::design) fn reshape(
+        &mut self,
+        kept: &KeptPlants,
+        watch: Watch<'_>,
+    ) -> Result<bool, LoopDesignError> {
+        match self.until_samples_agree(kept, watch) {
+            Ok(()) | Err(Leave::Ended(AttemptEnding::Missed { .. })) => Ok(true),
+            Err(Leave::Ended(_)) => Ok(false),
+            Err(Leave::Failed(error)) => Err(error),
+        }
+    }
+
+    fn until_samples_agree(&mut self, kept: &KeptPlants, watch: Watch<'_>) -> Result<(), Leave> {
+        let given = best_of(&mut self.shaping, std::mem::take(&mut self.given));
+        match given.first().cloned() {
+            Some(first) if self.shaping.judge(&first).stable => {
+                self.x = first;
+                self.fits_prefilter(watch)?;
+                self.descend(false, watch)?;
+            }
+            _ => self.search(given, self.options.seed, watch)?,
+        }
+        loop {
+            self.draw_in(watch)?;
+            if !self.learns_between_samples(kept, watch)? {
+                return Ok(());
+            }
+            self.shape_again(watch)?;
+        }
+    }
+}
