@@ -31,7 +31,7 @@ pub use attempt::LoopDesignError;
 pub use binding::BINDING_DB;
 pub use candidates::gain_range;
 pub use diagnosis::{Constraint, ConstraintPlace, Finding, FindingSeverity, Party, SharedLimit, diagnose};
-pub use outcome::{DesignOutcome, design_after};
+pub use outcome::{DesignOutcome, design_after, design_stricter};
 pub use problem::{ControllerChoice, DesignOptions, PoleRange, PrefilterChoice};
 
 pub use crate::loop_shaping::DesignProblem;

@@ -13,4 +13,5 @@ mod relaxed;
 mod reserve;
 mod rounded;
 mod servo;
+mod stricter;
 mod unstable;

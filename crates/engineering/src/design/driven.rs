@@ -6,6 +6,7 @@
 //! ```
 
 use phea_dynamics::watch::{Watch, within};
+use phea_qft::design::DesignStatus;
 
 use super::search::{found, rank};
 use super::step_aim::StepAim;
@@ -25,7 +26,8 @@ pub(super) fn found_and_tried(
     let (aim, run, told) =
         found(setup, (given, StepAim::AS_REQUIRED), seed, &mut within(&mut *watch, [0.0, 0.5]))?;
     let mut told = with_trial((source, setup), told, &mut within(&mut *watch, [0.5, 0.6]))?;
-    let missed = told.trial.as_ref().and_then(furthest).filter(|_| !told.stopped);
+    let is_met = told.design.status == DesignStatus::Met;
+    let missed = told.trial.as_ref().and_then(furthest).filter(|_| !told.stopped && is_met);
     let Some(stricter) = missed.and_then(|held| aim.stricter_by(&held.wish, &held.reached)) else {
         return Ok((run, told));
     };

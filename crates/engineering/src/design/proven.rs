@@ -9,30 +9,29 @@ use phea_qft::proof::Standing;
 use phea_qft::verification::{PlantPoint, Verdict};
 
 use super::{AuditedController, DesignError, DesignRun, ProjectDesign};
-use crate::audit::{ProjectAudit, try_to_prove};
+use crate::audit::try_to_prove;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
 /// How often a design continues with plants that refute it.
 const REFUTATIONS_MAXIMUM: usize = 4;
 
-/// The design, and its audit with the proof; `None` where nothing was found, or the watch stopped
-/// it.
+/// The design, and the same with its audit and the proof; `None` where nothing was found, or the
+/// watch stopped it.
 pub(super) fn proven(
     (setup, given): (&Setup<'_>, &RobustProblem),
     mut run: DesignRun,
     options: &DesignOptions,
     watch: Watch<'_>,
-) -> Result<(DesignRun, Option<ProjectAudit>), DesignError> {
+) -> Result<(DesignRun, Option<ProjectDesign>), DesignError> {
     for round in 0..=REFUTATIONS_MAXIMUM {
         let Some(design) = run.outcome.design.clone().filter(|_| !run.outcome.stopped) else { break };
         let was_met = design.audit.verdict == Verdict::Met;
-        let mut designed =
-            ProjectDesign::new(setup, given, &run.problem, design, options.clone(), watch)?.designed;
-        try_to_prove(&designed.problem, &mut designed.view, watch)?;
-        let refuting = if was_met { refuting(&designed) } else { vec![] };
+        let mut told = ProjectDesign::new(setup, given, &run.problem, design, options.clone(), watch)?;
+        try_to_prove(&told.designed.problem, &mut told.designed.view, watch)?;
+        let refuting = if was_met { refuting(&told.designed) } else { vec![] };
         if refuting.is_empty() || round == REFUTATIONS_MAXIMUM {
-            return Ok((run, Some(designed.view)));
+            return Ok((run, Some(told)));
         }
         run.problem.beside.extend(refuting);
         run.outcome = design_again(&run.problem, options, run.outcome, watch)?;

@@ -2,7 +2,7 @@
 //! required in time, and stricter where the steps of what was found still miss it.
 
 use phea_dynamics::watch::{Stopped, Watch, within};
-use phea_qft::design::{ControllerChoice, DesignStatus, Finding};
+use phea_qft::design::{ControllerChoice, DesignStatus, Finding, design_stricter};
 use phea_qft::verification::Verdict;
 
 use super::problem::{design_options, design_problem};
@@ -31,7 +31,9 @@ pub(super) fn found(
             Err(error) if found.is_empty() => return Err(error),
             Err(_) => break,
         }
-        let Some((.., told)) = found.last().filter(|(.., told)| !told.stopped) else { break };
+        // an aim that is missed leaves no room for a stricter one
+        let met = found.last().filter(|(.., told)| !told.stopped && told.design.status == DesignStatus::Met);
+        let Some((.., told)) = met else { break };
         match aim.stricter(told).filter(|_| repetition < REPETITIONS) {
             Some(stricter) => aim = stricter,
             None => break,
@@ -78,7 +80,7 @@ fn searched(
         *first = before.and_then(|(_, told)| told.design.name);
     }
     let mut outcome = match before {
-        Some((run, _)) => phea_qft::design::design_after(&problem, &options, &run.outcome, watch)?,
+        Some((run, _)) => design_stricter(&problem, &options, &run.outcome, watch)?,
         None => phea_qft::design::design(&problem, &options, watch)?,
     };
     outcome.conclude()?;
@@ -94,10 +96,10 @@ fn searched(
         let sentences = explanations.into_iter().map(|explanation| explanation.sentence).collect();
         return Err(DesignError::NoController(sentences));
     };
-    let mut told = ProjectDesign::new(setup, aimed, problem, design, options, watch)?;
-    if let Some(view) = proven {
-        told.designed.view = view;
-    }
+    let mut told = match proven {
+        Some(told) => told,
+        None => ProjectDesign::new(setup, aimed, problem, design, options, watch)?,
+    };
     let stopped = outcome.stopped;
     let (known, aimed_at) = (given.specifications.len(), &aimed.specifications);
     if given.specifications != aimed_at[..known] {

@@ -110,6 +110,22 @@ pub fn design_after(
     design_knowing(problem, options, None, known, watch)
 }
 
+/// The same for stricter limits than those of a design before: a structure shorter than the one
+/// that met them is not tried again, and the search also begins with that controller.
+///
+/// # Errors
+/// Those of [`design`](super::design).
+pub fn design_stricter(
+    problem: &DesignProblem,
+    options: &DesignOptions,
+    before: &DesignOutcome,
+    watch: Watch<'_>,
+) -> Result<DesignOutcome, LoopDesignError> {
+    let known = LearntPlants { plants: before.known.plants.clone(), ..LearntPlants::default() };
+    let met = before.design.clone().filter(|design| design.status == DesignStatus::Met);
+    design_knowing(problem, options, met, known, watch)
+}
+
 /// What was learnt about the plants.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LearntPlants {
