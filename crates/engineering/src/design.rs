@@ -3,6 +3,7 @@
 
 mod asked;
 mod comparison;
+mod damping;
 mod deployable;
 mod driven;
 mod explanation;
@@ -18,6 +19,7 @@ mod step_aim;
 mod structures;
 mod words;
 pub use crate::limit_kind::{DesignLimitKind, limit_key, limit_words};
+pub use damping::{PressureFeedbackDesign, with_free_pressure_feedback};
 pub use deployable::{DesignLimit, LimitFinding, LimitOrigin, design_limits};
 pub use factors::factored;
 pub use manual::{ManualGap, ManualLaw, ManualPart};
@@ -96,6 +98,11 @@ pub enum DesignError {
     /// The designed controller cannot be tried on the machine.
     #[error(transparent)]
     Trial(TrialError),
+    /// A free pressure feedback for a rig or family that has none.
+    #[error(
+        "design.pressure_feedback = \"free\" found no feedback: it needs plants of a rig, stable without it, and no gain keeps the limits of its own loop here"
+    )]
+    NoPressureFeedback,
     /// The watch stopped it before anything was found.
     #[error(transparent)]
     Stopped(#[from] Stopped),
@@ -153,6 +160,8 @@ pub struct ProjectDesign {
     pub gain_per: Option<DisplayUnit>,
     /// The structures that were tried, in turn.
     pub structures: Vec<ReachedStructure>,
+    /// The pressure feedback that was found before the loop; absent where it is not free.
+    pub pressure_feedback: Option<PressureFeedbackDesign>,
     /// The designed controller as a project declares it.
     pub declared_controller: project::DeclaredController,
     /// The designed prefilter likewise; absent where none was designed.
@@ -225,6 +234,7 @@ impl ProjectDesign {
             manual,
             gain_per: project.actuator.as_ref().map(|_| project.units.force),
             structures: vec![],
+            pressure_feedback: None,
             declared_controller,
             declared_prefilter,
         })
@@ -319,8 +329,15 @@ pub fn design_and_repair(
     seed: Option<u32>,
     watch: Watch<'_>,
 ) -> Result<ProjectDesign, DesignError> {
-    let (run, told) = designed(source, setup, seed, &mut within(&mut *watch, [0.0, 0.6]))?;
-    repair::repaired((source, setup), run, told, &mut within(watch, [0.6, 1.0]))
+    let damped = with_free_pressure_feedback(source, setup, watch)?;
+    let Some((project, found)) = damped else {
+        let (run, told) = designed(source, [setup; 2], seed, &mut within(&mut *watch, [0.0, 0.6]))?;
+        return repair::repaired((source, setup), run, told, &mut within(watch, [0.6, 1.0]));
+    };
+    let damped = Setup::new(&project)?;
+    let (run, told) = designed(source, [setup, &damped], seed, &mut within(&mut *watch, [0.0, 0.6]))?;
+    let told = repair::repaired((source, &damped), run, told, &mut within(watch, [0.6, 1.0]))?;
+    Ok(told.with_pressure_feedback(Some(found)))
 }
 
 /// Designs a controller for the project, after the audit of the one that it gives.
@@ -334,7 +351,11 @@ pub fn design_project(
     seed: Option<u32>,
     watch: Watch<'_>,
 ) -> Result<ProjectDesign, DesignError> {
-    designed(source, setup, seed, watch).map(|(_, told)| told)
+    let Some((project, found)) = with_free_pressure_feedback(source, setup, watch)? else {
+        return designed(source, [setup; 2], seed, watch).map(|(_, told)| told);
+    };
+    let (_, told) = designed(source, [setup, &Setup::new(&project)?], seed, watch)?;
+    Ok(told.with_pressure_feedback(Some(found)))
 }
 
 /// The problem and its result.
@@ -345,10 +366,11 @@ struct DesignRun {
     outcome: DesignOutcome,
 }
 
-/// The design with its problem.
+/// The design with its problem: the project as it is given, and with the pressure feedback that is
+/// designed for.
 fn designed(
     source: &dyn Source,
-    setup: &Setup<'_>,
+    [as_given, setup]: [&Setup<'_>; 2],
     seed: Option<u32>,
     watch: Watch<'_>,
 ) -> Result<(DesignRun, ProjectDesign), DesignError> {
@@ -359,13 +381,17 @@ fn designed(
     if is_of_position(project) {
         return Err(DesignError::Admittance);
     }
-    let given = robust_problem(source, setup)?;
-    let published = match &setup.controller {
+    let given = robust_problem(source, as_given)?;
+    let published = match &as_given.controller {
         None => None,
         Some(law) => {
             let view = audit_problem(&given, &mut within(&mut *watch, [0.0, 0.05]))?;
             Some(AuditedController::new(law.clone(), given.clone(), view)?)
         }
+    };
+    let given = match std::ptr::eq(as_given, setup) {
+        true => given,
+        false => robust_problem(source, setup)?,
     };
     let limits = design_limits(setup, &given);
     let nothing_asks = asked::nothing_asks(&given);
@@ -375,7 +401,7 @@ fn designed(
     told.explanations.extend(nothing_asks);
     let mut stopped = told.stopped;
     let continuous = unless_stopped(&mut stopped, || {
-        continuous_as_sampled(setup, &run.problem, &told, &mut within(watch, [0.9, 1.0]))
+        continuous_as_sampled((source, setup), &run.problem, &told, &mut within(watch, [0.9, 1.0]))
     })?;
     Ok((run, ProjectDesign { stopped, published, continuous, ..told }))
 }
@@ -412,7 +438,7 @@ fn tried_design(
 /// continuous loop, from its controller, and audited in the sampled one. `None` where the loop is
 /// not sampled, or no such design is found.
 fn continuous_as_sampled(
-    setup: &Setup<'_>,
+    (source, setup): (&dyn Source, &Setup<'_>),
     sampled: &DesignProblem,
     told: &ProjectDesign,
     watch: Watch<'_>,
@@ -427,7 +453,12 @@ fn continuous_as_sampled(
         inner_feedback: timing.inner_feedback,
         ..Timing::default()
     };
-    let problem = DesignProblem { timing: at_once, ..sampled.clone() };
+    // a sampled loop closes the feedback of the pressures itself
+    let family = match timing.inner_feedback.is_zero() {
+        true => sampled.family.clone(),
+        false => damping::family_at_once(source, setup.project)?,
+    };
+    let problem = DesignProblem { timing: at_once, family, ..sampled.clone() };
     let stage = "designing without samples";
     // the same structure, so that the samples are all that differs
     let law = reshaped(&problem, &told.options, &told.design, &mut part(&mut *watch, stage, [0.0, 1.0]))?;

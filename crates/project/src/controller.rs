@@ -7,6 +7,7 @@ mod rational_function;
 
 pub use element::{DeclaredElement, ElementKind};
 pub use impedance::{DeclaredImpedance, ImpedanceForm};
+pub(crate) use pressure_feedback::GAIN as GAIN_OF_PRESSURES;
 pub use pressure_feedback::{DeclaredPressureFeedback, PressureSignal};
 pub use rational_function::RationalFunction;
 

@@ -43,6 +43,8 @@ pub struct DeclaredDesign {
     pub structure_choice: StructureChoice,
     /// The controller's factors.
     pub structure: Vec<StructurePart>,
+    /// Where the feedback of the chambers' pressures comes from.
+    pub pressure_feedback: FeedbackChoice,
     /// Factor by which each further pole must lower what the command takes from the noise, or what
     /// the objective is, for a longer structure to be taken in place of one that is met; absent: 2,
     /// which is 6 dB.
@@ -57,6 +59,16 @@ pub enum UnstatedLimits {
     Default,
     /// None: a design has its specifications alone.
     None,
+}
+
+/// Where the feedback of the chambers' pressures comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FeedbackChoice {
+    /// The one of the controller, if it has one.
+    #[default]
+    AsDeclared,
+    /// Its gain and the corner of its high pass are found before the loop.
+    Free,
 }
 
 /// Which structures are tried.
@@ -152,6 +164,7 @@ impl Default for DeclaredDesign {
             gain: None,
             structure_choice: StructureChoice::Free,
             structure: vec![],
+            pressure_feedback: FeedbackChoice::AsDeclared,
             earned_per_pole: None,
         }
     }
@@ -197,6 +210,9 @@ impl DeclaredDesign {
         v.word_or_tables(k, &STRUCTURES, &mut self.structure_choice, &mut self.structure, |one, v| {
             v.variant(plain("kind", "Which factor."), one, true);
         });
+        let words = &[("as_declared", FeedbackChoice::AsDeclared), ("free", FeedbackChoice::Free)];
+        let doc = "The controller's pressure feedback, or gain and high pass found before the loop.";
+        v.choice(plain("pressure_feedback", doc), words, &mut self.pressure_feedback, false);
         let doc = "What a further pole must gain in place of a shorter structure that is met; absent: 6 dB.";
         let k = key("earned_per_pole", &GAIN, doc).at_least(1.0).or_infinite();
         v.optional(k, &mut self.earned_per_pole);

@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 use self::surgery::{KeyValues, replaced};
 use super::listing::keys_of_table;
 use super::printer::Printer;
-use super::{DeclaredController, Prefilter, Transfer};
+use super::{DeclaredController, DeclaredPressureFeedback, Prefilter, Transfer};
 
 /// Keys of [controller] and [prefilter] that form a transfer function.
 fn law_keys() -> Vec<&'static str> {
@@ -58,6 +58,16 @@ pub fn with_laws(
         content = replaced(&content, "prefilter", &keys, &lines);
     }
     format!("{mark}{content}").into_bytes()
+}
+
+/// The bytes of a project file with this pressure feedback of its controller in place of the old
+/// one, and without any where there is none.
+pub fn with_pressure_feedback(bytes: &[u8], feedback: Option<&DeclaredPressureFeedback>) -> Vec<u8> {
+    const KEY: &str = "pressure_feedback";
+    let text = String::from_utf8_lossy(bytes);
+    let only = DeclaredController { pressure_feedback: feedback.copied(), ..DeclaredController::default() };
+    let lines = controller_lines(&only).into_iter().filter(|(key, _)| key == KEY).collect::<KeyValues>();
+    replaced(&text, "controller", &[KEY], &lines).into_bytes()
 }
 
 /// The text with these lines in place of the transfer function of the table.

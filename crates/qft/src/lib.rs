@@ -26,6 +26,7 @@ pub mod bound;
 pub mod closed_loop;
 pub mod design;
 pub mod family;
+pub mod inner_loop;
 mod kept_plants;
 pub mod loop_shaping;
 pub mod manual_shaping;

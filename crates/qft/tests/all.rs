@@ -10,6 +10,7 @@ mod design_diagnosis;
 mod family;
 mod fed_back;
 mod inner_feedback;
+mod inner_loop;
 mod kernels;
 mod manual_shaping;
 mod measured_discs;

@@ -4,6 +4,7 @@ mod answer;
 mod document;
 mod limits;
 mod manual;
+mod pressure_feedback;
 mod stages;
 mod structures;
 
@@ -14,6 +15,7 @@ pub use document::output;
 pub(crate) use document::{costs, explanation_words, laws, side_by_side, status};
 pub(crate) use limits::document as limits;
 pub(crate) use manual::document as manual;
+pub(crate) use pressure_feedback::document as pressure_feedback;
 pub(crate) use stages::bound_files;
 pub use stages::{files, stage_files};
 pub(crate) use structures::document as structures;

@@ -25,6 +25,7 @@ mod family_measured;
 mod feed_forward;
 mod field_records;
 mod foreseen;
+mod free_pressure_feedback;
 mod frequency_response;
 mod friction_coverage;
 mod friction_identification;

@@ -22,6 +22,9 @@ use crate::setup::Setup;
 
 /// Part of the nominal voltage that noise may take, rms.
 const NOISE_SHARE: f64 = 0.01;
+/// Part of what noise may take that is left to the force sensor, and to the pressures, where both
+/// have noise: half of its square.
+pub(super) const NOISE_TO_COMMAND_LEFT: f64 = FRAC_1_SQRT_2;
 const MODULUS_MARGIN: f64 = 0.5;
 /// s, of a continuous loop.
 const DELAY_MARGIN_S: f64 = 0.5e-3;
@@ -204,7 +207,9 @@ fn specification(
             setup.timing.sample_time_s?;
             let noise_n = setup.project.actuator.as_ref()?.force_sensor.noise;
             let nominal_v = setup.rig().ok()?.actuator.components().valve.nominal_voltage;
-            let limit = value * nominal_v / noise_n;
+            let has_pressures = given.pressure_noise > 0.0 && given.compensation.inner_feedback().is_some();
+            let left = if has_pressures { NOISE_TO_COMMAND_LEFT } else { 1.0 };
+            let limit = left * value * nominal_v / noise_n;
             let mut frequencies = drawn();
             frequencies.extend([0.1, 0.3, 0.9].map(|share| share * highest));
             let found =

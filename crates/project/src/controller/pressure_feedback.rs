@@ -4,6 +4,9 @@ use crate::key::{key, plain};
 use crate::visitor::Visitor;
 use phea_quantity::{ANGULAR_FREQUENCY, PRESSURE, RATIO, VOLTAGE_PER_PRESSURE};
 
+/// What its gain is.
+pub(crate) const GAIN: &str = "Command per pressure; positive adds damping.";
+
 /// What the controller subtracts from its command for the pressures of the chambers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeclaredPressureFeedback {
@@ -11,7 +14,7 @@ pub struct DeclaredPressureFeedback {
     pub signal: PressureSignal,
     /// A_B/A_A of a load pressure; absent: of the actuator.
     pub area_ratio: Option<f64>,
-    /// V/Pa.
+    /// V/Pa; required unless a design finds it.
     pub gain: f64,
     /// rad/s; absent: the pressure at rest is fed back too.
     pub high_pass: Option<f64>,
@@ -41,7 +44,7 @@ impl DeclaredPressureFeedback {
         v.choice(k, words, &mut self.signal, false);
         let doc = "A_B/A_A that the controller has for a load pressure; absent: of the actuator.";
         v.optional(key("area_ratio", &RATIO, doc).positive(), &mut self.area_ratio);
-        let k = key("gain", &VOLTAGE_PER_PRESSURE, "Command per pressure; positive adds damping.");
+        let k = key("gain", &VOLTAGE_PER_PRESSURE, GAIN).or(0.0);
         v.quantity(k, &mut self.gain);
         let doc = "Corner of the high pass; absent: the pressure at rest is fed back too.";
         v.optional(key("high_pass", &ANGULAR_FREQUENCY, doc).positive(), &mut self.high_pass);

@@ -3,11 +3,16 @@
 use std::f64::consts::PI;
 
 use super::Check;
-use crate::{Load, PressureSignal, Project};
+use crate::controller::GAIN_OF_PRESSURES;
+use crate::{FeedbackChoice, Load, PressureSignal, Project};
 
 const PLACE: &str = "controller.pressure_feedback";
 
 pub(super) fn pressure_feedback(project: &Project, check: &mut Check<'_, '_>) {
+    let is_free = is_free(project);
+    if is_free {
+        free(project, check);
+    }
     let Some(controller) = &project.controller else { return };
     let Some(declared) = &controller.pressure_feedback else { return };
     let at = |name: &str| format!("{PLACE}.{name}");
@@ -34,7 +39,11 @@ pub(super) fn pressure_feedback(project: &Project, check: &mut Check<'_, '_>) {
     if declared.noise > 0.0 && controller.sample_time.is_none() {
         check.warning(&at("noise"), "`noise` has no effect on a continuous controller");
     }
-    if declared.gain == 0.0 && check.declared(&at("gain")) {
+    if !is_free && !check.declared(&at("gain")) {
+        let message = "missing `gain` in [controller.pressure_feedback]";
+        check.error_with_help(PLACE, message, GAIN_OF_PRESSURES);
+    }
+    if declared.gain == 0.0 && !is_free && check.declared(&at("gain")) {
         check.warning(&at("gain"), "[controller.pressure_feedback] has no effect: its gain is zero");
     }
     if declared.gain < 0.0 {
@@ -48,5 +57,30 @@ pub(super) fn pressure_feedback(project: &Project, check: &mut Check<'_, '_>) {
         && high >= low
     {
         check.error(&at("high_pass"), "`high_pass` is not below `low_pass`: no frequency passes both");
+    }
+}
+
+/// True where a design finds the feedback.
+fn is_free(project: &Project) -> bool {
+    project.design.as_ref().is_some_and(|design| design.pressure_feedback == FeedbackChoice::Free)
+}
+
+/// What a free feedback needs.
+fn free(project: &Project, check: &mut Check<'_, '_>) {
+    const PLACE: &str = "design.pressure_feedback";
+    if project.actuator.is_none() {
+        let message =
+            "a free `pressure_feedback` acts on the pressures of chambers, and this project has no actuator";
+        return check.error_with_help(PLACE, message, "describe the rig, or leave it out");
+    }
+    if project.family.as_ref().is_some_and(|family| !family.measured.is_empty()) {
+        let message = "a free `pressure_feedback` needs the response of the pressures, which measured plants do not have";
+        return check.error_with_help(PLACE, message, "leave out `measured` of [family], or this key");
+    }
+    let fed = project.controller.as_ref().and_then(|controller| controller.load_velocity_feed_forward);
+    let moves = project.actuator.as_ref().is_some_and(|actuator| actuator.load != Load::Prescribed);
+    if moves && fed.is_some_and(|fed| fed.gain != Some(0.0)) {
+        let message = "a free `pressure_feedback` is not found yet where the velocity of a load that can move is fed forward";
+        check.error_with_help(PLACE, message, "leave out one of them");
     }
 }

@@ -9,7 +9,7 @@ use phea_qft::verification::PlantPoint;
 
 use super::AuditedController;
 use super::{Explanation, ProjectDesign};
-use super::{limits, manual, structures};
+use super::{limits, manual, pressure_feedback, structures};
 use super::{objective_key, part_key, status_key, structure_key};
 use crate::answer::{Json, Object};
 use crate::audit;
@@ -44,24 +44,23 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
         Agreement::Contradicts => "it was not asked for",
         Agreement::Agrees | Agreement::Differs => "no machine contradicts the design",
     };
-    let published = view.published.as_ref().map(audited);
-    let no_published = published.is_none().then_some("the project gives no controller");
     Ok(Object::new()
         .with("status", status_key(view))
         .with("objective", objective)
         .with("seed", view.options.seed)
         .with("controller", factors(side.problem.compensation.feedback()))
         .known("prefilter", prefilter, "no prefilter is needed or requested")
+        .maybe("pressure_feedback", view.pressure_feedback.as_ref().map(pressure_feedback::object))
         .maybe("continuous_law", continuous_law(side)?)
         .with("figures", figures(side))
         .and(of_structures(view))
         .with("verification", audit::body(&side.view))
-        .with("published", published)
+        .with("published", view.published.as_ref().map(audited))
         .maybe("continuous_as_sampled", view.continuous.as_ref().map(audited))
         .with("minimum_delay_margin_s", view.minimum_delay_margin_s)
         .with("limits", limits::rows(view))
         .with("reserve_db", view.options.reserve_db)
-        .maybe("published_reason", no_published)
+        .maybe("published_reason", view.published.is_none().then_some("the project gives no controller"))
         .each("rounds", &design.rounds, round)
         .known("starts", starts, "no search ended")
         .each("binding", &design.binding, |limit| {

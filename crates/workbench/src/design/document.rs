@@ -65,6 +65,7 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
     if let Some(repair) = &view.repair {
         out.append(repaired(repair)?);
     }
+    out.append(super::pressure_feedback(view));
     out.heading("Controller");
     out.append(laws(&view.designed)?);
     out.append(super::manual(view));

@@ -13,7 +13,7 @@ use super::{DESIGNED_CERTIFICATE, DESIGNED_PROJECT, NEAREST_PROJECT, structure_w
 use crate::answer::{Csv, OutputFile};
 use crate::audit::{self, certificate_of};
 use crate::error::CommandError;
-use crate::project::{Loaded, with_laws};
+use crate::project::{Loaded, with_laws, with_pressure_feedback};
 use crate::robust::{DesignFrequency, RobustProblem};
 use crate::specification::kind_key;
 
@@ -31,6 +31,10 @@ pub fn files(loaded: &Loaded, view: &ProjectDesign) -> Vec<OutputFile> {
     let file = |(name, design): (&str, Option<&ProjectDesign>)| {
         let (controller, prefilter) = (&design?.declared_controller, design?.declared_prefilter.as_ref());
         let bytes = with_laws(&loaded.bytes, &loaded.settings, controller, prefilter);
+        let bytes = match &design?.pressure_feedback {
+            Some(_) => with_pressure_feedback(&bytes, controller.pressure_feedback.as_ref()),
+            None => bytes,
+        };
         Some(OutputFile::new(name, bytes))
     };
     let certificate = certificate_of(loaded, &view.designed.view, DESIGNED_CERTIFICATE);

@@ -15,8 +15,8 @@ use super::family_steps;
 use crate::answer::{OutputFile, significant};
 use crate::audit::basis;
 use crate::design::{
-    DesignError, ProjectDesign, costs, design_project, files, laws, limits, manual, side_by_side, status,
-    structures,
+    DesignError, ProjectDesign, costs, design_project, files, laws, limits, manual, pressure_feedback,
+    side_by_side, status, structures,
 };
 use crate::document::{Document, StatusMark};
 use crate::error::CommandError;
@@ -154,6 +154,7 @@ fn chapter(found: &FoundDesign) -> Result<Chapter, CommandError> {
             Some(["design_machine_steps", "The designed controller in the nonlinear simulation"]),
         ));
     }
+    out.append(pressure_feedback(view));
     out.heading("The designed controller");
     out.append(laws(side)?);
     out.append(manual(view));

@@ -1,0 +1,68 @@
+//! The pressure feedback that a design found before its loop.
+
+use phea_engineering::design::PressureFeedbackDesign;
+
+use super::ProjectDesign;
+use crate::answer::{Object, significant};
+use crate::document::Document;
+use crate::quantity::{ANGULAR_FREQUENCY, VOLTAGE_PER_PRESSURE, display};
+
+/// The feedback with what it gains; empty where it was not free.
+pub(crate) fn document(view: &ProjectDesign) -> Document {
+    let mut out = Document::default();
+    let Some(found) = &view.pressure_feedback else { return out };
+    out.heading("Pressure feedback, found before the loop");
+    let factor = significant(found.loop_gain_factor, 3);
+    let plants = match found.plants {
+        1 => "the one plant".to_string(),
+        count => format!("{count} plants"),
+    };
+    if !found.is_used {
+        out.sentences([format!(
+            "none: the best would raise the gain that a proportional loop may have around {plants} to {factor} times, too little for a second measured signal"
+        )]);
+        return out;
+    }
+    let corner = found.declared.high_pass.map_or(String::new(), |corner| {
+        format!(" behind a high pass of {}", display(corner, &ANGULAR_FREQUENCY, 4))
+    });
+    let gain = display(found.declared.gain, &VOLTAGE_PER_PRESSURE, 4);
+    let [without, with] =
+        found.limited_at_rad_per_s.map(|frequency| display(frequency, &ANGULAR_FREQUENCY, 3));
+    let mut sentences = vec![
+        format!("{gain}{corner}"),
+        format!(
+            "with it a proportional loop around {plants} may have {factor} times the gain: it is limited at {with}, where that without is limited at {without}"
+        ),
+    ];
+    if let Some([without, with]) = found.least_damping_ratio {
+        sentences.push(format!(
+            "the least damping ratio of an oscillation of these plants is {}, without it {}",
+            significant(with, 3),
+            significant(without, 3)
+        ));
+    }
+    sentences
+        .push("at rest nothing passes the high pass: gain and stiffness are those of the rig".to_string());
+    out.sentences(sentences);
+    out
+}
+
+/// The same in JSON.
+pub(super) fn object(found: &PressureFeedbackDesign) -> Object {
+    let [limited_without, limited] = found.limited_at_rad_per_s;
+    let damping = found.least_damping_ratio;
+    Object::new()
+        .with("used", found.is_used)
+        .with("gain_v_per_pa", found.declared.gain)
+        .with("high_pass_rad_per_s", found.declared.high_pass)
+        .maybe("low_pass_rad_per_s", found.declared.low_pass)
+        .with("loop_gain_factor", found.loop_gain_factor)
+        .with("proportional_gain_v_per_n", found.proportional_gain[1])
+        .with("proportional_gain_without_v_per_n", found.proportional_gain[0])
+        .with("limited_at_rad_per_s", limited)
+        .with("limited_without_at_rad_per_s", limited_without)
+        .maybe("least_damping_ratio", damping.map(|[_, with]| with))
+        .maybe("least_damping_ratio_without", damping.map(|[without, _]| without))
+        .with("plants", found.plants)
+}
