@@ -17,6 +17,7 @@ mod counterexample;
 mod diagnosis;
 mod feedback_sign;
 mod named;
+mod nearest;
 mod outcome;
 mod problem;
 pub mod quantization;

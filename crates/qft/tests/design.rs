@@ -7,6 +7,7 @@
 mod beside;
 mod contract;
 mod fed_forward;
+mod named;
 mod problems;
 mod published;
 mod relaxed;

@@ -49,18 +49,16 @@ pub fn design_options(
 ) -> Result<DesignOptions, DesignError> {
     let design = setup.project.design.clone().unwrap_or_default();
     let maximum_order = count(design.maximum_order);
+    let earned_per_pole_db = earned_per_pole_db(&design);
     let controller = match design.structure_choice {
         _ if !design.structure.is_empty() => {
             let problem = design_problem(setup, given);
             let frequencies = given.design_frequencies();
             ControllerChoice::Given(structure(&design.structure, design.gain, &problem, &frequencies)?)
         }
-        StructureChoice::Named(name) => ControllerChoice::Named(name),
+        StructureChoice::Named(name) => ControllerChoice::Named { name, earned_per_pole_db },
         StructureChoice::Free => ControllerChoice::Grow { maximum_order },
-        StructureChoice::Any => {
-            let earned_per_pole_db = earned_per_pole_db(&design);
-            ControllerChoice::Any { maximum_order, from: None, earned_per_pole_db }
-        }
+        StructureChoice::Any => ControllerChoice::Any { maximum_order, from: None, earned_per_pole_db },
     };
     Ok(DesignOptions {
         objective: design.objective,

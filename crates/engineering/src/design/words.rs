@@ -81,7 +81,7 @@ pub fn repair_words(repair: &Repair) -> String {
 fn tried(choice: &ControllerChoice) -> String {
     match choice {
         ControllerChoice::Given(_) => ", all of the given structure,".to_string(),
-        ControllerChoice::Named(name) => format!(", all of the structure {},", name.words()),
+        ControllerChoice::Named { name, .. } => format!(", all of the structure {},", name.words()),
         ControllerChoice::Any { maximum_order, .. } | ControllerChoice::Grow { maximum_order } => {
             format!(", of order {maximum_order} at most,")
         }

@@ -11,6 +11,7 @@ mod deployment;
 mod error;
 mod reached;
 mod reshaping;
+mod shorter_prefilter;
 
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::watch::{Watch, part};
@@ -44,6 +45,8 @@ const NEIGHBOURS: [f64; 4] = [0.94, 0.97, 1.03, 1.06];
 const ROUNDS_MAXIMUM: usize = 40;
 /// Room that a start of a prefilter may take from both edges of its band, dB.
 const BAND_ROOM_DB: f64 = 3.0;
+/// Order of the prefilter that is fitted first.
+const FIRST_PREFILTER_ORDER: usize = 2;
 /// How far inside its limits a search stays, dB, so that what the audit finds between the samples
 /// still satisfies them.
 const RESERVE_DB: f64 = 0.001;
@@ -164,7 +167,7 @@ impl Attempt {
             relaxes,
             reserve_db,
             draws: 0,
-            prefilter_order: 2,
+            prefilter_order: FIRST_PREFILTER_ORDER,
             restarts: 0,
             missing_db: 0.0,
             sound: vec![],
@@ -200,6 +203,11 @@ impl Attempt {
         {
             return Ok(AttemptEnding::NotEarned);
         }
+        self.audited_until_agreed(kept, watch)
+    }
+
+    /// From what the search found on.
+    fn audited_until_agreed(&mut self, kept: &KeptPlants, watch: Watch<'_>) -> Result<AttemptEnding, Leave> {
         loop {
             self.draw_in(watch)?;
             if !self.learns_between_samples(kept, watch)?

@@ -6,9 +6,9 @@ use super::candidates::{Corners, Ground};
 use crate::loop_shaping::{Structure, StructureFactor};
 
 /// Damping ratios of the poles of a notch, which are exempt from the least one of other poles, and
-/// its depths: -40 dB to none.
+/// its depths: -30 dB, as deep as one can be built, to none.
 const NOTCH_DAMPING_RATIOS: [f64; 2] = [0.1, 3.0];
-const NOTCH_DEPTHS: [f64; 2] = [0.01, 1.0];
+const NOTCH_DEPTHS: [f64; 2] = [0.03162277660168379, 1.0];
 /// Damping ratios of the zeros of a PID; beyond 1 they are two real ones.
 const PID_DAMPING_RATIOS: [f64; 2] = [0.2, 20.0];
 

@@ -12,7 +12,12 @@ pub enum ControllerChoice {
     /// Those of one structure.
     Given(Structure),
     /// Those of one name.
-    Named(NamedStructure),
+    Named {
+        /// The name.
+        name: NamedStructure,
+        /// As below, for the poles of a prefilter beyond the first one.
+        earned_per_pole_db: f64,
+    },
     /// Those of every name that suits the problem, the shortest first; where none meets every
     /// specification, structures of growing order.
     Any {
@@ -21,7 +26,8 @@ pub enum ControllerChoice {
         /// The first name that is tried, where shorter ones are known to fail.
         from: Option<NamedStructure>,
         /// How much a longer one must gain for each of its further poles to be taken in place of
-        /// one that is met, dB; infinite: the shortest is taken.
+        /// one that is met, dB, and a longer prefilter in place of one with one pole; infinite: the
+        /// shortest is taken.
         earned_per_pole_db: f64,
     },
     /// Structures of growing order, up to this one, until one meets every specification.
@@ -29,6 +35,17 @@ pub enum ControllerChoice {
         /// Largest number of poles.
         maximum_order: usize,
     },
+}
+
+impl ControllerChoice {
+    /// How much a further pole must gain, dB; `None` where nothing but the objective decides.
+    pub fn earned_per_pole_db(&self) -> Option<f64> {
+        match *self {
+            ControllerChoice::Named { earned_per_pole_db, .. }
+            | ControllerChoice::Any { earned_per_pole_db, .. } => Some(earned_per_pole_db),
+            ControllerChoice::Given(_) | ControllerChoice::Grow { .. } => None,
+        }
+    }
 }
 
 /// Which prefilters are tried.

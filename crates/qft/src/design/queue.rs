@@ -64,7 +64,7 @@ pub(super) fn structures_to_try(
     let times = if is_hard { 2 } else { 1 };
     let each: Vec<WaitingStructure> = match options.controller {
         ControllerChoice::Given(_) => vec![WaitingStructure::Given],
-        ControllerChoice::Named(name) => vec![WaitingStructure::Named(name)],
+        ControllerChoice::Named { name, .. } => vec![WaitingStructure::Named(name)],
         ControllerChoice::Grow { maximum_order } => growing(maximum_order, ground, sampled).collect(),
         ControllerChoice::Any { maximum_order, from, .. } => {
             let is_shorter = |name: &NamedStructure| from.is_some_and(|from| *name != from);

@@ -11,6 +11,7 @@ use super::binding::{all_conflicts, binding_limits};
 use super::candidates::Ground;
 use super::diagnosis::{FindingSeverity, diagnose};
 use super::named::stage as named_stage;
+use super::nearest::{NearAttempt, NearestAttempts};
 use super::outcome::{DesignOutcome, LearntPlants};
 use super::problem::{ControllerChoice, DesignOptions};
 use super::queue::{WaitingStructure, fewer_zeros, longer, structures_to_try};
@@ -160,8 +161,7 @@ pub(super) struct DesignProgress<'a> {
     /// once.
     again: Option<(Structure, Option<TransferFunction>)>,
     begun_again: bool,
-    /// The attempt that came nearest, with its worst margin over rate.
-    nearest: Option<(f64, WaitingStructure, Box<Attempt>)>,
+    nearest: NearestAttempts,
     /// The controller of the attempt before.
     before: Option<TransferFunction>,
     /// The last attempt that found no stable loop.
@@ -197,7 +197,7 @@ impl<'a> DesignProgress<'a> {
             relaxing: false,
             again: None,
             begun_again: false,
-            nearest: None,
+            nearest: NearestAttempts::default(),
             before: None,
             unstable: None,
             samples: None,
@@ -215,7 +215,7 @@ impl<'a> DesignProgress<'a> {
         let order = found.structure.roots(-1.0);
         let own = |one: &WaitingStructure| one.name().is_some() && one.name() == found.name;
         match (&self.options.controller, self.waiting.iter().position(own)) {
-            (ControllerChoice::Given(_) | ControllerChoice::Named(_), _) => {}
+            (ControllerChoice::Given(_) | ControllerChoice::Named { .. }, _) => {}
             (ControllerChoice::Any { .. } | ControllerChoice::Grow { .. }, Some(place)) => {
                 self.waiting.drain(..place);
             }
@@ -232,10 +232,12 @@ impl<'a> DesignProgress<'a> {
     fn try_structures(&mut self, watch: Watch<'_>) -> Result<Option<Attempt>, LoopDesignError> {
         while let Some((structure, feedback)) = self.next() {
             let mut attempt = self.attempt(structure, feedback)?;
-            match attempt.run(self.kept, &mut self.part(watch)) {
-                Err(LoopDesignError::Stopped(_)) => return Ok(Some(self.nearer(attempt))),
+            let ending = attempt.run(self.kept, &mut self.part(&mut *watch));
+            match ending {
+                Err(LoopDesignError::Stopped(_)) => return Ok(Some(self.nearest.nearer_than(attempt))),
                 ending => {
-                    let ending = ending?;
+                    let (attempt, ending) =
+                        attempt.with_shorter_prefilter(ending?, self.kept, &mut self.part(&mut *watch))?;
                     self.note(&attempt, &ending);
                     if self.is_done_with(attempt, ending)? {
                         return Ok(None);
@@ -266,18 +268,12 @@ impl<'a> DesignProgress<'a> {
             let structure = candidate.structure(&self.options.controller, &self.ground);
             return Some((structure, self.before.clone()));
         }
-        let (_, candidate, nearest) = self.nearest.take().filter(|_| !self.found && !self.relaxing)?;
-        (self.relaxing, self.now) = (true, candidate);
-        Some((nearest.structure().clone(), nearest.feedback()))
-    }
-
-    /// The attempt that is stopped, or the nearest before it if that came nearer.
-    fn nearer(&mut self, mut stopped: Attempt) -> Attempt {
-        let reached_db = stopped.worst_margin_db().unwrap_or(f64::NEG_INFINITY);
-        match self.nearest.take() {
-            Some((worst_margin_db, _, nearest)) if worst_margin_db > reached_db => *nearest,
-            _ => stopped,
+        if self.found || (self.relaxing && !self.may_need_less()) {
+            return None;
         }
+        let NearAttempt { structure, attempt, .. } = self.nearest.take()?;
+        (self.relaxing, self.now) = (true, structure);
+        Some((attempt.structure().clone(), attempt.feedback()))
     }
 
     /// The watch of one attempt. The share is an estimate, because the number of structures is not
@@ -387,12 +383,10 @@ impl<'a> DesignProgress<'a> {
             }
             AttemptEnding::Missed { worst_margin_db, audit: Some(audit) } => {
                 self.take_relaxation(&attempt, -worst_margin_db, *audit)?;
-                Ok(self.waiting.is_empty())
+                Ok(self.waiting.is_empty() && !self.may_need_less())
             }
             AttemptEnding::Missed { worst_margin_db, audit: None } => {
-                if self.nearest.as_ref().is_none_or(|(best, ..)| worst_margin_db > *best) {
-                    self.nearest = Some((worst_margin_db, self.now, Box::new(attempt)));
-                }
+                self.nearest.push(worst_margin_db, self.now, attempt);
                 Ok(self.is_done_without())
             }
             AttemptEnding::NotConverged(audit) => {
@@ -414,6 +408,16 @@ impl<'a> DesignProgress<'a> {
     /// other names may still be worth their poles, fewer zeros are not.
     fn is_done_without(&self) -> bool {
         self.found && (self.met.is_none() || self.waiting.is_empty())
+    }
+
+    /// True where an attempt that missed may need less relaxation than the one that was found.
+    fn may_need_less(&self) -> bool {
+        match &self.design {
+            Some(Design { status: DesignStatus::Infeasible(known), .. }) => {
+                self.nearest.may_need_less(known.relaxation_db - RELAXATION_GAINED_DB)
+            }
+            _ => false,
+        }
     }
 
     fn take_relaxation(

@@ -130,7 +130,7 @@ fn tried(judged: &[JudgedAlternative]) -> String {
         ControllerChoice::Grow { maximum_order } | ControllerChoice::Any { maximum_order, .. } => {
             Some(maximum_order)
         }
-        ControllerChoice::Given(_) | ControllerChoice::Named(_) => None,
+        ControllerChoice::Given(_) | ControllerChoice::Named { .. } => None,
     });
     let orders: Vec<usize> = orders.collect();
     match orders.first() {

@@ -41,7 +41,7 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
 pub(super) fn earned_per_pole_db(view: &ProjectDesign) -> Option<f64> {
     match view.options.controller {
         ControllerChoice::Any { earned_per_pole_db, .. } => Some(earned_per_pole_db),
-        ControllerChoice::Given(_) | ControllerChoice::Named(_) | ControllerChoice::Grow { .. } => None,
+        ControllerChoice::Given(_) | ControllerChoice::Named { .. } | ControllerChoice::Grow { .. } => None,
     }
 }
 
