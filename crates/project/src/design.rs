@@ -75,9 +75,9 @@ pub enum FeedbackChoice {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StructureChoice {
     /// Those that have a name, the shortest first, then structures of growing order.
+    #[default]
     Any,
     /// Structures of growing order alone.
-    #[default]
     Free,
     /// One by its name.
     Named(NamedStructure),
@@ -162,7 +162,7 @@ impl Default for DeclaredDesign {
             prefilter_gain: None,
             reserve: None,
             gain: None,
-            structure_choice: StructureChoice::Free,
+            structure_choice: StructureChoice::Any,
             structure: vec![],
             pressure_feedback: FeedbackChoice::AsDeclared,
             earned_per_pole: None,
@@ -207,7 +207,8 @@ impl DeclaredDesign {
         v.optional(key("reserve", &GAIN, doc).at_least(1.0).at_most(2.0), &mut self.reserve);
         v.pair(key("gain", &RATIO, "Least and greatest gain of `structure`."), &mut self.gain);
         let k = plain("structure", "Which controllers are tried, by a name, or factors of one.");
-        v.word_or_tables(k, &STRUCTURES, &mut self.structure_choice, &mut self.structure, |one, v| {
+        let words = (&STRUCTURES[..], "a name or a list of factors");
+        v.word_or_tables(k, words, &mut self.structure_choice, &mut self.structure, |one, v| {
             v.variant(plain("kind", "Which factor."), one, true);
         });
         let words = &[("as_declared", FeedbackChoice::AsDeclared), ("free", FeedbackChoice::Free)];

@@ -97,7 +97,7 @@ pub(crate) fn built_hose() -> &'static Answer {
 }
 
 /// The settings that leave a design nothing but its specifications.
-pub(crate) const UNLIMITED: [&str; 1] = ["design.limits=none"];
+pub(crate) const UNLIMITED: [&str; 2] = ["design.limits=none", "design.structure=free"];
 
 /// The report of a project whose specifications no controller satisfies: made once for all tests
 /// that ask for it.

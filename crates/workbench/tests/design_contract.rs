@@ -53,11 +53,17 @@ fn the_section_becomes_what_a_design_begins_with() {
 }
 
 #[test]
-fn without_the_section_orders_grow_and_tracking_decides_on_a_prefilter() {
+fn without_the_section_names_come_first_and_tracking_decides_on_a_prefilter() {
     let options = |settings: &[&str]| begun(HOSE, settings, None).1;
     let plain = options(&[]);
     assert_eq!(plain.objective, Objective::LeastHighFrequencyGain);
-    assert_eq!(plain.controller, ControllerChoice::Grow { maximum_order: 4 });
+    let ControllerChoice::Any { maximum_order: 4, from: None, earned_per_pole_db } = plain.controller else {
+        panic!("{:?}", plain.controller)
+    };
+    // ORIGIN: analytic, a factor of two
+    assert!((earned_per_pole_db - 6.0206).abs() < 1e-4, "{earned_per_pole_db} dB");
+    let free = options(&["design.structure=free"]).controller;
+    assert_eq!(free, ControllerChoice::Grow { maximum_order: 4 });
     assert_eq!((plain.prefilter, plain.seed), (PrefilterChoice::Grow { maximum_order: 3 }, 1));
     let (head, tail) = HOSE.split_once("[[specification]]\nkind = \"tracking\"").unwrap();
     let untracked = format!("{head}[controller]{}", tail.split_once("[controller]").unwrap().1);

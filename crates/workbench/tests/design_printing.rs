@@ -35,6 +35,7 @@ const PROJECT: &str = "schema = 1\ntitle = \"drive\"\n\n[plant]\nnumerator = \"k
     [uncertainty]\nk = { nominal = 10, minimum = 10, maximum = 20, points = 2 }\n\n\
     [[specification]]\nkind = \"robust_stability\"\nlimit = 1.3\nfrequencies = [1, 10]\nband = [0, inf]\n\n\
     [[specification]]\nkind = \"tracking\"\nfrequencies = [0.1, 1]\nupper = 1.2\nlower = \"4/(s + 4)\"\n\n\
+    [design]\nstructure = \"free\"\n\n\
     [controller]        # by hand\nnumerator = \"1\"  # slow\ndenominator = \"1\"\nsaturation = \"10 V\"\nTIMING\n\
     [prefilter]\nnumerator = \"1\"\ndenominator = \"1\"\n";
 

@@ -334,13 +334,18 @@ impl Visitor for Reader<'_> {
     fn word_or_tables<W: Copy + PartialEq, T: Default>(
         &mut self,
         key: Key,
-        words: &'static [(&'static str, W)],
+        (words, kinds): (&'static [(&'static str, W)], &'static str),
         word: &mut W,
         tables: &mut Vec<T>,
         visit: impl Fn(&mut T, &mut Self),
     ) {
         match self.find(key).map(|hit| &hit.node.value) {
             Some(Value::List(_)) => self.tables(key, tables, visit),
+            Some(Value::Table(_)) => {
+                if let Some(hit) = self.find(key) {
+                    self.wrong_kind(key, kinds, hit.node);
+                }
+            }
             _ => self.choice(key, words, word, false),
         }
     }

@@ -26,9 +26,9 @@ pub(super) fn design(project: &Project, check: &mut Check<'_, '_>) {
         let message = "`maximum_order` has no effect: `structure` says which controllers are tried";
         check.warning("design.maximum_order", message);
     }
-    let compares = design.structure.is_empty() && design.structure_choice == StructureChoice::Any;
+    let compares = design.structure.is_empty() && design.structure_choice != StructureChoice::Free;
     if !compares && check.declared("design.earned_per_pole") {
-        let message = "`earned_per_pole` has no effect: it compares the structures of `structure = \"any\"`";
+        let message = "`earned_per_pole` has no effect: it compares the structures that have a name";
         check.warning("design.earned_per_pole", message);
     }
     let law = project.controller.as_ref().is_some_and(|controller| controller.has_law());

@@ -13,10 +13,10 @@ use crate::quantity::DisplayUnit;
 /// Digits of the settings, for people.
 const DIGITS: usize = 4;
 
-/// The parts of the controller with their settings; empty for one of no name.
+/// The parts of the controller with their settings; empty for one of no name that has none.
 pub(crate) fn document(view: &ProjectDesign) -> Document {
     let mut out = Document::default();
-    if view.design.name.is_none() {
+    if view.design.name.is_none() && view.manual.is_err() {
         return out;
     }
     out.heading("In the words of a controller's manual");
