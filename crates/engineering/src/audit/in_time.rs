@@ -5,6 +5,7 @@
 use phea_dynamics::time_response::{StepBaseline, TimeResponseError, step_metrics};
 use phea_qft::closed_loop::Member;
 use phea_qft::family::{Extent, Family, UncertainFamily};
+use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::{Audit, PlantPoint, SpecificationFinding, Verdict};
 
 use super::margins::{corners, spread};
@@ -84,6 +85,8 @@ const EXTENSIONS: usize = 3;
 const MEMBERS: usize = 150;
 const MEMBERS_OF_RESPONSES: usize = 12;
 const CORNERS_OF_RESPONSES: usize = 16;
+/// Most members whose steps are computed where loops are compared that were not audited.
+const MEMBERS_COMPARED: usize = 40;
 /// Plants from which each property is followed between the members; first and last step, as shares
 /// of the box; most plants that are visited.
 const STARTS: usize = 3;
@@ -164,6 +167,27 @@ fn outcome(
     }
     let [overshoot, settling, rise] = [0, 1, 2].map(|property| search.worst(property));
     Ok(TimeOutcome::Searched { plants: search.visited.len(), overshoot, settling, rise })
+}
+
+/// The worst of the nominal plant and of members spread over the family, without an audit; `None`
+/// where one of them is not known to be stable, or has no step.
+pub(crate) fn steps_of_members(
+    problem: &RobustProblem,
+    requirement: &TimeRequirement,
+) -> Option<ReachedStep> {
+    let Family::Uncertain(family) = &problem.family else { return None };
+    let most = if family.plant().is_rational() { MEMBERS_COMPARED } else { MEMBERS_OF_RESPONSES };
+    let mut search = StepSearch { problem, family, wish: requirement.wish, visited: vec![] };
+    for values in std::iter::once(family.plant().nominal()).chain(spread(family.members(), most)) {
+        let member = problem.compensation.member_of(family.plant(), &values).ok()?;
+        if member_stability(&member, &problem.compensation).status != StabilityStatus::Stable {
+            return None;
+        }
+        search.visit(&values).ok()?;
+    }
+    let [overshoot, settling, rise] = [0, 1, 2].map(|property| search.worst(property));
+    let outcome = TimeOutcome::Searched { plants: search.visited.len(), overshoot, settling, rise };
+    TimeFinding { requirement: *requirement, outcome }.reached()
 }
 
 /// The nominal plant, members spread over the family, and the plants that the audit found worst.

@@ -3,13 +3,14 @@
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::LinearError;
 use phea_qft::closed_loop::Compensation;
-use phea_qft::design::{NamedStructure, StructureEnding, TriedStructure};
+use phea_qft::design::{NamedStructure, PrefilterChoice, StructureEnding, TriedStructure};
 use phea_qft::loop_shaping::{SampledMargin, Structure};
 
 use super::{DesignError, DesignRun, NominalMargins, ProjectDesign};
-use crate::audit::nominal_margins;
+use crate::audit::{nominal_margins, steps_of_members};
 use crate::project::{STRUCTURES, StructureChoice, word_of};
 use crate::robust::RobustProblem;
+use crate::simulate::ReachedStep;
 
 /// A structure with what it reaches.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +39,10 @@ pub struct ReachedStructure {
     /// By which it is compared with others, dB, the less the better: the largest gain from the
     /// noise of the sensor to the command of the nominal loop, or the objective.
     pub compared_db: Option<f64>,
+    /// The worst linear steps of the family where a step is required, of the design those of its
+    /// audit, of others those of members spread over the family; absent where no prefilter was
+    /// fitted.
+    pub steps: Option<ReachedStep>,
 }
 
 /// The word of a structure in a project; empty for one without a name.
@@ -57,11 +62,15 @@ fn reached_by(
     tried: &TriedStructure,
 ) -> Result<ReachedStructure, LinearError> {
     let law = tried.law.as_ref().filter(|_| tried.least.is_some());
-    let nominal = match law {
+    let around = match law {
         Some(law) => {
             let compensation = Compensation::new(law, run.problem.sensor.clone())?;
-            nominal_margins(&RobustProblem { compensation, ..run.aimed.clone() })?
+            Some(RobustProblem { compensation, ..run.aimed.clone() })
         }
+        None => None,
+    };
+    let nominal = match &around {
+        Some(around) => nominal_margins(around)?,
         None => None,
     };
     let high_frequency_gain_db = match law {
@@ -77,11 +86,20 @@ fn reached_by(
         index if index < own => Some(told.named(index)),
         index => run.aimed.specification_names.get(index).cloned(),
     };
+    let is_chosen = tried.structure == told.design.structure;
+    let has_prefilter = law.is_some_and(|law| !law.prefilter.stages.is_empty());
+    let is_fitted = has_prefilter || !matches!(told.options.prefilter, PrefilterChoice::Grow { .. });
+    let steps = match (told.designed.view.in_time.first(), &around) {
+        (Some(finding), _) if is_chosen => finding.reached(),
+        (Some(finding), Some(around)) if is_fitted => steps_of_members(around, &finding.requirement),
+        _ => None,
+    };
     Ok(ReachedStructure {
+        steps,
         name: tried.name,
         order: tried.structure.order()?,
         relative_degree: tried.structure.relative_degree()?,
-        is_chosen: tried.structure == told.design.structure,
+        is_chosen,
         structure: tried.structure.clone(),
         ending: tried.ending,
         binding: least.as_ref().and_then(name_of),

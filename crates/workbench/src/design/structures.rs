@@ -16,7 +16,7 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
     }
     out.heading("The structures that were tried");
     out.explanation(
-        "The shortest structure that is met is taken. The least margin, and the limit that binds, are those of the plants and frequencies that the search evaluated; crossover and delay margin are those of the nominal loop; the noise gain is its largest |G/(1+L)|, from the noise of the sensor to the command.",
+        "The shortest structure that is met is taken. The least margin, and the limit that binds, are those of the plants and frequencies that the search evaluated; crossover and delay margin are those of the nominal loop; overshoot and settling time are the worst of the linear steps, of the structure that is taken over the whole family, of others over 40 of its members; the noise gain is its largest |G/(1+L)|, from the noise of the sensor to the command.",
     );
     let compares_noise = view.options.objective == Objective::LeastHighFrequencyGain;
     let headings = [
@@ -98,20 +98,22 @@ fn row(view: &ProjectDesign, one: &ReachedStructure) -> Vec<Cell> {
     ]
 }
 
-/// The worst overshoot and settling time, of the structure that the design has.
+/// The worst overshoot and settling time.
 fn steps(view: &ProjectDesign, one: &ReachedStructure) -> [Option<String>; 2] {
     let Some(reached) = reached_steps(view, one) else { return [None, None] };
     let [overshoot, settling] = reached;
     [
         overshoot.map(|percent| format!("{} %", significant(percent, 3))),
-        settling.map(|time_s| DisplayUnit::MILLISECOND.text(time_s, 3)),
+        settling.map(|time_s| match time_s.is_finite() {
+            true => DisplayUnit::MILLISECOND.text(time_s, 3),
+            false => "not settled".to_string(),
+        }),
     ]
 }
 
 /// Percent and s, as far as they are required.
 fn reached_steps(view: &ProjectDesign, one: &ReachedStructure) -> Option<[Option<f64>; 2]> {
-    let finding = view.designed.view.in_time.iter().find(|_| one.is_chosen)?;
-    let (reached, wish) = (finding.reached()?, finding.requirement.wish);
+    let (reached, wish) = (one.steps?, view.designed.view.in_time.first()?.requirement.wish);
     Some([
         wish.overshoot_percent.map(|_| reached.overshoot_percent),
         wish.settling_time_s.map(|_| reached.settling_time_s),
