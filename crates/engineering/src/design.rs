@@ -2,6 +2,7 @@
 //! every specification, its comparison with the given one, and the wording of both.
 
 mod asked;
+mod by_steps;
 mod comparison;
 mod damping;
 mod deployable;
@@ -137,10 +138,10 @@ pub struct ProjectDesign {
     /// The designed controller with its audit.
     pub designed: AuditedController,
     /// The controller that the project gives, with its audit; absent where it gives none.
-    pub published: Option<AuditedController>,
+    pub published: Option<Box<AuditedController>>,
     /// In a sampled loop: the design that was made for the continuous one, sampled and audited as
     /// the loop is.
-    pub continuous: Option<AuditedController>,
+    pub continuous: Option<Box<AuditedController>>,
     /// What no controller can achieve, and what will be hard, whatever the search found.
     pub explanations: Vec<Explanation>,
     /// The effect of the computer's converters on the designed loop; absent where nothing is
@@ -403,6 +404,7 @@ fn designed(
     let continuous = unless_stopped(&mut stopped, || {
         continuous_as_sampled((source, setup), &run.problem, &told, &mut within(watch, [0.9, 1.0]))
     })?;
+    let [published, continuous] = [published, continuous].map(|one| one.map(Box::new));
     Ok((run, ProjectDesign { stopped, published, continuous, ..told }))
 }
 

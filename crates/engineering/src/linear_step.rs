@@ -11,6 +11,7 @@ use phea_dynamics::time_response::{
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 use phea_qft::closed_loop::{Compensation, Member};
 
+pub(crate) use of_responses::KnownResponses;
 use of_responses::real_parts;
 
 /// A step response from the step on: fraction of the step over time.
@@ -37,6 +38,17 @@ pub fn linear_step(
     duration_s: f64,
     points: usize,
 ) -> Result<StepResponse, TimeResponseError> {
+    linear_step_knowing(member, compensation, (duration_s, points), &KnownResponses::default())
+}
+
+/// The same with what is known of the response of this plant in a loop of the same timing and
+/// sensor.
+pub(crate) fn linear_step_knowing(
+    member: &Member,
+    compensation: &Compensation,
+    (duration_s, points): (f64, usize),
+    known: &KnownResponses,
+) -> Result<StepResponse, TimeResponseError> {
     let prefilter = compensation.prefilter_of_step()?;
     let feedback = compensation.feedback();
     let samples =
@@ -60,7 +72,7 @@ pub fn linear_step(
         Member::Responding { plant, .. } => {
             let sample_time_s = compensation.sample_time_s();
             let step_s = sample_time_s.unwrap_or(duration_s / points as f64);
-            let parts = real_parts(plant, compensation)?;
+            let parts = real_parts(plant, compensation, known)?;
             let count = samples(step_s);
             let values = step_of_frequency_response(&parts, step_s, count, sample_time_s.is_some());
             ((0..count).map(|sample| sample as f64 * step_s).collect(), values)

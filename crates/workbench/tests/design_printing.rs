@@ -85,6 +85,8 @@ fn design(problem: &DesignProblem, coefficients: CoefficientFormat, status: Desi
         law,
         controller,
         name: None,
+        prefilter: None,
+        free_numbers: vec![],
         structure: structure.clone(),
         starts: None,
         objective_db: 34.0,
@@ -115,7 +117,7 @@ fn view(text: &str, status: DesignStatus) -> (Memory, Loaded, ProjectDesign) {
     assert_eq!(options.prefilter, PrefilterChoice::Grow { maximum_order: 3 });
     let design = design(&problem, options.coefficients, status);
     let view = ProjectDesign::new(&setup, &given, &problem, design, options, &mut |_| true).unwrap();
-    (source, loaded, ProjectDesign { published: Some(published), ..view })
+    (source, loaded, ProjectDesign { published: Some(Box::new(published)), ..view })
 }
 
 fn infeasible() -> DesignStatus {

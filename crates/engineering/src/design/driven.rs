@@ -1,5 +1,5 @@
 //! A design whose steps on the nonlinear rig are held against what is required in time: where they
-//! miss it, the search aims lower by as much, once.
+//! miss it, the search aims lower by as much, from the design that was found.
 //!
 //! ```text
 //! design -> trial on the nonlinear rig -> misses by r -> design for what is required over r -> trial -> the better one
@@ -8,6 +8,7 @@
 use phea_dynamics::watch::{Watch, within};
 use phea_qft::design::DesignStatus;
 
+use super::by_steps::by_steps;
 use super::search::{found, rank};
 use super::step_aim::StepAim;
 use super::{DesignError, DesignRun, ProjectDesign, tried_design, unless_stopped};
@@ -15,6 +16,18 @@ use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::source::Source;
 use crate::trial::{HeldRequirement, Trial};
+
+/// A way to a design with a stricter aim.
+#[derive(Clone, Copy)]
+enum Way {
+    /// From the one before, by its steps.
+    BySteps,
+    /// By a search from the beginning.
+    Anew,
+}
+
+/// The ways that are tried in turn as long as the nonlinear rig misses what is required.
+const WAYS: [Way; 4] = [Way::BySteps, Way::BySteps, Way::Anew, Way::BySteps];
 
 /// A design with its trial; with neither where the watch stops it before.
 pub(super) fn found_and_tried(
@@ -25,29 +38,61 @@ pub(super) fn found_and_tried(
 ) -> Result<(DesignRun, ProjectDesign), DesignError> {
     let (aim, run, told) =
         found(setup, (given, StepAim::AS_REQUIRED), seed, &mut within(&mut *watch, [0.0, 0.5]))?;
-    let mut told = with_trial((source, setup), told, &mut within(&mut *watch, [0.5, 0.6]))?;
-    let is_met = told.design.status == DesignStatus::Met;
-    let missed = told.trial.as_ref().and_then(furthest).filter(|_| !told.stopped && is_met);
-    let Some(stricter) = missed.and_then(|held| aim.stricter_by(&held.wish, &held.reached)) else {
-        return Ok((run, told));
-    };
-    let again = found(setup, (given, stricter), seed, &mut within(&mut *watch, [0.6, 0.9]));
-    let again = again.and_then(|(_, run, found)| {
-        Ok((run, with_trial((source, setup), found, &mut within(watch, [0.9, 1.0]))?))
-    });
-    match again {
-        Ok((run, found)) if is_better(&found, &told) => Ok((run, found)),
-        Ok((_, found)) => {
-            told.stopped = found.stopped;
-            Ok((run, told))
+    let told = with_trial((source, setup), told, &mut within(&mut *watch, [0.5, 0.6]))?;
+    let mut best = (run, told);
+    // the design that the next one is stricter than, unless that is the best one
+    let (mut aim, mut latest): (StepAim, Option<(DesignRun, ProjectDesign)>) = (aim, None);
+    for (index, way) in WAYS.into_iter().enumerate() {
+        let share = [index, index + 1].map(|done| 0.6 + 0.4 * done as f64 / WAYS.len() as f64);
+        let before = latest.as_ref().unwrap_or(&best);
+        let Some(stricter) = stricter_aim(aim, &before.1) else { break };
+        let part = &mut within(&mut *watch, share);
+        match stricter_design((source, setup), (given, stricter), (before, way, seed), part) {
+            Ok(Some(found)) => {
+                let is_better = is_better(&found.1, &best.1);
+                aim = stricter;
+                latest = if is_better {
+                    best = found;
+                    None
+                } else {
+                    Some(found)
+                };
+            }
+            Err(DesignError::Stopped(_)) => best.1.stopped = true,
+            // what was found before remains
+            Ok(None) | Err(_) => {}
         }
-        Err(DesignError::Stopped(_)) => {
-            told.stopped = true;
-            Ok((run, told))
+        if best.1.stopped {
+            break;
         }
-        // what was found before remains
-        Err(_) => Ok((run, told)),
     }
+    Ok(best)
+}
+
+/// An aim that is stricter by what the nonlinear rig misses under a design that is met; `None`
+/// where it misses nothing that ends.
+fn stricter_aim(aim: StepAim, told: &ProjectDesign) -> Option<StepAim> {
+    let is_met = told.design.status == DesignStatus::Met && !told.stopped;
+    let missed = told.trial.as_ref().and_then(furthest).filter(|_| is_met)?;
+    aim.stricter_by(&missed.wish, &missed.reached)
+}
+
+/// A design with a stricter aim and its trial; `None` where the steps of the one before do not
+/// lead.
+fn stricter_design(
+    (source, setup): (&dyn Source, &Setup<'_>),
+    aimed: (&RobustProblem, StepAim),
+    ((run, told), way, seed): (&(DesignRun, ProjectDesign), Way, Option<u32>),
+    watch: Watch<'_>,
+) -> Result<Option<(DesignRun, ProjectDesign)>, DesignError> {
+    let mut searching = within(&mut *watch, [0.0, 0.7]);
+    let found = match way {
+        Way::BySteps => by_steps(setup, aimed, (run, told), &mut searching)?,
+        Way::Anew => found(setup, aimed, seed, &mut searching).map(|(_, run, told)| Some((run, told)))?,
+    };
+    drop(searching);
+    let Some((run, told)) = found else { return Ok(None) };
+    Ok(Some((run, with_trial((source, setup), told, &mut within(watch, [0.7, 1.0]))?)))
 }
 
 /// A design with the trial of its controller; absent once the watch has stopped it.

@@ -5,9 +5,11 @@ use phea_dynamics::watch::{Stopped, Watch, within};
 use phea_qft::design::{ControllerChoice, DesignStatus, Finding, design_stricter};
 use phea_qft::verification::Verdict;
 
+use super::by_steps::by_steps;
 use super::problem::{design_options, design_problem};
-use super::step_aim::{REPETITIONS, StepAim, excess};
+use super::step_aim::{REPETITIONS, StepAim};
 use super::{DesignError, DesignRun, Explanation, ProjectDesign, ReachedStructure, proven, structures};
+use crate::audit::TimeFinding;
 use crate::limit_kind::limit_words;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
@@ -25,8 +27,12 @@ pub(super) fn found(
         let aimed = aim.of(setup.project, given)?;
         let share = [repetition, repetition + 1].map(|done| done as f64 / (REPETITIONS + 1) as f64);
         let before = found.last().map(|(_, run, told)| (run, told));
-        match searched(setup, (given, &aimed), (seed, before), &mut within(&mut *watch, share)) {
-            Ok((run, told)) => found.push((aim, run, told)),
+        let design = searched(setup, (given, &aimed), (seed, before), &mut within(&mut *watch, share));
+        match design {
+            Ok(design) => {
+                let (run, told) = led_by_steps(setup, (given, aim), design, &mut within(&mut *watch, share));
+                found.push((aim, run, told));
+            }
             // what was found before remains
             Err(error) if found.is_empty() => return Err(error),
             Err(_) => break,
@@ -49,6 +55,28 @@ pub(super) fn found(
     Ok((aim, run, told.with_shorter(tried)))
 }
 
+/// A design whose steps miss what is required, led to it by its steps; as it is where that gains
+/// nothing.
+fn led_by_steps(
+    setup: &Setup<'_>,
+    aimed: (&RobustProblem, StepAim),
+    (run, mut told): (DesignRun, ProjectDesign),
+    watch: Watch<'_>,
+) -> (DesignRun, ProjectDesign) {
+    if told.stopped || !told.designed.view.in_time.iter().any(TimeFinding::violates) {
+        return (run, told);
+    }
+    match by_steps(setup, aimed, (&run, &told), watch) {
+        Ok(Some(moved)) if is_nearer(&moved.1, &told) => moved,
+        Err(DesignError::Stopped(_)) => {
+            told.stopped = true;
+            (run, told)
+        }
+        // what was found before remains
+        Ok(_) | Err(_) => (run, told),
+    }
+}
+
 /// The rank of a design among several, the least the best: its verdict over frequency with a
 /// prefilter that keeps its gain, then the distance of its steps from what is required.
 pub(super) fn rank(told: &ProjectDesign) -> (u8, f64) {
@@ -62,7 +90,13 @@ pub(super) fn rank(told: &ProjectDesign) -> (u8, f64) {
         Verdict::NotProven => 2,
         Verdict::Violated => 3,
     };
-    (verdict, excess(&told.designed.view.in_time))
+    (verdict, StepAim::AS_REQUIRED.excess(told))
+}
+
+/// True where a design is nearer to what is required than another.
+pub(super) fn is_nearer(one: &ProjectDesign, other: &ProjectDesign) -> bool {
+    let (one, other) = (rank(one), rank(other));
+    one.0.cmp(&other.0).then(one.1.total_cmp(&other.1)).is_lt()
 }
 
 /// A design of the problem that is aimed at, judged as the given one; plants that a design before

@@ -51,6 +51,27 @@ impl StepAim {
     /// At what is required itself.
     pub(super) const AS_REQUIRED: StepAim = StepAim { overshoot: 1.0, settling: 1.0, prefilter_gain: None };
 
+    /// The share of what is required that is aimed at.
+    pub(super) fn wish(self, required: TrackingWish) -> TrackingWish {
+        TrackingWish {
+            overshoot_percent: required.overshoot_percent.map(|most| most * self.overshoot),
+            settling_time_s: required.settling_time_s.map(|time_s| time_s * self.settling),
+            rise_time_s: required.rise_time_s.map(|time_s| time_s * self.settling),
+            ..required
+        }
+    }
+
+    /// How far the steps of a design are from it: the largest ratio, at most 1 where all are within
+    /// it.
+    pub(super) fn excess(self, told: &ProjectDesign) -> f64 {
+        let required = told.designed.view.in_time.iter().filter(|finding| finding.requirement.follows);
+        let ratio = |finding: &TimeFinding| {
+            let wish = self.wish(finding.requirement.wish);
+            finding.reached().map_or(f64::INFINITY, |reached| wish.excess(&reached))
+        };
+        required.map(ratio).fold(0.0, f64::max)
+    }
+
     /// Stricter by what a design lacks: a loop that does by itself what its prefilter exaggerates,
     /// and steps that miss a requirement; `None` where it lacks nothing, or where nothing is gained
     /// by aiming lower still.
@@ -192,14 +213,4 @@ fn without_prefilter(specifications: &[Specification], gain: f64) -> Option<Spec
         Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(1.0 - SLOW / gain.max(1.0)));
     let frequencies_rad_per_s = sorted_distinct([0.3 * top, top].into());
     Some(Specification { requirement, frequencies_rad_per_s, band_rad_per_s: [0.0, top] })
-}
-
-/// How far the steps of a design are from what is required: the largest ratio, at most 1 where all
-/// satisfy it.
-pub(super) fn excess(findings: &[TimeFinding]) -> f64 {
-    let required = findings.iter().filter(|finding| finding.requirement.follows);
-    let ratio = |finding: &TimeFinding| {
-        finding.reached().map_or(f64::INFINITY, |reached| finding.requirement.wish.excess(&reached))
-    };
-    required.map(ratio).fold(0.0, f64::max)
 }

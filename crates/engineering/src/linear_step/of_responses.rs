@@ -1,11 +1,13 @@
 //! The closed loop around a plant that is known by its response, for computing step responses.
 
+use std::cell::RefCell;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
-use phea_qft::closed_loop::{Compensation, Member};
+use phea_qft::closed_loop::{Compensation, Member, MemberResponse};
 use phea_qft::family::{FINE, tabulated};
 
 /// Deviation of the closed loop's response from the line between two points that is allowed, as a
@@ -17,6 +19,29 @@ const CLOSEST: f64 = 1e-6;
 /// and what is below the first point is taken as constant.
 const HALVINGS: u32 = 20;
 
+/// What is known of a plant's response, so that other controllers do not ask for it again: its own
+/// frequencies in rad/s, and its response by the bits of a frequency.
+#[derive(Debug, Default)]
+pub(crate) struct KnownResponses {
+    own: RefCell<Vec<f64>>,
+    by_frequency: RefCell<HashMap<u64, Option<MemberResponse>>>,
+}
+
+impl KnownResponses {
+    fn frequencies(&self, plant: &dyn RespondingPlant, range: [f64; 2]) -> Vec<f64> {
+        let mut own = self.own.borrow_mut();
+        if own.is_empty() {
+            *own = tabulated(plant, range, FINE).frequencies_rad_per_s;
+        }
+        own.clone()
+    }
+
+    fn response(&self, member: &Member, frequency: f64) -> Option<MemberResponse> {
+        let mut known = self.by_frequency.borrow_mut();
+        *known.entry(frequency.to_bits()).or_insert_with(|| member.response(frequency))
+    }
+}
+
 /// Frequencies in rad/s with the real part of F P G/(1 + L) there, straight between them: what
 /// [`step_of_frequency_response`](phea_dynamics::time_response::step_of_frequency_response) takes.
 ///
@@ -25,28 +50,32 @@ const HALVINGS: u32 = 20;
 pub(super) fn real_parts(
     plant: &Arc<dyn RespondingPlant>,
     compensation: &Compensation,
+    known: &KnownResponses,
 ) -> Result<Vec<(f64, f64)>, LinearError> {
     let member = compensation.responding(plant.clone());
     let highest = compensation.highest_frequency_rad_per_s();
     let [from, to] = plant.range_rad_per_s();
-    let own = tabulated(plant.as_ref(), [from, to.min(highest)], FINE).frequencies_rad_per_s;
+    let own = known.frequencies(plant.as_ref(), [from, to.min(highest)]);
     let lowest = own.first().copied().unwrap_or(highest);
     let below = (1..=HALVINGS).rev().map(|halvings| lowest / f64::from(1_u32 << halvings));
     let grid: Vec<f64> = below.chain(own).collect();
     let prefilter = compensation.prefilter_of_step()?;
-    Ok(straight(&grid, highest, |frequency| closed(&member, compensation, &prefilter, frequency)))
+    let closed = |frequency: f64| {
+        let plant = known.response(&member, frequency)?;
+        Some(closed(plant, compensation, &prefilter, frequency))
+    };
+    Ok(straight(&grid, highest, closed))
 }
 
 /// F P G/(1 + L), with F as a step passes through it.
 fn closed(
-    member: &Member,
+    plant: MemberResponse,
     compensation: &Compensation,
     prefilter: &TransferFunction,
     frequency: f64,
-) -> Option<Complex64> {
-    let plant = member.response(frequency)?;
+) -> Complex64 {
     let forward = plant.plant * compensation.feedback().at_frequency(frequency);
-    Some(prefilter.at_frequency(frequency) * forward / (1.0 + forward * plant.sensor))
+    prefilter.at_frequency(frequency) * forward / (1.0 + forward * plant.sensor)
 }
 
 /// The real part at these frequencies, and between them until it is straight there.

@@ -157,12 +157,7 @@ impl Ground {
         let poles = order.saturating_sub(self.integrators);
         let Corners { of_zeros, of_poles } = self.corners();
         let [least, greatest] = DAMPING_RATIOS;
-        // a pair of poles under a pair of zeros is a notch
-        let notches = zeros / 2;
-        let pair = |number: usize, is_pole: bool| match is_pole {
-            true if number < notches => {
-                StructureFactor::PolePair { natural_frequency: of_poles, damping_ratio: DAMPING_RATIOS }
-            }
+        let pair = |is_pole: bool| match is_pole {
             true => {
                 let damping_ratio = [least.max(self.poles.least_damping_ratio), greatest];
                 StructureFactor::PolePair { natural_frequency: of_poles, damping_ratio }
@@ -174,8 +169,7 @@ impl Ground {
             false => StructureFactor::RealZero { frequency: of_zeros },
         };
         let factors = |count: usize, is_pole: bool| {
-            (0..count / 2)
-                .map(|number| pair(number, is_pole))
+            std::iter::repeat_n(pair(is_pole), count / 2)
                 .chain(std::iter::repeat_n(single(is_pole), count % 2))
                 .collect::<Vec<StructureFactor>>()
         };

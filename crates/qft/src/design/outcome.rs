@@ -31,6 +31,11 @@ impl DesignOutcome {
         &self.known.tried
     }
 
+    /// What the searches evaluated; `None` before the first one.
+    pub fn samples(&self) -> Option<&Samples> {
+        self.known.samples.as_ref()
+    }
+
     /// If it was stopped before any design existed, audits the present controller, which becomes a
     /// design that has not converged.
     ///

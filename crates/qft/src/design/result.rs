@@ -3,9 +3,10 @@
 use phea_dynamics::controller::Controller;
 use phea_dynamics::order::sort_numbers;
 
-use super::NamedStructure;
-use crate::loop_shaping::{SearchResult, Structure};
-use crate::verification::{Audit, PlantPoint};
+use super::binding::binding_limits;
+use super::{DesignOptions, NamedStructure};
+use crate::loop_shaping::{SearchResult, Shaping, Structure};
+use crate::verification::{Audit, PlantPoint, Verdict};
 
 /// Why a design ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -129,6 +130,10 @@ pub struct Design {
     pub law: Controller,
     /// What was shaped.
     pub structure: Structure,
+    /// The structure of its prefilter; `None` where it has none.
+    pub prefilter: Option<Structure>,
+    /// The free numbers of both structures, one after the other.
+    pub free_numbers: Vec<f64>,
     /// Its name; `None` for one of growing order or a given one.
     pub name: Option<NamedStructure>,
     /// Where the starts of its last search ended; `None` before a search has ended.
@@ -143,4 +148,31 @@ pub struct Design {
     pub binding: Vec<BindingLimit>,
     /// How it came about.
     pub rounds: Vec<DesignRound>,
+}
+
+impl Design {
+    /// The same structures with other free numbers and their audit, as one that is met or not; its
+    /// coefficients are not rounded.
+    pub fn moved(
+        self,
+        shaping: &Shaping,
+        free_numbers: Vec<f64>,
+        audit: Audit,
+        options: &DesignOptions,
+    ) -> Design {
+        let law = shaping.controller(&free_numbers);
+        let status = match audit.verdict {
+            Verdict::Met => DesignStatus::Met,
+            Verdict::NotProven | Verdict::Violated => self.status,
+        };
+        Design {
+            status,
+            controller: law.clone(),
+            law,
+            binding: binding_limits(&audit, options),
+            audit,
+            free_numbers,
+            ..self
+        }
+    }
 }

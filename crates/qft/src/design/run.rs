@@ -453,6 +453,8 @@ pub(super) fn design_of(
         controller: attempt.deployed()?,
         law: attempt.shaping().controller(attempt.x()),
         structure: attempt.structure().clone(),
+        prefilter: attempt.shaping().prefilter().cloned(),
+        free_numbers: attempt.x().to_vec(),
         name: None,
         starts: attempt.starts().cloned(),
         objective_db: rounds.last().map_or(f64::NAN, |round| round.objective_db),

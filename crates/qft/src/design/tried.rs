@@ -28,6 +28,10 @@ pub struct TriedStructure {
     pub name: Option<NamedStructure>,
     /// Its free numbers.
     pub structure: Structure,
+    /// The structure of the prefilter that was fitted to it; `None` without one.
+    pub prefilter: Option<Structure>,
+    /// The free numbers of both that it ended with; empty where it found none.
+    pub free_numbers: Vec<f64>,
     /// How it ended.
     pub ending: StructureEnding,
     /// The controller that it ended with; `None` where it found none.
@@ -53,6 +57,8 @@ impl TriedStructure {
         TriedStructure {
             name,
             structure: attempt.structure().clone(),
+            prefilter: attempt.shaping().prefilter().cloned(),
+            free_numbers: attempt.x().to_vec(),
             ending,
             law: (!attempt.x().is_empty()).then(|| attempt.shaping().controller(attempt.x())),
             least: margins.into_iter().min_by(|one, other| one.margin_db.total_cmp(&other.margin_db)),

@@ -142,6 +142,11 @@ impl Shaping {
         &self.structure
     }
 
+    /// The structure of the prefilter; `None` without one.
+    pub fn prefilter(&self) -> Option<&Structure> {
+        self.prefilter.as_ref()
+    }
+
     /// How tracking is judged.
     pub fn tracking(&self) -> TrackingJudgement {
         self.samples.tracking()

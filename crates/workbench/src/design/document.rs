@@ -195,10 +195,10 @@ pub(crate) fn laws(side: &AuditedController) -> Result<Document, LinearError> {
 /// designed one, and in a sampled loop the one that was designed without samples.
 pub(crate) fn side_by_side(view: &ProjectDesign) -> Document {
     let sides = [
-        ("given", view.published.as_ref()),
+        ("given", view.published.as_deref()),
         ("before the repair", before_repair(view).map(|before| &before.designed)),
         ("designed", Some(&view.designed)),
-        ("made without samples", view.continuous.as_ref()),
+        ("made without samples", view.continuous.as_deref()),
     ];
     let columns: Vec<(&str, Vec<(String, String)>)> =
         sides.into_iter().filter_map(|(name, side)| Some((name, compared(side?)))).collect();

@@ -14,7 +14,7 @@ pub(super) fn figure(view: &ProjectDesign, found: &[DesignFrequency]) -> Result<
     let alone = view.published.is_none();
     let mut loops = Vec::new();
     let mut violations = Vec::new();
-    for (name, side) in [("designed", Some(&view.designed)), ("given", view.published.as_ref())] {
+    for (name, side) in [("designed", Some(&view.designed)), ("given", view.published.as_deref())] {
         let Some(side) = side else { continue };
         let Some(series) = nominal_loop(&side.problem)? else { continue };
         loops.push(FrequencySeries { name: format!("{name}, nominal plant"), ..series });
@@ -23,7 +23,7 @@ pub(super) fn figure(view: &ProjectDesign, found: &[DesignFrequency]) -> Result<
     if loops.is_empty() {
         return Ok(None);
     }
-    let sides = std::iter::once(&view.designed).chain(&view.published);
+    let sides = std::iter::once(&view.designed).chain(view.published.as_deref());
     let problems: Vec<_> = sides.map(|side| &side.problem).collect();
     let (bounds, left_out) = nearest_bounds(found, &problems);
     let chart = NicholsChart {

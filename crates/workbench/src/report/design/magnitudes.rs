@@ -11,7 +11,7 @@ use crate::specification::kind_key;
 
 /// One figure for each specification that a loop has a margin to.
 pub(super) fn figures(view: &ProjectDesign) -> Result<Vec<Figure>, LinearError> {
-    let sides = [("designed", Some(&view.designed)), ("given", view.published.as_ref())];
+    let sides = [("designed", Some(&view.designed)), ("given", view.published.as_deref())];
     let sides = sides.into_iter().filter_map(|(name, side)| Some((name, side?)));
     let loops = sides.map(|(name, side)| LoopFamily::new(name, &side.problem, &side.view));
     let loops: Vec<LoopFamily<'_>> = loops.collect::<Result<_, _>>()?;

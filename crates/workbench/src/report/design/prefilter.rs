@@ -36,7 +36,7 @@ fn figure(
 ) -> Result<Option<Figure>, LinearError> {
     let mut panels = Vec::new();
     let mut tightest = Vec::new();
-    for (name, side) in [("designed", Some(&view.designed)), ("given", view.published.as_ref())] {
+    for (name, side) in [("designed", Some(&view.designed)), ("given", view.published.as_deref())] {
         let Some((panel, sentence)) =
             side.map(|side| panel(name, side, index, specification)).transpose()?.flatten()
         else {

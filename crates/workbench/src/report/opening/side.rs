@@ -41,7 +41,7 @@ pub(super) fn sides<'a>(
         trial: judged.and_then(|judged| judged.given_trial.as_ref()),
         runs: driven.and_then(|driven| driven.runs_of(GIVEN)),
         campaign,
-        figures: found.and_then(|view| view.published.as_ref()).map(|side| side.figures),
+        figures: found.and_then(|view| view.published.as_deref()).map(|side| side.figures),
     };
     let designed = Side {
         name: DESIGNED,
