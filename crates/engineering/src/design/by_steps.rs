@@ -14,14 +14,14 @@ use phea_qft::closed_loop::Compensation;
 use phea_qft::design::quantization::CoefficientFormat;
 use phea_qft::design::{Design, DesignProblem, DesignStatus, LoopDesignError, TriedStructure};
 use phea_qft::family::Family;
-use phea_qft::loop_shaping::{Aim, DescentOptions, Samples, SearchProblem, Shaping, descend};
+use phea_qft::loop_shaping::{Aim, DescentOptions, SampledMargin, Samples, SearchProblem, Shaping, descend};
 use phea_qft::verification::Audit;
 
 use self::shaping::{RESERVE_DB, StepShaping};
 use super::problem::design_problem;
 use super::search::rank;
 use super::step_aim::StepAim;
-use super::{DesignError, DesignRun, ProjectDesign};
+use super::{DesignError, DesignRun, ProjectDesign, structures};
 use crate::audit::audit_request;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
@@ -76,11 +76,12 @@ pub(super) fn by_steps(
             break;
         }
     }
-    Ok(best.map(|AuditedStep { told: best, .. }| {
-        let mut outcome = run.outcome.clone();
-        outcome.design = Some(best.design.clone());
-        (DesignRun { aimed: run.aimed.clone(), problem: run.problem.clone(), outcome }, *best)
-    }))
+    let Some(AuditedStep { told: mut best, least, .. }) = best else { return Ok(None) };
+    best.structures = structures::led(run, told, &best, least)?;
+    best.explanations = told.explanations.clone();
+    let mut outcome = run.outcome.clone();
+    outcome.design = Some(best.design.clone());
+    Ok(Some((DesignRun { aimed: run.aimed.clone(), problem: run.problem.clone(), outcome }, *best)))
 }
 
 /// The design, and the structures that came nearest, behind its prefilter where they have none.
@@ -113,6 +114,8 @@ struct AuditedStep {
     verdict: u8,
     /// How far its steps are from what is aimed at, 1 where they reach it.
     excess: f64,
+    /// The least margin to a limit of the samples.
+    least: Option<SampledMargin>,
 }
 
 impl AuditedStep {
@@ -171,6 +174,7 @@ impl LedDesign<'_> {
             let moved = AuditedStep {
                 verdict: rank(&moved).0,
                 excess: self.aim.excess(&moved),
+                least: search.least_of_limits(&free_numbers),
                 told: Box::new(moved),
             };
             let (is_reached, gains) =

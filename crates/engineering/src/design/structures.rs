@@ -56,6 +56,35 @@ pub(super) fn reached(run: &DesignRun, told: &ProjectDesign) -> Result<Vec<Reach
     Ok(each.collect::<Result<Vec<ReachedStructure>, LinearError>>()?)
 }
 
+/// The structures of a design before, with what its own reaches since it was led by its steps;
+/// `least` is the least margin of its samples.
+pub(super) fn led(
+    run: &DesignRun,
+    before: &ProjectDesign,
+    led: &ProjectDesign,
+    least: Option<SampledMargin>,
+) -> Result<Vec<ReachedStructure>, DesignError> {
+    let design = &led.design;
+    let own = TriedStructure {
+        name: design.name,
+        structure: design.structure.clone(),
+        prefilter: design.prefilter.clone(),
+        free_numbers: design.free_numbers.clone(),
+        ending: if led.is_met() { StructureEnding::Met } else { StructureEnding::Missed },
+        law: Some(design.law.clone()),
+        least,
+        reached_db: None,
+    };
+    let own = reached_by(run, led, &own)?;
+    let mut all: Vec<ReachedStructure> = before.structures.clone();
+    all.iter_mut().for_each(|one| one.is_chosen = false);
+    match all.iter_mut().find(|one| one.structure == own.structure) {
+        Some(known) => *known = own,
+        None => all.push(own),
+    }
+    Ok(all)
+}
+
 fn reached_by(
     run: &DesignRun,
     told: &ProjectDesign,

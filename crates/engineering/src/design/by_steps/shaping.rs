@@ -4,7 +4,7 @@ use phea_dynamics::linear::TransferFunction;
 use phea_qft::closed_loop::{Compensation, Member};
 use phea_qft::design::{Design, LoopDesignError};
 use phea_qft::family::Family;
-use phea_qft::loop_shaping::{Judgement, MarginRow, SearchProblem, Shaping, Slopes};
+use phea_qft::loop_shaping::{Judgement, MarginRow, SampledMargin, SearchProblem, Shaping, Slopes};
 use phea_qft::verification::PlantPoint;
 
 use super::{DesignError, ProjectDesign};
@@ -145,6 +145,12 @@ impl StepShaping {
         let is_finite =
             |row: &MarginRow| row.margin_db.is_finite() && row.slopes.iter().all(|slope| slope.is_finite());
         places.iter().enumerate().map(row).filter(is_finite).collect()
+    }
+
+    /// The least margin to a limit of the samples.
+    pub(super) fn least_of_limits(&self, x: &[f64]) -> Option<SampledMargin> {
+        let margins = self.shaping.margins(x).into_iter();
+        margins.min_by(|one, other| one.margin_db.total_cmp(&other.margin_db))
     }
 
     /// Adds the plants and frequencies at which an audit finds the least margins; true where one is
