@@ -112,3 +112,17 @@ fn proportional_loops_have_the_gains_that_were_foretold() {
         assert!(!keeps(1.1 * gain, project), "{found:?}");
     }
 }
+
+/// A table without a gain feeds nothing back until a design has found one, which every command is
+/// told; a stated gain is fed back as it stands.
+#[test]
+fn a_feedback_that_is_still_to_be_found_is_told() {
+    let feedback = "controller.pressure_feedback={ signal = \"load_pressure\" }";
+    let is_told = |settings: &[&str]| {
+        let warnings = loaded(RIG, settings).warnings;
+        warnings.iter().any(|warning| warning.message.contains("no `gain` yet"))
+    };
+    assert!(is_told(&[feedback, FREE]));
+    assert!(!is_told(&[feedback, "controller.pressure_feedback.gain=1e-7", FREE]));
+    assert!(!is_told(&[FREE]));
+}

@@ -276,7 +276,7 @@ impl StepSearch<'_> {
         Ok(found)
     }
 
-    /// What is required of each property.
+    /// The limit of each property; `None` where none is required.
     fn required(&self) -> [Option<f64>; 3] {
         let room =
             if self.family.plant().is_rational() { ACCURACY_PERCENT } else { ACCURACY_OF_RESPONSE_PERCENT };

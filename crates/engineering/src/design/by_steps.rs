@@ -59,7 +59,7 @@ pub(super) fn by_steps(
     else {
         return Ok(None);
     };
-    let problem = DesignProblem { beside: run.problem.beside.clone(), ..design_problem(setup, given) };
+    let problem = design_problem(setup, given);
     let samples = Samples::new(&problem, samples.plants(), &samples.frequencies_rad_per_s())
         .map_err(LoopDesignError::from)?;
     let led = LedDesign { setup, given, aim, problem, samples, wish: with_room(aim.wish(required.wish)) };
@@ -67,7 +67,7 @@ pub(super) fn by_steps(
     let mut best: Option<AuditedStep> = None;
     for (index, start) in starts.iter().enumerate() {
         let share = [index, index + 1].map(|done| done as f64 / starts.len() as f64);
-        let Some(found) = led.from(start, told, &mut within(&mut *watch, share))? else { continue };
+        let Some(found) = led.begun_at(start, told, &mut within(&mut *watch, share))? else { continue };
         let is_reached = found.is_reached();
         if best.as_ref().is_none_or(|best| found.gains_on(best, 0.0)) {
             best = Some(found);
@@ -130,7 +130,7 @@ impl AuditedStep {
     }
 }
 
-/// What is searched for.
+/// The problem of a design that is led by its steps, and its aim.
 struct LedDesign<'a> {
     setup: &'a Setup<'a>,
     given: &'a RobustProblem,
@@ -142,7 +142,7 @@ struct LedDesign<'a> {
 
 impl LedDesign<'_> {
     /// The nearest design that was audited from this start; `None` where its loop is not stable.
-    fn from(
+    fn begun_at(
         &self,
         start: &Design,
         told: &ProjectDesign,
@@ -209,7 +209,7 @@ impl LedDesign<'_> {
     }
 }
 
-/// What is aimed at, less what the nonlinear rig may take.
+/// The requirement that is aimed at, stricter by what the nonlinear rig may take.
 fn with_room(wish: TrackingWish) -> TrackingWish {
     let lower = |most: f64| (most * OVERSHOOT_SHARE).max(LEAST_OVERSHOOT_PERCENT.min(most));
     TrackingWish {

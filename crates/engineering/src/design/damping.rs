@@ -49,13 +49,13 @@ const MODULUS_MARGIN: f64 = 0.5;
 pub struct PressureFeedbackDesign {
     /// As a project declares it: gain and high pass as found, the rest as the project has it.
     pub declared: DeclaredPressureFeedback,
-    /// Whether the design has it: false where it gains too little.
+    /// True where the design has it; false where it gains too little.
     pub is_used: bool,
     /// Largest gain of a proportional loop with it, over that without.
     pub loop_gain_factor: f64,
     /// Largest gain of a proportional loop without and with it, V/N.
     pub proportional_gain: [f64; 2],
-    /// What limits a proportional loop, without and with it, rad/s.
+    /// Frequency at which a proportional loop is limited, without and with it, rad/s.
     pub limited_at_rad_per_s: [f64; 2],
     /// Least damping ratio of the plants' oscillations within a factor of two of the first of
     /// these, without and with it; `None` where plants have no polynomials, or do not oscillate

@@ -1,6 +1,8 @@
 //! The search for a design: the limits of the project and of what may be built, aimed at what is
 //! required in time, and stricter where the steps of what was found still miss it.
 
+use std::cmp::Ordering;
+
 use phea_dynamics::watch::{Stopped, Watch, within};
 use phea_qft::design::{ControllerChoice, DesignStatus, Finding, design_stricter};
 use phea_qft::verification::Verdict;
@@ -37,7 +39,7 @@ pub(super) fn found(
             Err(error) if found.is_empty() => return Err(error),
             Err(_) => break,
         }
-        // an aim that is missed leaves no room for a stricter one
+        // a stricter aim seldom helps where the limits of this one are missed, and takes as long
         let met = found.last().filter(|(.., told)| !told.stopped && told.design.status == DesignStatus::Met);
         let Some((.., told)) = met else { break };
         match aim.stricter(told).filter(|_| repetition < REPETITIONS) {
@@ -45,10 +47,6 @@ pub(super) fn found(
             None => break,
         }
     }
-    let by_rank = |one: &ProjectDesign, other: &ProjectDesign| {
-        let (one, other) = (rank(one), rank(other));
-        one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
-    };
     let tried: Vec<ReachedStructure> = found.iter().flat_map(|(.., told)| told.structures.clone()).collect();
     let best = found.into_iter().min_by(|(.., one), (.., other)| by_rank(one, other));
     let (aim, run, told) = best.ok_or(Stopped)?;
@@ -67,7 +65,7 @@ fn led_by_steps(
         return (run, told);
     }
     match by_steps(setup, aimed, (&run, &told), watch) {
-        Ok(Some(moved)) if is_nearer(&moved.1, &told) => moved,
+        Ok(Some(moved)) if by_rank(&moved.1, &told).is_lt() => moved,
         Err(DesignError::Stopped(_)) => {
             told.stopped = true;
             (run, told)
@@ -93,10 +91,10 @@ pub(super) fn rank(told: &ProjectDesign) -> (u8, f64) {
     (verdict, StepAim::AS_REQUIRED.excess(told))
 }
 
-/// True where a design is nearer to what is required than another.
-pub(super) fn is_nearer(one: &ProjectDesign, other: &ProjectDesign) -> bool {
+/// The order of two designs by their rank: the lesser is nearer to what is required.
+fn by_rank(one: &ProjectDesign, other: &ProjectDesign) -> Ordering {
     let (one, other) = (rank(one), rank(other));
-    one.0.cmp(&other.0).then(one.1.total_cmp(&other.1)).is_lt()
+    one.0.cmp(&other.0).then(one.1.total_cmp(&other.1))
 }
 
 /// A design of the problem that is aimed at, judged as the given one; plants that a design before

@@ -43,6 +43,10 @@ pub(super) fn pressure_feedback(project: &Project, check: &mut Check<'_, '_>) {
         let message = "missing `gain` in [controller.pressure_feedback]";
         check.error_with_help(PLACE, message, GAIN_OF_PRESSURES);
     }
+    if is_free && !check.declared(&at("gain")) {
+        let message = "[controller.pressure_feedback] has no `gain` yet: `design` finds one, and until it is stated no pressure is fed back elsewhere";
+        check.warning(PLACE, message);
+    }
     if declared.gain == 0.0 && !is_free && check.declared(&at("gain")) {
         check.warning(&at("gain"), "[controller.pressure_feedback] has no effect: its gain is zero");
     }

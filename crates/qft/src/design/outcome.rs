@@ -111,8 +111,7 @@ pub fn design_after(
     before: &DesignOutcome,
     watch: Watch<'_>,
 ) -> Result<DesignOutcome, LoopDesignError> {
-    let known = LearntPlants { plants: before.known.plants.clone(), ..LearntPlants::default() };
-    design_knowing(problem, options, None, known, watch)
+    design_knowing(problem, options, None, before.known.of_plants(), watch)
 }
 
 /// The same for stricter limits than those of a design before: a structure shorter than the one
@@ -126,9 +125,8 @@ pub fn design_stricter(
     before: &DesignOutcome,
     watch: Watch<'_>,
 ) -> Result<DesignOutcome, LoopDesignError> {
-    let known = LearntPlants { plants: before.known.plants.clone(), ..LearntPlants::default() };
     let met = before.design.clone().filter(|design| design.status == DesignStatus::Met);
-    design_knowing(problem, options, met, known, watch)
+    design_knowing(problem, options, met, before.known.of_plants(), watch)
 }
 
 /// What was learnt about the plants.
@@ -140,4 +138,11 @@ pub(super) struct LearntPlants {
     pub(super) plants: KeptPlants,
     pub(super) rounds: Vec<DesignRound>,
     pub(super) tried: Vec<TriedStructure>,
+}
+
+impl LearntPlants {
+    /// The plants alone, for a design with other specifications.
+    fn of_plants(&self) -> LearntPlants {
+        LearntPlants { plants: self.plants.clone(), ..LearntPlants::default() }
+    }
 }

@@ -33,7 +33,7 @@ const SWINGS: usize = 4;
 pub(super) struct StepShaping {
     /// The limits and their samples.
     pub(super) shaping: Shaping,
-    /// What is searched for of a step.
+    /// The requirement that every step is to keep.
     wish: TrackingWish,
     sensor: TransferFunction,
     plants: Vec<SteppedPlant>,
@@ -83,7 +83,8 @@ impl StepShaping {
         }
     }
 
-    /// Where a step is nearest to what is required, each swing by itself, with the margins there.
+    /// The places at which a step is nearest to what is required, one of each swing, with the margins
+    /// there.
     fn places(&self, step: &StepResponse) -> Vec<(StepPlace, f64)> {
         let last = step.values.len().saturating_sub(1);
         let from =
@@ -238,7 +239,7 @@ impl SearchProblem for StepShaping {
     }
 }
 
-/// Where a step is held against what is required of it.
+/// A place at which a step is held against what is required of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum StepPlace {
     /// A sample beyond the reference.

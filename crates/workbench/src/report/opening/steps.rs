@@ -193,7 +193,7 @@ impl AllSteps {
         let mut told = vec![format!("{value} at worst ({})", worst.place)];
         let counts = [
             (StepOrigin::Scenario, "scenario steps"),
-            (StepOrigin::Machine, "tested machines"),
+            (StepOrigin::Machine, "nonlinear trials"),
             (StepOrigin::Campaign, "completed campaign runs"),
         ];
         for (origin, what) in counts {

@@ -22,7 +22,7 @@ pub(super) fn table(contents: &Contents<'_>, sides: &[Side<'_>]) -> Table {
     let mut table = Table::grouped_by("judged", std::iter::once("what was asked".to_string()).chain(names));
     let groups = [
         ("The whole family of plants", of_family(contents, sides)),
-        ("The nonlinear machine", of_machine(contents, sides)),
+        ("The nonlinear simulation", of_machine(contents, sides)),
         ("The numbers that matter", numbers(sides)),
     ];
     for (name, rows) in groups.into_iter().filter(|(_, rows)| !rows.is_empty()) {
