@@ -83,8 +83,8 @@ impl StepShaping {
         }
     }
 
-    /// The places at which a step is nearest to what is required, one of each swing, with the margins
-    /// there.
+    /// The places at which a step is nearest to what is required, one of each swing, with the
+    /// margins there.
     fn places(&self, step: &StepResponse) -> Vec<(StepPlace, f64)> {
         let last = step.values.len().saturating_sub(1);
         let from =
