@@ -11,6 +11,7 @@ drawn over the box satisfy the requirement.
 import json
 import pathlib
 import resource
+import shutil
 import subprocess
 import sys
 
@@ -69,6 +70,8 @@ kind = "step"
 overshoot_percent = {overshoot}
 settling_time = "{settling} s"
 settling_band_percent = 2
+initial_force = "{force[0]} {force_unit}"
+amplitude = "{step} {force_unit}"
 
 [controller]
 sample_time = "{sample_ms} ms"
@@ -164,6 +167,7 @@ def cylinder(title, piston, rods, stiffness, load_mass, force, line, sample_ms, 
         "bristle": max(5, round(area * 1e4)),
     }  # fmt: skip
     values |= other
+    values["step"] = round(force[1] - force[0], 6)
     values["capacity"] = f"{round(area * values['pressure'] * 1e2)} kN"
     values["noise"] = f"{max(1, round(area * values['pressure'] * 1e5 * 1e-4))} N"
     values["static"] = round(1.4 * values["friction"])
@@ -178,7 +182,7 @@ def motor(title, displacement, inertia, stiffness, mass, torque, line, sample_ms
         "sensor": "60 kN.m/rad", "noise": f"{round(1e-4 * displacement * 2.2, 3)} N.m",
         "capacity": f"{round(displacement * 2.5)} N.m", "stiffness": stiffness, "stiffness_unit": "N.m/rad",
         "mass": f"{mass} kg.m2", "damping": f"{round(0.06 * (stiffness[1] * mass) ** 0.5, 3)} N.m.s/rad",
-        "position": "0 deg", "force": torque, "force_unit": "N.m", "overshoot": step[0], "settling": step[1],
+        "position": "135 deg", "force": torque, "force_unit": "N.m", "overshoot": step[0], "settling": step[1],
         "sample_ms": sample_ms, "delay_ms": sample_ms, "duration": 0.1 + 6 * step[1], "line": line,
         "displacement": displacement, "inertia": inertia, "dead": 20, "friction": round(displacement * 0.01, 2),
         "bristle": round(displacement * 0.04, 2), "bristle_damping": round(displacement * 0.02, 2),
@@ -186,6 +190,7 @@ def motor(title, displacement, inertia, stiffness, mass, torque, line, sample_ms
     }  # fmt: skip
     values |= other
     values["static"] = round(1.4 * values["friction"], 2)
+    values["step"] = round(torque[1] - torque[0], 6)
     return (HEAD + MOTOR).format(**values)
 
 
@@ -240,11 +245,14 @@ def studied(phea, name, folder):
     written = folder / name / "designed.toml"
     if design["status"] != "met" or not written.exists():
         return [*row, "-", "-"]
-    campaign, _ = asked(phea, "campaign", written, "--runs", str(RUNS), "--seed", "1", "--out", folder / f"{name}_runs")
+    runs = folder / f"{name}_runs"
+    shutil.rmtree(runs, ignore_errors=True)
+    campaign, _ = asked(phea, "campaign", written, "--runs", str(RUNS), "--seed", "1", "--out", runs)
     held = campaign["requirements"][0]
     worst = held["worst"]
     required = f"{held['overshoot_percent']:g} %, {held['settling_time_s']:g} s"
-    reached = f"{worst['overshoot_percent']:.3g} %, {worst['settling_time_s']:.3g} s"
+    overshoot, settling = (float(worst[name]) for name in ("overshoot_percent", "settling_time_s"))
+    reached = f"{overshoot:.3g} %, {settling:.3g} s"
     return [*row, f"{held['satisfied']} of {held['runs']}", f"{reached} for {required}"]
 
 

@@ -1,6 +1,7 @@
 //! The design of a controller and its prefilter: from the project to a controller that satisfies
 //! every specification, its comparison with the given one, and the wording of both.
 
+mod added_by_rig;
 mod asked;
 mod by_steps;
 mod comparison;
@@ -294,6 +295,11 @@ impl ProjectDesign {
     /// How the machine agrees with the linear loop, as far as it was simulated.
     pub fn agreement(&self) -> Agreement {
         self.trial.as_ref().map_or(Agreement::Agrees, Trial::agreement)
+    }
+
+    /// Whether a run on the nonlinear rig misses what is required in time.
+    pub fn misses_on_rig(&self) -> bool {
+        self.trial.as_ref().is_some_and(|trial| trial.satisfies() == Some(false))
     }
 
     /// Whether the designed controller satisfies every specification and keeps every limit.

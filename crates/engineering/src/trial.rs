@@ -3,8 +3,10 @@
 //!
 //! ```text
 //! project, audit -> rigs::rigs -> Tried { project, plant } -> TriedMachine::driven, at two sizes of the step -> judge -> Run { linear, machine, agreement, reason } -> answer
+//! all satisfy what is required -> corners of the box -> the worst of them
 //! ```
 
+mod corners;
 mod judge;
 mod prediction;
 mod required;
@@ -14,6 +16,7 @@ mod steps;
 pub use judge::percent_words;
 
 pub use crate::linear_step::StepResponse;
+use corners::worst_of_corners;
 pub use required::HeldRequirement;
 pub(crate) use rigs::waves_alone;
 pub use rigs::with_waves;
@@ -27,7 +30,7 @@ use crate::setup::{ControlError, Setup};
 use crate::source::Source;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::time_response::TimeResponseError;
-use phea_dynamics::watch::{Progress, Stopped, Watch};
+use phea_dynamics::watch::{Progress, Stopped, Watch, within};
 
 /// Why a verdict cannot be tried on the machine.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -49,6 +52,8 @@ pub enum TrialError {
     Stopped(#[from] Stopped),
 }
 
+/// What the corners of the box take of a trial, in rigs.
+const CORNERS_SHARE: f64 = 4.0;
 /// The stage of a trial, for the watch.
 const STAGE: &str = "nonlinear simulation";
 
@@ -92,7 +97,7 @@ pub fn tried(
     }
     let rig = setup.rig()?;
     let (rigs, not_driven) = rigs::rigs(setup, rig, problem, view);
-    let count = rigs.len() as f64;
+    let count = rigs.len() as f64 + CORNERS_SHARE;
     let mut runs = Vec::new();
     let mut declared: Option<Vec<DrivenSteps>> = None;
     for (index, rig) in rigs.iter().enumerate() {
@@ -114,7 +119,14 @@ pub fn tried(
         }
         declared.get_or_insert(driven);
     }
-    Ok(Some(Trial { runs, not_driven }))
+    let trial = Trial { runs, not_driven };
+    // where a run misses already, corners tell nothing more
+    if trial.satisfies() != Some(true) {
+        return Ok(Some(trial));
+    }
+    let from = rigs.len() as f64 / count;
+    let corners = worst_of_corners(source, setup, (problem, view), &mut within(watch, [from, 1.0]))?;
+    Ok(Some(Trial { runs: [trial.runs, corners].concat(), ..trial }))
 }
 
 /// The run of the rig as declared, with lumped lines, through the steps of a run with waves in

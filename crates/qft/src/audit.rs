@@ -68,6 +68,57 @@ pub fn audit(problem: &AuditProblem<'_>, watch: Watch<'_>) -> Result<Audit, Stop
     audit_with(problem, (&KeptPlants::default(), AuditEffort::Complete), watch).map(|(audit, _)| audit)
 }
 
+/// The same of the members and corners of the family alone, without a search between them: for a
+/// search that looks often, and audits what it ends with completely.
+///
+/// # Errors
+/// [`Stopped`] by the watch.
+///
+/// # Example
+/// An integrator of gain 1/2 or 2 in a loop of gain 1: |T| = k/sqrt(w^2 + k^2) is at most 1, as the
+/// complete audit says too.
+/// ```
+/// use phea_dynamics::controller::Controller;
+/// use phea_dynamics::linear::TransferFunction;
+/// use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
+/// use phea_dynamics::watch::unwatched;
+/// use phea_qft::audit::{audit, audit_of_known_plants};
+/// use phea_qft::closed_loop::Compensation;
+/// use phea_qft::family::{Extent, Family, UncertainFamily};
+/// use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
+/// use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement, Verdict};
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let gain = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 0.5, maximum: 2.0 };
+/// let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
+///     command: RationalCoefficients { numerator: vec![p[0]], denominator: vec![1.0.into(), 0.0.into()] },
+///     disturbance: None,
+///     dead_time_s: 0.0.into(),
+///     rate: None,
+/// })?;
+/// let members = vec![vec![0.5], vec![2.0]];
+/// let family = Family::Uncertain(UncertainFamily::new(plant, vec![], members, Extent::Members)?);
+/// let compensation = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0))?;
+/// let specifications = [Specification {
+///     requirement: Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.2)),
+///     frequencies_rad_per_s: vec![1.0],
+///     band_rad_per_s: [0.0, f64::INFINITY],
+/// }];
+/// let problem = AuditProblem {
+///     family: &family,
+///     compensation: &compensation,
+///     specifications: &specifications,
+///     tracking: TrackingJudgement::Magnitude,
+///     tolerance_db: TOLERANCE_DB,
+/// };
+/// let known = audit_of_known_plants(&problem, &mut unwatched)?;
+/// assert_eq!(known.verdict, audit(&problem, &mut unwatched)?.verdict);
+/// # Ok(())
+/// # }
+/// ```
+pub fn audit_of_known_plants(problem: &AuditProblem<'_>, watch: Watch<'_>) -> Result<Audit, Stopped> {
+    audit_with(problem, (&KeptPlants::default(), AuditEffort::KnownPlants), watch).map(|(audit, _)| audit)
+}
+
 /// The same, given plants of this family that were already sampled in the same loop (with any
 /// controller), so that none is sampled twice, and the part of the specifications' audit that is
 /// done. Also returns whether it is complete.
@@ -77,16 +128,20 @@ pub(crate) fn audit_with(
     watch: Watch<'_>,
 ) -> Result<(Audit, bool), Stopped> {
     let mut stability = StabilityAudit::new(problem.family, problem.compensation, kept);
-    stability.look(&mut part(watch, STAGE, [0.0, 0.4]))?;
+    let searches = stability.searched() && effort != AuditEffort::KnownPlants;
+    match effort {
+        AuditEffort::KnownPlants => stability.look_at_plants(&mut part(watch, STAGE, [0.0, 0.4]))?,
+        _ => stability.look(&mut part(watch, STAGE, [0.0, 0.4]))?,
+    }
     let found = stability.result();
     if is_unstable(&found.finding) {
         // an unstable loop has no margins to look for
         return Ok((joined(problem, found, problem.unexamined()), true));
     }
-    let between = if stability.searched() { stability.plants_between() } else { vec![] };
+    let between = if searches { stability.plants_between() } else { vec![] };
     let (specifications, work) =
         audit_among(problem, &between, (kept, effort), &mut part(watch, STAGE, [0.4, 0.98]))?;
-    if stability.searched() {
+    if searches {
         stability.look_at(&suspects(&specifications), &mut part(watch, STAGE, [0.98, 1.0]))?;
     }
     Ok((joined(problem, stability.result(), specifications), work.skipped == 0))

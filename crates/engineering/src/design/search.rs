@@ -64,7 +64,7 @@ fn led_by_steps(
     if told.stopped || !told.designed.view.in_time.iter().any(TimeFinding::violates) {
         return (run, told);
     }
-    match by_steps(setup, aimed, (&run, &told), watch) {
+    match by_steps(setup, (aimed.0, aimed.1, &[]), (&run, &told), watch) {
         Ok(Some(moved)) if by_rank(&moved.1, &told).is_lt() => moved,
         Err(DesignError::Stopped(_)) => {
             told.stopped = true;

@@ -14,7 +14,7 @@ pub fn status_key(view: &ProjectDesign) -> &'static str {
     match view.design.status {
         _ if view.stopped => "stopped",
         DesignStatus::Met if view.designed.view.verdict() == Verdict::NotProven => "not_proven",
-        DesignStatus::Met if view.designed.view.misses_in_time() => "missed_in_time",
+        DesignStatus::Met if view.designed.view.misses_in_time() || view.misses_on_rig() => "missed_in_time",
         DesignStatus::Met if view.exceeded_prefilter_gain().is_some() => "prefilter_amplifies",
         DesignStatus::Met => "met",
         DesignStatus::Infeasible(_) => "infeasible",
@@ -39,6 +39,10 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
             "not met: the controller satisfies every specification over frequency, and its steps miss what is required in time"
                 .to_string()
         }
+        DesignStatus::Met if view.misses_on_rig() => {
+            "not met: the controller satisfies every specification, and the nonlinear rig misses what is required in time"
+                .to_string()
+        }
         DesignStatus::Met if view.exceeded_prefilter_gain().is_some() => {
             "not met: the controller satisfies every specification, and its prefilter amplifies by more than `design.prefilter_gain` allows: it commands in advance what the loop does not do"
                 .to_string()
@@ -49,6 +53,10 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
             tried(&view.options.controller),
             significant(relaxation.relaxation_db, 3)
         ),
+        DesignStatus::NotConverged { .. } if view.designed.view.audit.verdict == Verdict::NotProven => {
+            "not converged: no audit of a controller that the search found decides whether it satisfies every specification"
+                .to_string()
+        }
         DesignStatus::NotConverged { rounds } => format!(
             "not converged: after {rounds} rounds of search and audit the audit still finds what the search did not see; the controller {verdict}"
         ),

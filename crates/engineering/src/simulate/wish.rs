@@ -138,6 +138,9 @@ impl TrackingWish {
 
     /// What a step does of what is required, in words.
     pub fn reached_words(&self, reached: &ReachedStep) -> String {
+        if reached.overshoot_percent == f64::INFINITY {
+            return "stopped before the end of the run".to_string();
+        }
         let in_time = |time_s: f64, did: &str, never: &str| match time_s {
             f64::INFINITY => never.to_string(),
             time_s => format!("{did} in {} s", significant(time_s, 3)),

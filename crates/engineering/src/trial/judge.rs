@@ -133,7 +133,7 @@ pub(super) fn judge(
         let [own, predicted] = [own, predicted].map(|time_s| DisplayUnit::MILLISECOND.text(time_s, 3));
         return (Agreement::Differs, format!("it settles in {own}, where the linear loop takes {predicted}"));
     }
-    if let Some(missed) = missed_in_time(&whole, linear, problem) {
+    if let Some(missed) = missed_in_time(&whole, driven, problem) {
         return (Agreement::Differs, missed);
     }
     if driven.run.status_word() == UNDETERMINED {
@@ -160,10 +160,13 @@ fn neither_settles(driven: &Driven<'_>) -> (Agreement, String) {
     }
 }
 
-/// The settling time that is required, where the linear loop satisfies it and the machine does not.
-fn missed_in_time(machine: &TrialStep, linear: Option<TrialStep>, problem: &RobustProblem) -> Option<String> {
+/// The settling time that is required of these steps, where the linear loop satisfies it and the
+/// machine does not.
+fn missed_in_time(machine: &TrialStep, driven: &Driven<'_>, problem: &RobustProblem) -> Option<String> {
+    let linear = driven.linear;
     let of_verdict = |required: &&TimeRequirement| {
-        required.follows && required.wish.band_percent.total_cmp(&BAND_PERCENT).is_eq()
+        let holds = !required.steps.are_stated() || driven.size == StepSize::Required;
+        required.follows && holds && required.wish.band_percent.total_cmp(&BAND_PERCENT).is_eq()
     };
     let most = problem.in_time.iter().find(of_verdict)?.wish.settling_time_s?;
     let own = machine.settling_time_s.filter(|time_s| *time_s > most)?;

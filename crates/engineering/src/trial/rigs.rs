@@ -79,7 +79,7 @@ pub(super) fn rigs(
             continue;
         }
         let what = format!("the worst plant of {of}");
-        match made(setup, rig, &names, &values) {
+        match rig_with(setup, rig, &names, &values) {
             Ok(project) => rigs.push(Tried {
                 what,
                 named: Some(view.names.named(plant)),
@@ -154,7 +154,12 @@ pub(crate) fn waves_alone(setup: &Setup<'_>) -> Option<Project> {
 
 /// A project whose rig has these parameters: numbers of the project and of its operating point
 /// directly, those of the linear model through the numbers that determine them.
-fn made(setup: &Setup<'_>, declared: &Rig, names: &[&str], values: &[f64]) -> Result<Project, String> {
+pub(super) fn rig_with(
+    setup: &Setup<'_>,
+    declared: &Rig,
+    names: &[&str],
+    values: &[f64],
+) -> Result<Project, String> {
     let project = setup.project;
     let is_linear = |name: &str| LINEAR_PARAMETERS.iter().any(|parameter| parameter.key.name == name);
     let mut rig = with_controller_of(project.clone(), declared);

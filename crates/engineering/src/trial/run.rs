@@ -122,6 +122,12 @@ impl TrialRun {
         without(LARGEST).or(without(REQUIRED)).unwrap_or(&self.what)
     }
 
+    /// How far the steps are from what is required of them: the largest ratio of what one reaches
+    /// to what is required, zero where nothing is.
+    pub(crate) fn excess(&self) -> f64 {
+        self.requirements.iter().map(|held| held.wish.excess(&held.reached)).fold(0.0, f64::max)
+    }
+
     /// Whether the steps satisfy all that is required of them in time.
     pub fn satisfies(&self) -> bool {
         self.requirements.iter().all(|held| held.is_satisfied)
@@ -163,6 +169,8 @@ pub(super) struct TriedMachine<'a> {
     linear: LinearStep,
     /// The steps that requirements state.
     required: Vec<RequiredSteps>,
+    /// Whether runs are repeated at smaller tolerances.
+    repeats: bool,
 }
 
 impl<'a> TriedMachine<'a> {
@@ -174,7 +182,12 @@ impl<'a> TriedMachine<'a> {
                 required.push(one.steps);
             }
         }
-        Ok(TriedMachine { tried, linear: LinearStep::of(tried, problem)?, required })
+        Ok(TriedMachine { tried, linear: LinearStep::of(tried, problem)?, required, repeats: true })
+    }
+
+    /// The same whose runs are not repeated at smaller tolerances.
+    pub(super) fn once(self) -> TriedMachine<'a> {
+        TriedMachine { repeats: false, ..self }
     }
 
     /// Drives it through the steps that are required, or else by a tenth of its force, then through
@@ -247,6 +260,9 @@ impl<'a> TriedMachine<'a> {
         watch: Watch<'_>,
     ) -> Option<TrialOutcome> {
         let once = RunOutput { repeats: false, ..RunOutput::new(true, None) };
+        if !self.repeats {
+            return self.driven_up_to(on, (steps, Leg::Again), once, watch);
+        }
         let first = self.driven_up_to(on, (steps, Leg::There), once, &mut part(watch, STAGE, [0.0, 0.3]));
         if !matches!(&first, Some(Ok(driven)) if !self.is_decided(steps, driven)) {
             return first;

@@ -157,9 +157,11 @@ impl Ground {
         let poles = order.saturating_sub(self.integrators);
         let Corners { of_zeros, of_poles } = self.corners();
         let [least, greatest] = DAMPING_RATIOS;
+        // of two real poles one would be faster than the natural frequency
+        let greatest_of_poles = if self.poles.fastest_rad_per_s.is_finite() { 1.0 } else { greatest };
         let pair = |is_pole: bool| match is_pole {
             true => {
-                let damping_ratio = [least.max(self.poles.least_damping_ratio), greatest];
+                let damping_ratio = [least.max(self.poles.least_damping_ratio), greatest_of_poles];
                 StructureFactor::PolePair { natural_frequency: of_poles, damping_ratio }
             }
             false => StructureFactor::ZeroPair { natural_frequency: of_zeros, damping_ratio: DAMPING_RATIOS },

@@ -151,6 +151,11 @@ pub struct Design {
 }
 
 impl Design {
+    /// Whether its audit decides nothing, which is nearer than missing a limit.
+    pub(super) fn is_open(&self) -> bool {
+        self.audit.verdict == Verdict::NotProven
+    }
+
     /// The same structures with other free numbers and their audit, as one that is met or not; its
     /// coefficients are not rounded.
     pub fn moved(

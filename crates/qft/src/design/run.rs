@@ -426,6 +426,9 @@ impl<'a> DesignProgress<'a> {
         relaxation_db: f64,
         audit: Audit,
     ) -> Result<(), LoopDesignError> {
+        if self.design.as_ref().is_some_and(Design::is_open) {
+            return Ok(());
+        }
         if let Some(Design { status: DesignStatus::Infeasible(known), .. }) = &self.design
             && relaxation_db >= known.relaxation_db - RELAXATION_GAINED_DB
         {

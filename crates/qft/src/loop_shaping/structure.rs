@@ -2,6 +2,7 @@
 
 mod fit;
 mod response;
+mod shorter;
 
 use phea_dynamics::controller::{Compensator, Element};
 use phea_dynamics::frequency::decibels;

@@ -170,8 +170,8 @@ impl<'a> StabilityAudit<'a> {
         Ok(())
     }
 
-    /// The plants that were not examined yet.
-    fn look_at_plants(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
+    /// Examines members and corners that were not examined yet.
+    pub(crate) fn look_at_plants(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         let (first, all) = (self.badness.len(), self.plants.len());
         for index in first..all {
             tell(watch, STAGE, index - first, all - first)?;

@@ -6,7 +6,8 @@ use phea_dynamics::controller::{NamedStructure, Objective};
 use phea_dynamics::portable::magnitude;
 use phea_dynamics::watch::unwatched;
 use phea_qft::design::{
-    ControllerChoice, DesignOptions, DesignOutcome, DesignProblem, DesignStatus, StructureEnding, design,
+    ControllerChoice, DesignOptions, DesignOutcome, DesignProblem, DesignStatus, PoleRange, StructureEnding,
+    design,
 };
 use phea_qft::family::{Family, Spacing};
 use phea_qft::loop_shaping::{Samples, SearchProblem, Shaping, Structure, StructureFactor};
@@ -168,5 +169,24 @@ fn a_notch_is_its_closed_form() {
                 "{number}: {row:?} {slope}"
             );
         }
+    }
+}
+
+/// Of a structure with its numbers at the ends of their ranges, no pole is beyond the bound: a pair
+/// has two real ones where its damping ratio is more than 1, one of them beyond its natural
+/// frequency.
+#[test]
+fn no_pole_is_faster_than_may_be_built() {
+    let fastest_rad_per_s = 40.0;
+    // no controller of these orders satisfies it, so that all of them are tried
+    let hard = problem(resonant(), vec![stability(1.01, &[0.3, 1.0, 3.0, 10.0, 30.0]), slow_errors(9.0)]);
+    let poles = PoleRange { least_damping_ratio: 0.3, fastest_rad_per_s };
+    let found = outcome(&hard, &DesignOptions { poles, ..any(6.0) });
+    assert!(found.tried().iter().any(|one| one.name.is_none()), "{:?}", found.tried());
+    for tried in found.tried() {
+        let highest: Vec<f64> = tried.structure.bounds().iter().map(|range| range[1]).collect();
+        let law = tried.structure.compensator(&highest).transfer_function().unwrap();
+        let sizes = law.poles().iter().map(|pole| magnitude(*pole));
+        assert!(sizes.fold(0.0, f64::max) <= fastest_rad_per_s * (1.0 + 1e-9), "{tried:?}");
     }
 }

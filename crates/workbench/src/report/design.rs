@@ -100,6 +100,9 @@ impl Designed {
                 format!("not proven: {order}")
             }
             DesignStatus::Met if side.view.misses_in_time() => format!("missed in time: {order}"),
+            DesignStatus::Met if found.view.misses_on_rig() => {
+                format!("missed in time by the nonlinear rig: {order}")
+            }
             DesignStatus::Met => format!("met: {order}"),
             DesignStatus::Infeasible(relaxation) => {
                 format!("infeasible by {} dB: {order}", significant(relaxation.relaxation_db, 3))

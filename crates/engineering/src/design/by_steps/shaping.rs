@@ -1,17 +1,19 @@
 //! The shaping of a loop by margins of steps beside those of its limits, as a problem of a search.
 
 use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::time_response::{StepBaseline, step_metrics};
 use phea_qft::closed_loop::{Compensation, Member};
 use phea_qft::design::{Design, LoopDesignError};
 use phea_qft::family::Family;
 use phea_qft::loop_shaping::{Judgement, MarginRow, SampledMargin, SearchProblem, Shaping, Slopes};
 use phea_qft::verification::PlantPoint;
 
-use super::{DesignError, ProjectDesign};
 use crate::audit::TimeOutcome;
+use crate::design::added_by_rig::{AddedByRig, added_to};
+use crate::design::{DesignError, ProjectDesign};
 use crate::linear_step::{KnownResponses, StepResponse, linear_step_knowing};
 use crate::robust::RobustProblem;
-use crate::simulate::TrackingWish;
+use crate::simulate::{ReachedStep, TrackingWish};
 
 /// Margin to be left to every limit on a frequency response, dB.
 pub(super) const RESERVE_DB: f64 = 0.02;
@@ -26,30 +28,56 @@ const POINTS: usize = 600;
 const DB: f64 = 20.0 / std::f64::consts::LN_10;
 /// Change of a free number for a slope.
 const STEP: f64 = 1e-4;
-/// Most swings of a step that are rows of the search.
+/// Most swings of a step that are rows of the search, and most rows of a plant.
 const SWINGS: usize = 4;
+const ROWS: usize = 64;
 
 /// The shaping of a loop with margins of steps beside those of its limits.
 pub(super) struct StepShaping {
     /// The limits and their samples.
     pub(super) shaping: Shaping,
-    /// The requirement that every step is to keep.
-    wish: TrackingWish,
+    /// What every step is to keep: that of the linear loop, and that with what the rig adds.
+    wishes: StepWishes,
+    added: Vec<AddedByRig>,
     sensor: TransferFunction,
     plants: Vec<SteppedPlant>,
 }
+
+/// What steps are to keep.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StepWishes {
+    /// Those of the linear loop.
+    pub(super) linear: TrackingWish,
+    /// Those with what the nonlinear rig adds.
+    pub(super) with_rig: TrackingWish,
+}
+
+/// A step that is judged, and what it is to keep.
+struct JudgedStep {
+    response: StepResponse,
+    wish: TrackingWish,
+}
+
+/// A place of a step that is judged, by the index of the step, with its margin, dB.
+type PlacedMargin = (usize, StepPlace, f64);
 
 /// A plant whose steps are rows of the search.
 struct SteppedPlant {
     values: Vec<f64>,
     member: Member,
     known: KnownResponses,
+    /// What the rig adds to its steps.
+    added: Vec<StepResponse>,
 }
 
 impl StepShaping {
     /// Without plants whose steps are looked at.
-    pub(super) fn new(shaping: Shaping, wish: TrackingWish, sensor: TransferFunction) -> StepShaping {
-        StepShaping { shaping, wish, sensor, plants: vec![] }
+    pub(super) fn new(
+        shaping: Shaping,
+        (wishes, added): (StepWishes, Vec<AddedByRig>),
+        sensor: TransferFunction,
+    ) -> StepShaping {
+        StepShaping { shaping, wishes, added, sensor, plants: vec![] }
     }
 
     /// The loop at x.
@@ -57,87 +85,70 @@ impl StepShaping {
         Compensation::new(&self.shaping.controller(x), self.sensor.clone()).ok()
     }
 
-    /// The step of a plant; `None` where it cannot be computed.
-    fn step(&self, plant: &SteppedPlant, around: &Compensation) -> Option<StepResponse> {
-        let duration = (SETTLING_TIMES * self.wish.horizon_s, POINTS);
-        linear_step_knowing(&plant.member, around, duration, &plant.known).ok()
+    /// The steps of a plant, that of the linear loop first; `None` where it cannot be computed.
+    fn steps(&self, plant: &SteppedPlant, around: &Compensation) -> Option<Vec<JudgedStep>> {
+        let duration = (SETTLING_TIMES * self.wishes.linear.horizon_s, POINTS);
+        let linear = linear_step_knowing(&plant.member, around, duration, &plant.known).ok()?;
+        let with_rig = |added| JudgedStep { response: linear.plus(added), wish: self.wishes.with_rig };
+        let mut steps: Vec<JudgedStep> = plant.added.iter().map(with_rig).collect();
+        steps.insert(0, JudgedStep { response: linear, wish: self.wishes.linear });
+        Some(steps)
     }
 
-    /// The margin of a step to what is required of it there, dB of 1 plus the deviation.
-    fn margin(&self, step: &StepResponse, place: StepPlace) -> f64 {
-        let band = self.wish.band_percent / 100.0;
-        let value = |sample: usize| step.values.get(sample).copied().unwrap_or(f64::INFINITY);
-        match place {
-            StepPlace::Over(sample) => {
-                let most = self.wish.overshoot_percent.unwrap_or(f64::INFINITY);
-                DB * (1.0 + most / 100.0 - value(sample))
-            }
-            StepPlace::Late(sample) => DB * (band - (value(sample) - 1.0).abs()),
-            StepPlace::Rise => {
-                let reached = |level: f64| {
-                    step.times_s.get(step.values.iter().position(|value| *value >= level)?).copied()
-                };
-                let rise_s = reached(0.1).zip(reached(0.9)).map_or(f64::INFINITY, |(low, high)| high - low);
-                DB * band * (1.0 - rise_s / self.wish.rise_time_s.unwrap_or(f64::INFINITY))
-            }
-        }
-    }
-
-    /// The places at which a step is nearest to what is required, one of each swing, with the
-    /// margins there.
-    fn places(&self, step: &StepResponse) -> Vec<(StepPlace, f64)> {
-        let last = step.values.len().saturating_sub(1);
-        let from =
-            self.wish.settling_time_s.map(|time_s| step.times_s.partition_point(|known| *known < time_s));
-        let deviation = |sample: usize| step.values.get(sample).map_or(0.0, |value| (value - 1.0).abs());
-        let is_peak = |sample: usize| {
-            let beside = [sample.saturating_sub(1), (sample + 1).min(last)];
-            beside.into_iter().all(|other| deviation(sample) >= deviation(other))
-        };
-        let over = (0..=last).filter(|sample| {
-            self.wish.overshoot_percent.is_some() && is_peak(*sample) && step.values.get(*sample) > Some(&1.0)
-        });
-        let late = from.map_or(last + 1..=last, |from| from..=last);
-        let late = late.filter(|sample| Some(*sample) == from || is_peak(*sample));
-        let rise = self.wish.rise_time_s.map(|_| StepPlace::Rise);
-        let each = over.map(StepPlace::Over).chain(late.map(StepPlace::Late)).chain(rise);
-        let mut places: Vec<(StepPlace, f64)> = each.map(|place| (place, self.margin(step, place))).collect();
-        places.sort_by(|(_, one), (_, other)| one.total_cmp(other));
-        places.truncate(SWINGS);
-        places
-    }
-
-    /// The least margin of each plant's step; negative infinity where it cannot be computed.
+    /// The least margin of each plant's steps; negative infinity where they cannot be computed.
     fn least_margin(&self, x: &[f64]) -> f64 {
         let Some(around) = self.around(x) else { return f64::NEG_INFINITY };
         let least = |plant: &SteppedPlant| {
-            let step = self.step(plant, &around);
-            let places = step.map(|step| self.places(&step));
-            places
-                .map_or(f64::NEG_INFINITY, |places| places.first().map_or(f64::INFINITY, |(_, least)| *least))
+            let places = self.steps(plant, &around).map(|steps| places(&steps));
+            let least =
+                |places: Vec<PlacedMargin>| places.iter().map(|one| one.2).fold(f64::INFINITY, f64::min);
+            places.map_or(f64::NEG_INFINITY, least)
         };
         self.plants.iter().map(least).fold(f64::INFINITY, f64::min)
     }
 
-    /// The margins at these places of a plant's step with their slopes, from the loops beside x.
+    /// How far the steps with what the rig adds are from what is required: the largest ratio, at
+    /// most 1 where all are within it; zero where nothing is known of the rig.
+    pub(super) fn excess_with_rig(&self, x: &[f64], required: &TrackingWish) -> f64 {
+        let Some(around) = self.around(x) else { return f64::INFINITY };
+        let of = |step: &JudgedStep| {
+            let StepResponse { times_s, values } = &step.response;
+            let metrics = step_metrics(times_s, values, StepBaseline::unit(), required.band_percent).ok()?;
+            Some(required.excess(&ReachedStep {
+                overshoot_percent: metrics.overshoot_percent,
+                settling_time_s: metrics.settling.time_s().unwrap_or(f64::INFINITY),
+                rise_time_s: metrics.rise_time_10_90_s.unwrap_or(f64::INFINITY),
+            }))
+        };
+        let worst = |plant: &SteppedPlant| match self.steps(plant, &around) {
+            Some(steps) => {
+                steps.iter().skip(1).map(|step| of(step).unwrap_or(f64::INFINITY)).fold(0.0, f64::max)
+            }
+            None => f64::INFINITY,
+        };
+        self.plants.iter().map(worst).fold(0.0, f64::max)
+    }
+
+    /// The margins at these places of a plant's steps with their slopes, from the loops beside x.
     fn rows(
         &self,
         index: usize,
         plant: &SteppedPlant,
-        places: &[(StepPlace, f64)],
+        places: &[PlacedMargin],
         beside: &[Option<Compensation>],
     ) -> Vec<MarginRow> {
         if places.is_empty() {
             return vec![];
         }
-        let moved: Vec<Option<StepResponse>> =
-            beside.iter().map(|around| self.step(plant, around.as_ref()?)).collect();
-        let row = |(rank, (place, margin_db)): (usize, &(StepPlace, f64))| {
-            let along = |step: &Option<StepResponse>| {
-                step.as_ref().map_or(0.0, |step| (self.margin(step, *place) - margin_db) / STEP)
+        let moved: Vec<Option<Vec<JudgedStep>>> =
+            beside.iter().map(|around| self.steps(plant, around.as_ref()?)).collect();
+        let row = |(rank, (step, place, margin_db)): (usize, &PlacedMargin)| {
+            let along = |steps: &Option<Vec<JudgedStep>>| {
+                let moved = steps.as_ref().and_then(|steps| steps.get(*step));
+                moved.map_or(0.0, |moved| (moved.margin(*place) - margin_db) / STEP)
             };
             MarginRow {
-                sample: usize::MAX - SWINGS * index - rank,
+                sample: usize::MAX - ROWS * index - rank,
                 margin_db: *margin_db,
                 rate: 1.0,
                 slopes: moved.iter().map(along).collect(),
@@ -192,7 +203,9 @@ impl StepShaping {
             return Ok(false);
         }
         let member = problem.compensation.member_of(family.plant(), values)?;
-        self.plants.push(SteppedPlant { values: values.to_vec(), member, known: KnownResponses::default() });
+        let added = added_to(family, &self.added, values);
+        let (values, known) = (values.to_vec(), KnownResponses::default());
+        self.plants.push(SteppedPlant { values, member, known, added });
         Ok(true)
     }
 }
@@ -214,11 +227,10 @@ impl SearchProblem for StepShaping {
     fn slopes(&mut self, x: &[f64]) -> Slopes {
         let mut slopes = self.shaping.slopes(x);
         let Some(around) = self.around(x) else { return slopes };
-        let steps: Vec<Option<StepResponse>> =
-            self.plants.iter().map(|plant| self.step(plant, &around)).collect();
-        let places: Vec<Vec<(StepPlace, f64)>> =
-            steps.iter().map(|step| step.as_ref().map_or(vec![], |step| self.places(step))).collect();
-        let worst = places.iter().flatten().map(|(_, margin)| *margin).fold(f64::INFINITY, f64::min);
+        let of = |plant: &SteppedPlant| self.steps(plant, &around).map(|steps| places(&steps));
+        let each: Vec<Vec<PlacedMargin>> =
+            self.plants.iter().map(|plant| of(plant).unwrap_or_default()).collect();
+        let worst = each.iter().flatten().map(|one| one.2).fold(f64::INFINITY, f64::min);
         let near = worst.max(0.0) + NEAR_DB;
         let beside: Vec<Option<Compensation>> = (0..x.len())
             .map(|place| {
@@ -230,9 +242,8 @@ impl SearchProblem for StepShaping {
                 self.around(&moved)
             })
             .collect();
-        for (index, (plant, places)) in self.plants.iter().zip(&places).enumerate() {
-            let near: Vec<(StepPlace, f64)> =
-                places.iter().copied().filter(|(_, margin)| *margin <= near).collect();
+        for (index, (plant, places)) in self.plants.iter().zip(each).enumerate() {
+            let near: Vec<PlacedMargin> = places.into_iter().filter(|one| one.2 <= near).collect();
             slopes.margins.extend(self.rows(index, plant, &near, &beside));
         }
         slopes
@@ -248,4 +259,58 @@ enum StepPlace {
     Late(usize),
     /// The rise as a whole.
     Rise,
+}
+
+impl JudgedStep {
+    /// The margin to what is required there, dB of 1 plus the deviation.
+    fn margin(&self, place: StepPlace) -> f64 {
+        let JudgedStep { response: StepResponse { times_s, values }, wish } = self;
+        let band = wish.band_percent / 100.0;
+        let value = |sample: usize| values.get(sample).copied().unwrap_or(f64::INFINITY);
+        match place {
+            StepPlace::Over(sample) => {
+                let most = wish.overshoot_percent.unwrap_or(f64::INFINITY);
+                DB * (1.0 + most / 100.0 - value(sample))
+            }
+            StepPlace::Late(sample) => DB * (band - (value(sample) - 1.0).abs()),
+            StepPlace::Rise => {
+                let reached =
+                    |level: f64| times_s.get(values.iter().position(|value| *value >= level)?).copied();
+                let rise_s = reached(0.1).zip(reached(0.9)).map_or(f64::INFINITY, |(low, high)| high - low);
+                DB * band * (1.0 - rise_s / wish.rise_time_s.unwrap_or(f64::INFINITY))
+            }
+        }
+    }
+
+    /// The places at which it is nearest to what is required, one of each swing, with the margins
+    /// there.
+    fn places(&self) -> Vec<(StepPlace, f64)> {
+        let JudgedStep { response: StepResponse { times_s, values }, wish } = self;
+        let last = values.len().saturating_sub(1);
+        let from = wish.settling_time_s.map(|time_s| times_s.partition_point(|known| *known < time_s));
+        let deviation = |sample: usize| values.get(sample).map_or(0.0, |value| (value - 1.0).abs());
+        let is_peak = |sample: usize| {
+            let beside = [sample.saturating_sub(1), (sample + 1).min(last)];
+            beside.into_iter().all(|other| deviation(sample) >= deviation(other))
+        };
+        let over = (0..=last).filter(|sample| {
+            wish.overshoot_percent.is_some() && is_peak(*sample) && values.get(*sample) > Some(&1.0)
+        });
+        let late = from.map_or(last + 1..=last, |from| from..=last);
+        let late = late.filter(|sample| Some(*sample) == from || is_peak(*sample));
+        let rise = wish.rise_time_s.map(|_| StepPlace::Rise);
+        let each = over.map(StepPlace::Over).chain(late.map(StepPlace::Late)).chain(rise);
+        let mut places: Vec<(StepPlace, f64)> = each.map(|place| (place, self.margin(place))).collect();
+        places.sort_by(|(_, one), (_, other)| one.total_cmp(other));
+        places.truncate(SWINGS);
+        places
+    }
+}
+
+/// The places of the steps of a plant.
+fn places(steps: &[JudgedStep]) -> Vec<PlacedMargin> {
+    let of = |(index, step): (usize, &JudgedStep)| {
+        step.places().into_iter().map(move |(place, margin_db)| (index, place, margin_db)).collect::<Vec<_>>()
+    };
+    steps.iter().enumerate().flat_map(of).take(ROWS).collect()
 }

@@ -159,7 +159,8 @@ impl Attempt {
     }
 
     /// Margins that count as new, for single limits and for tracking: those that miss the reserve,
-    /// or, where the worst margin itself is sought, those worse than all that were evaluated.
+    /// and are worse than all that were evaluated where the search was content with less, or sought
+    /// the worst margin itself.
     /// Limits of tracking may meet, and a margin to them counts by its share of the room: a
     /// negative one is new.
     pub(super) fn new_margins(&self, judgement: &Judgement) -> NewMargins {
@@ -168,7 +169,11 @@ impl Attempt {
         let below_db = match self.aim {
             Aim::WorstMargin if self.relaxes => [RELAXATION_TOLERANCE_DB - worst_db.min(0.0); 2],
             Aim::WorstMargin => [ordinary.min(RELAXATION_TOLERANCE_DB - worst_db), ordinary],
-            Aim::Objective => [ordinary; 2],
+            Aim::Objective => {
+                // a search that ends within the tolerance is not told of the same margin again
+                let missed = (RELAXATION_TOLERANCE_DB - worst_db).min(self.options.tolerance_db);
+                [ordinary.max(missed); 2]
+            }
         };
         let reserve_db = if self.relaxes { 0.0 } else { self.options.reserve_db };
         NewMargins { below_db, reserve_db }

@@ -1,0 +1,115 @@
+//! What the nonlinear rig adds to the steps of the linear loop, by the trial of a design: the
+//! search for the next one adds it to every step that it judges.
+//!
+//! ```text
+//! added(t) = step of the nonlinear rig - step of the linear loop,     next search: y(t) = linear step + added(t)
+//! ```
+//!
+//! Friction and hysteresis add about the same to the steps of similar loops, so that a few trials
+//! suffice.
+
+use phea_qft::family::{Family, UncertainFamily};
+
+use super::ProjectDesign;
+use crate::linear_step::StepResponse;
+use crate::plant_names::{NamedPlant, NamedValue};
+use crate::trial::TrialRun;
+
+/// What the nonlinear rig added to the steps of one plant.
+#[derive(Clone, Debug)]
+pub(super) struct AddedByRig {
+    /// The parameters of the plant.
+    values: Vec<f64>,
+    /// Of each run, as shares of its step.
+    steps: Vec<StepResponse>,
+}
+
+/// What the rig added in the trial of a design, with what it added before to other plants.
+pub(super) fn added(told: &ProjectDesign, before: &[AddedByRig]) -> Vec<AddedByRig> {
+    let Family::Uncertain(family) = &told.designed.problem.family else { return vec![] };
+    let mut all: Vec<AddedByRig> = Vec::new();
+    for run in told.trial.iter().flat_map(|trial| &trial.runs) {
+        let (Some(values), Some(step)) = (values(family, run), difference(run)) else { continue };
+        match all.iter_mut().find(|known| known.values == values) {
+            Some(known) => known.steps.push(step),
+            None => all.push(AddedByRig { values, steps: vec![step] }),
+        }
+    }
+    let others: Vec<AddedByRig> =
+        before.iter().filter(|one| !all.iter().any(|new| new.values == one.values)).cloned().collect();
+    all.extend(others);
+    all
+}
+
+/// What the rig adds to a plant: what it added to the nearest one that was tried.
+pub(super) fn added_to(family: &UncertainFamily, all: &[AddedByRig], values: &[f64]) -> Vec<StepResponse> {
+    let own = family.shares(values);
+    let distance = |one: &AddedByRig| {
+        let other = family.shares(&one.values);
+        own.iter().zip(other).map(|(own, other)| (own - other) * (own - other)).sum::<f64>()
+    };
+    let nearest = all.iter().min_by(|one, other| distance(one).total_cmp(&distance(other)));
+    nearest.map(|one| one.steps.clone()).unwrap_or_default()
+}
+
+impl StepResponse {
+    /// The sum of both at the times of the first, the second straight between its times and zero
+    /// outside of them.
+    pub(super) fn plus(&self, added: &StepResponse) -> StepResponse {
+        let values = self.times_s.iter().zip(&self.values).map(|(time_s, value)| value + added.at(*time_s));
+        StepResponse { times_s: self.times_s.clone(), values: values.collect() }
+    }
+
+    fn at(&self, time_s: f64) -> f64 {
+        let next = self.times_s.partition_point(|known| *known < time_s);
+        let point = |index: usize| self.times_s.get(index).copied().zip(self.values.get(index).copied());
+        match (next.checked_sub(1).and_then(point), point(next)) {
+            (Some((from_s, low)), Some((to_s, high))) => {
+                low + (high - low) * (time_s - from_s) / (to_s - from_s)
+            }
+            (None, Some((first_s, value))) if first_s <= time_s => value,
+            _ => 0.0,
+        }
+    }
+}
+
+/// The parameters of the plant that was driven; `None` for one that is none of the family.
+fn values(family: &UncertainFamily, run: &TrialRun) -> Option<Vec<f64>> {
+    if run.quarter_wave_rad_per_s.is_some() {
+        return None;
+    }
+    let Some(NamedPlant(numbers)) = &run.plant else { return Some(family.plant().nominal()) };
+    let number = |(_, value): &(String, NamedValue)| match value {
+        NamedValue::Number(value) => Some(*value),
+        NamedValue::Text(_) => None,
+    };
+    numbers.iter().map(number).collect()
+}
+
+/// The nonlinear step less the linear one, at the times of the first up to where the second is
+/// known.
+fn difference(run: &TrialRun) -> Option<StepResponse> {
+    if run.requirements.is_empty() || run.linear_response.values.is_empty() {
+        return None;
+    }
+    let StepResponse { times_s, values } = &run.machine_response;
+    let linear = &run.linear_response;
+    let both = times_s.iter().zip(values).take_while(|(time_s, _)| Some(*time_s) <= linear.times_s.last());
+    let (times_s, values) = both.map(|(time_s, value)| (*time_s, value - linear.at(*time_s))).unzip();
+    Some(StepResponse { times_s, values })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// ORIGIN: analytic, straight lines: 0.5 + (0.1 to 0.3 over 2 s, half-way) and nothing beyond.
+    #[test]
+    fn what_is_added_lies_straight_between_its_times() {
+        let step = StepResponse { times_s: vec![0.0, 2.0, 5.0], values: vec![0.0, 0.5, 1.0] };
+        let added = StepResponse { times_s: vec![1.0, 3.0], values: vec![0.1, 0.3] };
+        let sum = step.plus(&added);
+        assert_eq!(sum.times_s, step.times_s);
+        assert_eq!(sum.values, [0.0, 0.7, 1.0]);
+    }
+}

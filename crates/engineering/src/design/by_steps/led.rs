@@ -1,0 +1,270 @@
+//! Searches by steps in turn with audits, from one start.
+
+use phea_dynamics::portable;
+use phea_dynamics::watch::{Watch, part, within};
+use phea_qft::audit::{audit, audit_of_known_plants};
+use phea_qft::closed_loop::Compensation;
+use phea_qft::design::{Design, DesignProblem, DesignStatus};
+use phea_qft::loop_shaping::{Aim, DescentOptions, SampledMargin, Samples, SearchProblem, Shaping, descend};
+
+use super::shaping::{RESERVE_DB, StepShaping, StepWishes};
+use super::{with_rig, with_room};
+use crate::audit::audit_request;
+use crate::design::added_by_rig::AddedByRig;
+use crate::design::search::rank;
+use crate::design::step_aim::StepAim;
+use crate::design::{DesignError, ProjectDesign};
+use crate::robust::RobustProblem;
+use crate::setup::Setup;
+use crate::simulate::TrackingWish;
+
+/// Name of the stage.
+const STAGE: &str = "shaping by the steps";
+/// How often what an audit finds joins the search.
+const ROUNDS: usize = 5;
+/// A round that brings less than this share is one in vain, and so many in turn are the last.
+const GAIN: f64 = 0.01;
+const IN_VAIN: usize = 2;
+/// Zeros of the controller this many times as fast as its fastest pole may be do next to nothing,
+/// and poles of the prefilter that are so much faster than its slowest one.
+const BEYOND_FASTEST: f64 = 2.0;
+const FAST: f64 = 10.0;
+/// Ratio of a step to what is required, with what the rig adds, that is worth a trial.
+const NEAR: f64 = 1.1;
+/// Ratio of its steps to those of a start before from which one is given up.
+const FAR: f64 = 1.3;
+/// Steps of one search.
+const DESCENT_STEPS: usize = 40;
+
+/// A design with what it lacks.
+pub(super) struct AuditedStep {
+    pub(super) told: Box<ProjectDesign>,
+    start: Design,
+    search: Shaping,
+    free_numbers: Vec<f64>,
+    /// How it was audited.
+    audit: AuditDepth,
+    /// The rank of its verdict over frequency.
+    verdict: u8,
+    /// How far its steps are from what is aimed at, 1 where they reach it.
+    excess: f64,
+    /// The least margin to a limit of the samples.
+    pub(super) least: Option<SampledMargin>,
+}
+
+/// What of a family is audited.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum AuditDepth {
+    /// Members and corners.
+    KnownPlants,
+    /// All between them too.
+    Whole,
+}
+
+impl AuditedStep {
+    pub(super) fn is_reached(&self) -> bool {
+        self.told.is_met() && self.excess <= 1.0
+    }
+
+    /// True where it is nearer than another by more than this share.
+    pub(super) fn gains_on(&self, other: &AuditedStep, share: f64) -> bool {
+        self.verdict < other.verdict
+            || self.verdict == other.verdict && self.excess < (1.0 - share) * other.excess
+    }
+}
+
+/// The problem of a design that is led by its steps, and its aim.
+pub(super) struct LedDesign<'a> {
+    pub(super) setup: &'a Setup<'a>,
+    pub(super) given: &'a RobustProblem,
+    pub(super) aim: StepAim,
+    pub(super) added: &'a [AddedByRig],
+    pub(super) problem: DesignProblem,
+    pub(super) samples: Samples,
+    pub(super) required: TrackingWish,
+}
+
+/// A design whose steps were led once, before any audit.
+pub(super) struct BegunDesign {
+    start: Design,
+    search: StepShaping,
+    free_numbers: Vec<f64>,
+    /// The least margin of its samples and steps, dB.
+    pub(super) least_db: f64,
+}
+
+impl LedDesign<'_> {
+    /// The first search from a start; `None` where its loop is not stable.
+    pub(super) fn begun(
+        &self,
+        start: Design,
+        told: &ProjectDesign,
+        watch: Watch<'_>,
+    ) -> Result<Option<BegunDesign>, DesignError> {
+        let structures = (start.structure.clone(), start.prefilter.clone());
+        let shaping = Shaping::new(structures.0, structures.1, told.options.objective, self.samples.clone())?;
+        let wishes =
+            StepWishes { linear: with_room(self.aim.wish(self.required)), with_rig: with_rig(self.required) };
+        let added = (wishes, self.added.to_vec());
+        let mut search = StepShaping::new(shaping, added, self.problem.sensor.clone());
+        if !search.judge(&start.free_numbers).stable {
+            return Ok(None);
+        }
+        search.take_worst(&told.design)?;
+        search.take_steps(told)?;
+        let free_numbers = descended(&mut search, &start.free_numbers, watch)?;
+        let least_db = search.judge(&free_numbers).worst_margin_db;
+        Ok(Some(BegunDesign { start, search, free_numbers, least_db }))
+    }
+
+    /// A design without zeros and poles that do next to nothing, begun again; `None` where it has
+    /// none.
+    pub(super) fn shorter(
+        &self,
+        told: &ProjectDesign,
+        watch: Watch<'_>,
+    ) -> Result<Option<BegunDesign>, DesignError> {
+        let start = &told.design;
+        let free_numbers = start.free_numbers.as_slice();
+        let fastest = BEYOND_FASTEST * told.options.poles.fastest_rad_per_s;
+        let (own, of_prefilter) = free_numbers.split_at(start.structure.dimension().min(free_numbers.len()));
+        let loop_shorter = start.structure.without_roots_beyond(fastest, own);
+        let prefilter_shorter = start.prefilter.as_ref().and_then(|prefilter| {
+            let law = prefilter.compensator(of_prefilter).transfer_function().ok()?;
+            let slowest = law.poles().iter().map(|pole| portable::magnitude(*pole)).fold(fastest, f64::min);
+            prefilter.without_roots_beyond(FAST * slowest, of_prefilter)
+        });
+        if loop_shorter.is_none() && prefilter_shorter.is_none() {
+            return Ok(None);
+        }
+        let (structure, own) = loop_shorter.unwrap_or((start.structure.clone(), own.to_vec()));
+        let (prefilter, of_prefilter) = match prefilter_shorter {
+            Some((prefilter, x)) => (Some(prefilter), x),
+            None => (start.prefilter.clone(), of_prefilter.to_vec()),
+        };
+        let name = start.name.filter(|_| structure == start.structure);
+        let free_numbers = [own, of_prefilter].concat();
+        self.begun(Design { structure, prefilter, free_numbers, name, ..start.clone() }, told, watch)
+    }
+
+    /// The nearest design that was audited, after searches with what each audit found, given up
+    /// where it is far from one that is to be beaten.
+    pub(super) fn agreed(
+        &self,
+        begun: BegunDesign,
+        to_beat: Option<&AuditedStep>,
+        told: &ProjectDesign,
+        watch: Watch<'_>,
+    ) -> Result<Option<AuditedStep>, DesignError> {
+        let BegunDesign { start, mut search, mut free_numbers, .. } = begun;
+        let mut best: Option<AuditedStep> = None;
+        let mut in_vain = 0;
+        for round in 0..ROUNDS {
+            let share = [round, round + 1].map(|done| done as f64 / ROUNDS as f64);
+            let mut watch = within(&mut *watch, share);
+            if round > 0 {
+                free_numbers = descended(&mut search, &free_numbers, &mut watch)?;
+            }
+            let at = (&start, told, free_numbers.as_slice());
+            let (mut moved, mut is_new) =
+                self.judged(&mut search, at, AuditDepth::KnownPlants, &mut watch)?;
+            if moved.is_reached() {
+                (moved, is_new) = self.judged(&mut search, at, AuditDepth::Whole, &mut watch)?;
+            }
+            let (is_reached, gains) =
+                (moved.is_reached(), best.as_ref().is_none_or(|best| moved.gains_on(best, GAIN)));
+            let is_far = to_beat.is_some_and(|known| moved.excess > FAR * known.excess);
+            in_vain = if gains { 0 } else { in_vain + 1 };
+            if gains {
+                best = Some(moved);
+            }
+            if is_reached || !is_new || is_far || in_vain >= IN_VAIN {
+                break;
+            }
+        }
+        Ok(best)
+    }
+
+    /// The design with its audit and what it lacks, and whether it teaches the search anything.
+    fn judged(
+        &self,
+        search: &mut StepShaping,
+        (start, told, free_numbers): (&Design, &ProjectDesign, &[f64]),
+        depth: AuditDepth,
+        watch: Watch<'_>,
+    ) -> Result<(AuditedStep, bool), DesignError> {
+        let at = (start, told, free_numbers);
+        let moved = self.audited(&search.shaping, at, depth, watch)?;
+        let is_new = search.take_worst(&moved.design)? | search.take_steps(&moved)?;
+        let with_rig = search.excess_with_rig(free_numbers, &self.required);
+        let found = AuditedStep {
+            verdict: rank(&moved).0,
+            excess: self.aim.excess(&moved).max(with_rig),
+            least: search.least_of_limits(free_numbers),
+            told: Box::new(moved),
+            start: start.clone(),
+            search: search.shaping.clone(),
+            free_numbers: free_numbers.to_vec(),
+            audit: depth,
+        };
+        Ok((found, is_new))
+    }
+
+    /// The same with a complete audit.
+    pub(super) fn completed(
+        &self,
+        found: AuditedStep,
+        told: &ProjectDesign,
+        watch: Watch<'_>,
+    ) -> Result<AuditedStep, DesignError> {
+        if found.audit == AuditDepth::Whole {
+            return Ok(found);
+        }
+        let at = (&found.start, told, found.free_numbers.as_slice());
+        let told = self.audited(&found.search, at, AuditDepth::Whole, watch)?;
+        Ok(AuditedStep { told: Box::new(told), audit: AuditDepth::Whole, ..found })
+    }
+
+    /// The design with its audit.
+    fn audited(
+        &self,
+        shaping: &Shaping,
+        (start, told, free_numbers): (&Design, &ProjectDesign, &[f64]),
+        depth: AuditDepth,
+        watch: Watch<'_>,
+    ) -> Result<ProjectDesign, DesignError> {
+        let compensation = Compensation::new(&shaping.controller(free_numbers), self.problem.sensor.clone())?;
+        let has_prefilter = told.designed.problem.has_prefilter;
+        let problem =
+            RobustProblem { compensation, has_controller: true, has_prefilter, ..self.given.clone() };
+        let request = audit_request(&problem, &problem.family);
+        let audit = match depth {
+            AuditDepth::KnownPlants => audit_of_known_plants(&request, watch)?,
+            AuditDepth::Whole => audit(&request, watch)?,
+        };
+        let status = DesignStatus::NotConverged { rounds: start.rounds.len() };
+        let design = Design { status, ..start.clone() };
+        let moved = design.moved(shaping, free_numbers.to_vec(), audit, &told.options);
+        ProjectDesign::new(self.setup, self.given, &self.problem, moved, told.options.clone(), watch)
+    }
+
+    /// Whether a design is so near that a trial on the nonlinear rig tells more than another start.
+    pub(super) fn is_near(&self, found: &AuditedStep) -> bool {
+        !self.added.is_empty() && found.verdict == 0 && found.excess <= NEAR
+    }
+}
+
+/// The free numbers that a search from these finds.
+fn descended(
+    search: &mut StepShaping,
+    free_numbers: &[f64],
+    watch: Watch<'_>,
+) -> Result<Vec<f64>, DesignError> {
+    let options = DescentOptions {
+        reserve_db: RESERVE_DB,
+        tolerance_db: 1e-3,
+        steps_maximum: DESCENT_STEPS,
+        ..DescentOptions::new(Aim::Objective)
+    };
+    Ok(descend(search, free_numbers, options, &mut part(watch, STAGE, [0.0, 1.0]))?.x)
+}

@@ -1,0 +1,112 @@
+//! The corners of the box on the nonlinear rig: a required step is held against them too, since
+//! what friction and limits add to a step is not largest where the linear one is worst.
+
+use phea_dynamics::watch::{Progress, Stopped, Watch};
+use phea_qft::family::{Extent, Family, UncertainFamily};
+use phea_qft::verification::PlantPoint;
+
+use super::rigs::{Tried, rig_with};
+use super::run::{TrialRun, TriedMachine};
+use super::{STAGE, TrialError};
+use crate::audit::ProjectAudit;
+use crate::robust::RobustProblem;
+use crate::setup::Setup;
+use crate::source::Source;
+
+/// Coordinates of a box all of whose corners are driven; of a larger one as many corners.
+const ALL_OF: usize = 4;
+/// Beyond these, the coordinates whose ends multiplied give that of a further one: the generators
+/// of a fractional factorial design of 16 runs.
+const GENERATORS: [usize; 11] =
+    [0b0111, 0b1011, 0b1101, 0b1110, 0b1111, 0b0011, 0b0101, 0b0110, 0b1001, 0b1010, 0b1100];
+
+/// Of the corners that have a rig, the run of each size whose steps are furthest from what is
+/// required; empty without a box, and where nothing is required.
+pub(super) fn worst_of_corners(
+    source: &dyn Source,
+    setup: &Setup<'_>,
+    (problem, view): (&RobustProblem, &ProjectAudit),
+    watch: Watch<'_>,
+) -> Result<Vec<TrialRun>, TrialError> {
+    let rigs = rigs(setup, problem, view)?;
+    let mut worst: Vec<TrialRun> = Vec::new();
+    for (index, rig) in rigs.iter().enumerate() {
+        let mut within = |progress: Progress| {
+            watch(Progress { stage: STAGE, share: (index as f64 + progress.share) / rigs.len() as f64 })
+        };
+        let machine = TriedMachine::of(rig, problem)?.once();
+        let Some(driven) = machine.driven(source, &mut within)? else { return Err(Stopped.into()) };
+        for run in machine.judged(&driven, problem, view) {
+            match worst.iter_mut().find(|known| known.size == run.size) {
+                Some(known) if run.excess() > known.excess() => *known = run,
+                Some(_) => {}
+                None => worst.push(run),
+            }
+        }
+    }
+    Ok(worst)
+}
+
+fn rigs(setup: &Setup<'_>, problem: &RobustProblem, view: &ProjectAudit) -> Result<Vec<Tried>, TrialError> {
+    let Family::Uncertain(family) = &problem.family else { return Ok(vec![]) };
+    let corners = corners(family);
+    let what = format!("the worst of {} corners of the box", corners.len());
+    let rig = setup.rig()?;
+    let of = |values: Vec<f64>| {
+        let plant = PlantPoint::Parameters(values.clone());
+        let (names, numbers): (Vec<&str>, Vec<f64>) =
+            view.names.numbers(&plant)?.map(|(name, _, value)| (name, value)).unzip();
+        Some(Tried {
+            what: what.clone(),
+            named: Some(view.names.named(&plant)),
+            quarter_wave_rad_per_s: None,
+            project: rig_with(setup, rig, &names, &numbers).ok()?,
+            plant: family.plant().member(&values),
+            is_declared: false,
+        })
+    };
+    Ok(corners.into_iter().filter_map(of).collect())
+}
+
+/// All corners of a box of few coordinates, or sixteen in which every two coordinates have all
+/// pairs of ends equally often.
+fn corners(family: &UncertainFamily) -> Vec<Vec<f64>> {
+    let dimension = family.coordinates().len();
+    if family.extent() != Extent::Box || dimension == 0 {
+        return vec![];
+    }
+    let count = 1_usize << dimension.min(ALL_OF);
+    let shares = |corner: usize| (0..dimension).map(|index| end(corner, index)).collect::<Vec<f64>>();
+    (0..count).map(|corner| family.values(&shares(corner))).collect()
+}
+
+/// The end of a coordinate at a corner, as a share of the box.
+fn end(corner: usize, coordinate: usize) -> f64 {
+    let is_high = match coordinate.checked_sub(ALL_OF) {
+        None => (corner >> coordinate) & 1 == 1,
+        Some(further) => {
+            let generator = GENERATORS[further % GENERATORS.len()];
+            (corner & generator).count_ones() % 2 == 1
+        }
+    };
+    if is_high { 1.0 } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// ORIGIN: analytic, an orthogonal array of strength two: of 16 corners, each pair of ends of
+    /// two coordinates is taken 4 times.
+    #[test]
+    fn every_pair_of_ends_is_taken_equally_often() {
+        for one in 0..ALL_OF + GENERATORS.len() {
+            for other in 0..one {
+                for ends in [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]] {
+                    let is_taken = |corner: &usize| [end(*corner, one), end(*corner, other)] == ends;
+                    assert_eq!((0..16).filter(is_taken).count(), 4, "{one} {other} {ends:?}");
+                }
+            }
+        }
+    }
+}
