@@ -207,7 +207,8 @@ impl DeclaredDesign {
         v.optional(key("reserve", &GAIN, doc).at_least(1.0).at_most(2.0), &mut self.reserve);
         v.pair(key("gain", &RATIO, "Least and greatest gain of `structure`."), &mut self.gain);
         let k = plain("structure", "Which controllers are tried, by a name, or factors of one.");
-        let words = (&STRUCTURES[..], "a name or a list of factors");
+        let help = "write a name, such as \"pi\", or a list of factors, such as [{ kind = \"integrator\" }]";
+        let words = (&STRUCTURES[..], "a name or a list of factors", help);
         v.word_or_tables(k, words, &mut self.structure_choice, &mut self.structure, |one, v| {
             v.variant(plain("kind", "Which factor."), one, true);
         });

@@ -256,7 +256,7 @@ impl Visitor for Printer {
     fn word_or_tables<W: Copy + PartialEq, T: Default>(
         &mut self,
         key: Key,
-        (words, _): (&'static [(&'static str, W)], &'static str),
+        (words, ..): (&'static [(&'static str, W)], &'static str, &'static str),
         word: &mut W,
         tables: &mut Vec<T>,
         visit: impl Fn(&mut T, &mut Self),

@@ -41,6 +41,8 @@ pub(crate) struct Reader<'a> {
     pub(crate) places: BTreeMap<String, Place>,
     /// Paths of values that were refused.
     pub(crate) refused: Vec<String>,
+    /// Paths of tables whose kind is misspelt or missing, so that nothing follows from their keys.
+    pub(crate) unclear: Vec<String>,
     /// Where each table of a list is written, by its path.
     pub(crate) item_places: BTreeMap<String, Place>,
     pub(crate) provenance: Vec<Provenance>,
@@ -112,6 +114,7 @@ impl<'a> Reader<'a> {
             places: BTreeMap::new(),
             item_places: BTreeMap::new(),
             refused: Vec::new(),
+            unclear: Vec::new(),
             provenance: Vec::new(),
             catalogue_files: Vec::new(),
             all_keys: Vec::new,
@@ -236,6 +239,13 @@ impl<'a> Reader<'a> {
             self.places.insert(path, hit.node.place);
         }
         Some(hit)
+    }
+
+    /// Whether a number may only seem to be absent: a value or the kind of its table is not
+    /// known.
+    fn seems_absent(&self, name: &str) -> bool {
+        let root = |path: &str| path.split(['.', '[']).next().unwrap_or("").to_string();
+        self.refused.iter().chain(&self.unclear).any(|known| root(known) == root(name))
     }
 
     /// How to write a name with dots in it, if it was parsed as nested tables.

@@ -148,8 +148,17 @@ impl Check<'_, '_> {
         self.push_error(path, RawFinding::error(self.place(path), message).help(help));
     }
 
+    /// Whether a path is in a table whose kind is misspelt or missing, or has one in it, so that
+    /// nothing follows from its keys.
+    fn is_unclear(&self, path: &str) -> bool {
+        let within = |inner: &str, outer: &str| {
+            inner.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+        };
+        self.reader.unclear.iter().any(|table| within(path, table) || within(table, path))
+    }
+
     fn push_error(&mut self, path: &str, found: RawFinding) {
-        if !self.refused(path) {
+        if !self.refused(path) && !self.is_unclear(path) {
             self.reader.findings.push(found);
         }
     }
@@ -161,17 +170,23 @@ impl Check<'_, '_> {
 
     fn warning(&mut self, path: &str, message: impl Into<String>) {
         let place = self.place(path);
-        self.reader.findings.push(RawFinding::warning(place, message));
+        self.push_warning(path, RawFinding::warning(place, message));
     }
 
     fn warning_with_help(&mut self, path: &str, message: impl Into<String>, help: impl Into<String>) {
         let place = self.place(path);
-        self.reader.findings.push(RawFinding::warning(place, message).help(help));
+        self.push_warning(path, RawFinding::warning(place, message).help(help));
+    }
+
+    fn push_warning(&mut self, path: &str, found: RawFinding) {
+        if !self.is_unclear(path) {
+            self.reader.findings.push(found);
+        }
     }
 
     /// Something is absent from the table at `path`, perhaps because its value was rejected.
     fn missing(&mut self, path: &str, name: &str, message: impl Into<String>) {
-        if self.declared(&format!("{path}.{name}")) || !self.has_table(path) {
+        if self.declared(&format!("{path}.{name}")) || !self.has_table(path) || self.is_unclear(path) {
             return;
         }
         let place = self.place(path);

@@ -24,18 +24,44 @@ impl<'a> Reader<'a> {
     pub(super) fn word(&mut self, key: Key, node: &TreeNode, words: &[&'static str]) -> Option<usize> {
         let all = words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ");
         let Value::Text(text) = &node.value else {
+            let path = self.path(key.name);
+            self.refused.push(path);
             self.wrong_kind(key, &format!("one of {all}"), node);
             return None;
         };
         let found = words.iter().position(|word| word == text);
         if found.is_none() {
             let message = format!("`{}` cannot be \"{text}\"", key.name);
+            let path = self.path(key.name);
+            self.refused.push(path);
             let near = nearest(text, words.iter().copied());
             let help = near.map(|word| format!("did you mean \"{word}\"?"));
             let expected = format!("one of {all}");
             self.findings.push(RawFinding::error(node.place, message).expected(expected).maybe_help(help));
         }
         found
+    }
+
+    /// Refuses a value that is neither a word nor a list of tables.
+    pub(super) fn neither(&mut self, key: Key, node: &TreeNode, (kinds, help): (&str, &str)) {
+        let is_table = |item: &&TreeNode| matches!(item.value, Value::Table(_));
+        let (wrong, expected) = match &node.value {
+            Value::List(items) => {
+                (items.iter().find(|item| !is_table(item)).unwrap_or(node), "a list of tables")
+            }
+            _ => (node, kinds),
+        };
+        let path = self.path(key.name);
+        self.refused.push(path);
+        let message = format!("`{}` must be {expected}, not {}", key.name, wrong.kind());
+        self.findings.push(RawFinding::error(wrong.place, message).help(help));
+    }
+
+    /// Remembers that the kind of the present table is unknown.
+    pub(super) fn leave_unclear(&mut self) {
+        if let Some(frame) = self.frames.last().filter(|frame| !frame.path.is_empty()) {
+            self.unclear.push(frame.path.clone());
+        }
     }
 
     pub(super) fn choose(&mut self, chosen: Option<String>) {

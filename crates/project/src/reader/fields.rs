@@ -151,14 +151,15 @@ impl Visitor for Reader<'_> {
         let Some(hit) = self.find(key) else {
             if required {
                 self.missing(key);
+                self.leave_unclear();
             }
             return;
         };
         let all: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
-        if let Some(index) = self.word(key, hit.node, &all)
-            && let Some((_, value)) = words.get(index)
-        {
-            *field = *value;
+        match self.word(key, hit.node, &all).and_then(|index| words.get(index)) {
+            Some((_, value)) => *field = *value,
+            None if required => self.leave_unclear(),
+            None => {}
         }
     }
 
@@ -181,8 +182,11 @@ impl Visitor for Reader<'_> {
                 self.choose(None);
                 self.without_effect(key, field, &all);
             }
-            // a key that may belong to another variant does not count as unknown
-            None => all.iter().flat_map(keys_of).for_each(|name| self.know(name)),
+            None => {
+                self.leave_unclear();
+                // a key that may belong to another variant does not count as unknown
+                all.iter().flat_map(keys_of).for_each(|name| self.know(name));
+            }
         }
     }
 
@@ -334,19 +338,18 @@ impl Visitor for Reader<'_> {
     fn word_or_tables<W: Copy + PartialEq, T: Default>(
         &mut self,
         key: Key,
-        (words, kinds): (&'static [(&'static str, W)], &'static str),
+        (words, kinds, help): (&'static [(&'static str, W)], &'static str, &'static str),
         word: &mut W,
         tables: &mut Vec<T>,
         visit: impl Fn(&mut T, &mut Self),
     ) {
-        match self.find(key).map(|hit| &hit.node.value) {
-            Some(Value::List(_)) => self.tables(key, tables, visit),
-            Some(Value::Table(_)) => {
-                if let Some(hit) = self.find(key) {
-                    self.wrong_kind(key, kinds, hit.node);
-                }
+        let Some(Hit { node, .. }) = self.find(key) else { return };
+        match &node.value {
+            Value::Text(_) => self.choice(key, words, word, false),
+            Value::List(items) if items.iter().all(|item| matches!(item.value, Value::Table(_))) => {
+                self.tables(key, tables, visit);
             }
-            _ => self.choice(key, words, word, false),
+            _ => self.neither(key, node, (kinds, help)),
         }
     }
 
@@ -373,9 +376,7 @@ impl Visitor for Reader<'_> {
         }
         for entry in hit.node.entries() {
             let Some(number) = self.named.get(&entry.key).copied() else {
-                // a number of a table with a refused one may only seem to be absent
-                let root = |path: &str| path.split(['.', '[']).next().unwrap_or("").to_string();
-                if self.refused.iter().any(|refused| root(refused) == root(&entry.key)) {
+                if self.seems_absent(&entry.key) {
                     continue;
                 }
                 let near = nearest(&entry.key, self.named.keys().map(String::as_str));
@@ -407,6 +408,9 @@ impl Visitor for Reader<'_> {
             self.frames.last().and_then(|frame| frame.layers.first()).map(|layer| layer.node.entries());
         for entry in entries.unwrap_or_default() {
             let Some(number) = self.named.get(&entry.key).copied() else {
+                if self.seems_absent(&entry.key) {
+                    continue;
+                }
                 let near = nearest(&entry.key, self.named.keys().map(String::as_str));
                 let message = format!("`{}` is not a {} of this project", entry.key, key.name);
                 let help = near.map(|name| format!("did you mean `{name}`?"));

@@ -91,7 +91,8 @@ pub(super) fn course(
     for rest in adjusted.iter().map(|one| one.setting) {
         leaves_its_way(signals, rest, &place, check);
     }
-    let moves_gas = adjusted.iter().any(|one| one.valve().is_none());
+    let is_unclear = check.reader.unclear.iter().any(|table| table.ends_with(".adjustment"));
+    let moves_gas = !is_unclear && adjusted.iter().any(|one| one.valve().is_none());
     let jumps = |signal: &Signal| match signal {
         Signal::Step { at, .. } => *at > 0.0,
         Signal::Steps { times, .. } => times.iter().any(|time| *time > 0.0),

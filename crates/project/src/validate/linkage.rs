@@ -17,7 +17,7 @@ pub(super) fn linkage(project: &Project, actuator: &DeclaredActuator, check: &mu
         let message = "[linkage] without a [load]: its joint moves as [[scenario]] `load_motion` says, in degrees, and stands still otherwise";
         check.warning("linkage", message);
     }
-    if linkage.weight.is_some() && actuator.load == Load::Prescribed {
+    if linkage.weight.is_some() && actuator.load == Load::Prescribed && !check.is_unclear("load") {
         let message =
             "a load with a prescribed motion follows it whatever its weight: `weight` has no effect";
         check.warning("linkage.weight", message);

@@ -122,7 +122,7 @@ fn one_scenario(scenario: &Scenario, actuator: &DeclaredActuator, path: &str, ch
     }
     let (external, unit) = (&scenario.external_force, SignalUnit::EXTERNAL_FORCE);
     signals(external, unit, [path, "external_force"], scenario.duration, check);
-    if !external.is_empty() && actuator.load == Load::Prescribed {
+    if !external.is_empty() && actuator.load == Load::Prescribed && !check.is_unclear("load") {
         let message = "an `external_force` moves no load whose motion is prescribed";
         let help = "give [load] a model that moves: \"spring_mass_damper\" or \"wall\"";
         check.error_with_help(&format!("{path}.external_force"), message, help);
