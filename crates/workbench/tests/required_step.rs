@@ -267,3 +267,25 @@ fn steps_lead_where_limits_of_tracking_do_not() {
     assert!(number(found, "worst_overshoot_percent") <= 1.0, "{words}");
     assert!(number(found, "worst_settling_time_s") <= 1.5, "{words}");
 }
+
+/// The sum of the poles of the closed loop is that of the plant, -20 rad/s, for every gain, so that
+/// the slowest of the three decays to exp(-20/3 0.25) = 0.19 in the required time at best: no P
+/// settles within 2 %. The limits that lead there are tightened until there are none any more.
+/// Those of a narrow band begin with faster roots.
+///
+/// ORIGIN: analytic.
+#[test]
+fn a_step_that_no_gain_satisfies_is_answered() {
+    for band_percent in [2.0, 1e-5] {
+        let text = format!(
+            "schema = 1\ntitle = \"slow\"\n[plant]\nnumerator = \"4000\"\ndenominator = \"s^3 + 20*s^2 + 400*s\"\n\
+             [[specification]]\nkind = \"step\"\novershoot_percent = 2\nsettling_time = \"0.25 s\"\n\
+             settling_band_percent = {band_percent}\n[design]\nstructure = \"p\"\n"
+        );
+        let (object, words) = answer(&text, &Request::Design { seed: None, stages: false, repair: false });
+        assert_eq!(object["status"], "missed_in_time", "{words}");
+        let settled = number(&object, "verification.specifications.0.worst_settling_time_s");
+        assert!(settled > 0.25, "{words}");
+        assert!(words.contains("step is not met: at most 2 % overshoot"), "{words}");
+    }
+}

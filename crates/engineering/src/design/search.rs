@@ -26,7 +26,12 @@ pub(super) fn found(
 ) -> Result<(StepAim, DesignRun, ProjectDesign), DesignError> {
     let mut found: Vec<(StepAim, DesignRun, ProjectDesign)> = Vec::new();
     for repetition in 0..=REPETITIONS {
-        let aimed = aim.of(setup.project, given)?;
+        let aimed = match aim.of(setup.project, given) {
+            Ok(aimed) => aimed,
+            // limits for a stricter aim may not exist: what was found before remains
+            Err(_) if !found.is_empty() => break,
+            Err(error) => return Err(error),
+        };
         let share = [repetition, repetition + 1].map(|done| done as f64 / (REPETITIONS + 1) as f64);
         let before = found.last().map(|(_, run, told)| (run, told));
         let design = searched(setup, (given, &aimed), (seed, before), &mut within(&mut *watch, share));

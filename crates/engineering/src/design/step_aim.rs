@@ -8,6 +8,7 @@
 
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::order::sorted_distinct;
+use phea_dynamics::portable;
 use phea_qft::specification::{Limit, Requirement, Specification};
 
 use super::{DesignError, DesignLimitKind, ProjectDesign, limit_words};
@@ -33,6 +34,8 @@ const LEAST_SHARE: f64 = 0.2;
 /// Settling time of the upper limit over that of the lower one, and zero and pole times it.
 const UPPER_SHARE: f64 = 0.4;
 const EXTRA_ROOT: f64 = 15.0;
+/// Least decay of zero and pole within the settling time, over that which a band requires.
+const EXTRA_DECAY: f64 = 2.0;
 /// Least overshoot of an upper limit, percent.
 const LEAST_OVERSHOOT_PERCENT: f64 = 0.1;
 /// Design frequencies times the settling time; the last is the end of the band.
@@ -175,7 +178,9 @@ impl StepAim {
             settling_band_percent: Some(wish.band_percent),
             ..ResponseWish::default()
         };
-        let root = Some(EXTRA_ROOT / wish.horizon_s);
+        // a pole alone settles at p t = ln(100/band)
+        let decay = EXTRA_DECAY * portable::ln(100.0 / wish.band_percent);
+        let root = Some(EXTRA_ROOT.max(decay) / wish.horizon_s);
         let overshoot_percent = self.overshoot * wish.overshoot_percent.unwrap_or(wish.band_percent);
         let upper = ResponseWish {
             overshoot_percent: Some(overshoot_percent.max(LEAST_OVERSHOOT_PERCENT)),
