@@ -21,7 +21,7 @@ mod step_aim;
 mod structures;
 mod words;
 pub use crate::limit_kind::{DesignLimitKind, limit_key, limit_words};
-pub use damping::{PressureFeedbackDesign, with_free_pressure_feedback};
+pub use damping::{MissingPlants, PressureFeedbackDesign, with_free_pressure_feedback};
 pub use deployable::{DesignLimit, LimitFinding, LimitOrigin, design_limits};
 pub use factors::factored;
 pub use manual::{ManualGap, ManualLaw, ManualPart};

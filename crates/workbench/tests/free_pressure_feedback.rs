@@ -126,3 +126,28 @@ fn a_feedback_that_is_still_to_be_found_is_told() {
     assert!(!is_told(&[feedback, "controller.pressure_feedback.gain=1e-7", FREE]));
     assert!(!is_told(&[FREE]));
 }
+
+/// A bore of 1 mm over 3 m has a dissipation number nu L/(c R^2) of 46e-6 3/(c 0.25e-6) = 552/c
+/// with c in m/s: it is above 0.1 for any oil, so that the family cannot be built with waves.
+///
+/// ORIGIN: analytic.
+#[test]
+fn plants_with_waves_that_are_missing_are_stated() {
+    let thin = "uncertainty={\"line.bore\" = { nominal = \"12.7 mm\", minimum = \"1 mm\", maximum = \"13 mm\", points = 2 }}";
+    let loaded = loaded(&without_step(), &[thin, FREE]);
+    let setup = Setup::new(&loaded.project).unwrap();
+    let found = with_free_pressure_feedback(&Memory::default(), &setup, &mut |_| true).unwrap().unwrap().1;
+    let missing = found.missing_with_waves.unwrap();
+    assert_eq!([missing.count, missing.of], [found.plants; 2]);
+    assert!(missing.reason.contains("dissipation number"), "{}", missing.reason);
+}
+
+/// Where every plant has its waves, none is stated to be missing.
+#[test]
+fn no_plant_with_waves_is_missing_from_the_structural_rig() {
+    let loaded = loaded(&few_plants(), &[FREE]);
+    let setup = Setup::new(&loaded.project).unwrap();
+    let found = with_free_pressure_feedback(&Memory::default(), &setup, &mut |_| true).unwrap().unwrap().1;
+    assert_eq!(found.missing_with_waves, None);
+    assert_eq!(found.plants % 2, 0, "{found:?}");
+}

@@ -63,6 +63,19 @@ pub struct PressureFeedbackDesign {
     pub least_damping_ratio: Option<[f64; 2]>,
     /// Number of plants that it was found with.
     pub plants: usize,
+    /// Plants with waves in their lines that it was found without; absent where none is missing.
+    pub missing_with_waves: Option<MissingPlants>,
+}
+
+/// Plants that have no responses.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MissingPlants {
+    /// How many.
+    pub count: usize,
+    /// Of how many.
+    pub of: usize,
+    /// Why the first of them has none.
+    pub reason: String,
 }
 
 /// The project with the feedback that was found; `None` where it is not free.
@@ -85,13 +98,14 @@ pub fn with_free_pressure_feedback(
     let declared = declared.unwrap_or_default();
     let plain = with_feedback(project, None);
     let undamped = Setup::new(&plain)?;
-    let mut probed = ProbedPlants::new(source, &undamped, &declared)?;
+    let mut probed = ProbedPlants::new(source, &undamped, &declared)?.complete()?;
     // a lumped line that is stated hides waves from the loop, and none from the pressures
     let with_waves = trial::with_waves(&plain);
-    let with_waves = with_waves.as_ref().map(Setup::new).and_then(Result::ok);
-    if let Some(Ok(waves)) = with_waves.map(|setup| ProbedPlants::new(source, &setup, &declared)) {
-        probed.plants.extend(waves.plants);
-    }
+    let with_waves = with_waves.as_ref().map(|other| {
+        let setup = Setup::new(other)?;
+        ProbedPlants::new(source, &setup, &declared)
+    });
+    let missing_with_waves = with_waves.and_then(|waves| probed.add(waves));
     let problem = problem(source, &undamped, &declared, &probed)?;
     let Some(found) = problem.best()? else { return Err(DesignError::NoPressureFeedback) };
     tell(watch, "pressure feedback", 1, 1)?;
@@ -102,6 +116,7 @@ pub fn with_free_pressure_feedback(
     };
     let with = with_feedback(project, Some(declared));
     let found = described((source, &undamped), &with, declared, (&found, &probed))?;
+    let found = PressureFeedbackDesign { missing_with_waves, ..found };
     Ok(Some((if found.is_used { with } else { plain }, found)))
 }
 
@@ -128,6 +143,7 @@ fn described(
         limited_at_rad_per_s: [found.without.frequency_rad_per_s, found.reach.frequency_rad_per_s],
         least_damping_ratio,
         plants: probed.plants.len(),
+        missing_with_waves: None,
     })
 }
 

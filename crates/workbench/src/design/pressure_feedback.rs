@@ -1,6 +1,6 @@
 //! The pressure feedback that a design found before its loop.
 
-use phea_engineering::design::PressureFeedbackDesign;
+use phea_engineering::design::{MissingPlants, PressureFeedbackDesign};
 
 use super::ProjectDesign;
 use crate::answer::{Object, significant};
@@ -9,18 +9,23 @@ use crate::quantity::{ANGULAR_FREQUENCY, VOLTAGE_PER_PRESSURE, display};
 
 /// The feedback with what it gains; empty where it was not free.
 pub(crate) fn document(view: &ProjectDesign) -> Document {
+    view.pressure_feedback.as_ref().map(found_document).unwrap_or_default()
+}
+
+fn found_document(found: &PressureFeedbackDesign) -> Document {
     let mut out = Document::default();
-    let Some(found) = &view.pressure_feedback else { return out };
     out.heading("Pressure feedback, found before the loop");
     let factor = significant(found.loop_gain_factor, 3);
     let plants = match found.plants {
         1 => "the one plant".to_string(),
         count => format!("{count} plants"),
     };
+    let missing = found.missing_with_waves.as_ref().map(missing);
     if !found.is_used {
-        out.sentences([format!(
+        let none = format!(
             "none: the best would raise the gain that a proportional loop may have around {plants} to {factor} times, too little for a second measured signal"
-        )]);
+        );
+        out.sentences([none].into_iter().chain(missing));
         return out;
     }
     let corner = found.declared.high_pass.map_or(String::new(), |corner| {
@@ -44,14 +49,24 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
     }
     sentences
         .push("at rest nothing passes the high pass: gain and stiffness are those of the rig".to_string());
+    sentences.extend(missing);
     out.sentences(sentences);
     out
+}
+
+/// What was left out, and why.
+fn missing(plants: &MissingPlants) -> String {
+    let MissingPlants { count, of, reason } = plants;
+    format!("it was found without {count} of {of} plants with waves in their lines: {reason}")
 }
 
 /// The same in JSON.
 pub(super) fn object(found: &PressureFeedbackDesign) -> Object {
     let [limited_without, limited] = found.limited_at_rad_per_s;
     let damping = found.least_damping_ratio;
+    let missing = |plants: &MissingPlants| {
+        Object::new().with("count", plants.count).with("of", plants.of).with("reason", plants.reason.as_str())
+    };
     Object::new()
         .with("used", found.is_used)
         .with("gain_v_per_pa", found.declared.gain)
@@ -65,4 +80,38 @@ pub(super) fn object(found: &PressureFeedbackDesign) -> Object {
         .maybe("least_damping_ratio", damping.map(|[_, with]| with))
         .maybe("least_damping_ratio_without", damping.map(|[without, _]| without))
         .with("plants", found.plants)
+        .maybe("missing_with_waves", found.missing_with_waves.as_ref().map(missing))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::project::DeclaredPressureFeedback;
+
+    /// Text and JSON state what is missing, whether the feedback is used or not, and nothing where
+    /// nothing is missing.
+    #[test]
+    fn missing_plants_are_stated() {
+        let missing = MissingPlants { count: 2, of: 5, reason: "why".to_string() };
+        let found = PressureFeedbackDesign {
+            declared: DeclaredPressureFeedback { gain: 1e-7, ..DeclaredPressureFeedback::default() },
+            is_used: true,
+            loop_gain_factor: 1.5,
+            proportional_gain: [1e-4, 1.5e-4],
+            limited_at_rad_per_s: [300.0, 310.0],
+            least_damping_ratio: None,
+            plants: 8,
+            missing_with_waves: Some(missing),
+        };
+        let sentence = "it was found without 2 of 5 plants with waves in their lines: why";
+        for is_used in [true, false] {
+            let text = found_document(&PressureFeedbackDesign { is_used, ..found.clone() }).text();
+            assert!(text.contains(sentence), "{text}");
+        }
+        let json = object(&found).print();
+        assert!(json.contains("\"missing_with_waves\""), "{json}");
+        let complete = PressureFeedbackDesign { missing_with_waves: None, ..found };
+        assert!(!found_document(&complete).text().contains("was found without"));
+        assert!(!object(&complete).print().contains("missing_with_waves"));
+    }
 }

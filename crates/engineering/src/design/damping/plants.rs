@@ -13,7 +13,7 @@ use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::inner_loop::{InnerPlant, InnerPoint};
 
 use super::super::DesignError;
-use super::with_feedback;
+use super::{MissingPlants, with_feedback};
 use crate::family::family;
 use crate::project::DeclaredPressureFeedback;
 use crate::setup::Setup;
@@ -40,10 +40,13 @@ pub(super) struct ProbedPlants {
     pub(super) plants: Vec<InnerPlant>,
     /// Their parameters.
     values: Vec<Vec<f64>>,
+    /// Why others have no responses.
+    refused: Vec<DesignError>,
 }
 
 impl ProbedPlants {
-    /// The nominal plant and others of the family of a project without feedback.
+    /// The nominal plant and others of the family of a project without feedback, and why some of
+    /// them have no responses.
     ///
     /// # Errors
     /// [`DesignError`] for a family that cannot be built or sampled.
@@ -59,7 +62,6 @@ impl ProbedPlants {
         let small = DeclaredPressureFeedback { gain, high_pass: None, low_pass: None, ..*declared };
         let probed = with_feedback(undamped.project, Some(small));
         let probed = uncertain(source, &Setup::new(&probed)?)?;
-        let values = chosen(&own);
         let timing = undamped.timing;
         let inner = InnerFeedback { gain, ..InnerFeedback::default() };
         let around = [timing, Timing { inner_feedback: inner, ..timing }].map(|timing| {
@@ -90,8 +92,39 @@ impl ProbedPlants {
             let reference = points.first().copied().ok_or(LinearError::NoPlant)?;
             Ok(InnerPlant { points, reference })
         };
-        let plants = values.iter().map(pair).collect::<Result<Vec<InnerPlant>, DesignError>>()?;
-        Ok(ProbedPlants { plants, values })
+        let mut probed = ProbedPlants { plants: vec![], values: vec![], refused: vec![] };
+        for values in chosen(&own) {
+            match pair(&values) {
+                Ok(plant) => {
+                    probed.plants.push(plant);
+                    probed.values.push(values);
+                }
+                Err(error) => probed.refused.push(error),
+            }
+        }
+        Ok(probed)
+    }
+
+    /// The same where every plant has responses.
+    ///
+    /// # Errors
+    /// Why the first of the others has none.
+    pub(super) fn complete(mut self) -> Result<ProbedPlants, DesignError> {
+        if self.refused.is_empty() { Ok(self) } else { Err(self.refused.swap_remove(0)) }
+    }
+
+    /// Adds the plants of the same rig with waves in its lines; those that are missing, if any.
+    pub(super) fn add(&mut self, waves: Result<ProbedPlants, DesignError>) -> Option<MissingPlants> {
+        let (of, refused) = match waves {
+            Ok(waves) => {
+                let of = waves.plants.len() + waves.refused.len();
+                self.plants.extend(waves.plants);
+                (of, waves.refused)
+            }
+            Err(error) => (self.values.len(), vec![error; self.values.len()]),
+        };
+        let reason = refused.first()?.to_string();
+        Some(MissingPlants { count: refused.len(), of, reason })
     }
 }
 
