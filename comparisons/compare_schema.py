@@ -36,7 +36,7 @@ UNSEEN = {
         linkage_table_counts linkage_motor linkage_unserved linkage_units
         price_currencies stage_order stage_count stage_bench transmission_currencies transmission_two_lines transmission_without_line
         adjustment_beside adjustment_course adjustment_ends adjustment_none adjustment_uncertain
-        ranges_reversed supply_accumulator_ranges pressure_feedback design_free_feedback pressure_feedback_without_gain pressure_feedback_beside pressure_feedback_too_fast
+        ranges_reversed supply_accumulator_ranges pressure_feedback design_free_feedback pressure_feedback_without_gain pressure_feedback_beside pressure_feedback_too_fast pressure_feedback_measured design_free_feedback_measured
     """.split(),
     "numbers that a double cannot hold, infinity, and none": """
         number_huge_hexadecimal number_too_large quantity_infinite quantity_nan quantity_too_large quantity_too_small

@@ -16,6 +16,12 @@ pub(super) fn pressure_feedback(project: &Project, check: &mut Check<'_, '_>) {
     let Some(controller) = &project.controller else { return };
     let Some(declared) = &controller.pressure_feedback else { return };
     let at = |name: &str| format!("{PLACE}.{name}");
+    if is_measured(project) {
+        let message = "[controller.pressure_feedback] needs the response of the pressures, which measured plants do not have";
+        let help =
+            "measure the plants with the pressures fed back and remove this table, or describe the rig";
+        return check.error_with_help(PLACE, message, help);
+    }
     if project.actuator.is_none() {
         let message = "[controller.pressure_feedback] acts on the pressures of chambers, and this project has no actuator";
         let help = "give the [plant] with what is fed back within it, or describe the rig";
@@ -69,17 +75,26 @@ fn is_free(project: &Project) -> bool {
     project.design.as_ref().is_some_and(|design| design.pressure_feedback == FeedbackChoice::Free)
 }
 
+/// True where the plants are measured responses.
+fn is_measured(project: &Project) -> bool {
+    project.family.as_ref().is_some_and(|family| !family.measured.is_empty())
+}
+
 /// What a free feedback needs.
 fn free(project: &Project, check: &mut Check<'_, '_>) {
     const PLACE: &str = "design.pressure_feedback";
+    if is_measured(project) {
+        let message = "a free `pressure_feedback` needs the response of the pressures, which measured plants do not have";
+        return check.error_with_help(
+            PLACE,
+            message,
+            "describe the rig in place of `measured` of [family], or leave it out",
+        );
+    }
     if project.actuator.is_none() {
         let message =
             "a free `pressure_feedback` acts on the pressures of chambers, and this project has no actuator";
         return check.error_with_help(PLACE, message, "describe the rig, or leave it out");
-    }
-    if project.family.as_ref().is_some_and(|family| !family.measured.is_empty()) {
-        let message = "a free `pressure_feedback` needs the response of the pressures, which measured plants do not have";
-        return check.error_with_help(PLACE, message, "leave out `measured` of [family], or this key");
     }
     let fed = project.controller.as_ref().and_then(|controller| controller.load_velocity_feed_forward);
     let moves = project.actuator.as_ref().is_some_and(|actuator| actuator.load != Load::Prescribed);
