@@ -160,14 +160,19 @@ impl JudgedAlternative {
         self.feasible() == Ok(true) && self.is_judged() && !self.is_contradicted()
     }
 
-    /// Whether the designed loop satisfies every specification; or why this is not known.
+    /// True where the designed loop satisfies every specification, and the nonlinear rig what is
+    /// required in time; or why this is not known.
     pub fn feasible(&self) -> Result<bool, String> {
         use phea_qft::design::DesignStatus;
         let view = self.design.as_ref().map_err(Clone::clone)?;
         match view.design.status {
-            _ if view.is_met() => Ok(true),
+            _ if view.is_met() && !view.misses_on_rig() => Ok(true),
             DesignStatus::Infeasible(_) | DesignStatus::NotStabilised => Ok(false),
-            DesignStatus::Met if !view.tolerates_its_delay || view.designed.view.misses_in_time() => {
+            DesignStatus::Met
+                if !view.tolerates_its_delay
+                    || view.designed.view.misses_in_time()
+                    || view.misses_on_rig() =>
+            {
                 Ok(false)
             }
             DesignStatus::Met | DesignStatus::NotConverged { .. } => {

@@ -297,7 +297,7 @@ impl ProjectDesign {
         self.trial.as_ref().map_or(Agreement::Agrees, Trial::agreement)
     }
 
-    /// Whether a run on the nonlinear rig misses what is required in time.
+    /// True where a run on the nonlinear rig misses what is required in time.
     pub fn misses_on_rig(&self) -> bool {
         self.trial.as_ref().is_some_and(|trial| trial.satisfies() == Some(false))
     }

@@ -190,6 +190,41 @@ fn every_run_is_held_against_the_required_step() {
     }
 }
 
+/// Corners of the box are driven where all other runs satisfy what is required, and the worst of
+/// them is told: that of the rigs that are declared as these corners. A step of which nothing is
+/// required has no worst.
+#[test]
+fn the_worst_corner_is_that_of_rigs_declared_as_corners() {
+    let request = Request::Verify { proof: false, on_machine: true };
+    let step =
+        |most_s: f64| format!("settling_time = {most_s}\namplitude = \"300 N\"\ninitial_force = \"100 N\"\n");
+    let runs = |text: &str| answer(text, &request).0["machine"]["runs"].as_array().unwrap().clone();
+    let of_corners = |runs: &[Value]| -> Vec<Value> {
+        let is_corner = |run: &&Value| run["what"].as_str().unwrap().contains("corners of the box");
+        runs.iter().filter(is_corner).cloned().collect()
+    };
+    let ends = [[63.0, 77.0], [90.0, 200.0]];
+    let boxed = format!(
+        "{}[uncertainty]\n\
+         \"supply.pressure\" = {{ nominal = \"70 bar\", minimum = \"63 bar\", maximum = \"77 bar\", points = 2 }}\n\
+         \"cylinder.friction.viscous\" = {{ nominal = 100, minimum = 90, maximum = 200, points = 2 }}\n",
+        rig(&step(30.0))
+    );
+    let told = of_corners(&runs(&boxed));
+    assert_eq!(told.len(), 1, "{told:?}");
+    let declared = |pressure_bar: f64, viscous: f64| {
+        let text = rig(&step(30.0))
+            .replace("pressure = \"70 bar\"", &format!("pressure = \"{pressure_bar} bar\""))
+            .replace("viscous = \"100 N.s/m\"", &format!("viscous = {viscous}"));
+        number(&runs(&text)[0]["requirements"][0], "settling_time_s")
+    };
+    let all = ends[0].into_iter().flat_map(|bar| ends[1].map(|viscous| declared(bar, viscous)));
+    ask::near(number(&told[0]["requirements"][0], "settling_time_s"), all.fold(0.0, f64::max), 1e-4);
+    // one run that misses tells as much
+    let missed = boxed.replace("settling_time = 30\n", "settling_time = 0.0001\n");
+    assert!(of_corners(&runs(&missed)).is_empty());
+}
+
 /// A scenario is held against what is required too: the worst of its steps is that of its events.
 #[test]
 fn a_simulated_scenario_is_held_against_what_is_required() {

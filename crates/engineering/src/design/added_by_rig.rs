@@ -1,5 +1,5 @@
-//! What the nonlinear rig adds to the steps of the linear loop, by the trial of a design: the
-//! search for the next one adds it to every step that it judges.
+//! Differences between the steps of the nonlinear rig and those of the linear loop in the trial of
+//! a design: the search for the next one adds them to every step that it judges.
 //!
 //! ```text
 //! added(t) = step of the nonlinear rig - step of the linear loop,     next search: y(t) = linear step + added(t)
@@ -15,16 +15,16 @@ use crate::linear_step::StepResponse;
 use crate::plant_names::{NamedPlant, NamedValue};
 use crate::trial::TrialRun;
 
-/// What the nonlinear rig added to the steps of one plant.
+/// Differences of the steps of one plant, nonlinear less linear.
 #[derive(Clone, Debug)]
 pub(super) struct AddedByRig {
     /// The parameters of the plant.
     values: Vec<f64>,
-    /// Of each run, as shares of its step.
+    /// The difference in each run, as a share of its step.
     steps: Vec<StepResponse>,
 }
 
-/// What the rig added in the trial of a design, with what it added before to other plants.
+/// Differences in the trial of a design, with those of other plants from trials before.
 pub(super) fn added(told: &ProjectDesign, before: &[AddedByRig]) -> Vec<AddedByRig> {
     let Family::Uncertain(family) = &told.designed.problem.family else { return vec![] };
     let mut all: Vec<AddedByRig> = Vec::new();
@@ -41,7 +41,7 @@ pub(super) fn added(told: &ProjectDesign, before: &[AddedByRig]) -> Vec<AddedByR
     all
 }
 
-/// What the rig adds to a plant: what it added to the nearest one that was tried.
+/// Differences to be expected of a plant: those of the nearest one that was tried.
 pub(super) fn added_to(family: &UncertainFamily, all: &[AddedByRig], values: &[f64]) -> Vec<StepResponse> {
     let own = family.shares(values);
     let distance = |one: &AddedByRig| {

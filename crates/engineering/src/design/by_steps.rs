@@ -60,7 +60,7 @@ pub(super) fn by_steps(
     let count = begun.len() as f64;
     let mut best: Option<AuditedStep> = None;
     for (index, begun) in begun.into_iter().enumerate() {
-        let share = [index, index + 1].map(|done| 0.2 + 0.8 * done as f64 / count);
+        let share = [index, index + 1].map(|done| 0.2 + 0.7 * done as f64 / count);
         let found = led.agreed(begun, best.as_ref(), told, &mut within(&mut *watch, share))?;
         if found.as_ref().is_some_and(|found| best.as_ref().is_none_or(|best| found.gains_on(best, 0.0))) {
             best = found;
@@ -70,7 +70,7 @@ pub(super) fn by_steps(
         }
     }
     let Some(best) = best else { return Ok(None) };
-    let best = led.completed(best, told, watch)?;
+    let best = led.completed(best, told, &mut within(watch, [0.9, 1.0]))?;
     Ok(Some(taken(best, (run, told))?))
 }
 

@@ -36,7 +36,7 @@ pub(super) fn found_and_tried(
     let mut latest: Option<(DesignRun, ProjectDesign)> = None;
     let mut known: Vec<AddedByRig> = Vec::new();
     for index in 0..TRIES {
-        let share = [index, index + 1].map(|done| 0.6 + 0.4 * done as f64 / TRIES as f64);
+        let share = [index, index + 1].map(|done| 0.6 + 0.3 * done as f64 / TRIES as f64);
         let before = latest.as_ref().unwrap_or(&best);
         if !misses(&before.1) {
             break;
@@ -61,7 +61,7 @@ pub(super) fn found_and_tried(
             break;
         }
     }
-    shorter((source, setup), (given, aim, &known), best, watch)
+    Ok(shorter((source, setup), (given, aim, &known), best, &mut within(watch, [0.9, 1.0])))
 }
 
 /// The design without zeros and poles that do next to nothing, where the nonlinear rig satisfies
@@ -71,18 +71,30 @@ fn shorter(
     aimed: (&RobustProblem, StepAim, &[AddedByRig]),
     (run, told): (DesignRun, ProjectDesign),
     watch: Watch<'_>,
-) -> Result<(DesignRun, ProjectDesign), DesignError> {
+) -> (DesignRun, ProjectDesign) {
     if told.stopped || !told.is_met() || misses(&told) {
-        return Ok((run, told));
+        return (run, told);
     }
-    let found = shortened(setup, aimed, (&run, &told), watch);
-    let Ok(Some((run_of_shorter, shorter))) = found else { return Ok((run, told)) };
-    let tried = with_trial((source, setup), shorter, watch)?;
-    let suffices = !tried.stopped && tried.agreement() <= told.agreement() && !misses(&tried);
-    Ok(if suffices { (run_of_shorter, tried) } else { (run, told) })
+    let found = shortened(setup, aimed, (&run, &told), &mut within(&mut *watch, [0.0, 0.7]));
+    // what was found before remains
+    let found = found.and_then(|found| {
+        let Some((run, shorter)) = found else { return Ok(None) };
+        Ok(Some((run, with_trial((source, setup), shorter, &mut within(watch, [0.7, 1.0]))?)))
+    });
+    match found {
+        Ok(Some((run, tried)))
+            if !tried.stopped && tried.agreement() <= told.agreement() && !misses(&tried) =>
+        {
+            (run, tried)
+        }
+        Ok(Some((_, ProjectDesign { stopped: true, .. }))) | Err(DesignError::Stopped(_)) => {
+            (run, ProjectDesign { stopped: true, ..told })
+        }
+        Ok(_) | Err(_) => (run, told),
+    }
 }
 
-/// Whether the nonlinear rig misses what is required under a design that is met.
+/// True where the nonlinear rig misses what is required under a design that is met.
 fn misses(told: &ProjectDesign) -> bool {
     let is_met = told.design.status == DesignStatus::Met && !told.stopped;
     is_met && told.misses_on_rig()

@@ -21,7 +21,7 @@ const GENERATORS: [usize; 11] =
     [0b0111, 0b1011, 0b1101, 0b1110, 0b1111, 0b0011, 0b0101, 0b0110, 0b1001, 0b1010, 0b1100];
 
 /// Of the corners that have a rig, the run of each size whose steps are furthest from what is
-/// required; empty without a box, and where nothing is required.
+/// required of them; empty without a box.
 pub(super) fn worst_of_corners(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -36,7 +36,8 @@ pub(super) fn worst_of_corners(
         };
         let machine = TriedMachine::of(rig, problem)?.once();
         let Some(driven) = machine.driven(source, &mut within)? else { return Err(Stopped.into()) };
-        for run in machine.judged(&driven, problem, view) {
+        let judged = machine.judged(&driven, problem, view).into_iter();
+        for run in judged.filter(|run| !run.requirements.is_empty()) {
             match worst.iter_mut().find(|known| known.size == run.size) {
                 Some(known) if run.excess() > known.excess() => *known = run,
                 Some(_) => {}

@@ -40,7 +40,7 @@ const DESCENT_STEPS: usize = 40;
 pub(super) struct AuditedStep {
     pub(super) told: Box<ProjectDesign>,
     start: Design,
-    search: Shaping,
+    shaping: Shaping,
     free_numbers: Vec<f64>,
     /// How it was audited.
     audit: AuditDepth,
@@ -52,7 +52,7 @@ pub(super) struct AuditedStep {
     pub(super) least: Option<SampledMargin>,
 }
 
-/// What of a family is audited.
+/// The part of a family that is audited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum AuditDepth {
     /// Members and corners.
@@ -203,7 +203,7 @@ impl LedDesign<'_> {
             least: search.least_of_limits(free_numbers),
             told: Box::new(moved),
             start: start.clone(),
-            search: search.shaping.clone(),
+            shaping: search.shaping.clone(),
             free_numbers: free_numbers.to_vec(),
             audit: depth,
         };
@@ -221,7 +221,7 @@ impl LedDesign<'_> {
             return Ok(found);
         }
         let at = (&found.start, told, found.free_numbers.as_slice());
-        let told = self.audited(&found.search, at, AuditDepth::Whole, watch)?;
+        let told = self.audited(&found.shaping, at, AuditDepth::Whole, watch)?;
         Ok(AuditedStep { told: Box::new(told), audit: AuditDepth::Whole, ..found })
     }
 
@@ -248,7 +248,8 @@ impl LedDesign<'_> {
         ProjectDesign::new(self.setup, self.given, &self.problem, moved, told.options.clone(), watch)
     }
 
-    /// Whether a design is so near that a trial on the nonlinear rig tells more than another start.
+    /// True where a design is so near that a trial on the nonlinear rig tells more than another
+    /// start.
     pub(super) fn is_near(&self, found: &AuditedStep) -> bool {
         !self.added.is_empty() && found.verdict == 0 && found.excess <= NEAR
     }
