@@ -15,6 +15,7 @@
 //! # }
 //! ```
 
+mod cosine_sums;
 mod delayed_loop;
 mod of_frequency_response;
 mod sampled_loop;
@@ -24,7 +25,7 @@ mod simulation;
 mod step_metrics;
 
 pub use delayed_loop::delayed_loop_step;
-pub use of_frequency_response::step_of_frequency_response;
+pub use of_frequency_response::{step_of_frequency_response, weights_of_frequency_response};
 pub use sampled_loop::sampled_loop_step;
 pub use second_order::{SecondOrder, SettlingRule, damping_ratio_from_overshoot};
 pub use signal::{Interpolation, SampledSignal, uniform_times};

@@ -18,8 +18,8 @@ pub use words::{evidence_key, evidence_sentence, finding_sentence, place_words};
 
 pub(crate) use alone::{caveat as caveat_of_rig, unexamined as unexamined_rig};
 pub use dead_time::LoopDeadTime;
-pub(crate) use in_time::steps_of_members;
 pub use in_time::{TimeFinding, TimeOutcome, Unexamined, WorstStep};
+pub(crate) use in_time::{spread_over, steps_of_members};
 pub(crate) use margins::highest_crossover;
 pub use margins::{AuditMargins, LoopMargin, MarginSet};
 pub use nominal::NominalMargins;

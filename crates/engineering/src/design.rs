@@ -55,7 +55,7 @@ use crate::quantity::{self, DisplayUnit};
 use crate::robust::{RobustError, RobustProblem, robust_problem};
 use crate::setup::{ControlError, Setup, is_of_position};
 use crate::source::Source;
-use crate::trial::{Agreement, Trial, TrialError, tried};
+use crate::trial::{Agreement, DrivenCorners, Trial, TrialError, TrialRun, tried};
 use phea_dynamics::watch::{Stopped, Watch, part, within};
 
 /// Name of the file with the project that a design makes.
@@ -297,6 +297,13 @@ impl ProjectDesign {
         self.trial.as_ref().map_or(Agreement::Agrees, Trial::agreement)
     }
 
+    /// How far the worst run on the nonlinear rig is from what is required in time: at most 1 where
+    /// all reach it, 0 without a run.
+    fn worst_run(&self) -> f64 {
+        let runs = self.trial.iter().flat_map(|trial| &trial.runs);
+        runs.map(TrialRun::excess).fold(0.0, f64::max)
+    }
+
     /// True where a run on the nonlinear rig misses what is required in time.
     pub fn misses_on_rig(&self) -> bool {
         self.trial.as_ref().is_some_and(|trial| trial.satisfies() == Some(false))
@@ -439,7 +446,8 @@ fn tried_design(
     watch: Watch<'_>,
 ) -> Result<Option<Trial>, DesignError> {
     let deployed = told.deployed(project);
-    Ok(tried(source, &Setup::new(&deployed)?, &told.designed.problem, &told.designed.view, watch)?)
+    let of = (&told.designed.problem, &told.designed.view);
+    Ok(tried(source, &Setup::new(&deployed)?, of, DrivenCorners::Always, watch)?)
 }
 
 /// The effect of sampling and delay on a design that ignores them: its structure shaped for the

@@ -44,6 +44,7 @@ pub mod rig;
 pub mod robust;
 pub mod setup;
 pub mod shaping;
+pub mod side_by_side;
 pub mod simulate;
 pub mod sizing;
 pub mod specification;

@@ -3,16 +3,18 @@
 
 mod of_responses;
 
+use std::f64::consts::PI;
+
 use phea_dynamics::linear::{LinearError, Polynomial, TransferFunction};
 use phea_dynamics::time_response::{
     TimeResponseError, delayed_loop_step, sampled_loop_step, step_of_frequency_response, step_response,
-    uniform_times,
+    uniform_times, weights_of_frequency_response,
 };
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 use phea_qft::closed_loop::{Compensation, Member};
 
 pub(crate) use of_responses::KnownResponses;
-use of_responses::real_parts;
+use of_responses::{parts_of_change, real_parts};
 
 /// A step response from the step on: fraction of the step over time.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,6 +25,8 @@ pub struct StepResponse {
     pub values: Vec<f64>,
 }
 
+/// The lowest frequency at which a change of the loop matters, over the inverse of the time.
+const LOWEST: f64 = 0.01;
 /// Most samples of a sampled response.
 const SAMPLES_MAXIMUM: usize = 100_000;
 
@@ -82,8 +86,90 @@ pub(crate) fn linear_step_knowing(
     Ok(StepResponse { times_s, values })
 }
 
+/// What disturbs a loop of this plant, as it is seen with one controller, as it would be seen with
+/// another one: samples of the response to the same disturbance, by a convolution.
+///
+/// ```text
+/// y'(k) = y(k) + sum of g(i) y(k - i),     g that of (1 + L)/(1 + L') - 1
+/// ```
+pub(crate) struct CarriedDisturbance {
+    weights: Vec<f64>,
+}
+
+impl CarriedDisturbance {
+    /// From the loop of one controller to that of another, for so many samples at this distance.
+    pub(crate) fn new(
+        member: &Member,
+        loops: [&Compensation; 2],
+        (step_s, count): (f64, usize),
+        known: &KnownResponses,
+    ) -> CarriedDisturbance {
+        let range = [LOWEST / (count as f64 * step_s), PI / step_s];
+        let parts = parts_of_change(member, loops, range, known);
+        CarriedDisturbance { weights: weights_of_frequency_response(&parts, step_s, count) }
+    }
+
+    /// The samples with the other controller.
+    pub(crate) fn of(&self, samples: &[f64]) -> Vec<f64> {
+        let mut carried = samples.to_vec();
+        for (delay, weight) in self.weights.iter().enumerate().take(samples.len()) {
+            for (sum, value) in carried[delay..].iter_mut().zip(samples) {
+                *sum += weight * value;
+            }
+        }
+        carried
+    }
+}
+
 /// The command path of a plant without its dead time.
 fn of_coefficients(plant: &PlantCoefficients<f64>) -> Result<TransferFunction, LinearError> {
     let (numerator, denominator) = (plant.command.numerator.clone(), plant.command.denominator.clone());
     TransferFunction::from_polynomials(&Polynomial::new(numerator), &Polynomial::new(denominator))
+}
+
+#[cfg(test)]
+mod tests {
+    use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
+    use phea_dynamics::portable::exp;
+    use phea_dynamics::uncertain_plant::RationalCoefficients;
+
+    use super::*;
+
+    /// An integrator behind a gain, disturbed at its output such that it answers with two decays.
+    #[test]
+    fn a_disturbance_is_carried_from_one_controller_to_another() {
+        const STEP_S: f64 = 1e-3;
+        const COUNT: usize = 400;
+        const OTHER: f64 = 60.0;
+        for sample_time_s in [None, Some(STEP_S)] {
+            let around = |gain: f64| {
+                let feedback = Compensator::new(vec![Element::Gain(gain)]);
+                let timing = Timing { sample_time_s, ..Timing::default() };
+                let controller = Controller { feedback, timing, ..Controller::default() };
+                Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap()
+            };
+            let command = RationalCoefficients { numerator: vec![1.0], denominator: vec![1.0, 0.0] };
+            let plant = PlantCoefficients { command, disturbance: None, dead_time_s: 0.0, rate: None };
+            for [before, after] in [[10.0, 25.0], [25.0, 10.0]] {
+                let loops = [around(before), around(after)];
+                let member = loops[0].member(plant.clone()).unwrap();
+                // ORIGIN: analytic, of e^(-k t) - e^(-c t) becomes e^(-k' t) - e^(-c t) times
+                // (c - k)/(c - k'); sampled with 1 - k h in place of e^(-k h)
+                let decay = |rate: f64| {
+                    if sample_time_s.is_some() { 1.0 - rate * STEP_S } else { exp(-rate * STEP_S) }
+                };
+                let powers = |decay: f64| std::iter::successors(Some(1.0), move |value| Some(value * decay));
+                let answer = |rate: f64| {
+                    let pairs = powers(decay(rate)).zip(powers(decay(OTHER))).take(COUNT);
+                    pairs.map(|(own, other)| own - other).collect::<Vec<f64>>()
+                };
+                let scale = (OTHER - before) / (OTHER - after);
+                let known = KnownResponses::default();
+                let carried = CarriedDisturbance::new(&member, loops.each_ref(), (STEP_S, COUNT), &known);
+                for (found, expected) in carried.of(&answer(before)).into_iter().zip(answer(after)) {
+                    assert!((found - scale * expected).abs() < 2e-3, "{found} {expected}");
+                }
+            }
+        }
+    }
 }

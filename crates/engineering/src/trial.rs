@@ -16,7 +16,7 @@ mod steps;
 pub use judge::percent_words;
 
 pub use crate::linear_step::StepResponse;
-use corners::worst_of_corners;
+use corners::{runs_of_corners, worst_of};
 pub use required::HeldRequirement;
 pub(crate) use rigs::waves_alone;
 pub use rigs::with_waves;
@@ -62,8 +62,19 @@ const STAGE: &str = "nonlinear simulation";
 pub struct Trial {
     /// At least one.
     pub runs: Vec<TrialRun>,
+    /// The runs of all corners of the box that were driven, whose worst are among `runs`.
+    pub corners: Vec<TrialRun>,
     /// Plants for which no rig was found, and why.
     pub not_driven: Vec<String>,
+}
+
+/// When the corners of the box are driven.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DrivenCorners {
+    /// In every trial: a search wants to know what the rig adds there.
+    Always,
+    /// Where all else satisfies what is required: a run that misses tells as much.
+    WhereElseSatisfies,
 }
 
 impl Trial {
@@ -88,8 +99,8 @@ impl Trial {
 pub fn tried(
     source: &dyn Source,
     setup: &Setup<'_>,
-    problem: &RobustProblem,
-    view: &ProjectAudit,
+    (problem, view): (&RobustProblem, &ProjectAudit),
+    corners: DrivenCorners,
     watch: Watch<'_>,
 ) -> Result<Option<Trial>, TrialError> {
     if setup.project.actuator.is_none() {
@@ -119,14 +130,17 @@ pub fn tried(
         }
         declared.get_or_insert(driven);
     }
-    let trial = Trial { runs, not_driven };
-    // where a run misses already, corners tell nothing more
-    if trial.satisfies() != Some(true) {
-        return Ok(Some(trial));
+    let mut trial = Trial { runs, corners: vec![], not_driven };
+    let wanted = match corners {
+        DrivenCorners::Always => trial.satisfies().is_some(),
+        DrivenCorners::WhereElseSatisfies => trial.satisfies() == Some(true),
+    };
+    if wanted {
+        let from = rigs.len() as f64 / count;
+        trial.corners = runs_of_corners(source, setup, (problem, view), &mut within(watch, [from, 1.0]))?;
+        trial.runs.extend(worst_of(&trial.corners));
     }
-    let from = rigs.len() as f64 / count;
-    let corners = worst_of_corners(source, setup, (problem, view), &mut within(watch, [from, 1.0]))?;
-    Ok(Some(Trial { runs: [trial.runs, corners].concat(), ..trial }))
+    Ok(Some(trial))
 }
 
 /// The run of the rig as declared, with lumped lines, through the steps of a run with waves in

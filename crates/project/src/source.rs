@@ -22,7 +22,7 @@ impl OutputFile {
 }
 
 /// Where files come from. A path is the text of the user, which only the implementation interprets.
-pub trait Source {
+pub trait Source: Sync {
     /// The bytes of a file.
     ///
     /// # Errors

@@ -58,7 +58,7 @@ use crate::simulate::compare_projects;
 use crate::sizing::{self, Candidate, Question, SizingError, size, sizing_problem};
 use crate::source::{Destination, HeldFiles, Source};
 use crate::specification::crossed_limits;
-use crate::trial::{Agreement, Trial, tried};
+use crate::trial::{Agreement, DrivenCorners, Trial, tried};
 use alternatives::alternatives_answer;
 use check::check;
 use impossible::Impossible;
@@ -354,7 +354,9 @@ fn verify_answer(
         return Ok(Unprinted { document, body, files, affirmative: is_met });
     }
     let watch = &mut within(watch, [proven, 1.0]);
-    let Some(trial) = tried(source, &setup, &robust_problem(source, &setup)?, &view, watch)? else {
+    let problem = robust_problem(source, &setup)?;
+    let corners = DrivenCorners::WhereElseSatisfies;
+    let Some(trial) = tried(source, &setup, (&problem, &view), corners, watch)? else {
         return Err(RigError::NoActuator.into());
     };
     document.append(audit::output(&view, Some(&trial)));

@@ -1,6 +1,7 @@
 use std::f64::consts::PI;
 
-use crate::portable::{cos, sin};
+use super::cosine_sums::{Cosine, sums_of_cosines};
+use crate::portable::sin;
 
 /// Unit step response of a stable system that is known by its frequency response alone, at 0, h, 2
 /// h, ...
@@ -31,93 +32,84 @@ pub fn step_of_frequency_response(
     count: usize,
     is_sampled: bool,
 ) -> Vec<f64> {
-    let mut impulse = CosineIntegrals::new(real_parts);
+    let at_zero = integral(real_parts);
     let mut response = Vec::with_capacity(count);
     if is_sampled {
-        let mut sum = -0.5 * step_s * impulse.at_zero();
-        impulse.step_by(step_s);
-        for sample in 0..count {
-            sum += step_s * if sample == 0 { impulse.at_zero() } else { impulse.next() };
+        let mut sum = -0.5 * step_s * at_zero;
+        let later = cosine_integrals(real_parts, step_s, count.saturating_sub(1));
+        for impulse in std::iter::once(at_zero).chain(later).take(count) {
+            sum += step_s * impulse;
             response.push(sum);
         }
         return response;
     }
-    let (mut sum, mut before) = (0.0, impulse.at_zero());
-    impulse.step_by(0.5 * step_s);
-    for _ in 0..count {
+    let (mut sum, mut before) = (0.0, at_zero);
+    for pair in cosine_integrals(real_parts, 0.5 * step_s, 2 * count).chunks_exact(2) {
+        let &[middle, after] = pair else { continue };
         response.push(sum);
-        let (middle, after) = (impulse.next(), impulse.next());
         sum += step_s / 6.0 * (before + 4.0 * middle + after);
         before = after;
     }
     response
 }
 
-/// Steps after which cosines are computed anew: rounding adds up in between.
-const STEPS_BETWEEN: usize = 32;
+/// The weights g(k) of the convolution y(k) = sum of g(i) u(k - i) that a stable system is, which
+/// is known by its frequency response H alone: that of a system of samples over its whole band, or
+/// of a continuous one whose response vanishes beyond its last point, by the trapezoidal rule.
+///
+/// ```text
+/// g(k) = (2 h/pi) integral of Re H cos(w k h) over w,     g(0) half of that
+/// ```
+///
+/// `real_parts` and `step_s` are those of [`step_of_frequency_response`].
+///
+/// # Example
+/// y(k) = 0.5 y(k - 1) + u(k)
+/// ```
+/// use phea_dynamics::time_response::weights_of_frequency_response;
+/// let step_s = 0.01;
+/// let end = std::f64::consts::PI / step_s;
+/// let real_part = |w: f64| { let c = (w * step_s).cos(); (1.0 - 0.5 * c) / (1.25 - c) };
+/// let points: Vec<(f64, f64)> = (0..=2000).map(|k| f64::from(k) * end / 2000.0).map(|w| (w, real_part(w))).collect();
+/// let weights = weights_of_frequency_response(&points, step_s, 10);
+/// assert!((0..10).all(|k| (weights[k] - 0.5_f64.powi(k as i32)).abs() < 1e-5));
+/// ```
+pub fn weights_of_frequency_response(real_parts: &[(f64, f64)], step_s: f64, count: usize) -> Vec<f64> {
+    let later = cosine_integrals(real_parts, step_s, count.saturating_sub(1));
+    let first = 0.5 * integral(real_parts);
+    std::iter::once(first).chain(later).take(count).map(|impulse| step_s * impulse).collect()
+}
 
-/// 2/pi times the integral of R(w) cos(w t) at one time after another, R straight between its
-/// points.
+/// 2/pi times the integral of R(w), straight between its points.
+fn integral(points: &[(f64, f64)]) -> f64 {
+    let pieces = points.windows(2).map(|pair| 0.5 * (pair[1].0 - pair[0].0) * (pair[0].1 + pair[1].1));
+    let below = points.first().map_or(0.0, |(first, value)| first * value);
+    2.0 / PI * (below + pieces.sum::<f64>())
+}
+
+/// 2/pi times the integral of R(w) cos(w t) at t = h, 2 h, ..., R straight between its points.
 ///
 /// ```text
 /// of (r + q (w - a)) cos(w t) from a to b = [(r + q (w - a)) sin(w t)/t + q cos(w t)/t^2]
-/// e^(j w (t + h)) = e^(j w t) e^(j w h)
+/// sum of the pieces = R(w_n) sin(w_n t)/t + sum of (q before - q after) cos(w t)/t^2 over the points
 /// ```
-struct CosineIntegrals<'a> {
-    points: &'a [(f64, f64)],
-    /// q between each point and the next.
-    slopes: Vec<f64>,
-    step_s: f64,
-    steps: usize,
-    /// cos(w t) and sin(w t) of each point.
-    turned: Vec<[f64; 2]>,
-    /// The same of one step.
-    turns: Vec<[f64; 2]>,
-}
-
-impl CosineIntegrals<'_> {
-    fn new(points: &[(f64, f64)]) -> CosineIntegrals<'_> {
-        let slope = |pair: &[(f64, f64)]| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0);
-        let slopes = points.windows(2).map(slope).collect();
-        CosineIntegrals { points, slopes, step_s: 0.0, steps: 0, turned: vec![], turns: vec![] }
-    }
-
-    fn at_zero(&self) -> f64 {
-        let pieces =
-            self.points.windows(2).map(|pair| 0.5 * (pair[1].0 - pair[0].0) * (pair[0].1 + pair[1].1));
-        let below = self.points.first().map_or(0.0, |(first, value)| first * value);
-        2.0 / PI * (below + pieces.sum::<f64>())
-    }
-
-    /// What [`CosineIntegrals::next`] adds to the time, which is zero.
-    fn step_by(&mut self, step_s: f64) {
-        (self.step_s, self.steps) = (step_s, 0);
-        self.turns = self.at(step_s);
-    }
-
-    fn at(&self, time: f64) -> Vec<[f64; 2]> {
-        self.points.iter().map(|(frequency, _)| [cos(frequency * time), sin(frequency * time)]).collect()
-    }
-
-    /// The integral one step later.
-    fn next(&mut self) -> f64 {
-        self.steps += 1;
-        let time = self.steps as f64 * self.step_s;
-        if self.steps % STEPS_BETWEEN == 1 {
-            self.turned = self.at(time);
-        } else {
-            for ([cosine, sine], [cosine_of_step, sine_of_step]) in self.turned.iter_mut().zip(&self.turns) {
-                let before = *cosine;
-                *cosine = before * cosine_of_step - *sine * sine_of_step;
-                *sine = *sine * cosine_of_step + before * sine_of_step;
-            }
-        }
-        let ends = self.points.last().zip(self.turned.last());
-        let at_last = ends.map_or(0.0, |((_, value), [_, sine])| value * sine / time);
-        let between = self.turned.windows(2).zip(&self.slopes);
-        let pieces = between.map(|(pair, slope)| slope * (pair[1][0] - pair[0][0]));
-        2.0 / PI * (at_last + pieces.sum::<f64>() / (time * time))
-    }
+fn cosine_integrals(points: &[(f64, f64)], step_s: f64, count: usize) -> Vec<f64> {
+    let slope = |pair: &[(f64, f64)]| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0);
+    let slopes: Vec<f64> = points.windows(2).map(slope).collect();
+    let before = std::iter::once(&0.0).chain(&slopes);
+    let bends = before.zip(slopes.iter().chain([&0.0])).map(|(before, after)| before - after);
+    let terms: Vec<Cosine> = points
+        .iter()
+        .zip(bends)
+        .map(|((frequency, _), weight)| Cosine { frequency_rad_per_s: *frequency, weight })
+        .collect();
+    let last = points.last().copied().unwrap_or_default();
+    let sums = sums_of_cosines(&terms, step_s, count).into_iter().enumerate();
+    sums.map(|(index, sum)| {
+        let time = (index + 1) as f64 * step_s;
+        2.0 / PI * (last.1 * sin(last.0 * time) + sum / time) / time
+    })
+    .collect()
 }
 
 #[cfg(test)]
@@ -125,7 +117,7 @@ mod tests {
     use num_complex::Complex64;
 
     use super::*;
-    use crate::portable::{exp, exp_complex};
+    use crate::portable::{cos, exp, exp_complex};
 
     /// A resonance of 20 rad/s behind a dead time of 30 ms: its closed form, late. Straight lines
     /// over 0.1 rad/s miss it by up to 8e-5, and the corner with which it begins costs Simpson 400
@@ -150,15 +142,13 @@ mod tests {
         }
     }
 
-    /// The closed form of each piece, by cosines of their own, over more steps than go without.
+    /// The closed form of each piece.
     #[test]
-    fn integrals_are_those_of_cosines_of_their_own() {
+    fn integrals_are_those_of_their_pieces() {
         let points: Vec<(f64, f64)> =
             (0..3000).map(|k| f64::from(k) * 1.3).map(|w| (w, 1.0 / (1.0 + w * w / 9e4))).collect();
-        let mut integrals = CosineIntegrals::new(&points);
-        integrals.step_by(5e-4);
-        for step in 1..=5 * STEPS_BETWEEN {
-            let time = step as f64 * 5e-4;
+        for (index, found) in cosine_integrals(&points, 5e-4, 200).into_iter().enumerate() {
+            let time = (index + 1) as f64 * 5e-4;
             let piece = |pair: &[(f64, f64)]| {
                 let [(from, at_from), (to, at_to)] = [pair[0], pair[1]];
                 let slope = (at_to - at_from) / (to - from);
@@ -167,8 +157,7 @@ mod tests {
             };
             // ORIGIN: analytic, the integral over each straight piece
             let expected = 2.0 / PI * points.windows(2).map(piece).sum::<f64>();
-            let found = integrals.next();
-            assert!((found - expected).abs() < 1e-9 * integrals.at_zero(), "{found} {expected} at {time} s");
+            assert!((found - expected).abs() < 1e-9 * integral(&points), "{found} {expected} at {time} s");
         }
     }
 

@@ -190,17 +190,21 @@ pub(crate) fn steps_of_members(
     TimeFinding { requirement: *requirement, outcome }.reached()
 }
 
-/// The nominal plant, members spread over the family, and the plants that the audit found worst.
-/// The members of plants without polynomials are without the corners of the box: these are visited
-/// too.
-fn visited(family: &UncertainFamily, audit: &Audit) -> Vec<Vec<f64>> {
-    let is_rational = family.plant().is_rational();
-    let most = if is_rational { MEMBERS } else { MEMBERS_OF_RESPONSES };
+/// The nominal plant and members spread over the family, so many at most. The members of plants
+/// without polynomials are without the corners of the box: these are among them too.
+pub(crate) fn spread_over(family: &UncertainFamily, most: usize) -> Vec<Vec<f64>> {
     let mut found = vec![family.plant().nominal()];
     found.extend(spread(family.members(), most));
-    if !is_rational {
+    if !family.plant().is_rational() {
         found.extend(spread(&corners(family), CORNERS_OF_RESPONSES));
     }
+    found
+}
+
+/// Plants spread over the family, and those that the audit found worst.
+fn visited(family: &UncertainFamily, audit: &Audit) -> Vec<Vec<f64>> {
+    let is_rational = family.plant().is_rational();
+    let mut found = spread_over(family, if is_rational { MEMBERS } else { MEMBERS_OF_RESPONSES });
     for plant in audit.specifications.iter().flat_map(worst_plants) {
         if let PlantPoint::Parameters(values) = plant {
             found.push(values.clone());

@@ -2,12 +2,16 @@
 //! a design: the search for the next one adds them to every step that it judges.
 //!
 //! ```text
-//! added(t) = step of the nonlinear rig - step of the linear loop,     next search: y(t) = linear step + added(t)
+//! added(t) = step of the nonlinear rig - step of the linear loop
+//! next loop L':   y(t) = linear step + added(t) through (1 + L)/(1 + L')
 //! ```
 //!
-//! Friction and hysteresis add about the same to the steps of similar loops, so that a few trials
-//! suffice.
+//! Friction and hysteresis disturb similar loops about equally, and each loop suppresses by 1/(1 +
+//! L) what disturbs it, so that a few trials suffice.
 
+use std::rc::Rc;
+
+use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Family, UncertainFamily};
 
 use super::ProjectDesign;
@@ -21,18 +25,23 @@ pub(super) struct AddedByRig {
     /// The parameters of the plant.
     values: Vec<f64>,
     /// The difference in each run, as a share of its step.
-    steps: Vec<StepResponse>,
+    pub(super) steps: Vec<StepResponse>,
+    /// The loop of the trial.
+    pub(super) around: Rc<Compensation>,
 }
 
 /// Differences in the trial of a design, with those of other plants from trials before.
 pub(super) fn added(told: &ProjectDesign, before: &[AddedByRig]) -> Vec<AddedByRig> {
     let Family::Uncertain(family) = &told.designed.problem.family else { return vec![] };
+    let around = Rc::new(told.designed.problem.compensation.clone());
     let mut all: Vec<AddedByRig> = Vec::new();
-    for run in told.trial.iter().flat_map(|trial| &trial.runs) {
+    for run in told.trial.iter().flat_map(|trial| trial.runs.iter().chain(&trial.corners)) {
         let (Some(values), Some(step)) = (values(family, run), difference(run)) else { continue };
         match all.iter_mut().find(|known| known.values == values) {
+            // a plant may be driven both as the worst of the family and as a corner
+            Some(known) if known.steps.contains(&step) => {}
             Some(known) => known.steps.push(step),
-            None => all.push(AddedByRig { values, steps: vec![step] }),
+            None => all.push(AddedByRig { values, steps: vec![step], around: around.clone() }),
         }
     }
     let others: Vec<AddedByRig> =
@@ -42,22 +51,23 @@ pub(super) fn added(told: &ProjectDesign, before: &[AddedByRig]) -> Vec<AddedByR
 }
 
 /// Differences to be expected of a plant: those of the nearest one that was tried.
-pub(super) fn added_to(family: &UncertainFamily, all: &[AddedByRig], values: &[f64]) -> Vec<StepResponse> {
+pub(super) fn added_to<'a>(
+    family: &UncertainFamily,
+    all: &'a [AddedByRig],
+    values: &[f64],
+) -> Option<&'a AddedByRig> {
     let own = family.shares(values);
     let distance = |one: &AddedByRig| {
         let other = family.shares(&one.values);
         own.iter().zip(other).map(|(own, other)| (own - other) * (own - other)).sum::<f64>()
     };
-    let nearest = all.iter().min_by(|one, other| distance(one).total_cmp(&distance(other)));
-    nearest.map(|one| one.steps.clone()).unwrap_or_default()
+    all.iter().min_by(|one, other| distance(one).total_cmp(&distance(other)))
 }
 
 impl StepResponse {
-    /// The sum of both at the times of the first, the second straight between its times and zero
-    /// outside of them.
-    pub(super) fn plus(&self, added: &StepResponse) -> StepResponse {
-        let values = self.times_s.iter().zip(&self.values).map(|(time_s, value)| value + added.at(*time_s));
-        StepResponse { times_s: self.times_s.clone(), values: values.collect() }
+    /// Its values at these times, straight between its own and zero outside of them.
+    pub(super) fn at_times(&self, times_s: &[f64]) -> Vec<f64> {
+        times_s.iter().map(|time_s| self.at(*time_s)).collect()
     }
 
     fn at(&self, time_s: f64) -> f64 {
@@ -103,13 +113,10 @@ fn difference(run: &TrialRun) -> Option<StepResponse> {
 mod tests {
     use super::*;
 
-    /// ORIGIN: analytic, straight lines: 0.5 + (0.1 to 0.3 over 2 s, half-way) and nothing beyond.
+    /// ORIGIN: analytic, straight lines: 0.1 to 0.3 over 2 s, half-way, and nothing beyond.
     #[test]
     fn what_is_added_lies_straight_between_its_times() {
-        let step = StepResponse { times_s: vec![0.0, 2.0, 5.0], values: vec![0.0, 0.5, 1.0] };
         let added = StepResponse { times_s: vec![1.0, 3.0], values: vec![0.1, 0.3] };
-        let sum = step.plus(&added);
-        assert_eq!(sum.times_s, step.times_s);
-        assert_eq!(sum.values, [0.0, 0.7, 1.0]);
+        assert_eq!(added.at_times(&[0.0, 2.0, 5.0]), [0.0, 0.2, 0.0]);
     }
 }

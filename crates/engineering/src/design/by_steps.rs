@@ -8,25 +8,30 @@
 //! ```
 
 mod led;
+mod plants;
 mod shaping;
+mod starts;
 
 use phea_dynamics::watch::{Watch, within};
+use phea_qft::design::LoopDesignError;
 use phea_qft::design::quantization::CoefficientFormat;
-use phea_qft::design::{Design, LoopDesignError, TriedStructure};
 use phea_qft::family::Family;
 use phea_qft::loop_shaping::Samples;
 
 use self::led::{AuditedStep, BegunDesign, LedDesign};
+pub(super) use self::plants::SteppedPlants;
+use self::starts::SearchReach;
 use super::added_by_rig::AddedByRig;
 use super::problem::design_problem;
 use super::step_aim::StepAim;
 use super::{DesignError, DesignRun, ProjectDesign, structures};
+use crate::audit::spread_over;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::simulate::TrackingWish;
 
-/// Structures that it begins from.
-const STARTS: usize = 3;
+/// Most members whose steps are looked at after each search.
+const LOOKED_AT: usize = 12;
 /// Shares of what is required that the search keeps for linear steps, since the nonlinear rig takes
 /// some of it.
 const OVERSHOOT_SHARE: f64 = 0.6;
@@ -39,35 +44,56 @@ const BAND_SHARE_WITH_RIG: f64 = 0.95;
 /// Least overshoot that is aimed at, percent.
 const LEAST_OVERSHOOT_PERCENT: f64 = 0.3;
 
+/// What the steps of a design are led towards.
+#[derive(Clone, Copy)]
+pub(super) struct AimedSteps<'a> {
+    pub(super) given: &'a RobustProblem,
+    pub(super) aim: StepAim,
+    /// What the nonlinear rig is known to add to steps.
+    pub(super) added: &'a [AddedByRig],
+    /// The plants, which all searches of a design share.
+    pub(super) plants: &'a SteppedPlants,
+}
+
 /// The design with its steps led towards the aimed share of what is required, from its own
 /// structure and from others that came near: the first that reaches it, or else the nearest. What
 /// the nonlinear rig is known to add to a step is added. `None` where nothing is required in time,
 /// no loop is stable, or the coefficients are rounded.
 pub(super) fn by_steps(
     setup: &Setup<'_>,
-    (given, aim, added): (&RobustProblem, StepAim, &[AddedByRig]),
+    aimed: AimedSteps<'_>,
     (run, told): (&DesignRun, &ProjectDesign),
     watch: Watch<'_>,
 ) -> Result<Option<(DesignRun, ProjectDesign)>, DesignError> {
-    let Some(led) = led(setup, (given, aim, added), (run, told))? else { return Ok(None) };
-    let mut begun: Vec<BegunDesign> = Vec::new();
-    let starts = starts(&told.design, run.outcome.tried());
-    for (index, start) in starts.into_iter().enumerate() {
-        let share = [index, index + 1].map(|done| 0.2 * done as f64 / STARTS as f64);
-        begun.extend(led.begun(start, told, &mut within(&mut *watch, share))?);
-    }
-    begun.sort_by(|one, other| other.least_db.total_cmp(&one.least_db));
-    let count = begun.len() as f64;
+    let Some(led) = led(setup, aimed, (run, told))? else { return Ok(None) };
+    let starts = led.starts(told, run.outcome.tried());
+    let count = starts.len() as f64;
     let mut best: Option<AuditedStep> = None;
-    for (index, begun) in begun.into_iter().enumerate() {
-        let share = [index, index + 1].map(|done| 0.2 + 0.7 * done as f64 / count);
-        let found = led.agreed(begun, best.as_ref(), told, &mut within(&mut *watch, share))?;
-        if found.as_ref().is_some_and(|found| best.as_ref().is_none_or(|best| found.gains_on(best, 0.0))) {
-            best = found;
+    let mut waiting: Vec<BegunDesign<'_>> = Vec::new();
+    for (index, (start, reach)) in starts.into_iter().enumerate() {
+        let share = [index, index + 1].map(|done| 0.6 * done as f64 / count);
+        let watch = &mut within(&mut *watch, share);
+        let begun = led.begun(start, told, reach, &mut within(&mut *watch, [0.0, 0.5]))?;
+        match begun {
+            Some(begun) if begun.least_db >= 0.0 => {
+                best = led.better(best, begun, told, &mut within(watch, [0.5, 1.0]))?;
+            }
+            // what the neighbours of a design do not reach, other structures may
+            Some(begun) if reach == SearchReach::Anywhere => waiting.push(begun),
+            _ => {}
         }
-        if best.as_ref().is_some_and(|best| best.is_reached() || led.is_near(best)) {
+        if led.suffices(best.as_ref()) {
             break;
         }
+    }
+    waiting.sort_by(|one, other| other.least_db.total_cmp(&one.least_db));
+    let count = waiting.len() as f64;
+    for (index, begun) in waiting.into_iter().enumerate() {
+        if led.suffices(best.as_ref()) {
+            break;
+        }
+        let share = [index, index + 1].map(|done| 0.6 + 0.3 * done as f64 / count);
+        best = led.better(best, begun, told, &mut within(&mut *watch, share))?;
     }
     let Some(best) = best else { return Ok(None) };
     let best = led.completed(best, told, &mut within(watch, [0.9, 1.0]))?;
@@ -78,7 +104,7 @@ pub(super) fn by_steps(
 /// or does not reach what is required without them.
 pub(super) fn shortened(
     setup: &Setup<'_>,
-    aimed: (&RobustProblem, StepAim, &[AddedByRig]),
+    aimed: AimedSteps<'_>,
     (run, told): (&DesignRun, &ProjectDesign),
     watch: Watch<'_>,
 ) -> Result<Option<(DesignRun, ProjectDesign)>, DesignError> {
@@ -92,11 +118,12 @@ pub(super) fn shortened(
 /// coefficients are rounded.
 fn led<'a>(
     setup: &'a Setup<'_>,
-    (given, aim, added): (&'a RobustProblem, StepAim, &'a [AddedByRig]),
+    aimed: AimedSteps<'a>,
     (run, told): (&DesignRun, &ProjectDesign),
 ) -> Result<Option<LedDesign<'a>>, DesignError> {
+    let given = aimed.given;
     let required = given.in_time.iter().find(|one| one.follows);
-    let (Some(required), Family::Uncertain(_)) = (required, &given.family) else { return Ok(None) };
+    let (Some(required), Family::Uncertain(family)) = (required, &given.family) else { return Ok(None) };
     let (Some(samples), CoefficientFormat::Double) = (run.outcome.samples(), told.options.coefficients)
     else {
         return Ok(None);
@@ -104,7 +131,8 @@ fn led<'a>(
     let problem = design_problem(setup, given);
     let samples = Samples::new(&problem, samples.plants(), &samples.frequencies_rad_per_s())
         .map_err(LoopDesignError::from)?;
-    Ok(Some(LedDesign { setup, given, aim, added, problem, samples, required: required.wish }))
+    let looked_at = spread_over(family, LOOKED_AT);
+    Ok(Some(LedDesign { setup, aimed, looked_at, problem, samples, required: required.wish }))
 }
 
 /// A design that was led, in place of the one before it.
@@ -118,32 +146,6 @@ fn taken(
     let mut outcome = run.outcome.clone();
     outcome.design = Some(best.design.clone());
     Ok((DesignRun { aimed: run.aimed.clone(), problem: run.problem.clone(), outcome }, *best))
-}
-
-/// The design, and the structures that came nearest as they were found, its own among them where it
-/// was led since, behind its prefilter where they have none.
-fn starts(design: &Design, tried: &[TriedStructure]) -> Vec<Design> {
-    let least = |one: &TriedStructure| one.least.as_ref().map_or(f64::NEG_INFINITY, |least| least.margin_db);
-    let is_other = |one: &TriedStructure| {
-        one.least.is_some() && (one.structure != design.structure || one.free_numbers != design.free_numbers)
-    };
-    let mut others: Vec<&TriedStructure> = tried.iter().filter(|one| is_other(one)).collect();
-    others.sort_by(|one, other| least(other).total_cmp(&least(one)));
-    let own = design.free_numbers.get(design.structure.dimension()..).unwrap_or_default();
-    let start = |tried: &TriedStructure| {
-        let mut free_numbers = tried.free_numbers.clone();
-        let prefilter = match &tried.prefilter {
-            Some(prefilter) => Some(prefilter.clone()),
-            None => {
-                free_numbers.extend_from_slice(own);
-                design.prefilter.clone()
-            }
-        };
-        let structure = tried.structure.clone();
-        Design { structure, prefilter, free_numbers, name: tried.name, ..design.clone() }
-    };
-    let others = others.into_iter().take(STARTS - 1).map(start);
-    std::iter::once(design.clone()).chain(others).filter(|one| !one.free_numbers.is_empty()).collect()
 }
 
 /// The requirement of steps with what the rig adds to them.

@@ -8,15 +8,14 @@
 use phea_dynamics::watch::{Watch, within};
 use phea_qft::design::DesignStatus;
 
-use super::added_by_rig::{AddedByRig, added};
-use super::by_steps::{by_steps, shortened};
+use super::added_by_rig::added;
+use super::by_steps::{AimedSteps, SteppedPlants, by_steps, shortened};
 use super::search::{found, rank};
 use super::step_aim::StepAim;
 use super::{DesignError, DesignRun, ProjectDesign, tried_design, unless_stopped};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::source::Source;
-use crate::trial::TrialRun;
 
 /// How often the search goes on as long as the nonlinear rig misses what is required.
 const TRIES: usize = 6;
@@ -28,25 +27,26 @@ pub(super) fn found_and_tried(
     seed: Option<u32>,
     watch: Watch<'_>,
 ) -> Result<(DesignRun, ProjectDesign), DesignError> {
+    let plants = SteppedPlants::default();
     let (aim, run, told) =
-        found(setup, (given, StepAim::AS_REQUIRED), seed, &mut within(&mut *watch, [0.0, 0.5]))?;
+        found(setup, (given, StepAim::AS_REQUIRED, &plants), seed, &mut within(&mut *watch, [0.0, 0.5]))?;
     let told = with_trial((source, setup), told, &mut within(&mut *watch, [0.5, 0.6]))?;
     let mut best = (run, told);
     // the design that the next one begins from, unless that is the best one
     let mut latest: Option<(DesignRun, ProjectDesign)> = None;
-    let mut known: Vec<AddedByRig> = Vec::new();
+    let aimed = AimedSteps { given, aim, added: &[], plants: &plants };
+    let mut known = added(&best.1, &[]);
     for index in 0..TRIES {
         let share = [index, index + 1].map(|done| 0.6 + 0.3 * done as f64 / TRIES as f64);
         let before = latest.as_ref().unwrap_or(&best);
         if !misses(&before.1) {
             break;
         }
-        known = added(&before.1, &known);
-        let part = &mut within(&mut *watch, share);
-        match next_design((source, setup), (given, aim, &known), before, part) {
+        let aimed = AimedSteps { added: &known, ..aimed };
+        match next_design((source, setup), aimed, before, &mut within(&mut *watch, share)) {
             Ok(Some(found)) => {
-                let is_better = is_better(&found.1, &best.1);
-                latest = if is_better {
+                known = added(&found.1, &known);
+                latest = if is_better(&found.1, &best.1) {
                     best = found;
                     None
                 } else {
@@ -61,14 +61,14 @@ pub(super) fn found_and_tried(
             break;
         }
     }
-    Ok(shorter((source, setup), (given, aim, &known), best, &mut within(watch, [0.9, 1.0])))
+    Ok(shorter((source, setup), AimedSteps { added: &known, ..aimed }, best, &mut within(watch, [0.9, 1.0])))
 }
 
 /// The design without zeros and poles that do next to nothing, where the nonlinear rig satisfies
 /// what is required with it too; as it is otherwise.
 fn shorter(
     (source, setup): (&dyn Source, &Setup<'_>),
-    aimed: (&RobustProblem, StepAim, &[AddedByRig]),
+    aimed: AimedSteps<'_>,
     (run, told): (DesignRun, ProjectDesign),
     watch: Watch<'_>,
 ) -> (DesignRun, ProjectDesign) {
@@ -104,7 +104,7 @@ fn misses(told: &ProjectDesign) -> bool {
 /// of the one before do not lead.
 fn next_design(
     (source, setup): (&dyn Source, &Setup<'_>),
-    aimed: (&RobustProblem, StepAim, &[AddedByRig]),
+    aimed: AimedSteps<'_>,
     (run, told): &(DesignRun, ProjectDesign),
     watch: Watch<'_>,
 ) -> Result<Option<(DesignRun, ProjectDesign)>, DesignError> {
@@ -127,9 +127,5 @@ fn with_trial(
 /// True where one design is as good as another over frequency, and its worst run is nearer to what
 /// is required.
 fn is_better(one: &ProjectDesign, other: &ProjectDesign) -> bool {
-    let worst = |told: &ProjectDesign| {
-        let runs = told.trial.iter().flat_map(|trial| &trial.runs);
-        runs.map(TrialRun::excess).fold(0.0, f64::max)
-    };
-    !one.stopped && rank(one).0 <= rank(other).0 && worst(one) < worst(other)
+    !one.stopped && rank(one).0 <= rank(other).0 && one.worst_run() < other.worst_run()
 }

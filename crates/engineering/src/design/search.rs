@@ -7,7 +7,7 @@ use phea_dynamics::watch::{Stopped, Watch, within};
 use phea_qft::design::{ControllerChoice, DesignStatus, Finding, design_stricter};
 use phea_qft::verification::Verdict;
 
-use super::by_steps::by_steps;
+use super::by_steps::{AimedSteps, SteppedPlants, by_steps};
 use super::problem::{design_options, design_problem};
 use super::step_aim::{REPETITIONS, StepAim};
 use super::{DesignError, DesignRun, Explanation, ProjectDesign, ReachedStructure, proven, structures};
@@ -20,7 +20,7 @@ use crate::setup::Setup;
 /// on, and the aim that led to it.
 pub(super) fn found(
     setup: &Setup<'_>,
-    (given, mut aim): (&RobustProblem, StepAim),
+    (given, mut aim, plants): (&RobustProblem, StepAim, &SteppedPlants),
     seed: Option<u32>,
     watch: Watch<'_>,
 ) -> Result<(StepAim, DesignRun, ProjectDesign), DesignError> {
@@ -37,7 +37,8 @@ pub(super) fn found(
         let design = searched(setup, (given, &aimed), (seed, before), &mut within(&mut *watch, share));
         match design {
             Ok(design) => {
-                let (run, told) = led_by_steps(setup, (given, aim), design, &mut within(&mut *watch, share));
+                let (run, told) =
+                    led_by_steps(setup, (given, aim, plants), design, &mut within(&mut *watch, share));
                 found.push((aim, run, told));
             }
             // what was found before remains
@@ -62,14 +63,15 @@ pub(super) fn found(
 /// nothing.
 fn led_by_steps(
     setup: &Setup<'_>,
-    aimed: (&RobustProblem, StepAim),
+    (given, aim, plants): (&RobustProblem, StepAim, &SteppedPlants),
     (run, mut told): (DesignRun, ProjectDesign),
     watch: Watch<'_>,
 ) -> (DesignRun, ProjectDesign) {
     if told.stopped || !told.designed.view.in_time.iter().any(TimeFinding::violates) {
         return (run, told);
     }
-    match by_steps(setup, (aimed.0, aimed.1, &[]), (&run, &told), watch) {
+    let aimed = AimedSteps { given, aim, added: &[], plants };
+    match by_steps(setup, aimed, (&run, &told), watch) {
         Ok(Some(moved)) if by_rank(&moved.1, &told).is_lt() => moved,
         Err(DesignError::Stopped(_)) => {
             told.stopped = true;

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use num_complex::Complex64;
+use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_qft::closed_loop::{Compensation, Member, MemberResponse};
@@ -15,6 +16,8 @@ use phea_qft::family::{FINE, tabulated};
 const STRAIGHT: f64 = 1e-3;
 /// Least distance of two points, relative to their frequency.
 const CLOSEST: f64 = 1e-6;
+/// Points of the grid of a change, before it is made finer.
+const POINTS_OF_CHANGE: usize = 200;
 /// How often the lowest frequency of the plant is halved: the loop may be slower than the plant,
 /// and what is below the first point is taken as constant.
 const HALVINGS: u32 = 20;
@@ -65,6 +68,26 @@ pub(super) fn real_parts(
         Some(closed(plant, compensation, &prefilter, frequency))
     };
     Ok(straight(&grid, highest, closed))
+}
+
+/// Frequencies in rad/s with the real part of (1 + L)/(1 + L') - 1 there, straight between them: by
+/// this much more than before passes what disturbs the loop, with another controller L' in place
+/// of L.
+pub(super) fn parts_of_change(
+    member: &Member,
+    [before, after]: [&Compensation; 2],
+    range: [f64; 2],
+    known: &KnownResponses,
+) -> Vec<(f64, f64)> {
+    let grid = logarithmic_grid(range[0], range[1], POINTS_OF_CHANGE).unwrap_or_default();
+    let change = |frequency: f64| {
+        let plant = known.response(member, frequency)?;
+        let path = plant.plant * plant.sensor;
+        let of = |around: &Compensation| 1.0 + path * around.feedback().at_frequency(frequency);
+        Some(of(before) / of(after) - 1.0)
+    };
+    // the last point of the grid may be rounded up
+    straight(&grid, f64::INFINITY, change)
 }
 
 /// F P G/(1 + L), with F as a step passes through it.

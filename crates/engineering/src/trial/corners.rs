@@ -1,7 +1,7 @@
 //! The corners of the box on the nonlinear rig: a required step is held against them too, since
 //! what friction and limits add to a step is not largest where the linear one is worst.
 
-use phea_dynamics::watch::{Progress, Stopped, Watch};
+use phea_dynamics::watch::Watch;
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::verification::PlantPoint;
 
@@ -11,6 +11,7 @@ use super::{STAGE, TrialError};
 use crate::audit::ProjectAudit;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
+use crate::side_by_side::side_by_side;
 use crate::source::Source;
 
 /// Coordinates of a box all of whose corners are driven; of a larger one as many corners.
@@ -20,32 +21,37 @@ const ALL_OF: usize = 4;
 const GENERATORS: [usize; 11] =
     [0b0111, 0b1011, 0b1101, 0b1110, 0b1111, 0b0011, 0b0101, 0b0110, 0b1001, 0b1010, 0b1100];
 
-/// Of the corners that have a rig, the run of each size whose steps are furthest from what is
-/// required of them; empty without a box.
-pub(super) fn worst_of_corners(
+/// The runs of the corners that have a rig, of which something is required; empty without a box.
+pub(super) fn runs_of_corners(
     source: &dyn Source,
     setup: &Setup<'_>,
     (problem, view): (&RobustProblem, &ProjectAudit),
     watch: Watch<'_>,
 ) -> Result<Vec<TrialRun>, TrialError> {
     let rigs = rigs(setup, problem, view)?;
-    let mut worst: Vec<TrialRun> = Vec::new();
-    for (index, rig) in rigs.iter().enumerate() {
-        let mut within = |progress: Progress| {
-            watch(Progress { stage: STAGE, share: (index as f64 + progress.share) / rigs.len() as f64 })
-        };
+    let runs_of = |rig: &Tried, watch: Watch<'_>| -> Result<Option<Vec<TrialRun>>, TrialError> {
         let machine = TriedMachine::of(rig, problem)?.once();
-        let Some(driven) = machine.driven(source, &mut within)? else { return Err(Stopped.into()) };
+        let Some(driven) = machine.driven(source, watch)? else { return Ok(None) };
         let judged = machine.judged(&driven, problem, view).into_iter();
-        for run in judged.filter(|run| !run.requirements.is_empty()) {
-            match worst.iter_mut().find(|known| known.size == run.size) {
-                Some(known) if run.excess() > known.excess() => *known = run,
-                Some(_) => {}
-                None => worst.push(run),
-            }
+        Ok(Some(judged.filter(|run| !run.requirements.is_empty()).collect()))
+    };
+    let each =
+        side_by_side(rigs.len(), STAGE, watch, |index, watch| runs_of(&rigs[index], watch).transpose())?;
+    let runs = each.into_iter().collect::<Result<Vec<Vec<TrialRun>>, TrialError>>()?;
+    Ok(runs.concat())
+}
+
+/// The run of each size whose steps are furthest from what is required of them.
+pub(super) fn worst_of(runs: &[TrialRun]) -> Vec<TrialRun> {
+    let mut worst: Vec<TrialRun> = Vec::new();
+    for run in runs {
+        match worst.iter_mut().find(|known| known.size == run.size) {
+            Some(known) if run.excess() > known.excess() => *known = run.clone(),
+            Some(_) => {}
+            None => worst.push(run.clone()),
         }
     }
-    Ok(worst)
+    worst
 }
 
 fn rigs(setup: &Setup<'_>, problem: &RobustProblem, view: &ProjectAudit) -> Result<Vec<Tried>, TrialError> {

@@ -10,7 +10,7 @@ use crate::error::CommandError;
 use crate::robust::{DesignFrequency, RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::source::Source;
-use crate::trial::{Trial, tried};
+use crate::trial::{DrivenCorners, Trial, tried};
 
 /// The results of the robust method for a project with specifications.
 pub(super) struct Judged {
@@ -51,7 +51,7 @@ pub(super) fn judged(
     };
     let bounds = problem.at_design_frequencies(watch)?;
     let given_trial = match &given {
-        Some(view) => tried(source, setup, &problem, view, watch)?,
+        Some(view) => tried(source, setup, (&problem, view), DrivenCorners::WhereElseSatisfies, watch)?,
         None => None,
     };
     let designed = match design::is_asked_for(project) {

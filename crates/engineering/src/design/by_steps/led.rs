@@ -8,11 +8,10 @@ use phea_qft::design::{Design, DesignProblem, DesignStatus};
 use phea_qft::loop_shaping::{Aim, DescentOptions, SampledMargin, Samples, SearchProblem, Shaping, descend};
 
 use super::shaping::{RESERVE_DB, StepShaping, StepWishes};
-use super::{with_rig, with_room};
+use super::starts::SearchReach;
+use super::{AimedSteps, with_rig, with_room};
 use crate::audit::audit_request;
-use crate::design::added_by_rig::AddedByRig;
 use crate::design::search::rank;
-use crate::design::step_aim::StepAim;
 use crate::design::{DesignError, ProjectDesign};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
@@ -25,6 +24,8 @@ const ROUNDS: usize = 5;
 /// A round that brings less than this share is one in vain, and so many in turn are the last.
 const GAIN: f64 = 0.01;
 const IN_VAIN: usize = 2;
+/// Rounds of a search that misses what it aims at from the beginning.
+const ROUNDS_IN_NEED: usize = 2;
 /// Zeros of the controller this many times as fast as its fastest pole may be do next to nothing,
 /// and poles of the prefilter that are so much faster than its slowest one.
 const BEYOND_FASTEST: f64 = 2.0;
@@ -33,8 +34,10 @@ const FAST: f64 = 10.0;
 const NEAR: f64 = 1.1;
 /// Ratio of its steps to those of a start before from which one is given up.
 const FAR: f64 = 1.3;
+/// How often a search goes on with plants that were not part of it.
+const LOOKS: usize = 5;
 /// Steps of one search.
-const DESCENT_STEPS: usize = 40;
+const DESCENT_STEPS: usize = 12;
 
 /// A design with what it lacks.
 pub(super) struct AuditedStep {
@@ -66,6 +69,11 @@ impl AuditedStep {
         self.told.is_met() && self.excess <= 1.0
     }
 
+    /// True where it keeps every limit on frequency responses.
+    pub(super) fn keeps_limits(&self) -> bool {
+        self.verdict == 0
+    }
+
     /// True where it is nearer than another by more than this share.
     pub(super) fn gains_on(&self, other: &AuditedStep, share: f64) -> bool {
         self.verdict < other.verdict
@@ -76,43 +84,49 @@ impl AuditedStep {
 /// The problem of a design that is led by its steps, and its aim.
 pub(super) struct LedDesign<'a> {
     pub(super) setup: &'a Setup<'a>,
-    pub(super) given: &'a RobustProblem,
-    pub(super) aim: StepAim,
-    pub(super) added: &'a [AddedByRig],
+    pub(super) aimed: AimedSteps<'a>,
+    /// Plants whose steps are looked at after each search.
+    pub(super) looked_at: Vec<Vec<f64>>,
     pub(super) problem: DesignProblem,
     pub(super) samples: Samples,
     pub(super) required: TrackingWish,
 }
 
 /// A design whose steps were led once, before any audit.
-pub(super) struct BegunDesign {
+pub(super) struct BegunDesign<'a> {
     start: Design,
-    search: StepShaping,
+    search: StepShaping<'a>,
     free_numbers: Vec<f64>,
     /// The least margin of its samples and steps, dB.
     pub(super) least_db: f64,
 }
 
-impl LedDesign<'_> {
+impl<'a> LedDesign<'a> {
     /// The first search from a start; `None` where its loop is not stable.
     pub(super) fn begun(
         &self,
         start: Design,
         told: &ProjectDesign,
+        reach: SearchReach,
         watch: Watch<'_>,
-    ) -> Result<Option<BegunDesign>, DesignError> {
+    ) -> Result<Option<BegunDesign<'a>>, DesignError> {
         let structures = (start.structure.clone(), start.prefilter.clone());
         let shaping = Shaping::new(structures.0, structures.1, told.options.objective, self.samples.clone())?;
-        let wishes =
-            StepWishes { linear: with_room(self.aim.wish(self.required)), with_rig: with_rig(self.required) };
-        let added = (wishes, self.added.to_vec());
-        let mut search = StepShaping::new(shaping, added, self.problem.sensor.clone());
+        let wishes = StepWishes {
+            linear: with_room(self.aimed.aim.wish(self.required)),
+            with_rig: with_rig(self.required),
+        };
+        let added = (wishes, self.aimed.added.to_vec());
+        let mut search = StepShaping::new(shaping, added, self.problem.sensor.clone(), self.aimed.plants);
+        if reach == SearchReach::Beside {
+            search.stay_beside(&start.free_numbers);
+        }
         if !search.judge(&start.free_numbers).stable {
             return Ok(None);
         }
         search.take_worst(&told.design)?;
         search.take_steps(told)?;
-        let free_numbers = descended(&mut search, &start.free_numbers, watch)?;
+        let free_numbers = self.descended(&mut search, &start.free_numbers, watch)?;
         let least_db = search.judge(&free_numbers).worst_margin_db;
         Ok(Some(BegunDesign { start, search, free_numbers, least_db }))
     }
@@ -123,7 +137,7 @@ impl LedDesign<'_> {
         &self,
         told: &ProjectDesign,
         watch: Watch<'_>,
-    ) -> Result<Option<BegunDesign>, DesignError> {
+    ) -> Result<Option<BegunDesign<'a>>, DesignError> {
         let start = &told.design;
         let free_numbers = start.free_numbers.as_slice();
         let fastest = BEYOND_FASTEST * told.options.poles.fastest_rad_per_s;
@@ -144,26 +158,28 @@ impl LedDesign<'_> {
         };
         let name = start.name.filter(|_| structure == start.structure);
         let free_numbers = [own, of_prefilter].concat();
-        self.begun(Design { structure, prefilter, free_numbers, name, ..start.clone() }, told, watch)
+        let start = Design { structure, prefilter, free_numbers, name, ..start.clone() };
+        self.begun(start, told, SearchReach::Anywhere, watch)
     }
 
     /// The nearest design that was audited, after searches with what each audit found, given up
     /// where it is far from one that is to be beaten.
     pub(super) fn agreed(
         &self,
-        begun: BegunDesign,
+        begun: BegunDesign<'a>,
         to_beat: Option<&AuditedStep>,
         told: &ProjectDesign,
         watch: Watch<'_>,
     ) -> Result<Option<AuditedStep>, DesignError> {
-        let BegunDesign { start, mut search, mut free_numbers, .. } = begun;
+        let BegunDesign { start, mut search, mut free_numbers, least_db } = begun;
+        let rounds = if least_db < 0.0 { ROUNDS_IN_NEED } else { ROUNDS };
         let mut best: Option<AuditedStep> = None;
         let mut in_vain = 0;
-        for round in 0..ROUNDS {
-            let share = [round, round + 1].map(|done| done as f64 / ROUNDS as f64);
+        for round in 0..rounds {
+            let share = [round, round + 1].map(|done| done as f64 / rounds as f64);
             let mut watch = within(&mut *watch, share);
             if round > 0 {
-                free_numbers = descended(&mut search, &free_numbers, &mut watch)?;
+                free_numbers = self.descended(&mut search, &free_numbers, &mut watch)?;
             }
             let at = (&start, told, free_numbers.as_slice());
             let (mut moved, mut is_new) =
@@ -188,7 +204,7 @@ impl LedDesign<'_> {
     /// The design with its audit and what it lacks, and whether it teaches the search anything.
     fn judged(
         &self,
-        search: &mut StepShaping,
+        search: &mut StepShaping<'_>,
         (start, told, free_numbers): (&Design, &ProjectDesign, &[f64]),
         depth: AuditDepth,
         watch: Watch<'_>,
@@ -199,7 +215,7 @@ impl LedDesign<'_> {
         let with_rig = search.excess_with_rig(free_numbers, &self.required);
         let found = AuditedStep {
             verdict: rank(&moved).0,
-            excess: self.aim.excess(&moved).max(with_rig),
+            excess: self.aimed.aim.excess(&moved).max(with_rig),
             least: search.least_of_limits(free_numbers),
             told: Box::new(moved),
             start: start.clone(),
@@ -236,7 +252,7 @@ impl LedDesign<'_> {
         let compensation = Compensation::new(&shaping.controller(free_numbers), self.problem.sensor.clone())?;
         let has_prefilter = told.designed.problem.has_prefilter;
         let problem =
-            RobustProblem { compensation, has_controller: true, has_prefilter, ..self.given.clone() };
+            RobustProblem { compensation, has_controller: true, has_prefilter, ..self.aimed.given.clone() };
         let request = audit_request(&problem, &problem.family);
         let audit = match depth {
             AuditDepth::KnownPlants => audit_of_known_plants(&request, watch)?,
@@ -245,19 +261,58 @@ impl LedDesign<'_> {
         let status = DesignStatus::NotConverged { rounds: start.rounds.len() };
         let design = Design { status, ..start.clone() };
         let moved = design.moved(shaping, free_numbers.to_vec(), audit, &told.options);
-        ProjectDesign::new(self.setup, self.given, &self.problem, moved, told.options.clone(), watch)
+        ProjectDesign::new(self.setup, self.aimed.given, &self.problem, moved, told.options.clone(), watch)
     }
 
-    /// True where a design is so near that a trial on the nonlinear rig tells more than another
-    /// start.
-    pub(super) fn is_near(&self, found: &AuditedStep) -> bool {
-        !self.added.is_empty() && found.verdict == 0 && found.excess <= NEAR
+    /// The free numbers that a search from these finds, again with plants whose steps miss what is
+    /// aimed at with them.
+    fn descended(
+        &self,
+        search: &mut StepShaping<'_>,
+        free_numbers: &[f64],
+        watch: Watch<'_>,
+    ) -> Result<Vec<f64>, DesignError> {
+        let mut free_numbers = free_numbers.to_vec();
+        for look in 0..LOOKS {
+            let share = [look, look + 1].map(|done| done as f64 / LOOKS as f64);
+            free_numbers = descended(search, &free_numbers, &mut within(&mut *watch, share))?;
+            // what misses with these plants misses with more
+            let misses = search.judge(&free_numbers).worst_margin_db < 0.0;
+            if misses || !search.take_unseen(&free_numbers, (self.aimed.given, &self.looked_at))? {
+                break;
+            }
+        }
+        Ok(free_numbers)
+    }
+
+    /// The nearest of a design and what a start leads to.
+    pub(super) fn better(
+        &self,
+        best: Option<AuditedStep>,
+        begun: BegunDesign<'a>,
+        told: &ProjectDesign,
+        watch: Watch<'_>,
+    ) -> Result<Option<AuditedStep>, DesignError> {
+        let found = self.agreed(begun, best.as_ref(), told, watch)?;
+        Ok(match (best, found) {
+            (Some(best), Some(found)) if !found.gains_on(&best, 0.0) => Some(best),
+            (best, found) => found.or(best),
+        })
+    }
+
+    /// True where a design reaches what is aimed at, or is so near that a trial on the nonlinear
+    /// rig tells more than another start.
+    pub(super) fn suffices(&self, found: Option<&AuditedStep>) -> bool {
+        let is_near = |found: &AuditedStep| {
+            !self.aimed.added.is_empty() && found.keeps_limits() && found.excess <= NEAR
+        };
+        found.is_some_and(|found| found.is_reached() || is_near(found))
     }
 }
 
 /// The free numbers that a search from these finds.
 fn descended(
-    search: &mut StepShaping,
+    search: &mut StepShaping<'_>,
     free_numbers: &[f64],
     watch: Watch<'_>,
 ) -> Result<Vec<f64>, DesignError> {

@@ -1,24 +1,29 @@
 //! The shaping of a loop by margins of steps beside those of its limits, as a problem of a search.
 
+use std::rc::Rc;
+
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::time_response::{StepBaseline, step_metrics};
-use phea_qft::closed_loop::{Compensation, Member};
+use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{Design, LoopDesignError};
 use phea_qft::family::Family;
 use phea_qft::loop_shaping::{Judgement, MarginRow, SampledMargin, SearchProblem, Shaping, Slopes};
 use phea_qft::verification::PlantPoint;
 
+use super::plants::{SteppedPlant, SteppedPlants};
 use crate::audit::TimeOutcome;
 use crate::design::added_by_rig::{AddedByRig, added_to};
 use crate::design::{DesignError, ProjectDesign};
-use crate::linear_step::{KnownResponses, StepResponse, linear_step_knowing};
+use crate::linear_step::StepResponse;
 use crate::robust::RobustProblem;
 use crate::simulate::{ReachedStep, TrackingWish};
 
 /// Margin to be left to every limit on a frequency response, dB.
 pub(super) const RESERVE_DB: f64 = 0.02;
 /// Most plants whose steps are rows of the search.
-const PLANTS: usize = 12;
+const PLANTS: usize = 24;
+/// Most of them that join it at once.
+const TAKEN: usize = 3;
 /// Only margins of steps within this much of the worst one have their slopes computed, dB.
 const NEAR_DB: f64 = 0.1;
 /// Duration of a step, in settling times that are required, and the points of a continuous one.
@@ -28,19 +33,26 @@ const POINTS: usize = 600;
 const DB: f64 = 20.0 / std::f64::consts::LN_10;
 /// Change of a free number for a slope.
 const STEP: f64 = 1e-4;
+/// How far a search beside a design goes: the natural logarithm of a ratio of zeros, poles and
+/// gains.
+const BESIDE: f64 = 0.3;
 /// Most swings of a step that are rows of the search, and most rows of a plant.
 const SWINGS: usize = 4;
 const ROWS: usize = 64;
 
 /// The shaping of a loop with margins of steps beside those of its limits.
-pub(super) struct StepShaping {
+pub(super) struct StepShaping<'a> {
     /// The limits and their samples.
     pub(super) shaping: Shaping,
     /// What every step is to keep: that of the linear loop, and that with what the rig adds.
     wishes: StepWishes,
     added: Vec<AddedByRig>,
     sensor: TransferFunction,
-    plants: Vec<SteppedPlant>,
+    plants: Vec<LedPlant>,
+    /// Where plants come from.
+    all: &'a SteppedPlants,
+    /// Least and greatest value of each free number.
+    bounds: Vec<[f64; 2]>,
 }
 
 /// What steps are to keep.
@@ -62,22 +74,29 @@ struct JudgedStep {
 type PlacedMargin = (usize, StepPlace, f64);
 
 /// A plant whose steps are rows of the search.
-struct SteppedPlant {
-    values: Vec<f64>,
-    member: Member,
-    known: KnownResponses,
+struct LedPlant {
+    plant: Rc<SteppedPlant>,
     /// What the rig adds to its steps.
-    added: Vec<StepResponse>,
+    added: Option<AddedByRig>,
 }
 
-impl StepShaping {
+impl StepShaping<'_> {
     /// Without plants whose steps are looked at.
     pub(super) fn new(
         shaping: Shaping,
         (wishes, added): (StepWishes, Vec<AddedByRig>),
         sensor: TransferFunction,
-    ) -> StepShaping {
-        StepShaping { shaping, wishes, added, sensor, plants: vec![] }
+        all: &SteppedPlants,
+    ) -> StepShaping<'_> {
+        let bounds = shaping.bounds().to_vec();
+        StepShaping { shaping, wishes, added, sensor, plants: vec![], all, bounds }
+    }
+
+    /// Keeps the free numbers beside these.
+    pub(super) fn stay_beside(&mut self, free_numbers: &[f64]) {
+        for ([low, high], own) in self.bounds.iter_mut().zip(free_numbers) {
+            (*low, *high) = (low.max(own - BESIDE), high.min(own + BESIDE));
+        }
     }
 
     /// The loop at x.
@@ -86,11 +105,21 @@ impl StepShaping {
     }
 
     /// The steps of a plant, that of the linear loop first; `None` where it cannot be computed.
-    fn steps(&self, plant: &SteppedPlant, around: &Compensation) -> Option<Vec<JudgedStep>> {
+    fn steps(&self, plant: &LedPlant, around: &Compensation) -> Option<Vec<JudgedStep>> {
         let duration = (SETTLING_TIMES * self.wishes.linear.horizon_s, POINTS);
-        let linear = linear_step_knowing(&plant.member, around, duration, &plant.known).ok()?;
-        let with_rig = |added| JudgedStep { response: linear.plus(added), wish: self.wishes.with_rig };
-        let mut steps: Vec<JudgedStep> = plant.added.iter().map(with_rig).collect();
+        let linear = plant.plant.step(around, duration)?;
+        let mut steps: Vec<JudgedStep> = Vec::new();
+        if let (Some(added), [first, second, ..]) = (&plant.added, linear.times_s.as_slice()) {
+            let samples = (second - first, linear.times_s.len());
+            let carried = plant.plant.carried([&added.around, around], samples);
+            let with_rig = |added: &StepResponse| {
+                let added = carried.of(&added.at_times(&linear.times_s));
+                let values = linear.values.iter().zip(added).map(|(value, added)| value + added);
+                let response = StepResponse { times_s: linear.times_s.clone(), values: values.collect() };
+                JudgedStep { response, wish: self.wishes.with_rig }
+            };
+            steps.extend(added.steps.iter().map(with_rig));
+        }
         steps.insert(0, JudgedStep { response: linear, wish: self.wishes.linear });
         Some(steps)
     }
@@ -98,13 +127,15 @@ impl StepShaping {
     /// The least margin of each plant's steps; negative infinity where they cannot be computed.
     fn least_margin(&self, x: &[f64]) -> f64 {
         let Some(around) = self.around(x) else { return f64::NEG_INFINITY };
-        let least = |plant: &SteppedPlant| {
-            let places = self.steps(plant, &around).map(|steps| places(&steps));
-            let least =
-                |places: Vec<PlacedMargin>| places.iter().map(|one| one.2).fold(f64::INFINITY, f64::min);
-            places.map_or(f64::NEG_INFINITY, least)
+        self.plants.iter().map(|plant| self.least_of(plant, &around)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The least margin of a plant's steps; negative infinity where they cannot be computed.
+    fn least_of(&self, plant: &LedPlant, around: &Compensation) -> f64 {
+        let least = |steps: Vec<JudgedStep>| {
+            places(&steps).iter().map(|(_, _, margin_db)| *margin_db).fold(f64::INFINITY, f64::min)
         };
-        self.plants.iter().map(least).fold(f64::INFINITY, f64::min)
+        self.steps(plant, around).map_or(f64::NEG_INFINITY, least)
     }
 
     /// How far the steps with what the rig adds are from what is required: the largest ratio, at
@@ -120,7 +151,7 @@ impl StepShaping {
                 rise_time_s: metrics.rise_time_10_90_s.unwrap_or(f64::INFINITY),
             }))
         };
-        let worst = |plant: &SteppedPlant| match self.steps(plant, &around) {
+        let worst = |plant: &LedPlant| match self.steps(plant, &around) {
             Some(steps) => {
                 steps.iter().skip(1).map(|step| of(step).unwrap_or(f64::INFINITY)).fold(0.0, f64::max)
             }
@@ -133,7 +164,7 @@ impl StepShaping {
     fn rows(
         &self,
         index: usize,
-        plant: &SteppedPlant,
+        plant: &LedPlant,
         places: &[PlacedMargin],
         beside: &[Option<Compensation>],
     ) -> Vec<MarginRow> {
@@ -197,22 +228,52 @@ impl StepShaping {
         Ok(is_new)
     }
 
+    /// Adds the worst of these plants whose steps keep less than the reserve; true where one does.
+    pub(super) fn take_unseen(
+        &mut self,
+        x: &[f64],
+        (problem, plants): (&RobustProblem, &[Vec<f64>]),
+    ) -> Result<bool, DesignError> {
+        let Some(around) = self.around(x) else { return Ok(false) };
+        let mut missed: Vec<(f64, LedPlant)> = Vec::new();
+        for values in plants {
+            let Some(plant) = self.unseen(values, problem)? else { continue };
+            let least_db = self.least_of(&plant, &around);
+            if least_db < RESERVE_DB - 1e-3 {
+                missed.push((least_db, plant));
+            }
+        }
+        missed.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+        let room = PLANTS.saturating_sub(self.plants.len()).min(TAKEN);
+        let is_new = !missed.is_empty() && room > 0;
+        self.plants.extend(missed.into_iter().take(room).map(|(_, plant)| plant));
+        Ok(is_new)
+    }
+
     fn take(&mut self, values: &[f64], problem: &RobustProblem) -> Result<bool, DesignError> {
-        let Family::Uncertain(family) = &problem.family else { return Ok(false) };
-        if self.plants.iter().any(|known| known.values == values) || self.plants.len() >= PLANTS {
+        if self.plants.len() >= PLANTS {
             return Ok(false);
         }
-        let member = problem.compensation.member_of(family.plant(), values)?;
-        let added = added_to(family, &self.added, values);
-        let (values, known) = (values.to_vec(), KnownResponses::default());
-        self.plants.push(SteppedPlant { values, member, known, added });
-        Ok(true)
+        let plant = self.unseen(values, problem)?;
+        let is_new = plant.is_some();
+        self.plants.extend(plant);
+        Ok(is_new)
+    }
+
+    /// The plant with these parameters, unless it is one of the search.
+    fn unseen(&self, values: &[f64], problem: &RobustProblem) -> Result<Option<LedPlant>, DesignError> {
+        let Family::Uncertain(family) = &problem.family else { return Ok(None) };
+        if self.plants.iter().any(|known| known.plant.values == values) {
+            return Ok(None);
+        }
+        let plant = self.all.plant(values, (family, &problem.compensation))?;
+        Ok(Some(LedPlant { plant, added: added_to(family, &self.added, values).cloned() }))
     }
 }
 
-impl SearchProblem for StepShaping {
+impl SearchProblem for StepShaping<'_> {
     fn bounds(&self) -> &[[f64; 2]] {
-        self.shaping.bounds()
+        &self.bounds
     }
 
     fn judge(&mut self, x: &[f64]) -> Judgement {
@@ -227,7 +288,7 @@ impl SearchProblem for StepShaping {
     fn slopes(&mut self, x: &[f64]) -> Slopes {
         let mut slopes = self.shaping.slopes(x);
         let Some(around) = self.around(x) else { return slopes };
-        let of = |plant: &SteppedPlant| self.steps(plant, &around).map(|steps| places(&steps));
+        let of = |plant: &LedPlant| self.steps(plant, &around).map(|steps| places(&steps));
         let each: Vec<Vec<PlacedMargin>> =
             self.plants.iter().map(|plant| of(plant).unwrap_or_default()).collect();
         let worst = each.iter().flatten().map(|one| one.2).fold(f64::INFINITY, f64::min);

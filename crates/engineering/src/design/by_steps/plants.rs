@@ -1,0 +1,57 @@
+//! The plants whose steps lead a design, each with what is known of its response.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use phea_dynamics::linear::LinearError;
+use phea_qft::closed_loop::{Compensation, Member};
+use phea_qft::family::UncertainFamily;
+
+use crate::linear_step::{CarriedDisturbance, KnownResponses, StepResponse, linear_step_knowing};
+
+/// A plant with what is known of its response in loops of one timing and sensor.
+pub(super) struct SteppedPlant {
+    pub(super) values: Vec<f64>,
+    member: Member,
+    known: KnownResponses,
+}
+
+/// Plants that all searches of a design share: the response of one with waves costs far more than
+/// its step in one loop more.
+#[derive(Default)]
+pub(in crate::design) struct SteppedPlants {
+    plants: RefCell<Vec<Rc<SteppedPlant>>>,
+}
+
+impl SteppedPlant {
+    /// Its step over a time in s and about so many points; `None` where it cannot be computed.
+    pub(super) fn step(&self, around: &Compensation, duration: (f64, usize)) -> Option<StepResponse> {
+        linear_step_knowing(&self.member, around, duration, &self.known).ok()
+    }
+
+    /// What disturbs its loop, carried from one controller to another, in samples of this distance
+    /// and number.
+    pub(super) fn carried(&self, loops: [&Compensation; 2], samples: (f64, usize)) -> CarriedDisturbance {
+        CarriedDisturbance::new(&self.member, loops, samples, &self.known)
+    }
+}
+
+impl SteppedPlants {
+    /// The plant of a family with these parameters, in a loop of the timing and sensor that all
+    /// loops of the design have.
+    pub(super) fn plant(
+        &self,
+        values: &[f64],
+        (family, around): (&UncertainFamily, &Compensation),
+    ) -> Result<Rc<SteppedPlant>, LinearError> {
+        let mut plants = self.plants.borrow_mut();
+        if let Some(known) = plants.iter().find(|known| known.values == values) {
+            return Ok(known.clone());
+        }
+        let member = around.member_of(family.plant(), values)?;
+        let plant = SteppedPlant { values: values.to_vec(), member, known: KnownResponses::default() };
+        let plant = Rc::new(plant);
+        plants.push(plant.clone());
+        Ok(plant)
+    }
+}

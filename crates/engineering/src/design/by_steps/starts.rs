@@ -1,0 +1,63 @@
+//! Designs from which searches by steps begin.
+
+use phea_qft::design::{Design, TriedStructure};
+
+use super::led::LedDesign;
+use crate::design::ProjectDesign;
+
+/// Structures that it begins from.
+const STARTS: usize = 3;
+/// Ratio of the worst run to what is required up to which a search looks beside a design first.
+const NEAR: f64 = 1.6;
+
+/// How far a search goes from where it begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum SearchReach {
+    /// Each zero, pole and gain within a ratio, so that what the rig adds to the steps is known
+    /// well.
+    Beside,
+    /// As far as the structure goes.
+    Anywhere,
+}
+
+impl LedDesign<'_> {
+    /// The design, and the structures that came nearest as they were found, its own among them
+    /// where it was led since, behind its prefilter where they have none. Before them what lies
+    /// beside a design whose runs on the nonlinear rig miss by little.
+    pub(super) fn starts(
+        &self,
+        told: &ProjectDesign,
+        tried: &[TriedStructure],
+    ) -> Vec<(Design, SearchReach)> {
+        let design = &told.design;
+        let least =
+            |one: &TriedStructure| one.least.as_ref().map_or(f64::NEG_INFINITY, |least| least.margin_db);
+        let is_other = |one: &TriedStructure| {
+            let is_own = one.structure == design.structure && one.free_numbers == design.free_numbers;
+            one.least.is_some() && !is_own
+        };
+        let mut others: Vec<&TriedStructure> = tried.iter().filter(|one| is_other(one)).collect();
+        others.sort_by(|one, other| least(other).total_cmp(&least(one)));
+        let others = others.into_iter().take(STARTS - 1).map(|tried| begun_from(tried, design));
+        let anywhere =
+            std::iter::once(design.clone()).chain(others).map(|start| (start, SearchReach::Anywhere));
+        let is_near = !self.aimed.added.is_empty() && told.worst_run() <= NEAR;
+        let beside = is_near.then(|| (design.clone(), SearchReach::Beside));
+        beside.into_iter().chain(anywhere).filter(|(one, _)| !one.free_numbers.is_empty()).collect()
+    }
+}
+
+/// A structure as it was found, behind the prefilter of a design where it has none.
+fn begun_from(tried: &TriedStructure, design: &Design) -> Design {
+    let mut free_numbers = tried.free_numbers.clone();
+    let prefilter = match &tried.prefilter {
+        Some(prefilter) => Some(prefilter.clone()),
+        None => {
+            let own = design.free_numbers.get(design.structure.dimension()..);
+            free_numbers.extend_from_slice(own.unwrap_or_default());
+            design.prefilter.clone()
+        }
+    };
+    let structure = tried.structure.clone();
+    Design { structure, prefilter, free_numbers, name: tried.name, ..design.clone() }
+}
