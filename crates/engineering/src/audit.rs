@@ -155,8 +155,7 @@ pub struct ProjectAudit {
     pub velocity_noise: Option<SignalNoise>,
     /// What the noise of pressures that are fed back does; `None` without one.
     pub pressure_noise: Option<SignalNoise>,
-    /// Margins of the nominal loop; `None` for an unstable family, and without a nominal plant that
-    /// has polynomials.
+    /// Margins of the nominal loop; `None` where it is not known to be stable.
     pub nominal: Option<NominalMargins>,
     /// Gain, phase, modulus and delay margin of the nominal loop, and the worst of the family.
     pub margins: AuditMargins,
@@ -244,9 +243,8 @@ impl ProjectAudit {
         let in_time = in_time::findings(problem, &audit);
         let noise = |signal| SignalNoise::of(signal, problem, audit.stability.verdict);
         let [velocity_noise, pressure_noise] = [NoisySignal::LoadVelocity, NoisySignal::Pressures].map(noise);
-        let is_unstable = audit.stability.verdict == Verdict::Violated;
-        let nominal = if is_unstable { None } else { nominal::nominal_margins(problem).ok().flatten() };
         let margins = AuditMargins::of(problem, &audit);
+        let nominal = margins.nominal.as_ref().and_then(|_| nominal_margins(problem));
         ProjectAudit {
             nominal,
             margins,

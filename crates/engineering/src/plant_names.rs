@@ -22,10 +22,23 @@ pub struct NamedPlant(pub Vec<(String, NamedValue)>);
 /// What a plant is named by.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NamedValue {
-    /// A parameter, SI.
-    Number(f64),
+    /// A parameter, SI, with its dimension.
+    Number(f64, &'static Dimension),
     /// A measurement, or where the plant comes from.
     Text(String),
+}
+
+impl NamedPlant {
+    /// `load.stiffness 5 kN/mm, fluid.bulk_modulus 1.2 GPa`
+    pub fn words(&self) -> String {
+        let part = |(name, value): &(String, NamedValue)| match value {
+            NamedValue::Number(value, dimension) => {
+                format!("{name} {}", place_words(name, *value, dimension))
+            }
+            NamedValue::Text(text) => text.clone(),
+        };
+        self.0.iter().map(part).collect::<Vec<String>>().join(", ")
+    }
 }
 
 impl PlantNames {
@@ -102,7 +115,9 @@ impl PlantNames {
     pub fn named(&self, plant: &PlantPoint) -> NamedPlant {
         match self.numbers(plant) {
             Some(numbers) => NamedPlant(
-                numbers.map(|(name, _, value)| (name.to_string(), NamedValue::Number(value))).collect(),
+                numbers
+                    .map(|(name, dimension, value)| (name.to_string(), NamedValue::Number(value, dimension)))
+                    .collect(),
             ),
             None => {
                 let key = if matches!(plant, PlantPoint::Beside(_)) { "beside" } else { "measured" };

@@ -16,6 +16,20 @@ pub struct ChosenLines {
     pub hindrance: Option<String>,
 }
 
+impl ChosenLines {
+    /// The model.
+    pub fn motion(&self) -> LineMotion {
+        motion(self.with_waves)
+    }
+}
+
+fn motion(with_waves: bool) -> LineMotion {
+    match with_waves {
+        true => LineMotion::TransmissionLine { end_share: None },
+        false => LineMotion::Lumped,
+    }
+}
+
 /// What reaches a frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ReachedBy {
@@ -50,10 +64,7 @@ impl Project {
     pub fn with_chosen_lines(mut self, with_waves: bool) -> Project {
         let lines = self.actuator.iter_mut().flat_map(|own| [&mut own.line.a, &mut own.line.b]);
         for line in lines.filter(|line| line.leaves_model_open()) {
-            line.motion = match with_waves {
-                true => LineMotion::TransmissionLine { end_share: None },
-                false => LineMotion::Lumped,
-            };
+            line.motion = motion(with_waves);
         }
         self
     }

@@ -127,7 +127,7 @@ pub use verification::*;
 
 pub(crate) use key::{key, plain};
 pub(crate) use reader::Reader;
-pub use rewrite::{RewriteError, snippet, with_elements, with_laws, with_pressure_feedback};
+pub use rewrite::{RewriteError, snippet, with_elements, with_laws, with_line_model, with_pressure_feedback};
 pub(crate) use signal::SignalUnit;
 pub use text::{Findings, Place, RawFinding};
 pub use tree::{Entry, TreeNode, Value as TreeValue, read as read_tree, value_or_finding};

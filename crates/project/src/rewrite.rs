@@ -17,7 +17,8 @@ use std::collections::BTreeMap;
 use self::surgery::{KeyValues, replaced};
 use super::listing::keys_of_table;
 use super::printer::Printer;
-use super::{DeclaredController, DeclaredPressureFeedback, Prefilter, Transfer};
+use super::visitor::Variants;
+use super::{ChosenLines, DeclaredController, DeclaredPressureFeedback, Prefilter, Transfer};
 
 /// Keys of [controller] and [prefilter] that form a transfer function.
 fn law_keys() -> Vec<&'static str> {
@@ -68,6 +69,15 @@ pub fn with_pressure_feedback(bytes: &[u8], feedback: Option<&DeclaredPressureFe
     let only = DeclaredController { pressure_feedback: feedback.copied(), ..DeclaredController::default() };
     let lines = controller_lines(&only).into_iter().filter(|(key, _)| key == KEY).collect::<KeyValues>();
     replaced(&text, "controller", &[KEY], &lines).into_bytes()
+}
+
+/// The bytes of a project file with the model of lines for which none is stated: what was chosen
+/// for one controller might be chosen otherwise for another, and margins are those of the model.
+pub fn with_line_model(bytes: &[u8], chosen: &ChosenLines) -> Vec<u8> {
+    const KEY: &str = "model";
+    let text = String::from_utf8_lossy(bytes);
+    let line = (KEY.to_string(), format!("\"{}\"", chosen.motion().word()));
+    replaced(&text, "line", &[KEY], &[line]).into_bytes()
 }
 
 /// The text with these lines in place of the transfer function of the table.

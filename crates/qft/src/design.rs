@@ -32,6 +32,7 @@ pub use attempt::LoopDesignError;
 pub use binding::BINDING_DB;
 pub use candidates::gain_range;
 pub use diagnosis::{Constraint, ConstraintPlace, Finding, FindingSeverity, Party, SharedLimit, diagnose};
+pub use named::name_of;
 pub use outcome::{DesignOutcome, design_after, design_stricter};
 pub use problem::{ControllerChoice, DesignOptions, PoleRange, PrefilterChoice};
 

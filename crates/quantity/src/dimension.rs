@@ -58,7 +58,7 @@ impl Exponents {
 }
 
 /// A kind of quantity: its name, its exponents, and the units in which it is shown.
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 pub struct Dimension {
     /// With its article, as it stands in "expected a pressure".
     pub name: &'static str,

@@ -140,6 +140,34 @@ fn every_command_names_the_chosen_model() {
     assert!(found.iter().all(|one| one["model"] == "transmission_line" && *one == found[0]), "{found:?}");
 }
 
+/// A designed project states the model that was chosen for the design: by its crossover alone another
+/// might be chosen, and its margins would be those of other plants. Margins of the nominal loop are
+/// told with waves too, once as they are of the design and once in the audit.
+#[test]
+fn a_designed_project_states_the_chosen_model() {
+    let design = Request::Design { seed: None, stages: false, repair: false };
+    for bandwidth in ["design.highest_bandwidth=300", "design.highest_bandwidth=20"] {
+        let told = answer(&rig_to_be_designed(), &["design.structure=pi", bandwidth], &[], &design);
+        let object: Value = serde_json::from_str(&told.json).unwrap();
+        let file = told.files.iter().find(|file| file.name == "designed.toml").unwrap();
+        let designed = String::from_utf8(file.bytes.clone()).unwrap();
+        let model = object["line_model"]["model"].as_str().unwrap();
+        assert!(designed.contains(&format!("[line]\nmodel = \"{model}\"\n")), "{designed}");
+        let verified = json(&designed, &[bandwidth], &[], &VERIFY);
+        assert!(verified["line_model"].is_null());
+        for key in ["gain_db", "phase_deg", "modulus", "delay_s"] {
+            // the law is read back from its gains, to the last digit but one
+            let [read, designed] =
+                [&verified, &object["verification"]].map(|one| number(&one["margins"][key]));
+            assert!((read / designed - 1.0).abs() < 1e-9, "{key}: {read} {designed}");
+        }
+        let nominal = &object["verification"]["margins"]["nominal"];
+        assert_eq!(object["figures"]["phase_margin_deg"], nominal["phase_deg"]);
+        assert_eq!(object["figures"]["gain_margin_db"], nominal["gain_db"]);
+        assert!(number(&nominal["phase_deg"]) > 0.0);
+    }
+}
+
 /// A mass that nothing holds is not computed behind waves: its lines stay lumped, with the reason.
 #[test]
 fn what_is_not_computed_with_waves_stays_lumped() {

@@ -157,7 +157,7 @@ fn with_audited(mut worst: MarginSet, audit: &Audit) -> MarginSet {
     worst
 }
 
-fn nominal_point(problem: &RobustProblem) -> PlantPoint {
+pub(super) fn nominal_point(problem: &RobustProblem) -> PlantPoint {
     match &problem.family {
         Family::Uncertain(family) => PlantPoint::Parameters(family.plant().nominal()),
         Family::Measured(_) => PlantPoint::Measured(0),
@@ -299,7 +299,7 @@ fn of_plant(problem: &RobustProblem, plant: &PlantPoint) -> Option<MarginSet> {
     Some(MarginSet::of(&margins_of(problem, plant)?, plant))
 }
 
-fn margins_of(problem: &RobustProblem, plant: &PlantPoint) -> Option<Margins> {
+pub(super) fn margins_of(problem: &RobustProblem, plant: &PlantPoint) -> Option<Margins> {
     let member = problem.member(plant)?;
     match open_loop(problem, &member) {
         Ok(Some(open_loop)) => Some(margins(&open_loop)),
@@ -313,10 +313,7 @@ fn margins_of(problem: &RobustProblem, plant: &PlantPoint) -> Option<Margins> {
 ///
 /// # Errors
 /// [`LinearError`] for a plant that is not a transfer function.
-pub(super) fn open_loop(
-    problem: &RobustProblem,
-    member: &Member,
-) -> Result<Option<TransferFunction>, LinearError> {
+fn open_loop(problem: &RobustProblem, member: &Member) -> Result<Option<TransferFunction>, LinearError> {
     let with_sensor = match member {
         Member::Continuous { plant, sensor, .. } => {
             let command = TransferFunction::from_polynomials(

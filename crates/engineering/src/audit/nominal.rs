@@ -1,9 +1,8 @@
 //! Margins of the nominal loop.
 
-use phea_dynamics::frequency::{decibels, margins};
-use phea_dynamics::linear::LinearError;
+use phea_dynamics::frequency::decibels;
 
-use super::margins::open_loop;
+use super::margins::{margins_of, nominal_point};
 use crate::quantity::significant;
 use crate::robust::RobustProblem;
 
@@ -36,21 +35,16 @@ impl NominalMargins {
     }
 }
 
-/// Of a loop whose family is not known to be unstable; `None` without a nominal plant that has
-/// polynomials.
-///
-/// # Errors
-/// [`LinearError`] for a nominal plant that is not a transfer function.
-pub(crate) fn nominal_margins(problem: &RobustProblem) -> Result<Option<NominalMargins>, LinearError> {
-    let Some(member) = problem.nominal()? else { return Ok(None) };
-    let Some(open_loop) = open_loop(problem, &member)? else { return Ok(None) };
-    let found = margins(&open_loop);
+/// Of the loop of the nominal plant, which must be stable, by its polynomials or else its response;
+/// `None` where its response is not known.
+pub(crate) fn nominal_margins(problem: &RobustProblem) -> Option<NominalMargins> {
+    let found = margins_of(problem, &nominal_point(problem))?;
     let crossover = found.phase_margins.iter().map(|margin| margin.frequency_rad_per_s).fold(0.0, f64::max);
-    Ok(Some(NominalMargins {
+    Some(NominalMargins {
         gain_margin_db: decibels(found.gain_increase_factor()),
         gain_reduction_db: decibels(found.gain_decrease_factor()),
         phase_margin_deg: found.phase_margin_deg(),
         crossover_rad_per_s: crossover,
         delay_margin_s: found.delay_margin_s(),
-    }))
+    })
 }

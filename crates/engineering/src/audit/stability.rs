@@ -127,7 +127,7 @@ fn irresolution_words(irresolution: &Irresolution) -> String {
                 rounded(*to_rad_per_s)
             ),
         Irresolution::HighEnd { frequency_rad_per_s, gain } => format!(
-                "the measurement ends at {} rad/s where |L| = {gain:.2} is not well below one",
+                "the response is known up to {} rad/s, where |L| = {gain:.2} is not well below one",
                 rounded(*frequency_rad_per_s)
             ),
         Irresolution::LowEnd { frequency_rad_per_s, slope } => {

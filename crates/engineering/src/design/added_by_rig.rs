@@ -90,7 +90,7 @@ fn values(family: &UncertainFamily, run: &TrialRun) -> Option<Vec<f64>> {
     }
     let Some(NamedPlant(numbers)) = &run.plant else { return Some(family.plant().nominal()) };
     let number = |(_, value): &(String, NamedValue)| match value {
-        NamedValue::Number(value) => Some(*value),
+        NamedValue::Number(value, _) => Some(*value),
         NamedValue::Text(_) => None,
     };
     numbers.iter().map(number).collect()

@@ -35,7 +35,7 @@ pub struct LoopFigures {
     pub high_frequency_gain_db: f64,
     /// Poles of the prefilter, likewise.
     pub prefilter_order: usize,
-    /// Margins of the nominal loop; `None` for an unstable or a measured family.
+    /// Margins of the nominal loop; `None` where it is not known to be stable.
     pub nominal: Option<NominalMargins>,
     /// The least |1 + L| of the family; `None` unless it is stable.
     pub modulus_margin: Option<f64>,

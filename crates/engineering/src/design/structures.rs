@@ -30,6 +30,8 @@ pub struct ReachedStructure {
     pub least: Option<SampledMargin>,
     /// What that limit is called.
     pub binding: Option<String>,
+    /// The lowest frequency that a zero was looked for at, where one ended there, rad/s.
+    pub slowest_zero_rad_per_s: Option<f64>,
     /// Margins of the nominal loop.
     pub nominal: Option<NominalMargins>,
     /// lim s^r G(s) for the relative degree r, dB.
@@ -98,10 +100,7 @@ fn reached_by(
         }
         None => None,
     };
-    let nominal = match &around {
-        Some(around) => nominal_margins(around)?,
-        None => None,
-    };
+    let nominal = around.as_ref().and_then(nominal_margins);
     let high_frequency_gain_db = match law {
         Some(law) => {
             let gain = law.feedback.transfer_function()?.gain();
@@ -129,6 +128,7 @@ fn reached_by(
         order: tried.structure.order()?,
         relative_degree: tried.structure.relative_degree()?,
         is_chosen,
+        slowest_zero_rad_per_s: tried.structure.slowest_zero_touched(&tried.free_numbers),
         structure: tried.structure.clone(),
         ending: tried.ending,
         binding: least.as_ref().and_then(name_of),

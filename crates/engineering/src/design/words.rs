@@ -48,6 +48,10 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
                 .to_string()
         }
         DesignStatus::Met => "met: the controller satisfies every specification".to_string(),
+        DesignStatus::Infeasible(_) if keeps_all_but_steps(view) => format!(
+            "infeasible: none of the controllers tried{} makes its steps as they are required; the nearest one keeps all that is required over frequency",
+            tried(&view.options.controller)
+        ),
         DesignStatus::Infeasible(relaxation) => format!(
             "infeasible: none of the controllers tried{} satisfies every specification; with every limit {} dB wider one does",
             tried(&view.options.controller),
@@ -67,6 +71,11 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
             )
         }
     }
+}
+
+/// True where a design misses what is required in time and nothing else.
+fn keeps_all_but_steps(view: &ProjectDesign) -> bool {
+    view.designed.view.audit.verdict == Verdict::Met && view.designed.view.misses_in_time()
 }
 
 /// The word of the outcome of a repair, in JSON.

@@ -19,7 +19,7 @@ use crate::specification::{ClosedLoop, Limit, Specification};
 
 /// How far the corners of a controller may lie below and above the highest frequency of the
 /// specifications, and below the lowest, as factors.
-const BELOW_HIGHEST: f64 = 1e-3;
+const BELOW_HIGHEST: f64 = 1e-4;
 const ABOVE: f64 = 200.0;
 const BELOW_LOWEST: f64 = 0.1;
 /// Corners at which a factor is added to a simpler controller.

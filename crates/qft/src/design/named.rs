@@ -32,6 +32,41 @@ pub(super) fn is_named(order: usize, zeros: usize, integrators: usize) -> bool {
     matches!((integrators, order, zeros), (0, 0, 0) | (1, 1, 0 | 1) | (1, 2, 1 | 2))
 }
 
+/// The name of a structure with the parts of one.
+///
+/// # Example
+/// ```
+/// use phea_dynamics::controller::{Element, NamedStructure};
+/// use phea_qft::design::name_of;
+/// use phea_qft::loop_shaping::{Structure, StructureFactor};
+/// let parts = vec![
+///     StructureFactor::Fixed(Element::Integrator),
+///     StructureFactor::RealZero { frequency: [1.0, 100.0] },
+/// ];
+/// let structure = Structure { sign: 1.0, gain: [0.1, 10.0], parts };
+/// assert_eq!(name_of(&structure), Some(NamedStructure::ProportionalIntegral));
+/// ```
+pub fn name_of(structure: &Structure) -> Option<NamedStructure> {
+    use StructureFactor::{Fixed, Notch, RealPole, RealZero, ZeroPair};
+    let (integrator, behind) = structure.parts.split_first()?;
+    if !matches!(integrator, Fixed(Element::Integrator)) {
+        return None;
+    }
+    match behind {
+        [] => Some(NamedStructure::Integral),
+        [RealZero { .. }] => Some(NamedStructure::ProportionalIntegral),
+        [RealZero { .. }, RealPole { .. }] => Some(NamedStructure::PiLowPass),
+        [ZeroPair { .. }, RealPole { .. }] => Some(NamedStructure::Pid),
+        [RealZero { .. }, Notch { .. }] => Some(NamedStructure::PiNotch),
+        [RealZero { .. }, Notch { .. }, RealPole { .. }] => Some(NamedStructure::PiNotchLowPass),
+        [RealZero { .. }, Notch { .. }, RealZero { .. }, RealPole { .. }] => {
+            Some(NamedStructure::PiNotchLead)
+        }
+        [RealZero { .. }, Notch { .. }, Notch { .. }] => Some(NamedStructure::PiTwoNotches),
+        _ => None,
+    }
+}
+
 /// With free numbers between the corners of the problem.
 pub(super) fn named_structure(name: NamedStructure, ground: &Ground) -> Structure {
     let Corners { of_zeros, of_poles } = ground.corners();

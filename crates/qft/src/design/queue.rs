@@ -92,7 +92,7 @@ fn named(maximum_order: usize, ground: &Ground) -> impl Iterator<Item = NamedStr
     })
 }
 
-/// Longer names than one that is met, whose further poles may be worth it.
+/// Names behind one that is met, with as many poles or with more, which may be worth it.
 pub(super) fn longer(
     name: NamedStructure,
     choice: &ControllerChoice,
@@ -105,8 +105,8 @@ pub(super) fn longer(
         return VecDeque::new();
     }
     let most = (name.order() + FURTHER_POLES).min(maximum_order);
-    let longer = named(most, ground).filter(|one| one.order() > name.order());
-    longer.map(WaitingStructure::Named).collect()
+    let behind = named(most, ground).skip_while(|one| *one != name).skip(1);
+    behind.filter(|one| one.order() >= name.order()).map(WaitingStructure::Named).collect()
 }
 
 /// Structures of growing order.

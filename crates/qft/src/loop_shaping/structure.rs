@@ -107,6 +107,8 @@ struct Factor {
 /// A factor with its natural frequency and its damping ratio, 0 for a single root.
 type NumberedFactor = (Factor, [f64; 2]);
 
+/// Part of a frequency by which a number at the end of its range may differ from it.
+const TOUCHED: f64 = 1e-6;
 const ZERO: Factor = Factor { power: 1.0, pair: false };
 const POLE: Factor = Factor { power: -1.0, pair: false };
 const ZERO_PAIR: Factor = Factor { power: 1.0, pair: true };
@@ -221,6 +223,31 @@ impl Structure {
         let gain = Element::Gain(self.sign * numbers.next().unwrap_or(f64::NAN));
         let elements = self.parts.iter().map(|part| part.element(&mut numbers));
         Compensator::new(std::iter::once(gain).chain(elements).collect())
+    }
+
+    /// The lowest frequency that a zero may have, where one has it at x, rad/s.
+    ///
+    /// # Example
+    /// ```
+    /// # use phea_qft::loop_shaping::{Structure, StructureFactor};
+    /// let parts = vec![StructureFactor::RealZero { frequency: [0.5, 100.0] }];
+    /// let structure = Structure { sign: 1.0, gain: [0.1, 10.0], parts };
+    /// let at = |zero: f64| structure.slowest_zero_touched(&[0.0, zero.ln()]);
+    /// assert_eq!([at(0.5), at(0.6), at(100.0)], [Some(0.5), None, None]);
+    /// ```
+    pub fn slowest_zero_touched(&self, x: &[f64]) -> Option<f64> {
+        let numbers = self.numbers(x);
+        let mut place = 1;
+        self.parts.iter().find_map(|part| {
+            let own = numbers.get(place).copied();
+            place += part.ranges().count();
+            let [least, greatest] = match part {
+                StructureFactor::RealZero { frequency } => *frequency,
+                StructureFactor::ZeroPair { natural_frequency, .. } => *natural_frequency,
+                _ => return None,
+            };
+            (least < greatest && own? <= least * (1.0 + TOUCHED)).then_some(least)
+        })
     }
 
     /// Least and greatest value of every number, that of the gain first.

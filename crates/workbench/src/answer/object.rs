@@ -164,7 +164,7 @@ impl<Value: Into<Json> + Clone> From<&[Value]> for Json {
 impl From<NamedPlant> for Json {
     fn from(plant: NamedPlant) -> Json {
         let named = plant.0.into_iter().map(|(name, value)| match value {
-            NamedValue::Number(number) => (name, Json::Number(number)),
+            NamedValue::Number(number, _) => (name, Json::Number(number)),
             NamedValue::Text(text) => (name, Json::Text(text)),
         });
         Json::Object(Object(named.collect()))

@@ -48,7 +48,6 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
         .known("sample_time_s", view.sample_time_s, "the controller is continuous")
         .with("delay_s", view.delay_s);
     let reduction = view.nominal.map(|margins| margins.gain_reduction_db);
-    let no_nominal = "no margin: the family is unstable, or its nominal plant has no polynomials";
     let no_margin = "no margin: not every plant is known to be stable";
     Object::new()
         .with("verdict", verdict_key(view.verdict()))
@@ -59,7 +58,7 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
         .maybe("proof", proof)
         .known("delay_margin_s", margin.map(|margin| margin.delay_s), no_margin)
         .maybe("delay_margin", delay_margin)
-        .known("gain_reduction_db", reduction, no_nominal)
+        .known("gain_reduction_db", reduction, margins::NO_NOMINAL)
         .with("margins", margins::object(view))
         .with("members", view.members)
         .with("parameters", names.headings())

@@ -9,7 +9,7 @@ use crate::plant_names::PlantNames;
 use crate::quantity::DisplayUnit;
 
 /// Why there are none of the nominal loop.
-const NO_NOMINAL: &str = "no margin: the nominal loop is not known to be stable";
+pub(super) const NO_NOMINAL: &str = "no margin: the nominal loop is not known to be stable";
 /// Why there are none of the family.
 const NO_FAMILY: &str = "no margin: not every plant is known to be stable";
 /// Why there is no frequency.

@@ -122,7 +122,7 @@ fn figures(side: &AuditedController) -> Object {
     let figures = &side.figures;
     let nominal = figures.nominal.as_ref();
     let missing = figures.modulus_margin.is_none() || nominal.is_none();
-    let reason = "not known of a measured plant, or of a family that is not known to be stable";
+    let reason = "the loop is not known to be stable";
     Object::new()
         .with("order", figures.order)
         .with("relative_degree", figures.relative_degree)

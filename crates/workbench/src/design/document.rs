@@ -75,7 +75,7 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
         Verdict::NotProven => ", though it is not proven",
         _ => ", though it does not satisfy every specification",
     };
-    out.heading(format!("To be pasted into the project{caution}"));
+    out.heading(format!("{}{caution}", in_place_of(view)));
     out.preformatted(snippet(&view.declared_controller, view.declared_prefilter.as_ref()));
     out.append(super::structures(view));
     out.append(super::limits(view));
@@ -88,6 +88,14 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
         out.line(sentence);
     }
     Ok(out)
+}
+
+/// The heading of the text of a controller, with the tables that it replaces.
+fn in_place_of(view: &ProjectDesign) -> &'static str {
+    match view.declared_prefilter {
+        Some(_) => "In the project, in place of [controller] and [prefilter]",
+        None => "In the project, in place of [controller]",
+    }
 }
 
 /// How the search ended, what is known whatever a search finds, and the audit of the result.
@@ -111,7 +119,7 @@ fn repaired(repair: &Repair) -> Result<Document, LinearError> {
     if let Some(nearest) = repair.nearest() {
         out.heading("Nearest controller");
         out.append(laws(&nearest.designed)?);
-        out.heading_on_page("To be pasted into the project");
+        out.heading_on_page(in_place_of(nearest));
         out.preformatted(snippet(&nearest.declared_controller, nearest.declared_prefilter.as_ref()));
     }
     Ok(out)

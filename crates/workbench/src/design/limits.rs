@@ -103,13 +103,22 @@ fn value_words(view: &ProjectDesign, limit: &DesignLimit) -> String {
     let value = limit.value;
     match limit.kind {
         DesignLimitKind::NoiseToCommand => {
-            format!("{} % of the nominal voltage, rms", significant(100.0 * value, 3))
+            let percent = significant(100.0 * value, 3);
+            format!("{percent} % of the nominal voltage, rms, by the largest gain")
         }
         DesignLimitKind::ModulusMargin => format!("|1+L| at least {}", significant(value, 3)),
         DesignLimitKind::HighestBandwidth => {
             format!("|L/(1+L)| at most -3 dB from {} rad/s on", significant(value, 3))
         }
-        DesignLimitKind::MinimumDelayMargin => format!("{} more", DisplayUnit::MILLISECOND.text(value, 3)),
+        DesignLimitKind::MinimumDelayMargin => {
+            let words = |seconds: f64| DisplayUnit::MILLISECOND.text(seconds, 3);
+            let reached = match view.designed.figures.delay_margin_s {
+                Some(f64::INFINITY) => "; it tolerates any".to_string(),
+                Some(margin_s) => format!("; it tolerates {}", words(margin_s)),
+                None => String::new(),
+            };
+            format!("{} more{reached}", words(value))
+        }
         DesignLimitKind::PoleDampingRatio => format!("at least {}", significant(value, 3)),
         DesignLimitKind::FastestPole => format!("at most {} rad/s", significant(value, 3)),
         DesignLimitKind::PrefilterGain => {

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use phea_dynamics::frequency::decibels;
+use phea_dynamics::linear::Discretization;
 use phea_engineering::design::{ManualLaw, ManualPart};
 
 use super::ProjectDesign;
@@ -33,10 +34,38 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
     out.explanation(
         "The parts act in series: PI is K_p (1 + 1/(T_i s)), PID is K_p (1 + 1/(T_i s) + T_d s/(T_f s + 1)), the standard form (ISA) with one gain for all terms; a low pass is 1/(T_f s + 1); the depth of a notch is that of its magnitude at its frequency, its width the frequency times twice the damping ratio of its poles.",
     );
-    if view.designed.problem.compensation.sample_time_s().is_some() {
-        out.sentences(["these are the settings of the continuous law, which is then sampled".to_string()]);
-    }
+    out.sentences(remarks(view, words));
     out
+}
+
+/// What the settings mean, and what belongs to them.
+fn remarks(view: &ProjectDesign, words: &ManualLaw) -> Vec<String> {
+    let form = |part: &ManualPart| match part {
+        ManualPart::ProportionalIntegral { .. } => Some("PI is K_p (1 + 1/(T_i s))"),
+        ManualPart::ProportionalIntegralDerivative { .. } => {
+            Some("PID is K_p (1 + 1/(T_i s) + T_d s/(T_f s + 1))")
+        }
+        _ => None,
+    };
+    let mut all: Vec<String> = words.parts.iter().find_map(form).map(str::to_string).into_iter().collect();
+    if view.designed.problem.compensation.sample_time_s().is_some() {
+        let rule = match view.designed.controller.timing.discretization {
+            Discretization::Tustin => "bilinear (Tustin)".to_string(),
+            Discretization::PrewarpedTustin { frequency_rad_per_s } => {
+                format!("bilinear (Tustin, prewarped at {} rad/s)", significant(frequency_rad_per_s, 3))
+            }
+            Discretization::ZeroOrderHold => "behind a zero-order hold".to_string(),
+            Discretization::Matched => "by matched poles and zeros".to_string(),
+        };
+        all.push(format!("these are the settings of the continuous law, which is then sampled, {rule}"));
+    }
+    if view.declared_prefilter.is_some() {
+        all.push(
+            "the reference passes through the prefilter F(s) above first: the steps are those behind it"
+                .to_string(),
+        );
+    }
+    all
 }
 
 /// The words in JSON.

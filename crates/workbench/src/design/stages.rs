@@ -13,18 +13,21 @@ use super::{DESIGNED_CERTIFICATE, DESIGNED_PROJECT, NEAREST_PROJECT, structure_w
 use crate::answer::{Csv, OutputFile};
 use crate::audit::{self, certificate_of};
 use crate::error::CommandError;
-use crate::project::{Loaded, with_laws, with_pressure_feedback};
+use crate::project::{Loaded, with_laws, with_line_model, with_pressure_feedback};
 use crate::robust::{DesignFrequency, RobustProblem};
 use crate::specification::kind_key;
 
 /// How far the drawn frequencies reach beyond the design frequencies.
 const BEYOND: [f64; 2] = [0.1, 30.0];
 
+/// The same beyond the inverse of a time in which a step is required to settle.
+const BEYOND_BANDWIDTH: f64 = 300.0;
+
 /// The nominal loop over frequency.
 const LOOP: &str = "loop.csv";
 
-/// The project with the designed controller and prefilter in it, everything else byte for byte as
-/// it was.
+/// The project with the designed controller and prefilter in it, and with the model of its lines
+/// where that was chosen; everything else byte for byte as it was.
 pub fn files(loaded: &Loaded, view: &ProjectDesign) -> Vec<OutputFile> {
     let nearest = view.repair.as_ref().and_then(Repair::nearest);
     let named = [(DESIGNED_PROJECT, Some(view)), (NEAREST_PROJECT, nearest)];
@@ -35,6 +38,7 @@ pub fn files(loaded: &Loaded, view: &ProjectDesign) -> Vec<OutputFile> {
             Some(_) => with_pressure_feedback(&bytes, controller.pressure_feedback.as_ref()),
             None => bytes,
         };
+        let bytes = loaded.lines.as_ref().map_or(bytes.clone(), |chosen| with_line_model(&bytes, chosen));
         Some(OutputFile::new(name, bytes))
     };
     let certificate = certificate_of(loaded, &view.designed.view, DESIGNED_CERTIFICATE);
@@ -65,7 +69,14 @@ pub fn stage_files(
     files.push(OutputFile::new("verification.json", audit::json(loaded, &side.view)));
     files.extend(audit::files(&side.view));
     files.push(rounds(view));
+    files.retain(has_rows);
     Ok(files)
+}
+
+/// False for a table of headings alone: where steps alone are required there are no templates.
+fn has_rows(file: &OutputFile) -> bool {
+    let lines = file.bytes.iter().filter(|byte| **byte == b'\n').count();
+    !file.name.ends_with(".csv") || lines > 1
 }
 
 fn transfer_file(name: &str, function: &TransferFunction) -> OutputFile {
@@ -76,7 +87,11 @@ fn drawn(problem: &RobustProblem) -> Vec<f64> {
     let frequencies = problem.design_frequencies();
     match (frequencies.first(), frequencies.last()) {
         (Some(first), Some(last)) => problem.drawn_frequencies(first * BEYOND[0], last * BEYOND[1]),
-        _ => vec![],
+        // steps alone are required
+        _ => problem.in_time.first().map_or_else(Vec::new, |required| {
+            let bandwidth = 1.0 / required.wish.horizon_s;
+            problem.drawn_frequencies(bandwidth * BEYOND[0], bandwidth * BEYOND_BANDWIDTH)
+        }),
     }
 }
 

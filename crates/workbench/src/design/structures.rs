@@ -1,6 +1,8 @@
 //! The structures that were tried against what each reaches.
 
-use phea_engineering::design::{ReachedStructure, structure_key, structure_words};
+use phea_engineering::design::{
+    DesignLimitKind, ReachedStructure, limit_words, structure_key, structure_words,
+};
 use phea_qft::design::{ControllerChoice, Objective, StructureEnding};
 
 use super::ProjectDesign;
@@ -34,6 +36,19 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
     ];
     out.table(Table::new(headings).with(view.structures.iter().map(|one| row(view, one))));
     out.sentences(earned_sentence(view));
+    out.sentences(view.structures.iter().filter_map(|one| {
+        let slowest = one.slowest_zero_rad_per_s.filter(|_| one.ending != StructureEnding::NotEarned)?;
+        let found = significant(slowest, 3);
+        Some(format!(
+            "{}: a zero ended at {found} rad/s, the lowest that is looked for: a lower one may reach more",
+            words(one)
+        ))
+    }));
+    let way = limit_words(DesignLimitKind::RequiredStep);
+    let is_led = view.structures.iter().any(|one| one.binding.as_deref() == Some(way));
+    out.sentences(is_led.then(|| {
+        format!("the {way} is limits on |F T| that the search over frequency keeps; a design is judged by its steps")
+    }));
     out
 }
 
@@ -86,7 +101,7 @@ fn row(view: &ProjectDesign, one: &ReachedStructure) -> Vec<Cell> {
     vec![
         words(one).into(),
         Cell::count(one.order),
-        ending_words(one).into(),
+        ending_words(view, one).into(),
         one.least.as_ref().map_or(Cell::Missing, |least| Cell::margin(least.margin_db)),
         or_missing(one.binding.clone()),
         or_missing(crossover),
@@ -120,8 +135,16 @@ fn reached_steps(view: &ProjectDesign, one: &ReachedStructure) -> Option<[Option
     ])
 }
 
-fn ending_words(one: &ReachedStructure) -> &'static str {
+/// True where the steps of a structure that keeps every limit miss what is required in time.
+fn misses_in_time(view: &ProjectDesign, one: &ReachedStructure) -> bool {
+    let Some((reached, finding)) = one.steps.zip(view.designed.view.in_time.first()) else { return false };
+    one.ending == StructureEnding::Met && finding.requirement.wish.excess(&reached) > 1.0
+}
+
+fn ending_words(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
     match one.ending {
+        _ if misses_in_time(view, one) && one.is_chosen => "steps missed, nearest",
+        _ if misses_in_time(view, one) => "steps missed",
         StructureEnding::Met if one.is_chosen => "met, taken",
         StructureEnding::Met => "met",
         StructureEnding::Missed if one.is_chosen => "missed, nearest",
@@ -132,8 +155,9 @@ fn ending_words(one: &ReachedStructure) -> &'static str {
     }
 }
 
-fn ending_key(ending: StructureEnding) -> &'static str {
-    match ending {
+fn ending_key(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
+    match one.ending {
+        _ if misses_in_time(view, one) => "missed_in_time",
         StructureEnding::Met => "met",
         StructureEnding::Missed => "missed",
         StructureEnding::NotEarned => "not_earned",
@@ -151,8 +175,9 @@ pub(super) fn rows(view: &ProjectDesign) -> Vec<Object> {
             .maybe("name", (!name.is_empty()).then_some(name))
             .with("words", words(one))
             .with("order", one.order)
-            .with("status", ending_key(one.ending))
+            .with("status", ending_key(view, one))
             .with("taken", one.is_chosen)
+            .maybe("slowest_zero_rad_per_s", one.slowest_zero_rad_per_s)
             .maybe("worst_margin_db", one.least.as_ref().map(|least| least.margin_db))
             .maybe("binding", one.binding.clone())
             .maybe("binding_rad_per_s", one.least.as_ref().map(|least| least.frequency_rad_per_s))

@@ -40,9 +40,12 @@ pub(crate) fn document(view: &ProjectShaping) -> Document {
         out.heading("The nominal loop at the design frequencies");
         out.table(points(view));
     } else {
-        out.heading(
-            "The project states no [[specification]]: there are no margins and no design frequencies.",
-        );
+        out.heading(match view.problem.in_time.is_empty() {
+            true => "The project states no [[specification]]: there are no margins and no design frequencies.",
+            false => {
+                "The project requires steps alone, and nothing over frequency: there are no margins and no design frequencies; `verify` judges the steps."
+            }
+        });
     }
     if !view.unreached_rad_per_s.is_empty() {
         let missing: Vec<String> = view.unreached_rad_per_s.iter().copied().map(frequency_number).collect();

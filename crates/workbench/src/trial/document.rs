@@ -74,7 +74,19 @@ fn required(trial: &Trial) -> Document {
     out.verdict(verdict.into(), format!("Required in time: {}", satisfied_word(satisfies)), vec![]);
     out.explanation("The worst of the three steps of each run.");
     out.table(rows);
+    out.sentences(corners(trial));
     out
+}
+
+/// Which corners of the box the worst are, and by what.
+fn corners(trial: &Trial) -> Vec<String> {
+    let is_corner = |run: &&TrialRun| trial.corners.iter().any(|corner| corner.what == run.what);
+    let words = |run: &TrialRun| Some(format!("{}: {}", run.what, run.plant.as_ref()?.words()));
+    let mut told: Vec<String> = trial.runs.iter().filter(is_corner).filter_map(words).collect();
+    if !told.is_empty() {
+        told.push("the worst corner is the one that takes the largest share of what is required".to_string());
+    }
+    told
 }
 
 /// From one reference to the other.

@@ -4,7 +4,7 @@ use phea_dynamics::portable;
 use phea_dynamics::watch::{Watch, part, within};
 use phea_qft::audit::{audit, audit_of_known_plants};
 use phea_qft::closed_loop::Compensation;
-use phea_qft::design::{Design, DesignProblem, DesignStatus};
+use phea_qft::design::{Design, DesignProblem, DesignStatus, name_of};
 use phea_qft::loop_shaping::{Aim, DescentOptions, SampledMargin, Samples, SearchProblem, Shaping, descend};
 
 use super::shaping::{RESERVE_DB, StepShaping, StepWishes};
@@ -156,7 +156,7 @@ impl<'a> LedDesign<'a> {
             Some((prefilter, x)) => (Some(prefilter), x),
             None => (start.prefilter.clone(), of_prefilter.to_vec()),
         };
-        let name = start.name.filter(|_| structure == start.structure);
+        let name = if structure == start.structure { start.name } else { name_of(&structure) };
         let free_numbers = [own, of_prefilter].concat();
         let start = Design { structure, prefilter, free_numbers, name, ..start.clone() };
         self.begun(start, told, SearchReach::Anywhere, watch)

@@ -6,7 +6,10 @@ use super::led::LedDesign;
 use crate::design::ProjectDesign;
 
 /// Structures that it begins from.
-const STARTS: usize = 3;
+const STARTS: usize = 4;
+/// Structures that miss their limits by at most this are begun from in the order of their free
+/// numbers, dB.
+const NEARLY_DB: f64 = 0.3;
 /// Ratio of the worst run to what is required up to which a search looks beside a design first.
 const NEAR: f64 = 1.6;
 
@@ -22,8 +25,8 @@ pub(super) enum SearchReach {
 
 impl LedDesign<'_> {
     /// The design, and the structures that came nearest as they were found, its own among them
-    /// where it was led since, behind its prefilter where they have none. Before them what lies
-    /// beside a design whose runs on the nonlinear rig miss by little.
+    /// where it was led since, the simplest of them first, behind its prefilter where they have
+    /// none. Before them what lies beside a design whose runs on the nonlinear rig miss by little.
     pub(super) fn starts(
         &self,
         told: &ProjectDesign,
@@ -38,7 +41,10 @@ impl LedDesign<'_> {
         };
         let mut others: Vec<&TriedStructure> = tried.iter().filter(|one| is_other(one)).collect();
         others.sort_by(|one, other| least(other).total_cmp(&least(one)));
-        let others = others.into_iter().take(STARTS - 1).map(|tried| begun_from(tried, design));
+        let near = others.iter().take_while(|one| least(one) >= -NEARLY_DB).count();
+        others[..near].sort_by_key(|one| one.structure.dimension());
+        others.truncate(STARTS - 1);
+        let others = others.into_iter().map(|tried| begun_from(tried, design));
         let anywhere =
             std::iter::once(design.clone()).chain(others).map(|start| (start, SearchReach::Anywhere));
         let is_near = !self.aimed.added.is_empty() && told.worst_run() <= NEAR;
