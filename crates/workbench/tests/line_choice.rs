@@ -140,9 +140,9 @@ fn every_command_names_the_chosen_model() {
     assert!(found.iter().all(|one| one["model"] == "transmission_line" && *one == found[0]), "{found:?}");
 }
 
-/// A designed project states the model that was chosen for the design: by its crossover alone another
-/// might be chosen, and its margins would be those of other plants. Margins of the nominal loop are
-/// told with waves too, once as they are of the design and once in the audit.
+/// A designed project states the model that was chosen for the design: by its crossover alone
+/// another might be chosen, and its margins would be those of other plants. Margins of the nominal
+/// loop are told with waves too, once as they are of the design and once in the audit.
 #[test]
 fn a_designed_project_states_the_chosen_model() {
     let design = Request::Design { seed: None, stages: false, repair: false };
