@@ -40,6 +40,7 @@ const LONGEST_S: f64 = 1e9;
 /// Follows a long command on standard error: one line that changes on a terminal, a line every few
 /// seconds elsewhere.
 pub(crate) struct ProgressLine {
+    begun: Instant,
     next: Option<Instant>,
     terminal: bool,
     /// The line that was shown last; empty before the first.
@@ -53,7 +54,8 @@ impl Default for ProgressLine {
         let (variable, never) = KEEP_OUT;
         let wanted = std::env::var_os(variable).is_none_or(|value| value != never);
         let terminal = io::stderr().is_terminal();
-        let mut line = ProgressLine { next: None, terminal, shown: String::new(), even: None };
+        let begun = Instant::now();
+        let mut line = ProgressLine { begun, next: None, terminal, shown: String::new(), even: None };
         line.next = wanted.then(|| Instant::now() + line.patience());
         line
     }
@@ -103,10 +105,14 @@ impl ProgressLine {
         }
     }
 
-    /// Takes the line away.
+    /// Takes the line away; in a log the last one is the time that it took.
     pub(crate) fn clear(&mut self) {
-        if self.terminal && !self.shown.is_empty() {
-            let _ = write!(io::stderr().lock(), "\r\x1b[K");
+        match self.terminal {
+            _ if self.shown.is_empty() => {}
+            true => {
+                let _ = write!(io::stderr().lock(), "\r\x1b[K");
+            }
+            false => complain(&format!("ended after {} s", self.begun.elapsed().as_secs())),
         }
     }
 }

@@ -2,8 +2,9 @@
 
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::LinearError;
+use phea_dynamics::portable;
 use phea_qft::closed_loop::Compensation;
-use phea_qft::design::{NamedStructure, PrefilterChoice, StructureEnding, TriedStructure};
+use phea_qft::design::{NamedStructure, Objective, PrefilterChoice, StructureEnding, TriedStructure};
 use phea_qft::loop_shaping::{SampledMargin, Structure};
 
 use super::{DesignError, DesignRun, NominalMargins, ProjectDesign};
@@ -75,7 +76,7 @@ pub(super) fn led(
         ending: if led.is_met() { StructureEnding::Met } else { StructureEnding::Missed },
         law: Some(design.law.clone()),
         least,
-        reached_db: None,
+        reached_db: noise_gain_db(run, led),
     };
     let own = reached_by(run, led, &own)?;
     let mut all: Vec<ReachedStructure> = before.structures.clone();
@@ -108,13 +109,14 @@ fn reached_by(
         }
         None => None,
     };
-    let least = tried.least.clone();
+    let is_chosen = tried.structure == told.design.structure;
+    let audited = if is_chosen { audited_least(told) } else { None };
+    let least = tried.least.clone().map(|sampled| audited.unwrap_or(sampled));
     let own = run.aimed.specifications.len() - run.aimed.design_limits.len();
     let name_of = |margin: &SampledMargin| match margin.specification {
         index if index < own => Some(told.named(index)),
         index => run.aimed.specification_names.get(index).cloned(),
     };
-    let is_chosen = tried.structure == told.design.structure;
     let has_prefilter = law.is_some_and(|law| !law.prefilter.stages.is_empty());
     let is_fitted = has_prefilter || !matches!(told.options.prefilter, PrefilterChoice::Grow { .. });
     let steps = match (told.designed.view.in_time.first(), &around) {
@@ -137,6 +139,45 @@ fn reached_by(
         high_frequency_gain_db,
         compared_db: tried.reached_db,
     })
+}
+
+/// The least margin that the audit of a design found to anything that it is judged by.
+fn audited_least(told: &ProjectDesign) -> Option<SampledMargin> {
+    let of_project = told.designed.view.audit.specifications.iter().map(|finding| (true, finding));
+    let of_design = told.limit_findings.iter().map(|(kind, finding)| (!kind.is_led_to(), finding));
+    let judged = of_project.chain(of_design).enumerate().filter(|(_, (is_judged, _))| *is_judged);
+    let margins = judged.filter_map(|(specification, (_, finding))| {
+        let worst = finding.worst.as_ref()?;
+        Some(SampledMargin {
+            specification,
+            frequency_rad_per_s: worst.frequency_rad_per_s,
+            margin_db: worst.margin_db,
+            plant: worst.plant.clone(),
+            other: worst.other.clone(),
+        })
+    });
+    margins.min_by(|one, other| one.margin_db.total_cmp(&other.margin_db))
+}
+
+/// The largest gain from the noise of the sensor to the command of the nominal loop, by which
+/// structures are compared for the least gain at high frequency; dB.
+///
+/// ```text
+/// 20 log10 max |G/(1 + L)|         over the frequencies of the search
+/// ```
+fn noise_gain_db(run: &DesignRun, told: &ProjectDesign) -> Option<f64> {
+    if told.options.objective != Objective::LeastHighFrequencyGain {
+        return None;
+    }
+    let around = &told.designed.problem;
+    let nominal = around.nominal().ok()??;
+    let gain = |frequency: &f64| {
+        let response = around.response(&nominal, *frequency)?;
+        let open_loop = response.plant * response.sensor * response.controller;
+        Some(portable::magnitude(response.controller / (1.0 + open_loop)))
+    };
+    let frequencies = run.outcome.samples()?.frequencies_rad_per_s();
+    frequencies.iter().filter_map(gain).reduce(f64::max).map(decibels)
 }
 
 impl ProjectDesign {

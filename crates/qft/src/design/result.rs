@@ -5,7 +5,7 @@ use phea_dynamics::order::sort_numbers;
 
 use super::binding::binding_limits;
 use super::{DesignOptions, NamedStructure};
-use crate::loop_shaping::{SearchResult, Shaping, Structure};
+use crate::loop_shaping::{SearchProblem, SearchResult, Shaping, Structure};
 use crate::verification::{Audit, PlantPoint, Verdict};
 
 /// Why a design ended.
@@ -166,12 +166,14 @@ impl Design {
         options: &DesignOptions,
     ) -> Design {
         let law = shaping.controller(&free_numbers);
+        let objective_db = shaping.clone().judge(&free_numbers).objective_db;
         let status = match audit.verdict {
             Verdict::Met => DesignStatus::Met,
             Verdict::NotProven | Verdict::Violated => self.status,
         };
         Design {
             status,
+            objective_db,
             controller: law.clone(),
             law,
             binding: binding_limits(&audit, options),

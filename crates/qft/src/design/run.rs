@@ -311,11 +311,11 @@ impl<'a> DesignProgress<'a> {
         Ok(attempt.that_earns(self.to_be_reached_db()))
     }
 
-    /// What a longer structure than the one that is met must reach, dB.
+    /// What another structure than the one that is met must reach, dB; one as long as if longer.
     fn to_be_reached_db(&self) -> Option<f64> {
         let ControllerChoice::Any { earned_per_pole_db, .. } = self.options.controller else { return None };
         let (met, reached_db) = self.met?;
-        let further = self.now.name()?.order().saturating_sub(met.order());
+        let further = self.now.name()?.order().saturating_sub(met.order()).max(1);
         Some(reached_db? - earned_per_pole_db * further as f64)
     }
 

@@ -93,7 +93,8 @@ pub(crate) fn document(
     }
     if let Some(worst) = summary.worst.first() {
         out.line(format!(
-            "To repeat a run: --run INDEX, such as --run {}; it prints the numbers as --set, and everything that happened.",
+            "To repeat a run: --seed {} --run INDEX in place of --runs, such as --run {}; it prints the numbers as --set, and everything that happened.",
+            plan.seed(),
             worst.run
         ));
     }

@@ -159,6 +159,13 @@ pub(crate) fn costs(view: &ProjectDesign) -> Document {
         "A search over some plants and frequencies, then an audit over the whole family and band, whose worst plants and frequencies the next search includes, until both agree. The same seed finds the same controller.",
     );
     out.folded("Every round", rounds(view));
+    let last = view.design.rounds.last();
+    out.sentences(last.filter(|round| round.objective_db != view.design.objective_db).map(|round| {
+        format!(
+            "these rounds are those over frequency, of {}; the design was led by its steps since",
+            structure_words(&round.structure)
+        )
+    }));
     out.sentences(
         std::iter::once(seed_sentence(view)).chain(view.design.starts.as_ref().map(starts_sentence)),
     );

@@ -44,6 +44,16 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
             words(one)
         ))
     }));
+    let is_missed = |one: &ReachedStructure| !one.is_chosen && misses_in_time(view, one);
+    if let Some(missed) = view.structures.iter().find(|one| is_missed(one)) {
+        let named = match structure_key(missed.name) {
+            "" => String::new(),
+            name => format!(", such as `design.structure = \"{name}\"`,"),
+        };
+        out.sentences([format!(
+            "steps missed: those of the controller that the search over frequency found; the structure alone{named} is led by its steps and may satisfy them"
+        )]);
+    }
     let way = limit_words(DesignLimitKind::RequiredStep);
     let is_led = view.structures.iter().any(|one| one.binding.as_deref() == Some(way));
     out.sentences(is_led.then(|| {
@@ -68,7 +78,7 @@ fn earned_sentence(view: &ProjectDesign) -> Option<String> {
     };
     Some(match earned_per_pole_db(view)? {
         most_db if most_db.is_finite() => format!(
-            "a longer structure of these names takes the place of one that is met where it {by} by {} dB for each further pole (`design.earned_per_pole`)",
+            "a longer structure of these names takes the place of one that is met where it {by} by {} dB for each further pole, one as long by as much (`design.earned_per_pole`)",
             significant(most_db, 3)
         ),
         _ => "no longer structure takes the place of one that is met (`design.earned_per_pole`)".to_string(),
@@ -141,6 +151,11 @@ fn misses_in_time(view: &ProjectDesign, one: &ReachedStructure) -> bool {
     one.ending == StructureEnding::Met && finding.requirement.wish.excess(&reached) > 1.0
 }
 
+/// True where a structure has no more poles than the one that is taken.
+fn is_as_long(view: &ProjectDesign, one: &ReachedStructure) -> bool {
+    view.structures.iter().any(|other| other.is_chosen && other.order >= one.order)
+}
+
 fn ending_words(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
     match one.ending {
         _ if misses_in_time(view, one) && one.is_chosen => "steps missed, nearest",
@@ -149,6 +164,7 @@ fn ending_words(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
         StructureEnding::Met => "met",
         StructureEnding::Missed if one.is_chosen => "missed, nearest",
         StructureEnding::Missed => "missed",
+        StructureEnding::NotEarned if is_as_long(view, one) => "not better",
         StructureEnding::NotEarned => "not worth its poles",
         StructureEnding::NotConverged => "not converged",
         StructureEnding::NotStabilised => "not stabilised",
