@@ -325,11 +325,15 @@ impl ProjectAudit {
         match &self.names {
             PlantNames::Measured(names) => format!("Family: {}.", counted(names.len(), "measured response")),
             PlantNames::Parameters(names) if names.is_empty() => format!("Family: one plant{moving}."),
-            PlantNames::Parameters(names) if self.whole_box => format!(
-                "Family: {} of a box over {}, and everything between them{moving}.",
-                counted(self.members, "plant"),
-                counted(names.len(), "uncertain parameter")
-            ),
+            PlantNames::Parameters(names) if self.whole_box => {
+                // the members of a family with lines in motion are without the corners
+                let beside = if self.has_lines_in_motion() { " beside the corners" } else { "" };
+                format!(
+                    "Family: {}{beside} of a box over {}, and everything between them{moving}.",
+                    counted(self.members, "plant"),
+                    counted(names.len(), "uncertain parameter")
+                )
+            }
             PlantNames::Parameters(names) => {
                 format!(
                     "Family: {} with {}{moving}.",

@@ -113,9 +113,11 @@ pub(super) fn sentence(view: &ProjectAudit) -> Option<String> {
         };
         return Some(format!("The worst margins are those of the {plants} measured responses{discs}."));
     }
+    // plants without polynomials cost too much to be searched for between
+    let searched = if view.without_polynomials.is_some() { "" } else { ", and of a search from these" };
     (plants > 1).then(|| {
         format!(
-            "The worst margins are those of {plants} plants: members, corners, the worst of the audit, and a search from these."
+            "The worst margins are those of {plants} plants: members and corners spread over the family, the worst of the audit{searched}."
         )
     })
 }
