@@ -86,8 +86,8 @@ pub(crate) fn linear_step_knowing(
     Ok(StepResponse { times_s, values })
 }
 
-/// What disturbs a loop of this plant, as it is seen with one controller, as it would be seen with
-/// another one: samples of the response to the same disturbance, by a convolution.
+/// A disturbance carried from the loop of one controller to that of another around the same plant:
+/// samples of the response of either loop to it, by a convolution.
 ///
 /// ```text
 /// y'(k) = y(k) + sum of g(i) y(k - i),     g that of (1 + L)/(1 + L') - 1

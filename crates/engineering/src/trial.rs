@@ -71,9 +71,9 @@ pub struct Trial {
 /// When the corners of the box are driven.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrivenCorners {
-    /// In every trial: a search wants to know what the rig adds there.
+    /// Always: a search wants to know what the rig adds there.
     Always,
-    /// Where all else satisfies what is required: a run that misses tells as much.
+    /// Only as long as all else satisfies what is required: a run that misses tells as much.
     WhereElseSatisfies,
 }
 

@@ -35,8 +35,8 @@ impl NominalMargins {
     }
 }
 
-/// Of the loop of the nominal plant, which must be stable, by its polynomials or else its response;
-/// `None` where its response is not known.
+/// Margins of the loop of the nominal plant, which must be stable, by its polynomials or else its
+/// response; `None` where its response is not known.
 pub(crate) fn nominal_margins(problem: &RobustProblem) -> Option<NominalMargins> {
     let found = margins_of(problem, &nominal_point(problem))?;
     let crossover = found.phase_margins.iter().map(|margin| margin.frequency_rad_per_s).fold(0.0, f64::max);

@@ -44,12 +44,12 @@ const BAND_SHARE_WITH_RIG: f64 = 0.95;
 /// Least overshoot that is aimed at, percent.
 const LEAST_OVERSHOOT_PERCENT: f64 = 0.3;
 
-/// What the steps of a design are led towards.
+/// The aim of a search by steps, and what is known of them.
 #[derive(Clone, Copy)]
 pub(super) struct AimedSteps<'a> {
     pub(super) given: &'a RobustProblem,
     pub(super) aim: StepAim,
-    /// What the nonlinear rig is known to add to steps.
+    /// Differences of steps on the nonlinear rig, as far as they are known.
     pub(super) added: &'a [AddedByRig],
     /// The plants, which all searches of a design share.
     pub(super) plants: &'a SteppedPlants,

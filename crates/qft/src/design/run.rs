@@ -311,7 +311,7 @@ impl<'a> DesignProgress<'a> {
         Ok(attempt.that_earns(self.to_be_reached_db()))
     }
 
-    /// What another structure than the one that is met must reach, dB; one as long as if longer.
+    /// The value that a structure must reach to take the place of the one that is met, dB.
     fn to_be_reached_db(&self) -> Option<f64> {
         let ControllerChoice::Any { earned_per_pole_db, .. } = self.options.controller else { return None };
         let (met, reached_db) = self.met?;

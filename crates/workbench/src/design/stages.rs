@@ -38,7 +38,10 @@ pub fn files(loaded: &Loaded, view: &ProjectDesign) -> Vec<OutputFile> {
             Some(_) => with_pressure_feedback(&bytes, controller.pressure_feedback.as_ref()),
             None => bytes,
         };
-        let bytes = loaded.lines.as_ref().map_or(bytes.clone(), |chosen| with_line_model(&bytes, chosen));
+        let bytes = match &loaded.lines {
+            Some(chosen) => with_line_model(&bytes, chosen),
+            None => bytes,
+        };
         Some(OutputFile::new(name, bytes))
     };
     let certificate = certificate_of(loaded, &view.designed.view, DESIGNED_CERTIFICATE);

@@ -70,7 +70,7 @@ impl AuditedStep {
     }
 
     /// True where it keeps every limit on frequency responses.
-    pub(super) fn keeps_limits(&self) -> bool {
+    fn keeps_limits(&self) -> bool {
         self.verdict == 0
     }
 

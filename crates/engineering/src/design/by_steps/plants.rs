@@ -29,8 +29,8 @@ impl SteppedPlant {
         linear_step_knowing(&self.member, around, duration, &self.known).ok()
     }
 
-    /// What disturbs its loop, carried from one controller to another, in samples of this distance
-    /// and number.
+    /// Carries a disturbance from the loop of one controller to that of another, in samples of this
+    /// distance and number.
     pub(super) fn carried(&self, loops: [&Compensation; 2], samples: (f64, usize)) -> CarriedDisturbance {
         CarriedDisturbance::new(&self.member, loops, samples, &self.known)
     }

@@ -49,7 +49,7 @@ pub(super) struct StepShaping<'a> {
     added: Vec<AddedByRig>,
     sensor: TransferFunction,
     plants: Vec<LedPlant>,
-    /// Where plants come from.
+    /// Plants that all searches of a design share.
     all: &'a SteppedPlants,
     /// Least and greatest value of each free number.
     bounds: Vec<[f64; 2]>,
