@@ -18,6 +18,7 @@ mod shaping;
 mod start;
 mod structure;
 mod subproblem;
+mod triplets;
 
 pub(crate) use best_seen::BestSeen;
 pub use descent::{Binding, DescentOptions, DescentResult, DescentStatus, DescentWork, descend};

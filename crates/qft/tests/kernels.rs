@@ -48,6 +48,8 @@ mod search_of_a_box;
 mod spread;
 #[path = "../src/loop_shaping/subproblem.rs"]
 mod subproblem;
+#[path = "../src/loop_shaping/triplets.rs"]
+mod triplets;
 
 use phea_qft::closed_loop::{self, Compensation};
 use phea_qft::loop_shaping as search;

@@ -196,7 +196,7 @@ impl Attempt {
 
     fn until_agreed(&mut self, kept: &KeptPlants, watch: Watch<'_>) -> Result<AttemptEnding, Leave> {
         let given = std::mem::take(&mut self.given);
-        self.search(given, self.options.seed, watch)?;
+        self.search(given, (self.options.seed, self.effort), watch)?;
         if self
             .earns
             .is_some_and(|most_db| !self.reached_db().is_some_and(|reached_db| reached_db <= most_db))
@@ -267,8 +267,13 @@ impl Attempt {
     }
 
     /// Searches, and fits a prefilter to what was found.
-    fn search(&mut self, given: Vec<Vec<f64>>, seed: u64, watch: Watch<'_>) -> Result<(), Leave> {
-        let options = search_options(self.aim, seed, self.relaxes, self.effort);
+    fn search(
+        &mut self,
+        given: Vec<Vec<f64>>,
+        (seed, effort): (u64, SearchEffort),
+        watch: Watch<'_>,
+    ) -> Result<(), Leave> {
+        let options = search_options(self.aim, seed, self.relaxes, effort);
         let mut seen = BestSeen::new(&mut self.shaping, self.aim);
         let found = search(&mut seen, given, &options, &mut part(watch, SHAPING, WHOLE));
         if found.is_err() {
@@ -437,7 +442,7 @@ impl Attempt {
         let seed = self.options.seed.wrapping_add(self.restarts);
         let sound = self.sound.get(..self.structure.dimension()).map(<[f64]>::to_vec);
         let given = sound.into_iter().chain(self.stabilising.iter().cloned()).collect();
-        self.search(given, seed, watch)
+        self.search(given, (seed, self.effort.again()), watch)
     }
 
     fn prefilter_is_fitted(&self) -> bool {

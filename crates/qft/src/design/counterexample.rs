@@ -1,5 +1,7 @@
 //! What the search learns from an audit: plants and frequencies that it had not evaluated.
 
+use phea_dynamics::portable;
+
 use crate::loop_shaping::DesignProblem;
 use crate::specification::ClosedLoop;
 use crate::verification::{
@@ -72,9 +74,15 @@ pub(super) fn unstable_plant(audit: &Audit) -> Vec<Counterexample> {
     }
 }
 
-/// The plant that tolerates less delay than is required.
-pub(super) fn too_little_delay(audit: &Audit, problem: &DesignProblem) -> Vec<Counterexample> {
-    let least = audit.delay_margin.iter().filter(|margin| !problem.tolerates_its_delay(margin.delay_s));
+/// The plant that tolerates less delay than is required, the requirement relaxed by this much, dB.
+pub(super) fn too_little_delay(
+    audit: &Audit,
+    problem: &DesignProblem,
+    relaxation_db: f64,
+) -> Vec<Counterexample> {
+    let eased = portable::pow(10.0, relaxation_db.max(0.0) / 20.0);
+    let is_missed = |margin: &&DelayMargin| !problem.tolerates_its_delay(eased * margin.delay_s);
+    let least = audit.delay_margin.iter().filter(is_missed);
     let example = |margin: &DelayMargin| Counterexample {
         plants: vec![margin.plant.clone()],
         frequency_rad_per_s: Some(margin.frequency_rad_per_s),

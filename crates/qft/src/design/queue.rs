@@ -43,10 +43,16 @@ impl WaitingStructure {
         }
     }
 
-    /// How widely is searched.
-    pub(super) fn effort(self, structure: &Structure, is_hard: bool) -> SearchEffort {
+    /// How widely is searched, in a problem that may be hard, for a structure that may have to
+    /// reach this many dB to be of interest.
+    pub(super) fn effort(
+        self,
+        structure: &Structure,
+        (is_hard, to_be_reached_db): (bool, Option<f64>),
+    ) -> SearchEffort {
         match self {
             _ if is_hard => SearchEffort::Great,
+            _ if to_be_reached_db.is_some() => SearchEffort::Least,
             WaitingStructure::Named(_) if structure.dimension() <= FEW_NUMBERS => SearchEffort::Small,
             _ => SearchEffort::Usual,
         }

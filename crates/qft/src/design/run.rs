@@ -304,7 +304,7 @@ impl<'a> DesignProgress<'a> {
             None => self.first_samples()?,
         };
         let stabilising = self.ground.stabilising(&structure, self.problem);
-        let effort = self.now.effort(&structure, self.is_hard);
+        let effort = self.now.effort(&structure, (self.is_hard, self.to_be_reached_db()));
         let beginning = StartingPoints { simpler, stabilising, effort };
         let options = self.options_of(&structure);
         let attempt = Attempt::new(structure, samples, &options, self.relaxing, beginning)?;

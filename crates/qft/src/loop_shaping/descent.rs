@@ -184,6 +184,13 @@ impl Descent {
         self.here.as_ref().map_or(&self.x, |here| &here.x)
     }
 
+    /// Ends where another has ended.
+    pub(super) fn end_at(&mut self, other: &Descent) {
+        self.here.clone_from(&other.here);
+        self.binding.clone_from(&other.binding);
+        self.status = other.status;
+    }
+
     /// The judgement of the present point; `None` before the first step.
     pub(super) fn judgement(&self) -> Option<Judgement> {
         self.here.as_ref().map(|here| here.judgement)

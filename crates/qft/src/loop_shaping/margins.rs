@@ -21,7 +21,7 @@ use super::structure::DECIBELS_PER_NEPER;
 use crate::specification::{ClosedLoop, Specification, fraction_kept};
 use crate::verification::TrackingJudgement;
 
-pub(super) use crossover::{ColumnDependence, DelayMargins, bandwidth, delay_margins};
+pub(super) use crossover::{AboveColumns, ColumnDependence, DelayMargins, bandwidth, delay_margins};
 pub(super) use prominent::MarginCandidate;
 pub(super) use rows::candidates;
 

@@ -14,7 +14,7 @@ use super::search::{Aim, Judgement, SearchProblem};
 use evolution::Evolution;
 use spread::AdditiveRecurrence;
 
-/// Starts nearer to one another than this share of the bounds in every coordinate count as one.
+/// Points nearer to one another than this share of the bounds in every coordinate count as one.
 const DISTINCT: f64 = 0.05;
 /// Steps of each descent before the better ones are chosen.
 const STEPS_ROUGH: usize = 12;
@@ -88,7 +88,8 @@ pub struct SearchResult {
     pub judgement: Judgement,
     /// The margins that limit further steps there, the strongest first.
     pub binding: Vec<Binding>,
-    /// Every completed descent, the best first.
+    /// The end of every completed descent, the best first. A descent that came near to the end of
+    /// another, and was no better, counts as having ended there.
     pub ends: Vec<DescentEnd>,
     /// Number of points that were evaluated before the descents: given ones, samples and the last
     /// generation of an evolution, if any.
@@ -317,13 +318,26 @@ impl StartSearch<'_> {
 
     fn descend_to_the_end(&mut self, descents: &mut [Descent], watch: Watch<'_>) -> Result<(), Stopped> {
         let all = descents.len();
-        for (done, descent) in descents.iter_mut().enumerate() {
+        for done in 0..all {
+            let (ended, descents) = descents.split_at_mut(done);
+            let Some(descent) = descents.first_mut() else { break };
             while descent.advance(self.problem).is_none() {
                 tell(watch, STAGE, done, all)?;
+                if let Some(end) = ended.iter().find(|end| self.leads_to(descent, end)) {
+                    descent.end_at(end);
+                    break;
+                }
             }
         }
         self.sort(descents);
         Ok(())
+    }
+
+    /// True where a descent has come near to an end that is no worse than what it has reached.
+    fn leads_to(&self, descent: &Descent, end: &Descent) -> bool {
+        let [own, others] = [descent, end].map(|one| standing(&self.options.descent, one.judgement()));
+        !is_distinct(descent.x(), end.x(), self.problem.bounds())
+            && others.0.cmp(&own.0).then(others.1.total_cmp(&own.1)).is_le()
     }
 
     /// The best first.
@@ -386,14 +400,14 @@ fn add_distinct<'c>(
     bounds: &[[f64; 2]],
 ) {
     for candidate in from {
-        if starts.len() < most && starts.iter().all(|start| is_distinct(candidate, start, bounds)) {
+        if starts.len() < most && starts.iter().all(|start| is_distinct(&candidate.x, &start.x, bounds)) {
             starts.push(candidate);
         }
     }
 }
 
-/// Whether two points differ by a share of the bounds that justifies a second descent.
-fn is_distinct(a: &JudgedPoint, b: &JudgedPoint, bounds: &[[f64; 2]]) -> bool {
-    let apart = a.x.iter().zip(&b.x).zip(bounds);
+/// True where two points differ by a share of the bounds that justifies a second descent.
+fn is_distinct(a: &[f64], b: &[f64], bounds: &[[f64; 2]]) -> bool {
+    let apart = a.iter().zip(b).zip(bounds);
     apart.into_iter().any(|((a, b), [low, high])| (a - b).abs() > DISTINCT * (high - low))
 }

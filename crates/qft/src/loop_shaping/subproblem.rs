@@ -5,6 +5,7 @@ use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeCone
 
 use super::descent::Curvature;
 use super::search::{Aim, MarginRow};
+use super::triplets::Triplets;
 
 /// A coordinate whose range is a smaller share of the box than this stays where it is.
 const RANGE_MINIMUM: f64 = 1e-9;
@@ -12,6 +13,10 @@ const RANGE_MINIMUM: f64 = 1e-9;
 const ROOM_LARGEST: f64 = 1e-6;
 /// Largest error of the conditions of optimality, relative to the slopes in them.
 const ERROR_MAXIMUM: f64 = 1e-5;
+/// Rows among which a step is looked for first, beside one for each coordinate.
+const ROWS_FIRST: usize = 24;
+/// A row that is not among those is violated beyond this, in units of the box.
+const VIOLATED: f64 = 1e-8;
 const ITERATIONS_MAXIMUM: u32 = 100;
 const TOLERANCE: f64 = 1e-9;
 
@@ -75,23 +80,49 @@ struct Scaled {
     violation: f64,
     /// The coordinates that may move.
     free: Vec<usize>,
-    /// The rows that can matter in this box, and their margins with v0, divided by scale.
-    kept: Vec<(usize, f64)>,
+    /// The rows that can matter in this box.
+    kept: Vec<ScaledRow>,
     /// Bounds of e.
     bounds: Vec<[f64; 2]>,
     /// Least w; `None` where it is free.
     least: Option<f64>,
 }
 
+/// The index of a row, and its margin with v0, divided by scale.
+type ScaledRow = (usize, f64);
+
+/// The best step of all, or the other rows that the best one of some violates.
+enum Among {
+    Best(PredictedStep),
+    Violates(Vec<ScaledRow>),
+}
+
 impl Subproblem<'_> {
-    /// The best step.
+    /// The best step, of the rows of least margin and those that such a step violates: few bind.
     pub(super) fn solve(&self) -> Result<PredictedStep, SubproblemFailure> {
         if !self.is_finite() {
             return Err(SubproblemFailure::NotFinite);
         }
         let scaled = self.scaled()?;
-        let (matrix, limits) = scaled.constraints(self.margins);
-        let (quadratic, linear) = self.cost(&scaled);
+        let mut rows = scaled.nearest();
+        loop {
+            let is_all = rows.len() == scaled.kept.len();
+            match self.solve_among(&scaled, &rows) {
+                Ok(Among::Best(step)) => return Ok(step),
+                Ok(Among::Violates(further)) => {
+                    rows.extend(further);
+                    rows.sort_unstable_by_key(|(index, _)| *index);
+                }
+                Err(failure) if is_all => return Err(failure),
+                Err(_) => rows.clone_from(&scaled.kept),
+            }
+        }
+    }
+
+    /// The best step that satisfies these rows, or the others that it violates.
+    fn solve_among(&self, scaled: &Scaled, rows: &[ScaledRow]) -> Result<Among, SubproblemFailure> {
+        let (matrix, limits) = scaled.constraints(rows, self.margins);
+        let (quadratic, linear) = self.cost(scaled);
         let settings = DefaultSettings {
             verbose: false,
             max_iter: ITERATIONS_MAXIMUM,
@@ -108,13 +139,15 @@ impl Subproblem<'_> {
             .map_err(|_| SubproblemFailure::NotSolved)?;
         solver.solve();
         let solution = &solver.solution;
-        if !matches!(
-            solution.status,
-            SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress
-        ) {
+        let usable = [SolverStatus::Solved, SolverStatus::AlmostSolved, SolverStatus::InsufficientProgress];
+        if !usable.contains(&solution.status) || !finite(&solution.x) || !finite(&solution.z) {
             return Err(SubproblemFailure::NotSolved);
         }
-        self.answer(&scaled, &solution.x, &solution.z)
+        let further = scaled.violated(&solution.x, rows, self.margins);
+        if !further.is_empty() {
+            return Ok(Among::Violates(further));
+        }
+        self.answer(scaled, rows, (&solution.x, &solution.z)).map(Among::Best)
     }
 
     fn is_finite(&self) -> bool {
@@ -191,14 +224,11 @@ impl Subproblem<'_> {
     fn answer(
         &self,
         scaled: &Scaled,
-        point: &[f64],
-        dual: &[f64],
+        rows: &[ScaledRow],
+        (point, dual): (&[f64], &[f64]),
     ) -> Result<PredictedStep, SubproblemFailure> {
-        if !finite(point) || !finite(dual) {
-            return Err(SubproblemFailure::NotSolved);
-        }
         let mut step = vec![0.0; self.step_bounds.len()];
-        let held = dual.iter().skip(scaled.kept.len());
+        let held = dual.iter().skip(rows.len());
         let held = held.clone().step_by(2).zip(held.skip(1).step_by(2));
         for ((&coordinate, &share), (&above, &below)) in scaled.free.iter().zip(point).zip(held) {
             let ([low, high], [least, greatest]) = (self.step_bounds[coordinate], scaled.bounds[coordinate]);
@@ -211,7 +241,7 @@ impl Subproblem<'_> {
             };
         }
         let mut multipliers = vec![0.0; self.margins.len()];
-        for ((index, _), &multiplier) in scaled.kept.iter().zip(dual) {
+        for ((index, _), &multiplier) in rows.iter().zip(dual) {
             multipliers[*index] = multiplier.max(0.0);
         }
         let error = self.optimality_error(scaled, &step, &multipliers);
@@ -273,19 +303,49 @@ impl Subproblem<'_> {
 }
 
 impl Scaled {
+    /// The rows of least margin, in their order.
+    fn nearest(&self) -> Vec<ScaledRow> {
+        let mut rows = self.kept.clone();
+        let count = ROWS_FIRST + self.free.len();
+        if count < rows.len() {
+            rows.select_nth_unstable_by(count, |one, other| {
+                one.1.total_cmp(&other.1).then(one.0.cmp(&other.0))
+            });
+            rows.truncate(count);
+            rows.sort_unstable_by_key(|(index, _)| *index);
+        }
+        rows
+    }
+
+    /// The other rows that (e, w) violates.
+    fn violated(&self, point: &[f64], rows: &[ScaledRow], margins: &[MarginRow]) -> Vec<ScaledRow> {
+        if rows.len() == self.kept.len() {
+            return vec![];
+        }
+        let is_violated = |(index, eased): &&ScaledRow| {
+            let Some((row, relaxed)) = margins.get(*index).zip(point.last()) else { return false };
+            let moved =
+                self.free.iter().zip(point).map(|(&coordinate, share)| row.slopes[coordinate] * share);
+            eased + moved.sum::<f64>() + row.rate * relaxed < -VIOLATED
+        };
+        let is_other =
+            |(index, _): &&ScaledRow| rows.binary_search_by_key(index, |(index, _)| *index).is_err();
+        self.kept.iter().filter(is_other).filter(is_violated).copied().collect()
+    }
+
     /// Constraints `matrix (e, w) <= limits`: the rows, the upper and lower bounds of e, the least
     /// w.
-    fn constraints(&self, margins: &[MarginRow]) -> (CscMatrix<f64>, Vec<f64>) {
-        let (rows, columns) = (self.kept.len(), self.free.len());
+    fn constraints(&self, kept: &[ScaledRow], margins: &[MarginRow]) -> (CscMatrix<f64>, Vec<f64>) {
+        let (rows, columns) = (kept.len(), self.free.len());
         let mut entries = Triplets::default();
-        for (row, (index, _)) in self.kept.iter().enumerate() {
+        for (row, (index, _)) in kept.iter().enumerate() {
             let margin = &margins[*index];
             for (column, &coordinate) in self.free.iter().enumerate() {
                 entries.push(row, column, -margin.slopes[coordinate]);
             }
             entries.push(row, columns, -margin.rate);
         }
-        let mut limits: Vec<f64> = self.kept.iter().map(|(_, eased)| *eased).collect();
+        let mut limits: Vec<f64> = kept.iter().map(|(_, eased)| *eased).collect();
         for (column, &coordinate) in self.free.iter().enumerate() {
             entries.push(rows + 2 * column, column, 1.0);
             entries.push(rows + 2 * column + 1, column, -1.0);
@@ -296,26 +356,6 @@ impl Scaled {
             limits.push(-least);
         }
         (entries.matrix(limits.len(), columns + 1), limits)
-    }
-}
-
-/// Entries of a sparse matrix.
-#[derive(Default)]
-struct Triplets {
-    rows: Vec<usize>,
-    columns: Vec<usize>,
-    values: Vec<f64>,
-}
-
-impl Triplets {
-    fn push(&mut self, row: usize, column: usize, value: f64) {
-        self.rows.push(row);
-        self.columns.push(column);
-        self.values.push(value);
-    }
-
-    fn matrix(self, rows: usize, columns: usize) -> CscMatrix<f64> {
-        CscMatrix::new_from_triplets(rows, columns, self.rows, self.columns, self.values)
     }
 }
 
@@ -336,6 +376,8 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use phea_dynamics::portable;
+
     use super::*;
 
     fn row(sample: usize, margin_db: f64, rate: f64, slopes: &[f64]) -> MarginRow {
@@ -415,6 +457,23 @@ mod tests {
         near(&answer.step, &[1.0]);
         near(&answer.multipliers, &[1.0 / 3.0; 2]);
         near(&[answer.violation_db, answer.decrease_db], &[0.25 - 1.0, 1.0]);
+    }
+
+    /// Least x + 2 y within a disc that a thousand tangents enclose, of which few are looked at
+    /// first: the two beside (-1, -2)/sqrt(5) bind.
+    #[test]
+    fn few_of_many_rows_bind() {
+        let tangent = |index: usize| {
+            let angle = std::f64::consts::TAU * index as f64 / 1000.0;
+            row(index, 1.0, 1.0, &[portable::cos(angle), portable::sin(angle)])
+        };
+        let rows: Vec<MarginRow> = (0..1000).map(tangent).collect();
+        let answer = subproblem(Aim::Objective, &[1.0, 2.0], &rows, &[[-9.0, 9.0]; 2]).solve().unwrap();
+        // a corner of the polygon lies outside of the circle by less than 5e-6 of its radius
+        let circle = 5_f64.sqrt();
+        assert!((answer.decrease_db / circle - 1.0).abs() < 5e-6, "{answer:?}");
+        let bind: Vec<usize> = (0..1000).filter(|index| answer.multipliers[*index] > 1e-6).collect();
+        assert_eq!(bind, [176, 177]); // of atan2(2, 1), 1000/(2 pi) to a radian
     }
 
     /// What the box does not allow remains as a violation, which is penalised.

@@ -92,6 +92,31 @@ fn the_relaxation_of_a_gain_alone_is_that_of_its_closed_form() {
     }
 }
 
+/// A delay that is required counts among what is relaxed. Under a gain g, of 1/s:
+///
+/// ```text
+/// |S|^2 = 1/(1 + g^2) <= R a^2  at 1 rad/s          delay = (pi/2)/g >= D/R^(1/2)
+/// both reached:  (pi/(2 D))^2 R^2 + R - 1/a^2 = 0
+/// ```
+#[test]
+fn a_required_delay_is_relaxed_with_the_limits() {
+    let (a, delay_s) = (0.3, 1.0);
+    let sensitivity = Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(a));
+    let specifications = vec![demand(sensitivity, &[1.0], [0.0, 1.0])];
+    let problem =
+        DesignProblem { minimum_delay_margin_s: delay_s, ..problem(integrator(1.0), specifications) };
+    let square = (std::f64::consts::FRAC_PI_2 / delay_s).powi(2);
+    let ratio = ((1.0 + 4.0 * square / (a * a)).sqrt() - 1.0) / (2.0 * square);
+    let alone = structure("", [1e-3, 1e3], [1.0, 1.0], [1.0, 1.0]);
+    let design = designed(&problem, least_gain(alone, 1));
+    let found = relaxation(&design);
+    assert!((found.relaxation_db - 10.0 * ratio.log10()).abs() < 1e-3, "{found:?}");
+    let reached = design.audit.delay_margin.as_ref().unwrap().delay_s;
+    assert!((reached * ratio.sqrt() / delay_s - 1.0).abs() < 1e-3, "{reached}");
+    // the delay that is missed by no more than the relaxation is no news to the search
+    assert_eq!(design.rounds.len(), 1);
+}
+
 /// Example D with corners no higher than 300 rad/s, where its least gain asks for 837 rad/s.
 #[test]
 fn three_seeds_agree_on_the_relaxation_of_the_servo() {

@@ -69,6 +69,21 @@ fn nothing_stable_is_reported_with_the_least_instability() {
     assert!(found.ends.is_empty() && !found.judgement.stable);
 }
 
+/// Rosenbrock's valley: every descent ends at (1, 1) after many steps, and those that come near the
+/// end of the first one are not completed.
+#[test]
+fn a_descent_that_comes_near_an_end_is_not_completed() {
+    let valley = |x: &[f64]| vec![-100.0 * (x[1] - x[0] * x[0]).powi(2) - (1.0 - x[0]).powi(2)];
+    let mut problem = Formula::new(2, |_| 0.0, valley);
+    problem.bounds = vec![[-2.0, 2.0]; 2];
+    let options = |finished| SearchOptions { finished, ..SearchOptions::new(Aim::WorstMargin, 1) };
+    let (one, all) = (searched(&mut problem, options(1)), searched(&mut problem, options(8)));
+    assert_eq!([one.ends.len(), all.ends.len()], [1, 8]);
+    assert!(all.ends.iter().all(|end| end.x == one.x), "{:?}", all.ends);
+    // each joins as it comes within a twentieth of the bounds, not at the bottom of the valley
+    assert!(all.work.slopes < 3 * one.work.slopes, "{:?} {:?}", all.work, one.work);
+}
+
 /// Starts that end feasible and starts that do not: the feasible one wins, whatever the others
 /// reach.
 #[test]

@@ -148,7 +148,9 @@ fn reached_steps(view: &ProjectDesign, one: &ReachedStructure) -> Option<[Option
 /// True where the steps of a structure that keeps every limit miss what is required in time.
 fn misses_in_time(view: &ProjectDesign, one: &ReachedStructure) -> bool {
     let Some((reached, finding)) = one.steps.zip(view.designed.view.in_time.first()) else { return false };
-    one.ending == StructureEnding::Met && finding.requirement.wish.excess(&reached) > 1.0
+    // limits that are stated are compared with the step, and do not require it
+    let requirement = &finding.requirement;
+    requirement.follows && one.ending == StructureEnding::Met && requirement.wish.excess(&reached) > 1.0
 }
 
 /// True where a structure has no more poles than the one that is taken.

@@ -106,7 +106,8 @@ impl Attempt {
         self.note(audited_margin_db(&audit), &judgement);
         let all = || self.beside.iter().chain([&*audit]);
         let problem = self.shaping.samples().problem();
-        let is_met = |one: &Audit| one.verdict == Verdict::Met && too_little_delay(one, problem).is_empty();
+        let is_met =
+            |one: &Audit| one.verdict == Verdict::Met && too_little_delay(one, problem, 0.0).is_empty();
         if all().all(is_met) {
             let misses = self.misses_reserve(&audit, &judgement)?;
             return Ok((!misses).then_some(AttemptEnding::Met(audit)));
@@ -152,7 +153,8 @@ impl Attempt {
     /// What an audit teaches the search.
     fn examples(&self, audit: &Audit, judgement: &Judgement) -> Vec<Counterexample> {
         let mut examples = unstable_plant(audit);
-        examples.extend(too_little_delay(audit, self.shaping.samples().problem()));
+        let relaxation_db = if self.relaxes { -judgement.worst_margin_db } else { 0.0 };
+        examples.extend(too_little_delay(audit, self.shaping.samples().problem(), relaxation_db));
         let new = self.new_margins(judgement);
         examples.extend(counterexamples(&audit.specifications, new, self.shaping.tracking()));
         examples

@@ -19,12 +19,25 @@ pub(in crate::design) struct StartingPoints {
 /// How widely a search looks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::design) enum SearchEffort {
+    /// One descent to its end, for a structure that is looked at only because it may be far better
+    /// than one that is met.
+    Least,
     /// Few starts, for a structure of few numbers.
     Small,
     #[default]
     Usual,
     /// Many starts, for plants that are hard to stabilise.
     Great,
+}
+
+impl SearchEffort {
+    /// For the same structure with more plants: the first search has shown where optima lie.
+    pub(in crate::design) fn again(self) -> SearchEffort {
+        match self {
+            SearchEffort::Usual => SearchEffort::Small,
+            other => other,
+        }
+    }
 }
 
 /// The best of these points: those that stabilise every plant by their worst margin, then the
@@ -47,9 +60,10 @@ pub(super) fn search_options(aim: Aim, seed: u64, relaxes: bool, effort: SearchE
     let descent = DescentOptions { reserve_db: 0.0, ..DescentOptions::new(aim) };
     let (samples, starts, finished) = match (effort, relaxes) {
         (SearchEffort::Great, _) => (96, 16, 8),
-        (SearchEffort::Small | SearchEffort::Usual, true) => (48, 12, 6),
+        (SearchEffort::Least | SearchEffort::Small | SearchEffort::Usual, true) => (48, 12, 6),
         (SearchEffort::Usual, false) => (48, 8, 5),
         (SearchEffort::Small, false) => (24, 4, 3),
+        (SearchEffort::Least, false) => (24, 4, 1),
     };
     SearchOptions { samples, scanned: 14, starts, finished, descent, ..SearchOptions::new(aim, seed) }
 }

@@ -30,7 +30,7 @@ impl Attempt {
                 self.fits_prefilter(watch)?;
                 self.descend(false, watch)?;
             }
-            _ => self.search(given, self.options.seed, watch)?,
+            _ => self.search(given, (self.options.seed, self.effort), watch)?,
         }
         loop {
             self.draw_in(watch)?;

@@ -11,7 +11,8 @@
 //! infinity as a loop becomes unstable. In a sampled loop it is that of the sampled L, exact for a
 //! delay of whole samples. A crossover appears or vanishes when a peak of |L| passes through 1; so
 //! the peaks below 1 and the dips above it at which the phase alone would violate the demand are
-//! also margins for the slopes, though not for the judgement.
+//! also margins for the slopes, though not for the judgement. Where |L| of a continuous loop is
+//! still above 1 at the highest column, it is assumed to fall as 1/w from there, with its phase.
 
 use std::f64::consts::PI;
 
@@ -37,6 +38,34 @@ struct LoopValue {
     square: f64,
 }
 
+/// |L|^2 of one plant at one column, on the way through the columns.
+#[derive(Clone, Copy, Debug)]
+struct LoopSize {
+    column: usize,
+    /// Of the plant in the column.
+    place: usize,
+    square: f64,
+}
+
+impl LoopSize {
+    /// Before the first column of a plant.
+    const NOTHING: LoopSize = LoopSize { column: usize::MAX, place: usize::MAX, square: f64::NAN };
+
+    /// True where |L| passes through 1 from here to another column.
+    fn crosses(&self, other: &LoopSize) -> bool {
+        !self.square.is_nan() && (self.square >= 1.0) != (other.square >= 1.0)
+    }
+}
+
+/// Which way |L| turns at a column.
+#[derive(Clone, Copy, Debug)]
+enum Bend {
+    /// A peak below 1.
+    Peak,
+    /// A dip above 1.
+    Dip,
+}
+
 /// ln|L| through zero between two columns.
 #[derive(Clone, Copy, Debug)]
 struct Crossover {
@@ -58,6 +87,15 @@ pub(crate) struct ColumnDependence {
     pub(crate) terms: Vec<(usize, Complex64)>,
 }
 
+/// What becomes of L above the columns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum AboveColumns {
+    /// It falls as 1/w.
+    Falling,
+    /// There is none: the columns of a sampled loop end at pi/T.
+    Nothing,
+}
+
 /// The margins to a required delay.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct DelayMargins {
@@ -72,31 +110,48 @@ pub(crate) struct DelayMargins {
 pub(crate) fn delay_margins(
     columns: &[FrequencyColumn],
     feedback: &[Complex64],
-    plants: usize,
+    (plants, above): (usize, AboveColumns),
     delay_s: f64,
 ) -> DelayMargins {
     if delay_s <= 0.0 {
         return DelayMargins::default();
     }
-    let mut trails: Vec<[Option<LoopValue>; 2]> = vec![[None; 2]; plants];
+    let mut trails: Vec<[LoopSize; 2]> = vec![[LoopSize::NOTHING; 2]; plants];
     let mut crossovers: Vec<(usize, ColumnDependence)> = Vec::new();
     let mut peaks: Vec<(usize, ColumnDependence)> = Vec::new();
+    let value = |passed: &LoopSize| {
+        let LoopSize { column: index, place, .. } = *passed;
+        let (column, feedback) = columns.get(index).zip(feedback.get(index))?;
+        Some(LoopValue::of(index, column, place, *feedback))
+    };
     for (index, (column, feedback)) in columns.iter().zip(feedback).enumerate() {
-        for (place, &plant) in column.plants.iter().enumerate() {
+        let gain = feedback.norm_sqr();
+        for (place, (&plant, path)) in column.plants.iter().zip(&column.loop_squared).enumerate() {
             let Some(trail) = trails.get_mut(plant) else { continue };
             let [before, last] = *trail;
-            if last.is_some_and(|last| last.column == index) {
+            if last.column == index {
                 continue;
             }
-            let value = LoopValue::of(index, column, place, *feedback);
-            if let Some(last) = &last {
-                let crossed = crossover(last, &value);
-                crossovers.extend(crossed.map(|at| (plant, delay_at(at, [last, &value], delay_s))));
-                let peak = before.and_then(|before| peak(&before, last, &value, delay_s));
-                peaks.extend(peak.map(|peak| (plant, peak)));
+            let here = LoopSize { column: index, place, square: gain * path };
+            *trail = [last, here];
+            if last.crosses(&here)
+                && let Some((lower, upper)) = value(&last).zip(value(&here))
+                && let Some(at) = crossover(&lower, &upper)
+            {
+                crossovers.push((plant, delay_at(at, [&lower, &upper], delay_s)));
             }
-            *trail = [last, Some(value)];
+            if let Some(bend) = bend([before, last, here].map(|passed| passed.square))
+                && let Some(point) = value(&last)
+            {
+                peaks.extend(peak(bend, &point, delay_s).map(|peak| (plant, peak)));
+            }
         }
+    }
+    if above == AboveColumns::Falling {
+        let ends = trails.iter().enumerate().filter(|(_, [_, last])| last.square >= 1.0);
+        let beyond =
+            ends.filter_map(|(plant, [_, last])| Some((plant, delay_beyond(&value(last)?, delay_s))));
+        crossovers.extend(beyond);
     }
     let of_plants = |mut found: Vec<(usize, ColumnDependence)>| {
         found.sort_by_key(|(plant, _)| *plant);
@@ -196,19 +251,37 @@ fn delay_at(crossover: Crossover, [lower, upper]: [&LoopValue; 2], delay_s: f64)
     }
 }
 
-/// |L| at a peak below 1 or a dip above it, where the phase alone would not tolerate the delay.
-fn peak(before: &LoopValue, point: &LoopValue, after: &LoopValue, delay_s: f64) -> Option<ColumnDependence> {
-    let [low, here, high] = [before, point, after].map(|point| point.square);
-    let sign = if here < 1.0 && low < here && high <= here {
-        -1.0
+/// The margin to a delay where |L| falls as 1/w from the highest column on.
+fn delay_beyond(last: &LoopValue, delay_s: f64) -> ColumnDependence {
+    let angle = positive(last.angle());
+    let margin = portable::ln(angle) - last.logarithm_of_frequency() - last.size() - portable::ln(delay_s);
+    let factor = DECIBELS_PER_NEPER * Complex64::new(-1.0, -1.0 / angle);
+    ColumnDependence { value_db: DECIBELS_PER_NEPER * margin, terms: vec![(last.column, factor)] }
+}
+
+/// A peak of |L|^2 below 1, or a dip above it, at the second of three columns.
+fn bend([low, here, high]: [f64; 3]) -> Option<Bend> {
+    if here < 1.0 && low < here && high <= here {
+        Some(Bend::Peak)
     } else if here > 1.0 && low > here && high >= here {
-        1.0
+        Some(Bend::Dip)
     } else {
-        return None;
-    };
+        None
+    }
+}
+
+/// |L| at a peak or dip, where the phase alone would not tolerate the delay.
+fn peak(bend: Bend, point: &LoopValue, delay_s: f64) -> Option<ColumnDependence> {
     let size = point.size();
+    if size.abs() >= NEAR {
+        return None;
+    }
     let tolerates = positive(point.angle()) > portable::exp(point.logarithm_of_frequency()) * delay_s;
-    (!tolerates && size.abs() < NEAR).then(|| ColumnDependence {
+    let sign = match bend {
+        Bend::Peak => -1.0,
+        Bend::Dip => 1.0,
+    };
+    (!tolerates).then(|| ColumnDependence {
         value_db: DECIBELS_PER_NEPER * size.abs(),
         terms: vec![(point.column, Complex64::new(sign * DECIBELS_PER_NEPER, 0.0))],
     })

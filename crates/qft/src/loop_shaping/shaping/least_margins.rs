@@ -6,7 +6,7 @@ use phea_dynamics::portable;
 
 use super::super::MarginRow;
 use super::super::margins::{
-    ColumnDependence, DelayMargins, Demand, MarginCandidate, candidates, delay_margins,
+    AboveColumns, ColumnDependence, DelayMargins, Demand, MarginCandidate, candidates, delay_margins,
 };
 use super::super::structure::DECIBELS_PER_NEPER;
 use super::{Shaping, along};
@@ -72,7 +72,12 @@ impl Shaping {
         let feedback: Vec<Complex64> = forward.iter().map(|[feedback, _]| *feedback).collect();
         let columns = self.samples.columns();
         let delay_s = self.samples.problem().minimum_delay_margin_s;
-        let delays = delay_margins(columns, &feedback, self.samples.plants().len(), delay_s);
+        let above = match self.samples.problem().timing.sample_time_s {
+            Some(_) => AboveColumns::Nothing,
+            None => AboveColumns::Falling,
+        };
+        let plants = self.samples.plants().len();
+        let delays = delay_margins(columns, &feedback, (plants, above), delay_s);
         let worst_db = delays.crossovers.iter().map(|margin| margin.value_db).fold(worst_db, f64::min);
         Looked { excesses, delays, worst_db }
     }
