@@ -5,6 +5,7 @@
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
 use crate::ask::{self, number};
+use num_complex::Complex64;
 use phea_workbench::campaign::{Effort, RequestedRuns, SatisfiedRuns, Shard};
 use phea_workbench::command::{CampaignRequest, CampaignRuns, Request};
 use serde_json::Value;
@@ -295,12 +296,40 @@ fn steps_lead_where_limits_of_tracking_do_not() {
     let designed = phea_workbench::command::answer(&source, &loaded, &[], &request).unwrap();
     let object: Value = serde_json::from_str(&designed.json).unwrap();
     assert_eq!(object["status"], "met", "{}", designed.text);
+    of_its_own(&object);
     let file = designed.files.iter().find(|file| file.name == phea_workbench::design::DESIGNED_PROJECT);
     let (object, words) = verify(std::str::from_utf8(&file.unwrap().bytes).unwrap());
     assert_eq!(object["verdict"], "met", "{words}");
     let found = &object["specifications"][0];
     assert!(number(found, "worst_overshoot_percent") <= 1.0, "{words}");
     assert!(number(found, "worst_settling_time_s") <= 1.5, "{words}");
+}
+
+/// What is told of the structure that is taken is of the controller that is printed: the least
+/// margin that its audit found, and its largest gain from noise to command, of G/(1 + L) with the
+/// nominal plant at k = 1, a = 8.
+fn of_its_own(object: &Value) {
+    let structures = object["structures"].as_array().unwrap();
+    let taken = structures.iter().find(|one| one["taken"] == true).unwrap();
+    assert_eq!(taken["status"], "met", "{taken}");
+    let margin = number(object, "verification.specifications.1.worst_margin_db");
+    assert!((number(taken, "worst_margin_db") - margin).abs() < 1e-12, "{taken} {margin}");
+    let controller = &object["controller"];
+    let complex = |root: &Value| match root.as_array() {
+        Some(parts) => Complex64::new(parts[0].as_f64().unwrap(), parts[1].as_f64().unwrap()),
+        None => Complex64::new(root.as_f64().unwrap(), 0.0),
+    };
+    let product = |key: &str, s: Complex64| {
+        controller[key].as_array().unwrap().iter().map(|root| s - complex(root)).product::<Complex64>()
+    };
+    let noise_gain = |exponent: i32| {
+        let s = Complex64::new(0.0, 10_f64.powf(f64::from(exponent) / 50.0));
+        let feedback = number(controller, "gain") * product("zeros", s) / product("poles", s);
+        (feedback / (1.0 + feedback * 8.0 / ((s + 0.5) * (s + 8.0)))).norm_sqr().sqrt()
+    };
+    let largest = (-100..200).map(noise_gain).fold(0.0, f64::max);
+    let told = number(taken, "compared_db");
+    assert!((told - 20.0 * largest.log10()).abs() < 0.05, "{told} {largest}");
 }
 
 /// The sum of the poles of the closed loop is that of the plant, -20 rad/s, for every gain, so that
