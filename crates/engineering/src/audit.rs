@@ -20,9 +20,8 @@ pub(crate) use alone::{caveat as caveat_of_rig, unexamined as unexamined_rig};
 pub use dead_time::LoopDeadTime;
 pub use in_time::{TimeFinding, TimeOutcome, Unexamined, WorstStep};
 pub(crate) use in_time::{spread_over, steps_of_members};
-pub(crate) use margins::highest_crossover;
 pub use margins::{AuditMargins, LoopMargin, MarginSet};
-pub use nominal::NominalMargins;
+pub(crate) use margins::{highest_crossover, plants_of_margins};
 pub(crate) use nominal::nominal_margins;
 pub use prefilter::PrefilterGain;
 pub use proven::{prove_audit, standing_word, try_to_prove, why_not_proven};
@@ -41,6 +40,7 @@ use phea_qft::verification::{
 };
 
 use crate::caveat::Caveat;
+use crate::limit_kind::ExceededLimit;
 use crate::plant_names::PlantNames;
 use crate::quantity::DisplayUnit;
 use crate::robust::{LINES_IN_MOTION, RobustError, RobustProblem, robust_problem};
@@ -87,6 +87,14 @@ pub fn audit_project(
     setup: &Setup<'_>,
     watch: Watch<'_>,
 ) -> Result<ProjectAudit, AuditError> {
+    Ok(audit_problem(&problem_to_audit(source, setup)?, watch)?)
+}
+
+/// The given controller in a loop with the whole family, and what it is audited for.
+///
+/// # Errors
+/// Those of [`audit_project`], but for the watch.
+pub fn problem_to_audit(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustProblem, AuditError> {
     let project = setup.project;
     match &project.controller {
         None => return Err(AuditError::NoController),
@@ -96,7 +104,7 @@ pub fn audit_project(
     if project.specifications.is_empty() {
         return Err(AuditError::NoSpecification);
     }
-    Ok(audit_problem(&robust_problem(source, setup)?, watch)?)
+    Ok(robust_problem(source, setup)?)
 }
 
 /// The same for an existing robust problem.
@@ -165,6 +173,9 @@ pub struct ProjectAudit {
     pub amplifying_prefilter: Option<PrefilterGain>,
     /// What was proven about it, if a proof was requested.
     pub proof: Option<Proof>,
+    /// The limits of a design that the loop does not keep, which are no part of the verdict;
+    /// `None` where they were not examined.
+    pub below_design: Option<Vec<ExceededLimit>>,
 }
 
 /// A closed-loop magnitude and the limit that it comes nearest to, or violates.
@@ -267,6 +278,7 @@ impl ProjectAudit {
             in_time,
             amplifying_prefilter: PrefilterGain::amplifying(compensation),
             proof: None,
+            below_design: None,
         }
     }
 

@@ -3,6 +3,7 @@
 
 mod added_by_rig;
 mod asked;
+mod below;
 mod by_steps;
 mod comparison;
 mod damping;
@@ -20,9 +21,13 @@ mod side;
 mod step_aim;
 mod structures;
 mod words;
-pub use crate::limit_kind::{DesignLimitKind, limit_key, limit_words};
+pub use crate::limit_kind::{
+    DesignLimitKind, ExceededLimit, LimitOrigin, limit_key, limit_unit_key, limit_words, origin_key,
+    origin_words,
+};
+pub use below::below_design;
 pub use damping::{MissingPlants, PressureFeedbackDesign, with_free_pressure_feedback};
-pub use deployable::{DesignLimit, LimitFinding, LimitOrigin, design_limits};
+pub use deployable::{DesignLimit, LimitFinding, design_limits};
 pub use factors::factored;
 pub use manual::{ManualGap, ManualLaw, ManualPart};
 pub use words::{objective_key, part_key, repair_key, repair_words, status_key};
@@ -399,7 +404,8 @@ fn designed(
     let published = match &as_given.controller {
         None => None,
         Some(law) => {
-            let view = audit_problem(&given, &mut within(&mut *watch, [0.0, 0.05]))?;
+            let mut view = audit_problem(&given, &mut within(&mut *watch, [0.0, 0.05]))?;
+            view.below_design = Some(below_design(as_given, &given, &view, watch)?);
             Some(AuditedController::new(law.clone(), given.clone(), view)?)
         }
     };

@@ -1,4 +1,5 @@
-//! The limits of what may be built, by name.
+//! The limits of what may be built: their names, where their values come from, and those that a
+//! loop does not keep.
 
 /// What a limit is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,6 +36,19 @@ pub fn limit_key(kind: DesignLimitKind) -> &'static str {
     }
 }
 
+/// The unit of a limit at the end of a key: `value_rad_per_s`, `value_s`, or `value` without one.
+pub fn limit_unit_key(kind: DesignLimitKind) -> &'static str {
+    match kind {
+        DesignLimitKind::HighestBandwidth | DesignLimitKind::FastestPole => "_rad_per_s",
+        DesignLimitKind::MinimumDelayMargin => "_s",
+        DesignLimitKind::NoiseToCommand
+        | DesignLimitKind::ModulusMargin
+        | DesignLimitKind::PoleDampingRatio
+        | DesignLimitKind::PrefilterGain
+        | DesignLimitKind::RequiredStep => "",
+    }
+}
+
 /// The name of a limit for people.
 pub fn limit_words(kind: DesignLimitKind) -> &'static str {
     match kind {
@@ -55,4 +69,59 @@ impl DesignLimitKind {
     pub fn is_led_to(self) -> bool {
         matches!(self, DesignLimitKind::RequiredStep | DesignLimitKind::PrefilterGain)
     }
+}
+
+/// Why a limit has its value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LimitOrigin {
+    /// The project states it.
+    Stated,
+    /// It is the default of every rig.
+    Default,
+    /// The lines are a quarter wave long there.
+    QuarterWave,
+    /// The natural frequency of the servovalve.
+    Servovalve,
+    /// The sample time.
+    Sampling,
+    /// It follows from the highest bandwidth.
+    Bandwidth,
+}
+
+/// The name of an origin for programs.
+pub fn origin_key(origin: LimitOrigin) -> &'static str {
+    match origin {
+        LimitOrigin::Stated => "stated",
+        LimitOrigin::Default => "default",
+        LimitOrigin::QuarterWave => "quarter_wave",
+        LimitOrigin::Servovalve => "servovalve",
+        LimitOrigin::Sampling => "sampling",
+        LimitOrigin::Bandwidth => "highest_bandwidth",
+    }
+}
+
+/// The name of an origin for people.
+pub fn origin_words(origin: LimitOrigin) -> &'static str {
+    match origin {
+        LimitOrigin::Stated => "stated",
+        LimitOrigin::Default => "default",
+        LimitOrigin::QuarterWave => "quarter wave of the lines",
+        LimitOrigin::Servovalve => "natural frequency of the valve",
+        LimitOrigin::Sampling => "sample time",
+        LimitOrigin::Bandwidth => "ten times the bandwidth",
+    }
+}
+
+/// A limit that an audited loop does not keep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExceededLimit {
+    /// Which limit.
+    pub kind: DesignLimitKind,
+    /// What the worst plant of the family reaches, in the unit of the limit; of the bandwidth the
+    /// frequency from which |L/(1+L)| remains below -3 dB, infinite where none is known.
+    pub reached: f64,
+    /// The limit, in SI.
+    pub limit: f64,
+    /// Where its value comes from.
+    pub origin: LimitOrigin,
 }

@@ -1,6 +1,7 @@
 //! The output of `audit`: text, JSON, files and figures.
 
 mod answer;
+mod below_design;
 mod certificate;
 mod document;
 pub(crate) mod in_time;

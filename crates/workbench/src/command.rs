@@ -15,6 +15,7 @@ mod response;
 mod schema;
 mod simulate;
 mod unprinted;
+mod verify;
 
 pub use crate::error::CommandError;
 pub use alternatives::AlternativesRequest;
@@ -35,11 +36,9 @@ use std::borrow::Cow;
 
 use phea_dynamics::watch::{Stopped, rising, within};
 use phea_engineering::line_choice::{LoopInQuestion, with_chosen_lines};
-use phea_qft::verification::Verdict;
 
 use crate::alternatives::{AlternativesOptions as AskedOfAlternatives, judge};
 use crate::answer::{Answer, Object};
-use crate::audit::{self, CERTIFICATE_FILE, audit_project, certificate_of, prove_audit};
 use crate::bench;
 use crate::design::{self, design_and_repair, design_project};
 use crate::document::Document;
@@ -50,7 +49,6 @@ use crate::option::OptionError;
 use crate::project::Loaded;
 use crate::quantity::{self, LENGTH, VOLTAGE_PER_FORCE};
 use crate::report::report_beside;
-use crate::rig::RigError;
 use crate::robust::{RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::shaping::{self, RequestedChange, Shaped, shape};
@@ -58,13 +56,13 @@ use crate::simulate::compare_projects;
 use crate::sizing::{self, Candidate, Question, SizingError, size, sizing_problem};
 use crate::source::{Destination, HeldFiles, Source};
 use crate::specification::crossed_limits;
-use crate::trial::{Agreement, DrivenCorners, Trial, tried};
+use crate::trial::{Agreement, Trial};
 use alternatives::alternatives_answer;
 use check::check;
-use impossible::Impossible;
 use linearize::{linearize_answer, swept_answer};
 use simulate::simulate_answer;
 use unprinted::Unprinted;
+use verify::verify_answer;
 
 /// A request on a project.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -323,50 +321,6 @@ fn size_answer(
         body: sizing::body(&sizing),
         files: sizing::files(&sizing),
         affirmative: sizing.best().is_some_and(Candidate::accepted),
-    })
-}
-
-/// The audit of a given controller: with a proof, on the machine.
-fn verify_answer(
-    source: &dyn Source,
-    loaded: &Loaded,
-    proof: bool,
-    on_machine: bool,
-    watch: Watch<'_>,
-) -> Result<Unprinted, CommandError> {
-    let setup = Setup::new(&loaded.project)?;
-    let parts = 1.0 + f64::from(u8::from(proof)) + f64::from(u8::from(on_machine));
-    let proven = (1.0 + f64::from(u8::from(proof))) / parts;
-    let mut view = audit_project(source, &setup, &mut within(&mut *watch, [0.0, 1.0 / parts]))?;
-    if proof {
-        let watch = &mut within(&mut *watch, [1.0 / parts, proven]);
-        prove_audit(&robust_problem(source, &setup)?, &mut view, watch)?;
-    }
-    let mut files = audit::files(&view);
-    files.extend(certificate_of(loaded, &view, CERTIFICATE_FILE));
-    let is_met = view.verdict() == Verdict::Met;
-    let impossible = Impossible::all(source, loaded, &setup)?;
-    let mut document = Document::default();
-    document.warnings(impossible.iter().map(Impossible::sentence));
-    let body = audit::body(&view).each("impossible", &impossible, Impossible::object);
-    if !on_machine {
-        document.append(audit::output(&view, None));
-        return Ok(Unprinted { document, body, files, affirmative: is_met });
-    }
-    let watch = &mut within(watch, [proven, 1.0]);
-    let problem = robust_problem(source, &setup)?;
-    let corners = DrivenCorners::WhereElseSatisfies;
-    let Some(trial) = tried(source, &setup, (&problem, &view), corners, watch)? else {
-        return Err(RigError::NoActuator.into());
-    };
-    document.append(audit::output(&view, Some(&trial)));
-    Ok(Unprinted {
-        document,
-        body: body.with("machine", crate::trial::body(&trial)),
-        files,
-        affirmative: is_met
-            && trial.agreement() != Agreement::Contradicts
-            && trial.satisfies() != Some(false),
     })
 }
 

@@ -114,3 +114,49 @@ fn loops_without_polynomials_have_margins_too() {
         assert!(waves["family"][key].as_f64().unwrap() <= other * (1.0 + 1e-9), "{key}");
     }
 }
+
+/// The limits that a loop does not keep, by key.
+fn below(project: &str, settings: &[&str]) -> Vec<Value> {
+    json(project, settings, &[], &VERIFY)["below_design"].as_array().unwrap().clone()
+}
+
+fn of_key<'a>(below: &'a [Value], key: &str) -> Option<&'a Value> {
+    below.iter().find(|one| one["key"] == key)
+}
+
+/// The modulus margin of the audit against the limit of a design, by default or as stated; a plant
+/// of polynomials has no default.
+#[test]
+fn a_loop_says_which_limits_of_a_design_it_does_not_keep() {
+    let said = answer(HOSE, &[], &[], &VERIFY);
+    let object: Value = serde_json::from_str(&said.json).unwrap();
+    let found = object["below_design"].as_array().unwrap();
+    let modulus = of_key(found, "modulus_margin").unwrap();
+    assert_eq!(modulus["value"], object["margins"]["modulus"]);
+    assert_eq!((&modulus["limit"], &modulus["origin"]), (&0.5.into(), &"default".into()));
+    // it tolerates 2 ms where half a millisecond is enough
+    assert!(of_key(found, "minimum_delay_margin").is_none());
+    assert!(said.text.contains("`phea design` would refuse this loop"), "{}", said.text);
+    let reached = modulus["value"].as_f64().unwrap();
+    for (share, is_below) in [(0.98, false), (1.02, true)] {
+        let stated = format!("design.modulus_margin={}", share * reached);
+        let found = below(HOSE, &[&stated]);
+        let own = of_key(&found, "modulus_margin");
+        assert_eq!(own.map(|own| own["origin"].clone()), is_below.then(|| "stated".into()), "{stated}");
+    }
+    let delay_s = object["margins"]["delay_s"].as_f64().unwrap();
+    let found = below(HOSE, &[&format!("design.minimum_delay_margin={}", 1.1 * delay_s)]);
+    close(&of_key(&found, "minimum_delay_margin").unwrap()["value_s"], delay_s);
+    assert!(below(DELAYED, &[]).is_empty());
+}
+
+/// What noise takes of the command is reached where a limit just above it is kept and one just
+/// below it is not.
+#[test]
+fn the_noise_that_a_loop_passes_to_its_command_is_that_of_its_limit() {
+    let rig = include_str!("../../../examples/structural/rig.toml");
+    let at = |percent: f64| below(rig, &[&format!("design.noise_to_command={}", percent / 100.0)]);
+    let reached = of_key(&at(1e-4), "noise_to_command").unwrap()["value"].as_f64().unwrap();
+    assert!(of_key(&at(101.0 * reached), "noise_to_command").is_none());
+    close(&of_key(&at(99.0 * reached), "noise_to_command").unwrap()["value"], reached);
+}

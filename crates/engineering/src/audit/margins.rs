@@ -197,6 +197,17 @@ fn visited(problem: &RobustProblem, audit: &Audit) -> Vec<PlantPoint> {
     distinct
 }
 
+/// The plants of which the worst margins are the worst, without a search between them.
+pub(crate) fn plants_of_margins(problem: &RobustProblem, audit: &Audit) -> Family {
+    let Family::Uncertain(family) = &problem.family else { return problem.family.clone() };
+    let members = visited(problem, audit).into_iter().filter_map(|plant| match plant {
+        PlantPoint::Parameters(values) => Some(values),
+        PlantPoint::Measured(_) | PlantPoint::Beside(_) => None,
+    });
+    let members = UncertainFamily::new(family.plant().clone(), vec![], members.collect(), Extent::Members);
+    members.map_or_else(|_| problem.family.clone(), Family::Uncertain)
+}
+
 /// Plants spread over these, and the last.
 pub(super) fn spread(plants: &[Vec<f64>], most: usize) -> impl Iterator<Item = Vec<f64>> {
     let step = plants.len().div_ceil(most).max(1);

@@ -14,7 +14,7 @@ use phea_qft::design::PoleRange;
 use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{Audit, SpecificationFinding};
 
-use crate::limit_kind::{DesignLimitKind, limit_words};
+use crate::limit_kind::{DesignLimitKind, LimitOrigin, limit_words};
 use crate::project::{DeclaredDesign, UnstatedLimits};
 use crate::rig::quarter_wave;
 use crate::robust::RobustProblem;
@@ -37,23 +37,6 @@ const FASTEST_SHARE: f64 = 0.5;
 const BEYOND_BANDWIDTH: f64 = 10.0;
 /// Multiples of the highest bandwidth at which its bounds are drawn.
 const DRAWN: [f64; 3] = [1.0, 2.0, 4.0];
-
-/// Why a limit has its value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LimitOrigin {
-    /// The project states it.
-    Stated,
-    /// It is the default of every rig.
-    Default,
-    /// The lines are a quarter wave long there.
-    QuarterWave,
-    /// The natural frequency of the servovalve.
-    Servovalve,
-    /// The sample time.
-    Sampling,
-    /// It follows from the highest bandwidth.
-    Bandwidth,
-}
 
 /// A limit of what may be built.
 #[derive(Clone, Debug, PartialEq)]

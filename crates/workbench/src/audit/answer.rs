@@ -3,6 +3,7 @@ use phea_qft::verification::{
     Evidence, SearchedInfinity, SpecificationFinding, StabilityFinding, Verdict, WorstCase,
 };
 
+use super::below_design;
 use super::in_time::unexamined_words;
 use super::margins;
 use super::{
@@ -49,7 +50,7 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
         .with("delay_s", view.delay_s);
     let reduction = view.nominal.map(|margins| margins.gain_reduction_db);
     let no_margin = "no margin: not every plant is known to be stable";
-    Object::new()
+    let own = Object::new()
         .with("verdict", verdict_key(view.verdict()))
         .with("evidence", evidence_key(view.evidence()))
         .with("tolerance_db", audit.tolerance_db)
@@ -67,7 +68,11 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
         .maybe("pressure_noise", view.pressure_noise.as_ref().map(|noise| signal_noise(noise, names)))
         .maybe("amplifying_prefilter", view.amplifying_prefilter.map(amplifying))
         .each("specifications", in_file_order(view), |one| one)
-        .each("warnings", &view.caveats, |caveat| caveat.sentence.as_str())
+        .each("warnings", &view.caveats, |caveat| caveat.sentence.as_str());
+    match &view.below_design {
+        Some(limits) => own.each("below_design", limits, below_design::object),
+        None => own,
+    }
 }
 
 /// The limits on closed loops and the requirements on steps, as the file has them; what has no

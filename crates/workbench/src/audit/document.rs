@@ -4,7 +4,7 @@ use phea_dynamics::portable;
 use phea_qft::proof::{Proof, Standing};
 use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
-use super::{NominalMargins, ProjectAudit, in_time, margins};
+use super::{NominalMargins, ProjectAudit, below_design, in_time, margins};
 use super::{
     closed_loop_symbol, evidence_sentence, finding_sentence, infinity_sentence, place_words,
     remark_sentences, stability_sentence, standing_word, verdict_words, why_not_proven, worst_at_design,
@@ -34,6 +34,7 @@ pub(crate) fn document(view: &ProjectAudit, figures: Vec<Figure>) -> Document {
     out.verdict(verdict.into(), format!("Verdict: {}", verdict_words(verdict)), summary(view));
     out.section("Specifications", specifications(view));
     out.section("Margins", margins::table(view));
+    out.append(below_design::document(view));
     out.section("Worst plants", plants(view));
     out.section("Where examined plants violate it", violations(view));
     out.figures_below("Closed loops of the family", figures);

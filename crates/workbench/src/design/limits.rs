@@ -1,6 +1,8 @@
 //! What may be built: the limits of a design beyond its specifications, with what it reaches.
 
-use phea_engineering::design::{DesignLimit, DesignLimitKind, LimitOrigin, limit_key, limit_words};
+use phea_engineering::design::{
+    DesignLimit, DesignLimitKind, limit_key, limit_unit_key, limit_words, origin_key, origin_words,
+};
 use phea_qft::design::BINDING_DB;
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
@@ -45,7 +47,7 @@ pub(crate) fn rows(view: &ProjectDesign) -> Vec<Object> {
         let margin = found.and_then(|found| found.worst.as_ref()).map(|worst| worst.margin_db);
         Object::new()
             .with("key", limit_key(limit.kind))
-            .with(value_key(limit.kind), limit.value)
+            .with(format!("value{}", limit_unit_key(limit.kind)), limit.value)
             .with("origin", origin_key(limit.origin))
             .with("kept", is_kept(view, limit))
             .maybe("worst_margin_db", margin)
@@ -87,18 +89,6 @@ fn finding(view: &ProjectDesign, kind: DesignLimitKind) -> Option<&Specification
     view.limit_findings.iter().find(|(known, _)| *known == kind).map(|(_, found)| found)
 }
 
-fn value_key(kind: DesignLimitKind) -> &'static str {
-    match kind {
-        DesignLimitKind::HighestBandwidth | DesignLimitKind::FastestPole => "value_rad_per_s",
-        DesignLimitKind::MinimumDelayMargin => "value_s",
-        DesignLimitKind::NoiseToCommand
-        | DesignLimitKind::ModulusMargin
-        | DesignLimitKind::PoleDampingRatio
-        | DesignLimitKind::PrefilterGain
-        | DesignLimitKind::RequiredStep => "value",
-    }
-}
-
 fn value_words(view: &ProjectDesign, limit: &DesignLimit) -> String {
     let value = limit.value;
     match limit.kind {
@@ -126,27 +116,5 @@ fn value_words(view: &ProjectDesign, limit: &DesignLimit) -> String {
             format!("|F| at most {}; it has {}", significant(value, 3), significant(reached, 3))
         }
         DesignLimitKind::RequiredStep => String::new(),
-    }
-}
-
-fn origin_key(origin: LimitOrigin) -> &'static str {
-    match origin {
-        LimitOrigin::Stated => "stated",
-        LimitOrigin::Default => "default",
-        LimitOrigin::QuarterWave => "quarter_wave",
-        LimitOrigin::Servovalve => "servovalve",
-        LimitOrigin::Sampling => "sampling",
-        LimitOrigin::Bandwidth => "highest_bandwidth",
-    }
-}
-
-fn origin_words(origin: LimitOrigin) -> &'static str {
-    match origin {
-        LimitOrigin::Stated => "stated",
-        LimitOrigin::Default => "default",
-        LimitOrigin::QuarterWave => "quarter wave of the lines",
-        LimitOrigin::Servovalve => "natural frequency of the valve",
-        LimitOrigin::Sampling => "sample time",
-        LimitOrigin::Bandwidth => "ten times the bandwidth",
     }
 }

@@ -5,7 +5,7 @@ use phea_dynamics::watch::Watch;
 
 use super::design::{self, Designed};
 use crate::audit::{ProjectAudit, audit_problem, try_to_prove};
-use crate::design::ProjectDesign;
+use crate::design::{ProjectDesign, below_design};
 use crate::error::CommandError;
 use crate::robust::{DesignFrequency, RobustProblem, robust_problem};
 use crate::setup::Setup;
@@ -45,6 +45,7 @@ pub(super) fn judged(
         true => {
             let mut view = audit_problem(&problem, watch)?;
             try_to_prove(&problem, &mut view, watch)?;
+            view.below_design = Some(below_design(setup, &problem, &view, watch)?);
             Some(view)
         }
         false => None,

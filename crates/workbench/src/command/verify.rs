@@ -1,0 +1,79 @@
+//! `verify`: the audit of the given controller, with a proof and on the machine where these are
+//! requested.
+
+use phea_dynamics::watch::{Watch, within};
+use phea_qft::verification::Verdict;
+
+use super::CommandError;
+use super::impossible::Impossible;
+use super::unprinted::Unprinted;
+use crate::audit::{
+    self, CERTIFICATE_FILE, ProjectAudit, audit_problem, certificate_of, problem_to_audit, prove_audit,
+};
+use crate::design::below_design;
+use crate::document::Document;
+use crate::project::Loaded;
+use crate::rig::RigError;
+use crate::robust::RobustProblem;
+use crate::setup::Setup;
+use crate::source::Source;
+use crate::trial::{Agreement, DrivenCorners, tried};
+
+/// Part of an audit that the specifications take; the rest is for the limits of a design.
+const SPECIFICATIONS: f64 = 0.9;
+
+/// The audit of the given controller, with the limits of a design that it does not keep.
+fn audited(
+    source: &dyn Source,
+    setup: &Setup<'_>,
+    watch: Watch<'_>,
+) -> Result<(RobustProblem, ProjectAudit), CommandError> {
+    let problem = problem_to_audit(source, setup)?;
+    let mut view = audit_problem(&problem, &mut within(&mut *watch, [0.0, SPECIFICATIONS]))?;
+    let limits = &mut within(watch, [SPECIFICATIONS, 1.0]);
+    view.below_design = Some(below_design(setup, &problem, &view, limits)?);
+    Ok((problem, view))
+}
+
+/// The audit of a given controller: with a proof, on the machine.
+pub(super) fn verify_answer(
+    source: &dyn Source,
+    loaded: &Loaded,
+    proof: bool,
+    on_machine: bool,
+    watch: Watch<'_>,
+) -> Result<Unprinted, CommandError> {
+    let setup = Setup::new(&loaded.project)?;
+    let parts = 1.0 + f64::from(u8::from(proof)) + f64::from(u8::from(on_machine));
+    let proven = (1.0 + f64::from(u8::from(proof))) / parts;
+    let (problem, mut view) = audited(source, &setup, &mut within(&mut *watch, [0.0, 1.0 / parts]))?;
+    if proof {
+        let watch = &mut within(&mut *watch, [1.0 / parts, proven]);
+        prove_audit(&problem, &mut view, watch)?;
+    }
+    let mut files = audit::files(&view);
+    files.extend(certificate_of(loaded, &view, CERTIFICATE_FILE));
+    let is_met = view.verdict() == Verdict::Met;
+    let impossible = Impossible::all(source, loaded, &setup)?;
+    let mut document = Document::default();
+    document.warnings(impossible.iter().map(Impossible::sentence));
+    let body = audit::body(&view).each("impossible", &impossible, Impossible::object);
+    if !on_machine {
+        document.append(audit::output(&view, None));
+        return Ok(Unprinted { document, body, files, affirmative: is_met });
+    }
+    let watch = &mut within(watch, [proven, 1.0]);
+    let corners = DrivenCorners::WhereElseSatisfies;
+    let Some(trial) = tried(source, &setup, (&problem, &view), corners, watch)? else {
+        return Err(RigError::NoActuator.into());
+    };
+    document.append(audit::output(&view, Some(&trial)));
+    Ok(Unprinted {
+        document,
+        body: body.with("machine", crate::trial::body(&trial)),
+        files,
+        affirmative: is_met
+            && trial.agreement() != Agreement::Contradicts
+            && trial.satisfies() != Some(false),
+    })
+}
