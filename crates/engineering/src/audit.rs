@@ -23,6 +23,7 @@ pub(crate) use in_time::{spread_over, steps_of_members};
 pub use margins::{AuditMargins, LoopMargin, MarginSet};
 pub(crate) use margins::{highest_crossover, plants_of_margins};
 pub(crate) use nominal::nominal_margins;
+pub use nominal::{Crossovers, NominalMargins};
 pub use prefilter::PrefilterGain;
 pub use proven::{prove_audit, standing_word, try_to_prove, why_not_proven};
 pub use remark::remark_sentences;

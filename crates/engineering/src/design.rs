@@ -39,7 +39,7 @@ pub use rounding::Rounding;
 pub use side::{AuditedController, LoopFigures, NominalMargins};
 pub use structures::{ReachedStructure, structure_key};
 
-pub use comparison::compared;
+pub use comparison::{compared, gain_at_high_frequency};
 pub use words::{status_sentence, structure_words};
 
 use phea_dynamics::controller::{Controller, RateSensor, Timing};
@@ -295,6 +295,11 @@ impl ProjectDesign {
             prefilter: self.declared_prefilter.clone().or_else(|| project.prefilter.clone()),
             ..project.clone()
         }
+    }
+
+    /// The SI unit of what is controlled; `None` for a plant without units.
+    pub fn controlled_unit(&self) -> Option<&'static str> {
+        self.gain_per.map(|_| self.designed.problem.units.motion.symbol("N"))
     }
 
     /// How the machine agrees with the linear loop, as far as it was simulated.

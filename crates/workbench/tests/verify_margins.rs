@@ -6,6 +6,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::ask::{HOSE, answer, json};
+use phea_workbench::audit::Crossovers;
 use phea_workbench::command::Request;
 use serde_json::Value;
 
@@ -159,4 +160,29 @@ fn the_noise_that_a_loop_passes_to_its_command_is_that_of_its_limit() {
     let reached = of_key(&at(1e-4), "noise_to_command").unwrap()["value"].as_f64().unwrap();
     assert!(of_key(&at(101.0 * reached), "noise_to_command").is_none());
     close(&of_key(&at(99.0 * reached), "noise_to_command").unwrap()["value"], reached);
+}
+
+/// |L| = e^p(w) crosses 1 where p has its roots: the crossover is where it falls through 1 for the
+/// first time, whatever lies beyond.
+#[test]
+fn the_crossover_is_the_first_fall_through_one() {
+    let of = |roots: &[f64], sign: f64| {
+        let exponent = |w: f64| roots.iter().fold(sign, |product, root| product * (root - w));
+        Crossovers::of(roots.to_vec(), |w| Some(exponent(w).exp()))
+    };
+    let lag = of(&[1.0], 1.0);
+    assert_eq!((lag.first_rad_per_s, lag.again_rad_per_s), (Some(1.0), None));
+    let resonant = of(&[1.0, 3.0, 5.0], 1.0);
+    assert_eq!((resonant.first_rad_per_s, resonant.again_rad_per_s), (Some(1.0), Some([3.0, 5.0])));
+    assert_eq!(resonant.again_words().as_deref(), Some("between 3.00 and 5.00 rad/s"));
+    let twice = of(&[1.0, 3.0, 5.0, 7.0, 9.0], 1.0);
+    assert_eq!(twice.again_rad_per_s, Some([3.0, 9.0]));
+    // a peak that touches 1 is no crossing: e^-(w - 2)^2
+    assert_eq!(of(&[1.0, 2.0, 2.0], 1.0).again_rad_per_s, None);
+    // below 1 at zero frequency, and above 1 from then on
+    let resonance = of(&[2.0, 4.0], -1.0);
+    assert_eq!((resonance.first_rad_per_s, resonance.again_rad_per_s), (Some(4.0), None));
+    assert_eq!(of(&[2.0], -1.0), Crossovers::default());
+    assert_eq!(of(&[1.0, 3.0], 1.0).again_rad_per_s, Some([3.0, f64::INFINITY]));
+    assert_eq!(of(&[], -1.0).first_words(), "none");
 }

@@ -8,8 +8,9 @@ use crate::quantity::DisplayUnit;
 use crate::quantity::significant;
 
 /// Name and value of everything that a controller is compared by: verdicts first, then size, then
-/// margins. The same names for every controller of a project.
-pub fn compared(side: &AuditedController) -> Vec<(String, String)> {
+/// margins. The same names for every controller of a project. Its gain is in V per the unit of what
+/// is controlled, where the plant has units.
+pub fn compared(side: &AuditedController, per: Option<&str>) -> Vec<(String, String)> {
     let mut rows = vec![("verdict".to_string(), verdict_words(side.view.verdict()).to_string())];
     rows.extend(side.view.audit.specifications.iter().enumerate().map(|(index, finding)| {
         let margin = finding.worst.as_ref().map_or("-".to_string(), |worst| margin_words(worst.margin_db));
@@ -20,13 +21,11 @@ pub fn compared(side: &AuditedController) -> Vec<(String, String)> {
     let or_dash = |text: Option<String>| text.unwrap_or("-".to_string());
     let named = [
         ("order of controller and prefilter", format!("{} and {}", figures.order, figures.prefilter_order)),
-        ("high-frequency gain", high_frequency_words(side)),
+        ("high-frequency gain", high_frequency_words(side, per)),
+        ("crossover of the nominal loop", or_dash(nominal.map(|margins| margins.crossovers.first_words()))),
         (
-            "crossover of the nominal loop",
-            or_dash(nominal.map(|margins| match margins.crossover_rad_per_s {
-                0.0 => "none".to_string(),
-                crossover => format!("{} rad/s", significant(crossover, 3)),
-            })),
+            "|L| of the nominal loop above 1 again",
+            or_dash(nominal.map(|margins| margins.crossovers.again_words().unwrap_or("nowhere".to_string()))),
         ),
         (
             "gain margin of the nominal loop",
@@ -49,14 +48,32 @@ pub fn compared(side: &AuditedController) -> Vec<(String, String)> {
     rows
 }
 
-fn high_frequency_words(side: &AuditedController) -> String {
+fn high_frequency_words(side: &AuditedController, per: Option<&str>) -> String {
     let gain = significant(side.figures.high_frequency_gain_db, 5);
-    match side.figures.relative_degree {
-        _ if side.is_in_z() => format!("{gain} dB, |G| at pi/T"),
-        0 => format!("{gain} dB"),
-        1 => format!("{gain} dB, s G"),
-        degree => format!("{gain} dB, s^{degree} G"),
+    match side.is_in_z() {
+        true => format!("{}, |G| at pi/T", gain_at_high_frequency(&gain, 0, per)),
+        false => gain_at_high_frequency(&gain, side.figures.relative_degree, per),
     }
+}
+
+/// `-20.6 dB re 1 V/(N s)`, the limit of s^r G for a controller of relative degree r, in dB of the
+/// unit of that limit; `-20.6 dB, s G` for a plant without units.
+pub fn gain_at_high_frequency(gain_db: &str, relative_degree: i64, per: Option<&str>) -> String {
+    let Some(per) = per else {
+        let of = match relative_degree {
+            0 => String::new(),
+            1 => ", s G".to_string(),
+            degree => format!(", s^{degree} G"),
+        };
+        return format!("{gain_db} dB{of}");
+    };
+    let under = match relative_degree {
+        0 if per.contains('.') => format!("({per})"),
+        0 => per.to_string(),
+        1 => format!("({per} s)"),
+        degree => format!("({per} s^{degree})"),
+    };
+    format!("{gain_db} dB re 1 V/{under}")
 }
 
 /// The least change of phase that reaches -1; a stable loop with several crossovers may be nearest

@@ -1,5 +1,6 @@
 //! The structures that were tried, with what each reaches.
 
+use phea_dynamics::controller::Controller;
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
@@ -7,7 +8,7 @@ use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{NamedStructure, Objective, PrefilterChoice, StructureEnding, TriedStructure};
 use phea_qft::loop_shaping::{SampledMargin, Structure};
 
-use super::{DesignError, DesignRun, NominalMargins, ProjectDesign};
+use super::{DesignError, DesignRun, ManualLaw, ManualPart, NominalMargins, ProjectDesign};
 use crate::audit::{nominal_margins, steps_of_members};
 use crate::project::{STRUCTURES, StructureChoice, word_of};
 use crate::robust::RobustProblem;
@@ -18,6 +19,8 @@ use crate::simulate::ReachedStep;
 pub struct ReachedStructure {
     /// Its name; `None` for one of growing order or a given one.
     pub name: Option<NamedStructure>,
+    /// What a manual calls a law that was found for a PID, where its T_d would not be positive.
+    pub other_words: Option<String>,
     /// Its factors.
     pub structure: Structure,
     /// Number of poles.
@@ -127,6 +130,7 @@ fn reached_by(
     Ok(ReachedStructure {
         steps,
         name: tried.name,
+        other_words: law.filter(|_| tried.name == Some(NamedStructure::Pid)).and_then(words_of_no_pid),
         order: tried.structure.order()?,
         relative_degree: tried.structure.relative_degree()?,
         is_chosen,
@@ -139,6 +143,14 @@ fn reached_by(
         high_frequency_gain_db,
         compared_db: tried.reached_db,
     })
+}
+
+/// `PI with lag`, for a law that is no PID of positive terms; `None` for one that is.
+fn words_of_no_pid(law: &Controller) -> Option<String> {
+    let words = ManualLaw::new(&law.feedback, Some(NamedStructure::Pid)).ok()?;
+    let is_pid = |part: &ManualPart| matches!(part, ManualPart::ProportionalIntegralDerivative { .. });
+    let names: Vec<&str> = words.parts.iter().map(ManualPart::name).collect();
+    (!words.parts.iter().any(is_pid)).then(|| names.join(" with "))
 }
 
 /// The least margin that the audit of a design found to anything that it is judged by.

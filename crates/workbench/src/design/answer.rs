@@ -132,7 +132,7 @@ fn figures(side: &AuditedController) -> Object {
         .with("gain_margin_db", nominal.map(|margins| margins.gain_margin_db))
         .with("gain_reduction_db", nominal.map(|margins| margins.gain_reduction_db))
         .with("phase_margin_deg", nominal.map(|margins| margins.phase_margin_deg))
-        .with("crossover_rad_per_s", nominal.map(|margins| margins.crossover_rad_per_s))
+        .and(structures::crossovers(nominal))
         .maybe("reason", missing.then_some(reason))
 }
 

@@ -215,8 +215,10 @@ pub(crate) fn side_by_side(view: &ProjectDesign) -> Document {
         ("designed", Some(&view.designed)),
         ("made without samples", view.continuous.as_deref()),
     ];
-    let columns: Vec<(&str, Vec<(String, String)>)> =
-        sides.into_iter().filter_map(|(name, side)| Some((name, compared(side?)))).collect();
+    let columns: Vec<(&str, Vec<(String, String)>)> = sides
+        .into_iter()
+        .filter_map(|(name, side)| Some((name, compared(side?, view.controlled_unit()))))
+        .collect();
     let mut table = Table::new(std::iter::once("").chain(columns.iter().map(|(name, _)| *name)));
     // a designed loop has limits that the given one has not
     let names = columns.iter().map(|(_, rows)| rows).max_by_key(|rows| rows.len());

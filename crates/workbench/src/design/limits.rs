@@ -103,8 +103,8 @@ fn value_words(view: &ProjectDesign, limit: &DesignLimit) -> String {
         DesignLimitKind::MinimumDelayMargin => {
             let words = |seconds: f64| DisplayUnit::MILLISECOND.text(seconds, 3);
             let reached = match view.designed.figures.delay_margin_s {
-                Some(f64::INFINITY) => "; it tolerates any".to_string(),
-                Some(margin_s) => format!("; it tolerates {}", words(margin_s)),
+                Some(f64::INFINITY) => "; the family tolerates any".to_string(),
+                Some(margin_s) => format!("; the family tolerates {}", words(margin_s)),
                 None => String::new(),
             };
             format!("{} more{reached}", words(value))

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use phea_dynamics::controller::NamedStructure;
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::Discretization;
 use phea_engineering::design::{ManualLaw, ManualPart};
@@ -29,7 +30,7 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
         }
     };
     let of_gain = Gain::of(view);
-    let row = |part: &ManualPart| [Cell::from(name(part)), Cell::from(settings(part, of_gain))];
+    let row = |part: &ManualPart| [Cell::from(part.name()), Cell::from(settings(part, of_gain))];
     out.table(Table::new(["part", "settings"]).with(words.parts.iter().map(row)));
     out.explanation(
         "The parts act in series: PI is K_p (1 + 1/(T_i s)), PID is K_p (1 + 1/(T_i s) + T_d s/(T_f s + 1)), the standard form (ISA) with one gain for all terms; a low pass is 1/(T_f s + 1); the depth of a notch is that of its magnitude at its frequency, its width the frequency times twice the damping ratio of its poles.",
@@ -48,6 +49,13 @@ fn remarks(view: &ProjectDesign, words: &ManualLaw) -> Vec<String> {
         _ => None,
     };
     let mut all: Vec<String> = words.parts.iter().find_map(form).map(str::to_string).into_iter().collect();
+    let is_pid = |part: &ManualPart| matches!(part, ManualPart::ProportionalIntegralDerivative { .. });
+    if view.design.name == Some(NamedStructure::Pid) && !words.parts.iter().any(is_pid) {
+        all.push(
+            "as a PID it would have no positive T_d, since its filter is slower than a zero: so it is a PI with a lag"
+                .to_string(),
+        );
+    }
     if view.designed.problem.compensation.sample_time_s().is_some() {
         let rule = match view.designed.controller.timing.discretization {
             Discretization::Tustin => "bilinear (Tustin)".to_string(),
@@ -152,20 +160,6 @@ fn key(part: &ManualPart) -> &'static str {
         ManualPart::ProportionalIntegralDerivative { .. } => "pid",
         ManualPart::LowPass { .. } => "low_pass",
         ManualPart::SecondOrderLowPass { .. } => "second_order_low_pass",
-        ManualPart::Lead { .. } => "lead",
-        ManualPart::Lag { .. } => "lag",
-        ManualPart::Notch { .. } => "notch",
-    }
-}
-
-fn name(part: &ManualPart) -> &'static str {
-    match part {
-        ManualPart::Proportional { .. } => "P",
-        ManualPart::Integral { .. } => "I",
-        ManualPart::ProportionalIntegral { .. } => "PI",
-        ManualPart::ProportionalIntegralDerivative { .. } => "PID with filter",
-        ManualPart::LowPass { .. } => "low pass",
-        ManualPart::SecondOrderLowPass { .. } => "low pass of second order",
         ManualPart::Lead { .. } => "lead",
         ManualPart::Lag { .. } => "lag",
         ManualPart::Notch { .. } => "notch",

@@ -1,12 +1,13 @@
 //! The structures that were tried against what each reaches.
 
 use phea_engineering::design::{
-    DesignLimitKind, ReachedStructure, limit_words, structure_key, structure_words,
+    DesignLimitKind, ReachedStructure, gain_at_high_frequency, limit_words, structure_key, structure_words,
 };
 use phea_qft::design::{ControllerChoice, Objective, StructureEnding};
 
 use super::ProjectDesign;
 use crate::answer::{Object, significant};
+use crate::audit::NominalMargins;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
 
@@ -27,8 +28,8 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
         "",
         "least margin",
         "binds",
-        "crossover",
-        "delay margin",
+        "nominal crossover",
+        "nominal delay margin",
         "high-frequency gain",
         if compares_noise { "noise gain" } else { "compared" },
         "overshoot",
@@ -36,6 +37,7 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
     ];
     out.table(Table::new(headings).with(view.structures.iter().map(|one| row(view, one))));
     out.sentences(earned_sentence(view));
+    out.sentences(laws_that_differ(view));
     out.sentences(view.structures.iter().filter_map(|one| {
         let slowest = one.slowest_zero_rad_per_s.filter(|_| one.ending != StructureEnding::NotEarned)?;
         let found = significant(slowest, 3);
@@ -62,6 +64,22 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
     out
 }
 
+/// Structures that ended as something else than their name, and loops in which |L| rises above 1
+/// again beyond the crossover.
+fn laws_that_differ(view: &ProjectDesign) -> Vec<String> {
+    let renamed = view.structures.iter().filter_map(|one| {
+        let name = one.name.filter(|_| one.other_words.is_some())?.words();
+        Some(format!("{}: a {name} whose T_d would not be positive", words(one)))
+    });
+    let again =
+        |one: &ReachedStructure| Some(format!("{} {}", words(one), one.nominal?.crossovers.again_words()?));
+    let again: Vec<String> = view.structures.iter().filter_map(again).collect();
+    let risen = (!again.is_empty()).then(|| {
+        format!("beyond the crossover |L| of the nominal loop is above 1 again: {}", again.join(", "))
+    });
+    renamed.chain(risen).collect()
+}
+
 /// What a longer structure must gain, dB, where that decides.
 pub(super) fn earned_per_pole_db(view: &ProjectDesign) -> Option<f64> {
     match view.options.controller {
@@ -86,23 +104,20 @@ fn earned_sentence(view: &ProjectDesign) -> Option<String> {
 }
 
 fn words(one: &ReachedStructure) -> String {
+    if let Some(other) = &one.other_words {
+        return other.clone();
+    }
     one.name.map_or_else(|| structure_words(&one.structure), |name| name.words().to_string())
 }
 
 fn row(view: &ProjectDesign, one: &ReachedStructure) -> Vec<Cell> {
     let or_missing = |text: Option<String>| text.map_or(Cell::Missing, Cell::from);
-    let decibel = |value: Option<f64>, after: &str| {
-        or_missing(value.map(|value| format!("{} dB{after}", significant(value, 4))))
-    };
-    let of_gain = match one.relative_degree {
-        0 => String::new(),
-        1 => ", s G".to_string(),
-        degree => format!(", s^{degree} G"),
-    };
-    let crossover = one.nominal.map(|margins| match margins.crossover_rad_per_s {
-        0.0 => "none".to_string(),
-        crossover => format!("{} rad/s", significant(crossover, 3)),
+    let compared = one.compared_db.map(|value| compared_words(view, value));
+    let gain = one.high_frequency_gain_db.map(|gain_db| {
+        let degree = i64::from(one.relative_degree);
+        gain_at_high_frequency(&significant(gain_db, 4), degree, view.controlled_unit())
     });
+    let crossover = one.nominal.map(|margins| margins.crossovers.first_words());
     let delay = one.nominal.map(|margins| match margins.delay_margin_s {
         f64::INFINITY => "unlimited".to_string(),
         delay_s => DisplayUnit::MILLISECOND.text(delay_s, 3),
@@ -116,11 +131,20 @@ fn row(view: &ProjectDesign, one: &ReachedStructure) -> Vec<Cell> {
         or_missing(one.binding.clone()),
         or_missing(crossover),
         or_missing(delay),
-        decibel(one.high_frequency_gain_db, &of_gain),
-        decibel(one.compared_db, ""),
+        or_missing(gain),
+        or_missing(compared),
         or_missing(overshoot),
         or_missing(settling),
     ]
+}
+
+/// What structures are compared by, in dB; the noise gain |G/(1+L)| has the unit of G.
+fn compared_words(view: &ProjectDesign, value_db: f64) -> String {
+    let value = significant(value_db, 4);
+    match view.options.objective {
+        Objective::LeastHighFrequencyGain => gain_at_high_frequency(&value, 0, view.controlled_unit()),
+        Objective::LeastBandwidth | Objective::BestWorstMargin => format!("{value} dB"),
+    }
 }
 
 /// The worst overshoot and settling time.
@@ -148,9 +172,8 @@ fn reached_steps(view: &ProjectDesign, one: &ReachedStructure) -> Option<[Option
 /// True where the steps of a structure that keeps every limit miss what is required in time.
 fn misses_in_time(view: &ProjectDesign, one: &ReachedStructure) -> bool {
     let Some((reached, finding)) = one.steps.zip(view.designed.view.in_time.first()) else { return false };
-    // limits that are stated are compared with the step, and do not require it
-    let requirement = &finding.requirement;
-    requirement.follows && one.ending == StructureEnding::Met && requirement.wish.excess(&reached) > 1.0
+    let is_missed = finding.requirement.follows && finding.requirement.wish.excess(&reached) > 1.0;
+    is_missed && one.ending == StructureEnding::Met
 }
 
 /// True where a structure has no more poles than the one that is taken.
@@ -184,6 +207,15 @@ fn ending_key(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
     }
 }
 
+/// The frequencies at which |L| of the nominal loop is 1, in JSON.
+pub(super) fn crossovers(nominal: Option<&NominalMargins>) -> Object {
+    let crossovers = nominal.map(|margins| margins.crossovers).unwrap_or_default();
+    Object::new()
+        .with("crossover_rad_per_s", nominal.map(|margins| margins.crossover_rad_per_s))
+        .with("first_crossover_rad_per_s", crossovers.first_rad_per_s)
+        .maybe("above_again_rad_per_s", crossovers.again_rad_per_s)
+}
+
 /// The structures in JSON.
 pub(super) fn rows(view: &ProjectDesign) -> Vec<Object> {
     let row = |one: &ReachedStructure| {
@@ -199,7 +231,7 @@ pub(super) fn rows(view: &ProjectDesign) -> Vec<Object> {
             .maybe("worst_margin_db", one.least.as_ref().map(|least| least.margin_db))
             .maybe("binding", one.binding.clone())
             .maybe("binding_rad_per_s", one.least.as_ref().map(|least| least.frequency_rad_per_s))
-            .maybe("crossover_rad_per_s", one.nominal.map(|margins| margins.crossover_rad_per_s))
+            .and(one.nominal.as_ref().map(|own| crossovers(Some(own))).unwrap_or_default())
             .maybe("delay_margin_s", one.nominal.map(|margins| margins.delay_margin_s))
             .maybe("high_frequency_gain_db", one.high_frequency_gain_db)
             .with("relative_degree", i64::from(one.relative_degree))

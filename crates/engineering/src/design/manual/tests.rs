@@ -51,6 +51,18 @@ fn a_pid_is_told_from_a_pi_with_lead_by_its_name_or_its_complex_zeros() {
     let [ManualPart::ProportionalIntegralDerivative { .. }] = words_of(&complex, None)[..] else { panic!() };
 }
 
+/// K_d = k (1/z_1 - T_f) (1/z_2 - T_f): a filter between the zeros has a T_d below zero, and one
+/// that is slower than both a T_i below zero. Either is a PI with a lag.
+#[test]
+fn a_pid_with_a_slow_filter_is_a_pi_with_a_lag() {
+    for pole in [5.0, 15.0] {
+        let law = general(100.0, &[[-10.0, 0.0], [-20.0, 0.0]], &[[0.0, 0.0], [-pole, 0.0]]);
+        let parts = words_of(&law, Some(NamedStructure::Pid));
+        let names: Vec<&str> = parts.iter().map(ManualPart::name).collect();
+        assert_eq!(names, ["PI", "lag"], "{pole}");
+    }
+}
+
 #[test]
 fn every_named_part_reads_back() {
     let zero = Element::RealZero { frequency: 12.0 };

@@ -21,7 +21,7 @@ pub(super) fn sentences(
     sentences.push(outcome(repair, found));
     sentences.extend(repair.after.iter().map(|after| with_waves(repair.status, after)));
     if repair.status != RepairStatus::Met {
-        sentences.extend(crossover(repair, told));
+        sentences.extend(crossing(repair, told));
         sentences.push(help(project, repair, told));
         sentences.extend(nearest(found));
     }
@@ -65,7 +65,9 @@ fn outcome(repair: &Repair, found: &ProjectDesign) -> String {
     let both = "over the family and with the waves at once";
     match repair.status {
         RepairStatus::Met => {
-            let crossover = crossover_of(found)
+            let crossover =
+                found.designed.figures.nominal.and_then(|nominal| nominal.crossovers.first_rad_per_s);
+            let crossover = crossover
                 .map_or(String::new(), |crossover| format!(", and crosses over at {}", frequency(crossover)));
             format!("that plant was added: the controller satisfies every specification {both}{crossover}")
         }
@@ -106,17 +108,19 @@ fn margins(view: &ProjectAudit) -> String {
     told.collect::<Vec<_>>().join(", ")
 }
 
-fn crossover_of(design: &ProjectDesign) -> Option<f64> {
+/// The highest frequency at which |L| = 1: a resonance may bring it there, far beyond the
+/// crossover.
+fn last_crossing(design: &ProjectDesign) -> Option<f64> {
     let nominal = design.designed.figures.nominal.as_ref()?;
-    Some(nominal.crossover_rad_per_s).filter(|crossover| *crossover > 0.0)
+    Some(nominal.crossover_rad_per_s).filter(|crossing| *crossing > 0.0)
 }
 
-/// Where the loop crosses over and where the line is a quarter wave long.
-fn crossover(repair: &Repair, told: &ProjectDesign) -> Option<String> {
-    let (own, quarter) = (crossover_of(told)?, repair.quarter_wave_rad_per_s?);
+/// Up to where the loop has |L| = 1, and where the line is a quarter wave long.
+fn crossing(repair: &Repair, told: &ProjectDesign) -> Option<String> {
+    let (own, quarter) = (last_crossing(told)?, repair.quarter_wave_rad_per_s?);
     let beyond = if own > quarter { "beyond" } else { "below" };
     Some(format!(
-        "the loop that satisfies the family crosses over at {}, {beyond} the quarter wave of its slower line at {}",
+        "in the loop that satisfies the family |L| is 1 up to {}, {beyond} the quarter wave of its slower line at {}",
         frequency(own),
         frequency(quarter)
     ))
@@ -126,18 +130,18 @@ fn frequency(rad_per_s: f64) -> String {
     format!("{} rad/s ({})", significant(rad_per_s, 3), DisplayUnit::HERTZ.text(rad_per_s, 3))
 }
 
-/// What would help: a line so short that its quarter wave lies beyond the crossover, a wall that
+/// What would help: a line so short that its quarter wave lies beyond that frequency, a wall that
 /// damps, less bandwidth.
 fn help(project: &Project, repair: &Repair, told: &ProjectDesign) -> String {
     let mut ways = Vec::new();
     let lines = project.actuator.as_ref().map(|actuator| [&actuator.line.a, &actuator.line.b]);
     let longest = lines.iter().flatten().filter_map(|line| DeclaredLine::length(line)).fold(0.0, f64::max);
-    if let (Some(own), Some(quarter)) = (crossover_of(told), repair.quarter_wave_rad_per_s)
+    if let (Some(own), Some(quarter)) = (last_crossing(told), repair.quarter_wave_rad_per_s)
         && own > quarter
         && longest > 0.0
     {
         let length = DisplayUnit::METRE.text(longest * quarter / own, 2);
-        ways.push(format!("a line shorter than {length}, whose quarter wave lies beyond that crossover"));
+        ways.push(format!("a line shorter than {length}, whose quarter wave lies beyond that frequency"));
     }
     if lines.iter().flatten().any(|line| line.hose().is_some()) {
         ways.push(
