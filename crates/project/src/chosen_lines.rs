@@ -33,7 +33,8 @@ fn motion(with_waves: bool) -> LineMotion {
 /// What reaches a frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ReachedBy {
-    /// The crossover of the given loop, over the plants that were examined.
+    /// The highest frequency at which |L| = 1 in the given loop, over the plants that were
+    /// examined.
     Crossover,
     /// The bandwidth of a required settling or rise time, of the specification with this number.
     RequiredTime(usize),

@@ -22,6 +22,9 @@ pub(crate) fn sentence(lines: &ChosenLines) -> String {
     let factor = significant(LUMPED_FROM, 2);
     let of_reach = match &lines.reach {
         None => format!("no loop and no requirement comes near their quarter wave at {quarter_wave}"),
+        Some((reached, ReachedBy::HighestBandwidth)) if is_quarter_wave(*reached, lines) => format!(
+            "a design may use the whole band up to their quarter wave at {quarter_wave}, which limits it (`design.highest_bandwidth`)"
+        ),
         Some((reached, by)) => {
             let side = if is_near(lines) { "within" } else { "beyond" };
             format!(
@@ -41,6 +44,14 @@ pub(crate) fn sentence(lines: &ChosenLines) -> String {
     }
 }
 
+/// Whether a frequency is the quarter wave itself, which limits a design by default.
+fn is_quarter_wave(reached: f64, lines: &ChosenLines) -> bool {
+    (reached / lines.quarter_wave_rad_per_s - 1.0).abs() < SAME
+}
+
+/// Relative difference below which two frequencies are one.
+const SAME: f64 = 1e-9;
+
 fn is_near(lines: &ChosenLines) -> bool {
     lines.with_waves || lines.hindrance.is_some()
 }
@@ -51,7 +62,7 @@ fn frequency(rad_per_s: f64) -> String {
 
 fn by_words(by: &ReachedBy) -> String {
     match by {
-        ReachedBy::Crossover => "the crossover of the given loop".to_string(),
+        ReachedBy::Crossover => "the last crossing of |L| = 1 in the given loop".to_string(),
         ReachedBy::RequiredTime(number) => {
             format!("the bandwidth that the times of [[specification]] {number} require")
         }

@@ -176,3 +176,17 @@ fn what_is_not_computed_with_waves_stays_lumped() {
     assert_eq!(found["model"], "lumped");
     assert_eq!(found["hindrance"], "the load is a mass without stiffness");
 }
+
+/// Where the quarter wave is what limits a design, the reason is not that it lies near itself.
+#[test]
+fn a_quarter_wave_that_limits_the_bandwidth_is_not_compared_with_itself() {
+    let rig = rig_to_be_designed();
+    let sentence = |settings: &[&str]| {
+        let said = answer(&rig, settings, &[], &Request::Check).text;
+        said.lines().next().unwrap_or_default().to_string()
+    };
+    let own = sentence(&[]);
+    assert!(own.contains("up to their quarter wave") && !own.contains("within 10 times"), "{own}");
+    let stated = sentence(&["design.highest_bandwidth=60"]);
+    assert!(stated.contains("within 10 times the 60.0 rad/s"), "{stated}");
+}
