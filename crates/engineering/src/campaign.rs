@@ -24,7 +24,7 @@ mod varied;
 mod workers;
 
 pub use ledger::{RequestedRuns, RowStore, Shard};
-pub use plan::{Draw, Plan};
+pub use plan::{BeyondBox, Draw, FamilyBox, Plan};
 pub use range::VariedRange;
 pub use required::{CampaignRequirement, SatisfiedRuns};
 pub use row::{LUMP_NAMES, METRIC_NAMES, Ran, Row, RowOutcome, STATUS_WORDS};

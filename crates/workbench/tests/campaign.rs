@@ -11,8 +11,8 @@ use std::path::Path;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use phea_workbench::campaign::{
-    CampaignError, Effort, METRIC_NAMES, Plan, RequestedRuns, Row, RowOutcome, RowStore, STATUS_WORDS, Shard,
-    Summary,
+    CampaignError, Effort, FamilyBox, METRIC_NAMES, Plan, RequestedRuns, Row, RowOutcome, RowStore,
+    STATUS_WORDS, Shard, Summary,
 };
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, CommandError, Request};
 use phea_workbench::project::{self, Loaded};
@@ -461,4 +461,26 @@ fn what_is_refused_of_a_campaign_has_its_place_and_a_hint() {
     assert!(loaded.warnings.iter().any(|warning| warning.message.contains("`spread` is 2000 %")));
     let loaded = load(&[&pressure("{ spread = 1 }")]);
     assert!(!loaded.warnings.iter().any(|warning| warning.message.contains("`spread`")));
+}
+
+/// What is drawn is compared with the box number by number: a range within it is not mentioned, a
+/// wider one with both ranges, a number that is not in it as such.
+#[test]
+fn numbers_that_are_drawn_beyond_the_box_are_named() {
+    const RIG: &str = include_str!("../../../examples/structural/rig.toml");
+    let text = format!(
+        "{RIG}\n[campaign]\n[campaign.parameters]\n\"supply.pressure\" = {{ minimum = \"180 bar\", maximum = \"231 bar\" }}\n\
+         \"load.stiffness\" = {{ minimum = \"5 kN/mm\", maximum = \"30 kN/mm\" }}\n\
+         \"valve.natural_frequency\" = {{ spread = \"20 %\" }}\n"
+    );
+    let source = Memory::default().with("rig.toml", text);
+    let loaded = project::read(&source, "rig.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}"));
+    let plan = Plan::new(&source, &loaded, 1).unwrap();
+    assert_eq!(plan.box_of_family(), FamilyBox::Numbers);
+    let beyond = plan.beyond_box();
+    let paths: Vec<&str> = beyond.iter().map(|one| one.range.path.as_str()).collect();
+    assert_eq!(paths, ["supply.pressure", "valve.natural_frequency"]);
+    let [low, high] = beyond[0].designed_for.unwrap();
+    assert!((low - 189e5).abs() < 1.0 && (high - 231e5).abs() < 1.0);
+    assert_eq!(beyond[1].designed_for, None);
 }

@@ -93,6 +93,29 @@ pub struct Draw {
     pub(super) noise_seed: Option<u32>,
 }
 
+/// What the box of a family ranges over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FamilyBox {
+    /// There is none.
+    None,
+    /// Parameters of the linear model.
+    LinearParameters,
+    /// Numbers of the rig.
+    Numbers,
+}
+
+/// A number that is drawn beyond the box for which the controller is judged.
+#[derive(Clone, Copy, Debug)]
+pub struct BeyondBox<'a> {
+    /// What is drawn; of a normal distribution two standard deviations to both sides.
+    pub range: &'a VariedRange,
+    /// Its range in the box; `None` where it is not in the box.
+    pub designed_for: Option<[f64; 2]>,
+}
+
+/// Share of the box by which a drawn range may exceed it through rounding.
+const SAME: f64 = 1e-9;
+
 impl Plan {
     /// Rows as a Parquet table.
     ///
@@ -210,6 +233,40 @@ impl Plan {
     pub fn bounds(&self, parameter: &str) -> Option<[f64; 2]> {
         let uncertain = self.project.uncertainty.iter().find(|uncertain| uncertain.name == parameter)?;
         Some([uncertain.minimum, uncertain.maximum])
+    }
+
+    /// What the box of the family ranges over.
+    pub fn box_of_family(&self) -> FamilyBox {
+        let uncertain = &self.project.uncertainty;
+        if uncertain.iter().any(|one| one.name.contains('.')) {
+            FamilyBox::Numbers
+        } else if uncertain.is_empty() {
+            FamilyBox::None
+        } else {
+            FamilyBox::LinearParameters
+        }
+    }
+
+    /// The drawn numbers of the rig that leave the box for which the controller is judged; none
+    /// where that has no numbers of the rig.
+    pub fn beyond_box(&self) -> Vec<BeyondBox<'_>> {
+        if self.box_of_family() != FamilyBox::Numbers {
+            return vec![];
+        }
+        let region = self.project.family.as_ref().and_then(|family| family.operating_region.as_ref());
+        let beyond = |range: &VariedRange| {
+            let designed_for = self.bounds(&range.path);
+            let is_direction = self.project.directions.iter().any(|direction| direction.name == range.path);
+            let is_visited = range.path.starts_with("operating_point.") && region.is_some();
+            let is_start = range.path.starts_with("start.");
+            let is_within = designed_for.is_some_and(|[low, high]| {
+                let room = SAME * (high - low).abs();
+                range.minimum >= low - room && range.maximum <= high + room
+            });
+            !(is_direction || is_visited || is_start || is_within)
+        };
+        let beyond = self.ranges.iter().filter(|range| beyond(range));
+        beyond.map(|range| BeyondBox { range, designed_for: self.bounds(&range.path) }).collect()
     }
 
     /// The numbers that are drawn for a run.

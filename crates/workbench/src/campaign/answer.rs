@@ -51,6 +51,13 @@ pub(crate) fn body(plan: &Plan, wanted: RequestedRuns, rows: usize, summary: &Su
         .with("quantiles_percent", QUANTILES)
         .with("metrics", events(plan, summary))
         .with("lumps", lumps(plan, summary))
+        .each("beyond_box", plan.beyond_box(), |one| {
+            Object::new()
+                .with("path", one.range.path.as_str())
+                .with("minimum", one.range.minimum)
+                .with("maximum", one.range.maximum)
+                .told("box", one.designed_for.ok_or("[uncertainty] does not name it"))
+        })
         .with("bands", bands)
         .each("requirements", &summary.requirements, requirement)
         .each("worst_runs", &summary.worst, |worst| worst_run(plan, worst))

@@ -1,7 +1,7 @@
 //! What `campaign` says to people.
 
 use super::Summary;
-use super::{CampaignRequirement, RequestedRuns};
+use super::{CampaignRequirement, FamilyBox, RequestedRuns};
 use super::{Draw, Plan};
 use super::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
 use super::{QUANTILES, Spread};
@@ -90,6 +90,7 @@ pub(crate) fn document(
         out.gap();
         out.sentences(summary.requirements.iter().map(requirement));
         out.table(lumps(plan, summary));
+        out.sentences(beyond_box(plan));
     }
     if let Some(worst) = summary.worst.first() {
         out.line(format!(
@@ -169,6 +170,39 @@ pub(crate) fn lumps(plan: &Plan, summary: &Summary) -> Table {
     };
     Table::new(["visited", "least", "median", "greatest", "box of [uncertainty]", "runs outside"])
         .with(summary.lumps.iter().enumerate().filter_map(row))
+}
+
+/// Which drawn numbers the controller is not judged for, and why parameters of the linear model
+/// have no box.
+pub(crate) fn beyond_box(plan: &Plan) -> Vec<String> {
+    let mut told = Vec::new();
+    let without: Vec<&str> = LUMP_NAMES.iter().copied().filter(|name| plan.bounds(name).is_none()).collect();
+    if !without.is_empty() {
+        let follow = match plan.box_of_family() {
+            FamilyBox::None => "no box is stated for the controller to be judged over",
+            FamilyBox::LinearParameters => "it ranges over other parameters of the linear model",
+            FamilyBox::Numbers => {
+                "it ranges over numbers of the rig, from which they follow; `check` prints what they range over"
+            }
+        };
+        told.push(format!("[uncertainty] has no box of {}: {follow}", without.join(", ")));
+    }
+    told.extend(plan.beyond_box().into_iter().map(|one| {
+        let unit = one.range.unit();
+        let between = |[low, high]: [f64; 2]| format!("{} to {}", unit.number(low, 4), unit.text(high, 4));
+        let drawn = between([one.range.minimum, one.range.maximum]);
+        let path = &one.range.path;
+        match one.designed_for {
+            Some(box_of) => format!(
+                "{path} is drawn beyond the box that the controller is judged for: {drawn}, box {}",
+                between(box_of)
+            ),
+            None => {
+                format!("{path} is drawn, {drawn}, and is not in the box that the controller is judged for")
+            }
+        }
+    }));
+    told
 }
 
 /// One run: its numbers as settings, and the output of `simulate`.

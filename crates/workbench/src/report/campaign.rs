@@ -7,7 +7,7 @@ use super::chapter::Chapter;
 use crate::answer::significant;
 use crate::campaign::{
     CampaignError, METRIC_NAMES, Plan, QUANTILES, RequestedRuns, Row, Shard, Spread, Summary, VariedRange,
-    WorstRun, campaign, counted, lumps, metrics, pictures,
+    WorstRun, beyond_box, campaign, counted, lumps, metrics, pictures,
 };
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
@@ -175,6 +175,7 @@ fn document([runs, asked]: [u64; 2], plan: &Plan, summary: &Summary, figures: Ve
     out.heading("Linear models that were visited");
     out.explanation("Stiffness, flow gain and flow-pressure coefficient do not exist in the nonlinear machine: these are those of its linear model at the operating point, for each draw, next to the box for which the controller is judged.");
     out.table(lumps(plan, summary));
+    out.sentences(beyond_box(plan));
     worst(&mut out, plan, summary);
     drawn(&mut out, plan, summary);
     out
