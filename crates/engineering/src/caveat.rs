@@ -13,9 +13,8 @@ use phea_hydraulics::operating_point::{Condition, OperatingPoint};
 use phea_hydraulics::series::MOST_SEGMENTS;
 
 use fed::{fed_in_loop, feed_forward, impedance, measured_without_pressures, pressures_in_loop};
+use leakage_humps::leakage_humps;
 use moved_roots::moved_roots;
-
-pub use leakage_humps::leakage_humps;
 
 use crate::family::{ShutGas, shut_gas};
 use crate::project::{CrossPortKind, DeclaredSeries, Load, Project, Pump, SupplyModel};
@@ -38,7 +37,8 @@ pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
         supply(setup).into_iter().chain(accumulator(setup)).chain(cross_port(setup)).chain(neck(setup));
     let of_rig = of_rig.chain(adjustment(setup)).chain(gas_valve(setup));
     let of_rig = apart_from_lines(setup).chain(of_rig).chain(progression(setup)).chain(segments(setup));
-    of_rig.chain(moved_roots(setup)).chain(blocked_piston(setup)).collect()
+    let of_valve = leakage_humps(setup).map(|sentence| Caveat { sentence, unproven: false });
+    of_valve.into_iter().chain(of_rig).chain(moved_roots(setup)).chain(blocked_piston(setup)).collect()
 }
 
 /// A region of positions alone under the force of a piston that is blocked at null.
@@ -79,6 +79,7 @@ pub fn of_models(setup: &Setup<'_>) -> Vec<String> {
         .chain(beside_spring(project))
         .chain(standing(project))
         .chain(null_sides::null_sides(setup))
+        .chain(leakage_humps(setup))
         .collect()
 }
 

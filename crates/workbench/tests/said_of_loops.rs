@@ -114,6 +114,14 @@ const BESIDE: &str = "the valve leaks most beside null";
 /// of a motor's; one that is highest at null says nothing.
 #[test]
 fn a_valve_that_leaks_most_beside_null_is_told() {
+    // every command on the linear loop says it, as `check` does
+    let humps = "valve.leakage_shape=40";
+    for request in [Request::Check, VERIFY, Request::Linearize { sweep: None }] {
+        let said = json(HOSE, &[humps], &[], &request);
+        let warnings = said["warnings"].as_array().unwrap();
+        let own = warnings.iter().filter(|one| one.as_str().is_some_and(|words| words.contains(BESIDE)));
+        assert_eq!(own.count(), 1, "{}", request.name());
+    }
     let told = |text: &str, settings: &[&str]| {
         let said = answer(text, settings, &[], &Request::Check).text;
         said.lines().find(|line| line.contains(BESIDE)).map(str::to_string)

@@ -15,7 +15,7 @@ const DIP: f64 = 0.08;
 
 /// Edges that open faster than those in series with them shut leak most on either side of null,
 /// which no measured valve does.
-pub fn leakage_humps(setup: &Setup<'_>) -> Option<String> {
+pub(super) fn leakage_humps(setup: &Setup<'_>) -> Option<String> {
     let components = setup.rig().ok()?.actuator.components();
     let [opening, most, least] = humps(&components.valve, &components.supply)?;
     let [most, least] = [most, least].map(|flow| display(flow, &FLOW, 3));

@@ -6,7 +6,7 @@ use super::CommandError;
 use super::alternatives::read_alternatives;
 use super::impossible::Impossible;
 use super::unprinted::Unprinted;
-use crate::caveat::{caveats, leakage_humps};
+use crate::caveat::caveats;
 use crate::derived::{self, derive};
 use crate::document::Document;
 use crate::family::{family, visited_box};
@@ -88,12 +88,7 @@ fn told_first(setup: &Setup<'_>) -> Vec<String> {
     let outside = setup
         .outside()
         .map(|(_, words)| format!("the family does not contain the rig as it is derived ({words})"));
-    let of_valve = leakage_humps(setup);
-    outside
-        .into_iter()
-        .chain(of_valve)
-        .chain(caveats(setup).into_iter().map(|caveat| caveat.sentence))
-        .collect()
+    outside.into_iter().chain(caveats(setup).into_iter().map(|caveat| caveat.sentence)).collect()
 }
 
 /// A project without an actuator has only its family, which must be valid.
