@@ -13,6 +13,7 @@ use super::by_steps::{AimedSteps, SteppedPlants, by_steps, shortened};
 use super::search::{found, rank};
 use super::step_aim::StepAim;
 use super::{DesignError, DesignRun, ProjectDesign, tried_design, unless_stopped};
+use crate::audit::try_to_prove;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::source::Source;
@@ -61,7 +62,22 @@ pub(super) fn found_and_tried(
             break;
         }
     }
-    Ok(shorter((source, setup), AimedSteps { added: &known, ..aimed }, best, &mut within(watch, [0.9, 1.0])))
+    let (run, mut told) = shorter(
+        (source, setup),
+        AimedSteps { added: &known, ..aimed },
+        best,
+        &mut within(&mut *watch, [0.9, 0.98]),
+    );
+    // a design that was led by its steps is not proven on the way
+    if told.designed.view.proof.is_none() {
+        let problem = told.designed.problem.clone();
+        let view = &mut told.designed.view;
+        let proof = unless_stopped(&mut told.stopped, || {
+            Ok(Some(try_to_prove(&problem, view, &mut within(watch, [0.98, 1.0]))?))
+        });
+        proof?;
+    }
+    Ok((run, told))
 }
 
 /// The design without zeros and poles that do next to nothing, where the nonlinear rig satisfies

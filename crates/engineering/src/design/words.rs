@@ -14,6 +14,7 @@ pub fn status_key(view: &ProjectDesign) -> &'static str {
     match view.design.status {
         _ if view.stopped => "stopped",
         DesignStatus::Met if view.designed.view.verdict() == Verdict::NotProven => "not_proven",
+        DesignStatus::Met if view.designed.view.audit.verdict == Verdict::Violated => "not_converged",
         DesignStatus::Met if view.designed.view.misses_in_time() || view.misses_on_rig() => "missed_in_time",
         DesignStatus::Met if view.exceeded_prefilter_gain().is_some() => "prefilter_amplifies",
         DesignStatus::Met => "met",
@@ -34,6 +35,9 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
         DesignStatus::Met if view.designed.view.verdict() == Verdict::NotProven => {
             "not proven: the controller satisfies every specification over the family, which does not include everything that is declared"
                 .to_string()
+        }
+        DesignStatus::Met if view.designed.view.audit.verdict == Verdict::Violated => {
+            "not met: the proof refutes what the search of the audit found to be met".to_string()
         }
         DesignStatus::Met if view.designed.view.misses_in_time() => {
             "not met: the controller satisfies every specification over frequency, and its steps miss what is required in time"

@@ -140,6 +140,10 @@ pub(crate) fn proven(view: &ProjectAudit, title: &str) -> Document {
     }
     out.section(title, rows);
     out.sentences(not_proven(view, proof));
+    let searched = view.in_time.iter().any(|finding| finding.requirement.follows);
+    out.sentences(searched.then(|| {
+        "what is required in time: the steps of the plants are searched, and no proof covers them".to_string()
+    }));
     out
 }
 

@@ -82,7 +82,14 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
     out.append(costs(view));
     out.heading("Audit of the designed controller");
     out.append(audit::document(&view.designed.view, vec![]));
-    out.append(audit::proven(&view.designed.view, "What is proven of the designed controller"));
+    let title = "What is proven of the designed controller";
+    match &view.designed.view.proof {
+        Some(_) => out.append(audit::proven(&view.designed.view, title)),
+        None => {
+            out.heading(title);
+            out.sentences(["nothing: the design was stopped before its proof".to_string()]);
+        }
+    }
     if let Some(sentence) = settings_sentence(loaded) {
         out.gap();
         out.line(sentence);
