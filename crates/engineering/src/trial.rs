@@ -13,7 +13,7 @@ mod required;
 mod rigs;
 mod run;
 mod steps;
-pub use judge::percent_words;
+pub use judge::{OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, percent_words};
 
 pub use crate::linear_step::StepResponse;
 use corners::{runs_of_corners, worst_of};

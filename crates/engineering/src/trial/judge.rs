@@ -19,10 +19,10 @@ const STILL: f64 = 0.01;
 /// Motion of a force that has come to rest, likewise.
 const AT_REST: f64 = 1e-3;
 /// Factor by which settling times may differ.
-const SETTLING_RATIO: f64 = 2.0;
+pub const SETTLING_RATIO: f64 = 2.0;
 /// Percent of the step by which an overshoot may differ: friction has an effect of this size on a
 /// small step.
-const OVERSHOOT_ROOM_PERCENT: f64 = 5.0;
+pub const OVERSHOOT_ROOM_PERCENT: f64 = 5.0;
 
 const NEITHER_SETTLES: &str = "neither the linear loop nor the nonlinear simulation settles";
 

@@ -1,8 +1,8 @@
 //! The trial of a verdict on the machine, for people.
 
 use super::{
-    Agreement, BAND_PERCENT, StepResponse, StepSize, Trial, TrialRun, TrialStep, agreement_word,
-    percent_words,
+    Agreement, BAND_PERCENT, OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, StepResponse, StepSize, Trial, TrialRun,
+    TrialStep, agreement_word, percent_words,
 };
 use crate::document::{Cell, Document, Table};
 use crate::figure::{FamilySteps, Figure, TimeSeries, Words};
@@ -26,9 +26,10 @@ pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Docume
     let settles = format!("settles in ({BAND_PERCENT} %)");
     out.table(
         Table::new(["run", "step", "", "overshoot", "linear", &settles, "linear", "remains"])
-            .with(trial.runs.iter().map(cells)),
+            .with(distinct(trial).map(cells)),
     );
     out.sentences(reasons(trial));
+    out.sentences(meanings(trial));
     out.append(required(trial));
     out.figures(figure_words.and_then(|words| figure(trial, words)));
     out
@@ -55,13 +56,46 @@ fn cells(run: &TrialRun) -> [Cell; 8] {
     ]
 }
 
+/// The runs, those of the worst corners only where no other run has their plant and step.
+fn distinct(trial: &Trial) -> impl Iterator<Item = &TrialRun> {
+    trial.runs.iter().filter(|run| repeated(trial, run).is_none())
+}
+
+/// The run before this one with the same plant and steps.
+fn repeated<'a>(trial: &'a Trial, run: &TrialRun) -> Option<&'a TrialRun> {
+    let is_same = |other: &&TrialRun| {
+        let is_of_plant = other.plant.is_some() && other.plant == run.plant;
+        is_of_plant && other.size == run.size && other.reference_n == run.reference_n
+    };
+    let before = trial.runs.iter().take_while(|other| !std::ptr::eq(*other, run));
+    before.into_iter().find(is_same)
+}
+
+/// What the words and the last column of the table mean, as far as they occur.
+fn meanings(trial: &Trial) -> Vec<String> {
+    let mut told = vec![format!(
+        "\"agrees\": the overshoot lies within {OVERSHOOT_ROOM_PERCENT} % of the step and the settling time within a factor of {SETTLING_RATIO} of those of the linear loop, and the force comes to rest without a limit on the way"
+    )];
+    if trial.runs.iter().any(|run| run.size == StepSize::Largest) {
+        told.push(
+            "\"largest step\": as large as the limits of command, supply and force sensor allow".to_string(),
+        );
+    }
+    if trial.runs.iter().any(|run| run.remaining_amplitude_n.is_some()) {
+        told.push(
+            "\"remains\": half the range of the force over the last fifth of a step, the largest of the three steps"
+                .to_string(),
+        );
+    }
+    told
+}
+
 /// What is required in time, run by run; empty where nothing is.
 fn required(trial: &Trial) -> Document {
     let mut out = Document::default();
     let Some(satisfies) = trial.satisfies() else { return out };
     let mut rows = Table::new(["run", "required", "", "reached"]);
-    for (run, held) in trial.runs.iter().flat_map(|run| run.requirements.iter().map(move |held| (run, held)))
-    {
+    for (run, held) in distinct(trial).flat_map(|run| run.requirements.iter().map(move |held| (run, held))) {
         let verdict = if held.is_satisfied { Verdict::Met } else { Verdict::Violated };
         rows.row([
             run.what.as_str().into(),
@@ -81,7 +115,12 @@ fn required(trial: &Trial) -> Document {
 /// Which corners of the box the worst are, and by what.
 fn corners(trial: &Trial) -> Vec<String> {
     let is_corner = |run: &&TrialRun| trial.corners.iter().any(|corner| corner.what == run.what);
-    let words = |run: &TrialRun| Some(format!("{}: {}", run.what, run.plant.as_ref()?.words()));
+    let words = |run: &TrialRun| {
+        Some(match repeated(trial, run) {
+            Some(other) => format!("{}: that is {}", run.what, other.what),
+            None => format!("{}: {}", run.what, run.plant.as_ref()?.words()),
+        })
+    };
     let mut told: Vec<String> = trial.runs.iter().filter(is_corner).filter_map(words).collect();
     if !told.is_empty() {
         told.push("the worst corner is the one that takes the largest share of what is required".to_string());
