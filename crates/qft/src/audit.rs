@@ -231,6 +231,7 @@ fn without_stability(finding: &mut SpecificationFinding, stability: &StabilityFi
                 evidence: finding.evidence,
                 worst: None,
                 interior: None,
+                as_bad: vec![],
                 violations: vec![],
                 at_design_frequencies: vec![],
                 envelope: vec![],

@@ -52,6 +52,9 @@ pub struct SpecificationFinding {
     /// The worst minimum that the margin of one plant has inside the band, where the worst one lies
     /// at an end of it: the margin of the family may fall further towards that end.
     pub interior: Option<WorstCase>,
+    /// Other minima whose margin is that of the worst to within 0.05 dB, the worst first: at
+    /// another frequency, or with a plant elsewhere in the box.
+    pub as_bad: Vec<WorstCase>,
     /// Bands in which some plant that was examined violates it, with the worst case of each: others
     /// of a box may do so a little beyond.
     pub violations: Vec<ViolatedBand>,

@@ -190,6 +190,7 @@ pub(crate) fn blind(problem: &RandomProblem, nominal: Vec<f64>) -> Audit {
         evidence: Evidence::Grid,
         worst: None,
         interior: None,
+        as_bad: vec![],
         violations: vec![],
         at_design_frequencies: vec![],
         envelope: vec![],

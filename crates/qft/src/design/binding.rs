@@ -9,16 +9,22 @@ use phea_dynamics::order::sort_by_number;
 /// A limit that leaves the loop less room than this, dB, leaves it none.
 pub const BINDING_DB: f64 = 0.05;
 
+/// Relative difference of two frequencies at which one plant has one minimum.
+const SAME_FREQUENCY: f64 = 0.05;
+
 /// The limits that leave the loop no room, at the design frequencies and where each specification
-/// is worst over its band, in order of increasing frequency: those within [`BINDING_DB`] of the
-/// limit less the reserve that the design keeps to it, and those beyond. A design for the best
-/// worst margin is bound by the limits within as much of that margin.
+/// is worst over its band or as bad, in order of increasing frequency: those within [`BINDING_DB`]
+/// of the limit less the reserve that the design keeps to it, and those beyond. A design for the
+/// best worst margin is bound by the limits within as much of that margin.
 pub(super) fn binding_limits(audit: &Audit, options: &DesignOptions) -> Vec<BindingLimit> {
     let mut cases: Vec<(f64, BindingLimit)> = Vec::new();
     for (specification, finding) in audit.specifications.iter().enumerate() {
-        for case in finding.at_design_frequencies.iter().chain(&finding.worst) {
+        let own = finding.at_design_frequencies.iter().chain(&finding.worst).map(|case| (case, 0.0));
+        for (case, apart) in own.chain(finding.as_bad.iter().map(|case| (case, SAME_FREQUENCY))) {
             let is_known = cases.iter().any(|(_, one)| {
-                one.specification == specification && one.frequency_rad_per_s == case.frequency_rad_per_s
+                let [known, own] = [one.frequency_rad_per_s, case.frequency_rad_per_s];
+                let is_near = (known - own).abs() <= apart * own && one.plant == case.plant;
+                one.specification == specification && (known == own || is_near)
             });
             let reserve_db = finding.requirement.reserve_at_db(options.reserve_db, case.frequency_rad_per_s);
             // a spread has two limits

@@ -84,6 +84,7 @@ impl AuditProblem<'_> {
             evidence: Evidence::of(self.family),
             worst: None,
             interior: None,
+            as_bad: vec![],
             violations: vec![],
             at_design_frequencies: vec![],
             envelope: vec![],

@@ -16,6 +16,15 @@ const ROUNDING_DB: f64 = 1e-9;
 /// Relative accuracy of the ends of violated bands.
 const EDGE_TOLERANCE: f64 = 1e-4;
 
+/// A margin that exceeds the worst by no more than this is as bad: it is read as the same, dB.
+const AS_BAD_DB: f64 = 0.05;
+/// Relative difference of the frequencies of one minimum, and share of the box over which its
+/// plants are near each other.
+const SAME_FREQUENCY: f64 = 0.05;
+const SAME_SHARE: f64 = 0.5;
+/// Most places that are as bad as the worst.
+const PLACES_MAXIMUM: usize = 4;
+
 /// The criteria of one specification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct SpecificationCriteria {
@@ -169,6 +178,7 @@ impl Joining<'_> {
             evidence: Evidence::of(self.family),
             worst: worst.map(worst_case),
             interior: interior.map(worst_case),
+            as_bad: self.as_bad(worst, &all, &minima),
             violations: self.violations(scan, &envelope, &all),
             at_design_frequencies: self
                 .specification
@@ -180,6 +190,42 @@ impl Joining<'_> {
             envelope: self.drawn(&envelope),
             remarks: remarks(self, worst, unresolved, is_open.then_some(certain_db)),
         }
+    }
+
+    /// The minima that are as bad as the worst, one for each place.
+    fn as_bad(&self, worst: Option<&FoundMargin>, all: &[FoundMargin], minima: &[f64]) -> Vec<WorstCase> {
+        let Some(worst) = worst else { return vec![] };
+        let is_minimum = |case: &&FoundMargin| case.interior || minima.contains(&case.frequency);
+        let mut near: Vec<&FoundMargin> = all
+            .iter()
+            .filter(is_minimum)
+            .filter(|case| case.margin_db <= worst.margin_db + AS_BAD_DB)
+            .collect();
+        sort_by_number(&mut near, |case| case.margin_db);
+        let mut places = vec![worst];
+        for case in near {
+            if places.len() <= PLACES_MAXIMUM && !places.iter().any(|known| self.is_same_place(known, case)) {
+                places.push(case);
+            }
+        }
+        places.into_iter().skip(1).map(worst_case).collect()
+    }
+
+    /// Whether two margins are of one minimum: at about one frequency, with plants that are near
+    /// each other in most coordinates of the box.
+    fn is_same_place(&self, one: &FoundMargin, other: &FoundMargin) -> bool {
+        let apart = (one.frequency - other.frequency).abs() > SAME_FREQUENCY * one.frequency;
+        if apart {
+            return false;
+        }
+        let Family::Uncertain(family) = self.family else { return one.points == other.points };
+        let shares = |case: &FoundMargin| match case.points.first() {
+            Some(PlantPoint::Parameters(values)) => family.shares(values),
+            _ => vec![],
+        };
+        let (one, other) = (shares(one), shares(other));
+        let far = one.iter().zip(&other).filter(|(one, other)| (*one - *other).abs() >= SAME_SHARE).count();
+        2 * far < one.len().max(1)
     }
 
     /// Whether a plant is known within confidence discs.
