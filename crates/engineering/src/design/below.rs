@@ -54,9 +54,8 @@ pub fn below_design(
     let asked = design_problem(setup, given);
     let of_audit =
         stated.iter().filter_map(|limit| Some((limit, exceeded_margin(limit, &asked, given, view)?)));
-    let of_search = searched.iter().zip(&findings).filter_map(|(limit, found)| {
-        (found.verdict == Verdict::Violated).then(|| (limit, reached(limit, found)))
-    });
+    let violated = searched.iter().zip(&findings).filter(|(_, found)| found.verdict == Verdict::Violated);
+    let of_search = violated.map(|(limit, found)| (limit, reached(limit, found)));
     let exceeded = |(limit, reached): (&DesignLimit, f64)| ExceededLimit {
         kind: limit.kind,
         reached,
