@@ -28,7 +28,7 @@ pub struct NominalMargins {
 /// The crossover of a loop, and a resonance beyond it that reaches |L| = 1 again.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Crossovers {
-    /// The first frequency at which |L| falls below 1, rad/s; `None` where it never does.
+    /// The first frequency at which |L| falls through 1, rad/s; `None` where it does not.
     pub first_rad_per_s: Option<f64>,
     /// The lowest and the highest frequency beyond it at which |L| = 1, rad/s, the highest infinite
     /// where |L| remains above 1; `None` where |L| remains below 1.

@@ -210,9 +210,13 @@ fn ending_key(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
 /// The frequencies at which |L| of the nominal loop is 1, in JSON.
 pub(super) fn crossovers(nominal: Option<&NominalMargins>) -> Object {
     let crossovers = nominal.map(|margins| margins.crossovers).unwrap_or_default();
+    let none = match nominal {
+        Some(_) => "|L| does not fall through 1",
+        None => "the loop is not known to be stable",
+    };
     Object::new()
         .with("crossover_rad_per_s", nominal.map(|margins| margins.crossover_rad_per_s))
-        .with("first_crossover_rad_per_s", crossovers.first_rad_per_s)
+        .known("first_crossover_rad_per_s", crossovers.first_rad_per_s, none)
         .maybe("above_again_rad_per_s", crossovers.again_rad_per_s)
 }
 
