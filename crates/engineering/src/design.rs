@@ -14,6 +14,7 @@ mod factors;
 mod manual;
 mod problem;
 mod proven;
+mod relaxed;
 mod repair;
 mod rounding;
 mod search;
@@ -22,8 +23,8 @@ mod step_aim;
 mod structures;
 mod words;
 pub use crate::limit_kind::{
-    DesignLimitKind, ExceededLimit, LimitOrigin, limit_key, limit_unit_key, limit_words, origin_key,
-    origin_words,
+    DesignLimitKind, ExceededLimit, LimitOrigin, RELAXED_BY, limit_key, limit_unit_key, limit_words,
+    origin_key, origin_words,
 };
 pub use below::below_design;
 pub use damping::{MissingPlants, PressureFeedbackDesign, with_free_pressure_feedback};
@@ -34,6 +35,7 @@ pub use words::{objective_key, part_key, repair_key, repair_words, status_key};
 
 pub use explanation::Explanation;
 pub use problem::{design_options, design_problem};
+pub use relaxed::{Gained, Relaxations, RelaxedGain, RelaxedLimit};
 pub use repair::{Repair, RepairStatus};
 pub use rounding::Rounding;
 pub use side::{AuditedController, LoopFigures, NominalMargins};
@@ -48,6 +50,7 @@ use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{
     Design, DesignOptions, DesignOutcome, DesignProblem, DesignStatus, PrefilterChoice, reshaped,
 };
+use phea_qft::loop_shaping::Shaping;
 use phea_qft::verification::Verdict;
 
 use self::deployable::{limited, split};
@@ -167,6 +170,8 @@ pub struct ProjectDesign {
     pub gain_per: Option<DisplayUnit>,
     /// The structures that were tried, in turn.
     pub structures: Vec<ReachedStructure>,
+    /// What relaxing each limit that binds would buy.
+    pub relaxations: Relaxations,
     /// The pressure feedback that was found before the loop; absent where it is not free.
     pub pressure_feedback: Option<PressureFeedbackDesign>,
     /// The designed controller as a project declares it.
@@ -241,6 +246,7 @@ impl ProjectDesign {
             manual,
             gain_per: project.actuator.as_ref().map(|_| project.units.force),
             structures: vec![],
+            relaxations: Relaxations::default(),
             pressure_feedback: None,
             declared_controller,
             declared_prefilter,
@@ -388,6 +394,9 @@ struct DesignRun {
     aimed: RobustProblem,
     problem: DesignProblem,
     outcome: DesignOutcome,
+    /// The limits and samples of the search by which the design was led by its steps; absent where
+    /// it was not.
+    led: Option<Shaping>,
 }
 
 /// The design with its problem: the project as it is given, and with the pressure feedback that is

@@ -63,7 +63,24 @@ pub fn limit_words(kind: DesignLimitKind) -> &'static str {
     }
 }
 
+/// Fraction by which a limit is relaxed to find what that would buy.
+pub const RELAXED_BY: f64 = 0.1;
+
 impl DesignLimitKind {
+    /// A value of the limit that is relaxed by a tenth: larger, or of a least value smaller.
+    pub fn relaxed(self, value: f64) -> f64 {
+        match self {
+            DesignLimitKind::ModulusMargin
+            | DesignLimitKind::MinimumDelayMargin
+            | DesignLimitKind::PoleDampingRatio => (1.0 - RELAXED_BY) * value,
+            DesignLimitKind::NoiseToCommand
+            | DesignLimitKind::HighestBandwidth
+            | DesignLimitKind::FastestPole
+            | DesignLimitKind::PrefilterGain
+            | DesignLimitKind::RequiredStep => (1.0 + RELAXED_BY) * value,
+        }
+    }
+
     /// Whether a specification of the search only leads to it: the design is judged by something
     /// else.
     pub fn is_led_to(self) -> bool {

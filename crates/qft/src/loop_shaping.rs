@@ -19,6 +19,7 @@ mod start;
 mod structure;
 mod subproblem;
 mod triplets;
+mod wider;
 
 pub(crate) use best_seen::BestSeen;
 pub use descent::{Binding, DescentOptions, DescentResult, DescentStatus, DescentWork, descend};
@@ -29,3 +30,4 @@ pub use search::{Aim, Judgement, MarginRow, SearchProblem, Slopes};
 pub use shaping::{SampledMargin, Shaping};
 pub use start::{DescentEnd, SearchOptions, SearchResult, SearchStatus, search};
 pub use structure::{Structure, StructureFactor, StructureResponse};
+pub use wider::LocalOptimum;

@@ -8,6 +8,7 @@ mod time_domain;
 
 use num_complex::Complex64;
 use phea_dynamics::frequency::decibels;
+use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
 
 pub use limit::{Limit, LimitError, LimitTable};
@@ -72,6 +73,27 @@ impl Requirement {
     /// The lower limit, of tracking alone, and the upper one.
     pub fn limits(&self) -> (Option<&Limit>, &Limit) {
         (self.lower.as_ref(), &self.upper)
+    }
+
+    /// The same with an upper limit larger by a factor, and a lower one smaller by it.
+    ///
+    /// # Errors
+    /// [`LinearError`] for a factor that is not finite.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_qft::specification::{ClosedLoop, Limit, Requirement};
+    /// let limit = Requirement::tracking(Limit::Constant(0.5), Limit::Constant(2.0));
+    /// let wider = Requirement::tracking(Limit::Constant(0.25), Limit::Constant(4.0));
+    /// assert_eq!(limit.wider(2.0)?, wider);
+    /// # Ok::<(), phea_dynamics::linear::LinearError>(())
+    /// ```
+    pub fn wider(&self, factor: f64) -> Result<Requirement, LinearError> {
+        Ok(Requirement {
+            closed_loop: self.closed_loop,
+            lower: self.lower.as_ref().map(|lower| lower.scaled(1.0 / factor)).transpose()?,
+            upper: self.upper.scaled(factor)?,
+        })
     }
 
     /// The part of a reserve in dB that a design keeps to every limit at a frequency: all of it, or

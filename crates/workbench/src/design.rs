@@ -5,6 +5,7 @@ mod document;
 mod limits;
 mod manual;
 mod pressure_feedback;
+mod relaxed;
 mod stages;
 mod structures;
 

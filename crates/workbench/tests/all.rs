@@ -62,6 +62,7 @@ mod proof;
 mod proof_region;
 mod recorded_tables;
 mod region_coverage;
+mod relaxed_limits;
 mod repair;
 mod repetition;
 mod report_circuit;

@@ -11,6 +11,7 @@ mod led;
 mod plants;
 mod shaping;
 mod starts;
+mod wider;
 
 use phea_dynamics::watch::{Watch, within};
 use phea_qft::design::LoopDesignError;
@@ -20,7 +21,9 @@ use phea_qft::loop_shaping::Samples;
 
 use self::led::{AuditedStep, BegunDesign, LedDesign};
 pub(super) use self::plants::SteppedPlants;
+pub(super) use self::shaping::StepShaping;
 use self::starts::SearchReach;
+pub(super) use self::wider::last_step_search;
 use super::added_by_rig::AddedByRig;
 use super::problem::design_problem;
 use super::step_aim::StepAim;
@@ -140,12 +143,13 @@ fn taken(
     found: AuditedStep,
     (run, told): (&DesignRun, &ProjectDesign),
 ) -> Result<(DesignRun, ProjectDesign), DesignError> {
-    let AuditedStep { told: mut best, least, .. } = found;
+    let AuditedStep { told: mut best, least, shaping, .. } = found;
     best.structures = structures::led(run, told, &best, least)?;
     best.explanations = told.explanations.clone();
     let mut outcome = run.outcome.clone();
     outcome.design = Some(best.design.clone());
-    Ok((DesignRun { aimed: run.aimed.clone(), problem: run.problem.clone(), outcome }, *best))
+    let (aimed, problem) = (run.aimed.clone(), run.problem.clone());
+    Ok((DesignRun { aimed, problem, outcome, led: Some(shaping) }, *best))
 }
 
 /// The requirement of steps with what the rig adds to them.

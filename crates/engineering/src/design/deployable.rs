@@ -166,7 +166,7 @@ fn fastest_pole(
 }
 
 /// The specification by which a limit is kept.
-fn specification(
+pub(super) fn specification(
     (setup, given): (&Setup<'_>, &RobustProblem),
     kind: DesignLimitKind,
     value: f64,

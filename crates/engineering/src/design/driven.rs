@@ -10,6 +10,7 @@ use phea_qft::design::DesignStatus;
 
 use super::added_by_rig::added;
 use super::by_steps::{AimedSteps, SteppedPlants, by_steps, shortened};
+use super::relaxed::relaxations;
 use super::search::{found, rank};
 use super::step_aim::StepAim;
 use super::{DesignError, DesignRun, ProjectDesign, tried_design, unless_stopped};
@@ -62,20 +63,21 @@ pub(super) fn found_and_tried(
             break;
         }
     }
-    let (run, mut told) = shorter(
-        (source, setup),
-        AimedSteps { added: &known, ..aimed },
-        best,
-        &mut within(&mut *watch, [0.9, 0.98]),
-    );
+    let aimed = AimedSteps { added: &known, ..aimed };
+    let (run, mut told) = shorter((source, setup), aimed, best, &mut within(&mut *watch, [0.9, 0.94]));
     // a design that was led by its steps is not proven on the way
     if told.designed.view.proof.is_none() {
         let problem = told.designed.problem.clone();
         let view = &mut told.designed.view;
         let proof = unless_stopped(&mut told.stopped, || {
-            Ok(Some(try_to_prove(&problem, view, &mut within(watch, [0.98, 1.0]))?))
+            Ok(Some(try_to_prove(&problem, view, &mut within(&mut *watch, [0.94, 0.97]))?))
         });
         proof?;
+    }
+    match relaxations(setup, aimed, (&run, &told), &mut within(watch, [0.97, 1.0])) {
+        Ok(found) => told.relaxations = found,
+        Err(DesignError::Stopped(_)) => told.stopped = true,
+        Err(error) => return Err(error),
     }
     Ok((run, told))
 }

@@ -209,7 +209,7 @@ fn designed_again(
     (plant, told): (&UncertainPlant, &ProjectDesign),
     watch: Watch<'_>,
 ) -> Result<Option<(RepairStatus, ProjectDesign)>, DesignError> {
-    let DesignRun { aimed, mut problem, outcome } = run;
+    let DesignRun { aimed, mut problem, outcome, .. } = run;
     problem.beside.push(plant.clone());
     let options = told.options.clone();
     let outcome =

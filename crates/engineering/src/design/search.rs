@@ -123,7 +123,7 @@ fn searched(
         None => phea_qft::design::design(&problem, &options, watch)?,
     };
     outcome.conclude()?;
-    let run = DesignRun { aimed: aimed.clone(), problem, outcome };
+    let run = DesignRun { aimed: aimed.clone(), problem, outcome, led: None };
     let (run, proven) = proven::proven((setup, aimed), run, &options, watch)?;
     let DesignRun { problem, outcome, .. } = &run;
     let explained = |finding: &Finding| explained(finding, aimed);

@@ -54,6 +54,11 @@ impl StepAim {
     /// At what is required itself.
     pub(super) const AS_REQUIRED: StepAim = StepAim { overshoot: 1.0, settling: 1.0, prefilter_gain: None };
 
+    /// The same with a larger gain of the prefilter that the loop must do with.
+    pub(super) fn with_prefilter_gain(self, factor: f64) -> StepAim {
+        StepAim { prefilter_gain: self.prefilter_gain.map(|gain| factor * gain), ..self }
+    }
+
     /// The share of what is required that is aimed at.
     pub(super) fn wish(self, required: TrackingWish) -> TrackingWish {
         TrackingWish {

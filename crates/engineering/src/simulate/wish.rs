@@ -88,6 +88,17 @@ impl TrackingWish {
         }
     }
 
+    /// The requirement that allows this many times as much of each property.
+    pub fn wider(self, factor: f64) -> TrackingWish {
+        TrackingWish {
+            overshoot_percent: self.overshoot_percent.map(|most| factor * most),
+            settling_time_s: self.settling_time_s.map(|time_s| factor * time_s),
+            rise_time_s: self.rise_time_s.map(|time_s| factor * time_s),
+            horizon_s: factor * self.horizon_s,
+            ..self
+        }
+    }
+
     /// The wish for the overshoot, in words.
     pub fn overshoot_words(&self) -> Option<String> {
         let most = self.overshoot_percent?;

@@ -40,7 +40,7 @@ const BEYOND_TOLERANCE_DB: f64 = 0.5e-3;
 /// found lead nowhere, dB.
 const ASTRAY_DB: f64 = -6.0;
 /// The plants of a counterexample are also evaluated at these multiples of its frequency.
-const NEIGHBOURS: [f64; 4] = [0.94, 0.97, 1.03, 1.06];
+pub(super) const NEIGHBOURS: [f64; 4] = [0.94, 0.97, 1.03, 1.06];
 /// Largest number of audits of one structure.
 const ROUNDS_MAXIMUM: usize = 40;
 /// Room that a start of a prefilter may take from both edges of its band, dB.
@@ -49,7 +49,7 @@ const BAND_ROOM_DB: f64 = 3.0;
 const FIRST_PREFILTER_ORDER: usize = 2;
 /// How far inside its limits a search stays, dB, so that what the audit finds between the samples
 /// still satisfies them.
-const RESERVE_DB: f64 = 0.001;
+pub(super) const RESERVE_DB: f64 = 0.001;
 
 impl DesignOptions {
     /// The least worst margin of the samples with which a structure may still meet the

@@ -18,6 +18,7 @@ use super::margins::{Demand, Keeping, demands};
 use crate::closed_loop::{Compensation, Member, MemberResponse};
 use crate::family::{Extent, Family, MeasuredPlant, UncertainFamily};
 use crate::loop_shaping::DesignProblem;
+use crate::specification::Specification;
 use crate::template::around_disc;
 use crate::verification::{PlantPoint, TrackingJudgement};
 
@@ -203,6 +204,13 @@ impl Samples {
     /// Judges tracking in this way from now on.
     pub(crate) fn judge_tracking_by(&mut self, tracking: TrackingJudgement) {
         self.tracking = tracking;
+        self.demand_anew();
+    }
+
+    /// Judges by these limits from now on.
+    pub(super) fn judge_by(&mut self, specifications: Vec<Specification>, minimum_delay_margin_s: f64) {
+        self.problem.specifications = specifications;
+        self.problem.minimum_delay_margin_s = minimum_delay_margin_s;
         self.demand_anew();
     }
 

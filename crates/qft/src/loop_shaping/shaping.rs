@@ -12,6 +12,7 @@ use super::samples::{FrequencyColumn, Samples, SamplesError};
 use super::structure::{Structure, StructureResponse};
 use super::{Judgement, SearchProblem, Slopes};
 use crate::closed_loop::Compensation;
+use crate::specification::Specification;
 use crate::verification::{PlantPoint, TrackingJudgement};
 
 /// The measure of instability for a loop for which it is too expensive to compute.
@@ -179,6 +180,21 @@ impl Shaping {
         self.prefilter_response =
             prefilter.map(|prefilter| prefilter.response(&behind, &frequencies)).transpose()?;
         Ok(new)
+    }
+
+    /// The same plants and frequencies, judged by other limits, and with free numbers in the ranges
+    /// of another structure of the same factors.
+    #[must_use]
+    pub fn with_limits(
+        &self,
+        structure: Structure,
+        (specifications, minimum_delay_margin_s): (Vec<Specification>, f64),
+    ) -> Shaping {
+        let mut wider = self.clone();
+        wider.samples.judge_by(specifications, minimum_delay_margin_s);
+        let of_prefilter = self.prefilter.as_ref().map_or(vec![], Structure::bounds);
+        wider.bounds = [structure.bounds(), of_prefilter].concat();
+        Shaping { structure, ..wider }
     }
 
     /// Counts margins by their share of the room between two limits; see

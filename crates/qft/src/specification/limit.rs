@@ -1,4 +1,4 @@
-use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
 
 /// The limit of a magnitude over frequency.
@@ -91,6 +91,23 @@ impl Limit {
             }
             Limit::Table(table) => table.magnitude(frequency_rad_per_s),
         }
+    }
+
+    /// This limit times a factor at every frequency.
+    ///
+    /// # Errors
+    /// [`LinearError`] for a factor that is not finite.
+    pub fn scaled(&self, factor: f64) -> Result<Limit, LinearError> {
+        Ok(match self {
+            Limit::Constant(value) => Limit::Constant(factor * value),
+            Limit::Rational(function) => {
+                Limit::Rational(function.series(&TransferFunction::gain_only(factor))?)
+            }
+            Limit::Table(LimitTable { points }) => {
+                let scaled = |(frequency, magnitude): &(f64, f64)| (*frequency, factor * magnitude);
+                Limit::Table(LimitTable { points: points.iter().map(scaled).collect() })
+            }
+        })
     }
 }
 

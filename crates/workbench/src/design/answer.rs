@@ -9,7 +9,7 @@ use phea_qft::verification::PlantPoint;
 
 use super::AuditedController;
 use super::{Explanation, ProjectDesign};
-use super::{limits, manual, pressure_feedback, structures};
+use super::{limits, manual, pressure_feedback, relaxed, structures};
 use super::{objective_key, part_key, status_key, structure_key};
 use crate::answer::{Json, Object};
 use crate::audit;
@@ -66,6 +66,7 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
         .each("binding", &design.binding, |limit| {
             limit_row(view, limit.specification, limit.frequency_rad_per_s, limit.margin_db, &limit.plant)
         })
+        .with("relaxations", relaxed::rows(view))
         .known(
             "relaxation_db",
             relaxation.map(|relaxation| relaxation.relaxation_db),

@@ -6,6 +6,7 @@ use phea_qft::verification::{PlantPoint, Verdict};
 
 use super::compared;
 use super::factored;
+use super::relaxed;
 use super::{AuditedController, Explanation, ProjectDesign, Repair, RepairStatus, Rounding};
 use super::{repair_words, status_sentence, structure_words};
 use crate::answer::significant;
@@ -158,9 +159,10 @@ pub(crate) fn costs(view: &ProjectDesign) -> Document {
     out.section("What the specifications cost: the limits that the loop touches", binding);
     if touches {
         out.explanation(format!(
-            "The specifications that come within {BINDING_DB} dB of {touched}, at the design frequencies and where each is worst over its whole band, with the plant that sets it. These cost: relaxed there they would allow a better controller; relaxing any other gains nothing."
+            "The specifications that come within {BINDING_DB} dB of {touched}, at the design frequencies and where each is worst over its whole band, with the plant that sets it. These cost: relaxed there they may allow a better controller; relaxing any other gains nothing."
         ));
     }
+    out.append(relaxed::document(view));
     out.heading("Rounds of search and audit");
     out.explanation(
         "A search over some plants and frequencies, then an audit over the whole family and band, whose worst plants and frequencies the next search includes, until both agree. The same seed finds the same controller.",

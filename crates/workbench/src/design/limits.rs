@@ -6,7 +6,7 @@ use phea_engineering::design::{
 use phea_qft::design::BINDING_DB;
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
-use super::ProjectDesign;
+use super::{ProjectDesign, relaxed};
 use crate::answer::{Object, significant};
 use crate::audit::PrefilterGain;
 use crate::document::{Cell, Document, Table};
@@ -52,6 +52,7 @@ pub(crate) fn rows(view: &ProjectDesign) -> Vec<Object> {
             .with("kept", is_kept(view, limit))
             .maybe("worst_margin_db", margin)
             .maybe("binds", binds(view, limit))
+            .maybe("relaxed", relaxed::of_limit(view, limit.kind, limit.value))
     };
     view.limits.iter().map(row).collect()
 }

@@ -43,7 +43,7 @@ const DESCENT_STEPS: usize = 12;
 pub(super) struct AuditedStep {
     pub(super) told: Box<ProjectDesign>,
     start: Design,
-    shaping: Shaping,
+    pub(super) shaping: Shaping,
     free_numbers: Vec<f64>,
     /// How it was audited.
     audit: AuditDepth,

@@ -41,9 +41,10 @@ const SWINGS: usize = 4;
 const ROWS: usize = 64;
 
 /// The shaping of a loop with margins of steps beside those of its limits.
-pub(super) struct StepShaping<'a> {
+#[derive(Clone)]
+pub(in crate::design) struct StepShaping<'a> {
     /// The limits and their samples.
-    pub(super) shaping: Shaping,
+    pub(in crate::design) shaping: Shaping,
     /// What every step is to keep: that of the linear loop, and that with what the rig adds.
     wishes: StepWishes,
     added: Vec<AddedByRig>,
@@ -74,6 +75,7 @@ struct JudgedStep {
 type PlacedMargin = (usize, StepPlace, f64);
 
 /// A plant whose steps are rows of the search.
+#[derive(Clone)]
 struct LedPlant {
     plant: Rc<SteppedPlant>,
     /// What the rig adds to its steps.
@@ -90,6 +92,14 @@ impl StepShaping<'_> {
     ) -> StepShaping<'_> {
         let bounds = shaping.bounds().to_vec();
         StepShaping { shaping, wishes, added, sensor, plants: vec![], all, bounds }
+    }
+
+    /// The same with other requirements of its steps.
+    pub(super) fn with_wishes(mut self, changed: impl Fn(TrackingWish) -> TrackingWish) -> Self {
+        let StepWishes { linear, with_rig } = self.wishes;
+        self.wishes = StepWishes { linear: changed(linear), with_rig: changed(with_rig) };
+        self.bounds = self.shaping.bounds().to_vec();
+        self
     }
 
     /// Keeps the free numbers beside these.

@@ -1,0 +1,45 @@
+//! The search of a design that was led by its steps, with one of its limits wider.
+
+use phea_qft::loop_shaping::{Aim, Structure};
+use phea_qft::specification::Specification;
+
+use super::shaping::{RESERVE_DB, StepShaping, StepWishes};
+use super::{AimedSteps, DesignError, led, with_rig, with_room};
+use crate::design::{DesignRun, ProjectDesign};
+use crate::setup::Setup;
+
+/// The last search of a design that was led by its steps, and what it looked for.
+pub(in crate::design) type LastStepSearch<'a> = (StepShaping<'a>, (Aim, f64));
+
+/// The search in which a design was led by its steps, with its worst plants; `None` where it was
+/// not led.
+pub(in crate::design) fn last_step_search<'a>(
+    setup: &'a Setup<'_>,
+    aimed: AimedSteps<'a>,
+    (run, told): (&DesignRun, &ProjectDesign),
+) -> Result<Option<LastStepSearch<'a>>, DesignError> {
+    let (Some(shaping), Some(led)) = (&run.led, led(setup, aimed, (run, told))?) else { return Ok(None) };
+    let wishes =
+        StepWishes { linear: with_room(aimed.aim.wish(led.required)), with_rig: with_rig(led.required) };
+    let added = (wishes, aimed.added.to_vec());
+    let mut search = StepShaping::new(shaping.clone(), added, led.problem.sensor.clone(), aimed.plants);
+    search.take_worst(&told.design)?;
+    search.take_steps(told)?;
+    let aim = if told.is_met() { Aim::Objective } else { Aim::WorstMargin };
+    Ok(Some((search, (aim, RESERVE_DB))))
+}
+
+impl<'a> StepShaping<'a> {
+    /// The same plants, judged by other limits, and their steps by a requirement that allows this
+    /// many times as much.
+    pub(in crate::design) fn with_limits(
+        &self,
+        structure: Structure,
+        limits: (Vec<Specification>, f64),
+        steps: f64,
+    ) -> StepShaping<'a> {
+        let mut wider = self.clone();
+        wider.shaping = self.shaping.with_limits(structure, limits);
+        wider.with_wishes(|wish| wish.wider(steps))
+    }
+}

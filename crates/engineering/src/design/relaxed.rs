@@ -1,0 +1,306 @@
+//! What relaxing a limit of a design would buy: the last search, continued from the controller that
+//! it found, with nothing but that limit wider by a tenth.
+//!
+//! ```text
+//! gained = f(limits) - f(limits, one of them wider),      f the least objective, or less the greatest worst margin
+//! ```
+//!
+//! It is the value of a search and not a slope, so that it includes the limits that bind in place
+//! of the one that gives way. Structure, plants and frequencies are those of the design; the
+//! result is not audited.
+
+use phea_dynamics::watch::{Watch, part};
+use phea_qft::design::{
+    BINDING_DB, DesignStatus, LoopDesignError, PoleRange, last_search, sample_beside_worst,
+};
+use phea_qft::loop_shaping::{Aim, LocalOptimum, SearchProblem, Shaping, Structure};
+use phea_qft::specification::Specification;
+
+use super::by_steps::{AimedSteps, StepShaping, last_step_search};
+use super::deployable::specification;
+use super::{DesignError, DesignLimit, DesignLimitKind, DesignRun, ProjectDesign};
+use crate::limit_kind::RELAXED_BY;
+use crate::robust::{RobustError, RobustProblem};
+use crate::setup::Setup;
+
+/// Part of a required delay margin, and of the end of a range of poles, within which it binds.
+const NEAR: f64 = 0.01;
+/// Name of the stage.
+const STAGE: &str = "relaxing each limit";
+
+/// A limit that can be relaxed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RelaxedLimit {
+    /// A specification of a closed loop, by its index.
+    Specification(usize),
+    /// What is required of a step, by its index among the requirements in time.
+    Steps(usize),
+    /// A limit of what may be built.
+    Design(DesignLimitKind),
+}
+
+/// What relaxing one limit would buy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RelaxedGain {
+    /// The limit.
+    pub limit: RelaxedLimit,
+    /// dB by which the objective would be lower or, where the worst margin counts, that margin
+    /// larger.
+    pub gained_db: f64,
+}
+
+/// What counts in a design.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Gained {
+    /// The objective, of a design that is met.
+    #[default]
+    Objective,
+    /// The worst margin, of a design for the best one, and of one that is missed.
+    WorstMargin,
+}
+
+/// What relaxing the limits that bind would buy.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Relaxations {
+    /// What is gained.
+    pub of: Gained,
+    /// Each limit that binds.
+    pub limits: Vec<RelaxedGain>,
+}
+
+/// The last search of a design.
+#[derive(Clone)]
+enum LastSearch<'a> {
+    OverFrequency(Box<Shaping>),
+    BySteps(Box<StepShaping<'a>>),
+}
+
+/// The limits of a search.
+struct SearchLimits {
+    structure: Structure,
+    specifications: Vec<Specification>,
+    delay_s: f64,
+    /// What a step may do, over what is required.
+    steps: f64,
+}
+
+/// A design whose limits are relaxed in turn.
+struct RelaxedDesign<'a> {
+    setup: &'a Setup<'a>,
+    aimed: AimedSteps<'a>,
+    told: &'a ProjectDesign,
+    search: LastSearch<'a>,
+    delay_s: f64,
+}
+
+/// What relaxing each limit that binds would buy; nothing where no search ended.
+///
+/// # Errors
+/// [`DesignError`] for a loop that cannot be sampled, and by the watch.
+pub(super) fn relaxations<'a>(
+    setup: &'a Setup<'a>,
+    aimed: AimedSteps<'a>,
+    (run, told): (&'a DesignRun, &'a ProjectDesign),
+    watch: Watch<'_>,
+) -> Result<Relaxations, DesignError> {
+    let has_no_end =
+        matches!(told.design.status, DesignStatus::NotConverged { .. } | DesignStatus::NotStabilised);
+    let (Some(samples), false) = (run.outcome.samples(), has_no_end || told.stopped) else {
+        return Ok(Relaxations::default());
+    };
+    let watch = &mut part(watch, STAGE, [0.0, 1.0]);
+    let (search, (aim, reserve_db)) = match last_step_search(setup, aimed, (run, told))? {
+        Some((search, aim)) => (LastSearch::BySteps(Box::new(search)), aim),
+        None => {
+            let found = last_search(&told.design, samples.clone(), &told.options);
+            let (shaping, aim) = found.map_err(LoopDesignError::from)?;
+            (LastSearch::OverFrequency(Box::new(shaping)), (aim, 0.0))
+        }
+    };
+    let at = told.design.free_numbers.as_slice();
+    let end = LocalOptimum::beside(search.clone().problem(), at, (aim, reserve_db), watch)?;
+    let Some(end) = end else { return Ok(Relaxations::default()) };
+    let delay_s = run.problem.minimum_delay_margin_s;
+    let relaxed = RelaxedDesign { setup, aimed, told, search, delay_s };
+    let mut limits = Vec::new();
+    for limit in relaxed.binding() {
+        // a limit that does not exist once it is wider cannot be relaxed
+        let Ok(wider) = relaxed.wider(limit) else { continue };
+        let mut wider = relaxed.search.with_limits(wider);
+        let Some(first) = end.continued(wider.problem(), watch)? else { continue };
+        sample_beside_worst(wider.shaping(), &first.x)?;
+        let Some(found) = first.continued(wider.problem(), watch)? else { continue };
+        limits.push(RelaxedGain { limit, gained_db: (end.value_db - found.value_db).max(0.0) });
+    }
+    let of = if aim == Aim::Objective { Gained::Objective } else { Gained::WorstMargin };
+    Ok(Relaxations { of, limits })
+}
+
+impl<'a> LastSearch<'a> {
+    fn problem(&mut self) -> &mut dyn SearchProblem {
+        match self {
+            LastSearch::OverFrequency(shaping) => shaping.as_mut(),
+            LastSearch::BySteps(search) => search.as_mut(),
+        }
+    }
+
+    /// Its samples.
+    fn shaping(&mut self) -> &mut Shaping {
+        match self {
+            LastSearch::OverFrequency(shaping) => shaping.as_mut(),
+            LastSearch::BySteps(search) => &mut search.shaping,
+        }
+    }
+
+    fn with_limits(&self, limits: SearchLimits) -> LastSearch<'a> {
+        let SearchLimits { structure, specifications, delay_s, steps } = limits;
+        let limits = (specifications, delay_s);
+        match self {
+            LastSearch::OverFrequency(shaping) => {
+                LastSearch::OverFrequency(Box::new(shaping.with_limits(structure, limits)))
+            }
+            LastSearch::BySteps(search) => {
+                LastSearch::BySteps(Box::new(search.with_limits(structure, limits, steps)))
+            }
+        }
+    }
+}
+
+impl RelaxedDesign<'_> {
+    /// The limits that bind: those within [`BINDING_DB`] of the loop or in conflict, ends of ranges
+    /// that a free number reaches, and of a design that was led by its steps their requirement.
+    fn binding(&self) -> Vec<RelaxedLimit> {
+        let own = self.told.designed.problem.specifications.len();
+        let design = &self.told.design;
+        let conflicts = match &design.status {
+            DesignStatus::Infeasible(relaxation) => relaxation.conflicts.as_slice(),
+            _ => &[],
+        };
+        let touched = design.binding.iter().map(|one| one.specification);
+        let touched: Vec<usize> = touched.chain(conflicts.iter().map(|one| one.specification)).collect();
+        let specifications = (0..own).filter(|index| touched.contains(index));
+        let steps = self.told.designed.view.in_time.iter().enumerate();
+        let steps =
+            steps.filter(|(_, finding)| finding.requirement.limits.is_none() && self.leads_to_steps());
+        let limits = self.told.limits.iter().filter(|limit| self.binds(limit, &touched));
+        specifications
+            .map(RelaxedLimit::Specification)
+            .chain(steps.map(|(index, _)| RelaxedLimit::Steps(index)))
+            .chain(limits.map(|limit| RelaxedLimit::Design(limit.kind)))
+            .collect()
+    }
+
+    /// True where the search was led by its steps, or its limits on the way to them bind.
+    fn leads_to_steps(&self) -> bool {
+        matches!(self.search, LastSearch::BySteps(_)) || self.touches(DesignLimitKind::RequiredStep)
+    }
+
+    /// True where the audit finds a specification of the search within [`BINDING_DB`].
+    fn touches(&self, kind: DesignLimitKind) -> bool {
+        let mut findings = self.told.limit_findings.iter().filter(|(known, _)| *known == kind);
+        findings.any(|(_, found)| found.worst.as_ref().is_some_and(|worst| worst.margin_db < BINDING_DB))
+    }
+
+    fn binds(&self, limit: &DesignLimit, touched: &[usize]) -> bool {
+        let own = self.told.designed.problem.specifications.len();
+        match limit.kind {
+            DesignLimitKind::NoiseToCommand
+            | DesignLimitKind::ModulusMargin
+            | DesignLimitKind::HighestBandwidth => {
+                self.index(limit.kind).is_some_and(|index| touched.contains(&(own + index)))
+            }
+            DesignLimitKind::MinimumDelayMargin => {
+                let margin_s = self.told.designed.figures.delay_margin_s;
+                margin_s.is_some_and(|margin_s| margin_s <= (1.0 + NEAR) * limit.value)
+            }
+            DesignLimitKind::PrefilterGain | DesignLimitKind::RequiredStep => self.touches(limit.kind),
+            DesignLimitKind::PoleDampingRatio | DesignLimitKind::FastestPole => self.is_at_end(limit.kind),
+        }
+    }
+
+    /// The index of a limit among those that are specifications.
+    fn index(&self, kind: DesignLimitKind) -> Option<usize> {
+        self.told.limit_findings.iter().position(|(known, _)| *known == kind)
+    }
+
+    /// True where a free number is at an end of its range that this limit moves.
+    fn is_at_end(&self, kind: DesignLimitKind) -> bool {
+        let (own, wider) = (self.told.design.structure.bounds(), self.structure(kind).bounds());
+        let is_near = |one: f64, other: f64| (one - other).abs() < NEAR;
+        own.iter().zip(wider).zip(&self.told.design.free_numbers).any(|((own, wider), number)| {
+            [0, 1].into_iter().any(|end| own[end] != wider[end] && is_near(own[end], *number))
+        })
+    }
+
+    /// The structure with poles in a range that is wider by this limit.
+    fn structure(&self, kind: DesignLimitKind) -> Structure {
+        let poles = self.told.options.poles;
+        let wider = match kind {
+            DesignLimitKind::PoleDampingRatio => {
+                PoleRange { least_damping_ratio: kind.relaxed(poles.least_damping_ratio), ..poles }
+            }
+            DesignLimitKind::FastestPole => {
+                PoleRange { fastest_rad_per_s: kind.relaxed(poles.fastest_rad_per_s), ..poles }
+            }
+            _ => poles,
+        };
+        self.told.design.structure.with_poles_in([poles, wider])
+    }
+
+    /// The specifications that the search was made for, where this is given, and the prefilter may
+    /// have this many times its gain.
+    fn specifications(
+        &self,
+        given: RobustProblem,
+        prefilter_gain: f64,
+    ) -> Result<Vec<Specification>, DesignError> {
+        let aim = self.aimed.aim.with_prefilter_gain(prefilter_gain);
+        Ok(match self.search {
+            LastSearch::OverFrequency(_) => aim.of(self.setup.project, &given)?.specifications,
+            LastSearch::BySteps(_) => given.specifications,
+        })
+    }
+
+    /// The limits of the search with one of them wider.
+    fn wider(&self, limit: RelaxedLimit) -> Result<SearchLimits, DesignError> {
+        let mut given = self.aimed.given.clone();
+        let (mut steps, mut gain, mut delay_s) = (1.0, 1.0, self.delay_s);
+        let mut structure = self.told.design.structure.clone();
+        match limit {
+            RelaxedLimit::Steps(index) => {
+                steps = 1.0 + RELAXED_BY;
+                if let Some(required) = given.in_time.get_mut(index) {
+                    required.wish = required.wish.wider(steps);
+                }
+            }
+            RelaxedLimit::Design(DesignLimitKind::PrefilterGain) => gain = 1.0 + RELAXED_BY,
+            RelaxedLimit::Design(kind @ DesignLimitKind::MinimumDelayMargin) => {
+                delay_s = kind.relaxed(delay_s);
+            }
+            RelaxedLimit::Design(kind) => structure = self.structure(kind),
+            RelaxedLimit::Specification(_) => {}
+        }
+        let mut specifications = self.specifications(given, gain)?;
+        let own = self.told.designed.problem.specifications.len();
+        match limit {
+            RelaxedLimit::Specification(index) => {
+                if let Some(one) = specifications.get_mut(index) {
+                    let wider = one.requirement.wider(1.0 + RELAXED_BY);
+                    one.requirement = wider.map_err(RobustError::from)?;
+                }
+            }
+            RelaxedLimit::Design(kind) => {
+                let place = self.index(kind).and_then(|index| specifications.get_mut(own + index));
+                let limit = self.told.limits.iter().find(|known| known.kind == kind);
+                let wider = limit.and_then(|limit| {
+                    specification((self.setup, self.aimed.given), kind, kind.relaxed(limit.value))
+                });
+                if let (Some(place), Some(wider)) = (place, wider) {
+                    *place = wider;
+                }
+            }
+            RelaxedLimit::Steps(_) => {}
+        }
+        Ok(SearchLimits { structure, specifications, delay_s, steps })
+    }
+}

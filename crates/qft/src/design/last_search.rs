@@ -1,0 +1,101 @@
+//! The last search of a design, to be gone on with.
+
+use phea_dynamics::linear::LinearError;
+use phea_dynamics::order::sort_by_number;
+
+use super::attempt::{LoopDesignError, NEIGHBOURS, RESERVE_DB};
+use super::problem::DesignOptions;
+use super::result::{Design, DesignStatus};
+use super::{Objective, PoleRange};
+use crate::loop_shaping::{Aim, Samples, Shaping, Structure, StructureFactor};
+use crate::verification::PlantPoint;
+
+/// The shaping of a design at these samples, with what its search looked for: the least objective,
+/// or where it is missed the greatest worst margin.
+///
+/// # Errors
+/// [`LinearError`] for a structure that cannot be sampled.
+pub fn last_search(
+    design: &Design,
+    mut samples: Samples,
+    options: &DesignOptions,
+) -> Result<(Shaping, Aim), LinearError> {
+    let relaxes = matches!(design.status, DesignStatus::Infeasible(_));
+    samples.keep_in_reserve(if relaxes { 0.0 } else { RESERVE_DB + options.reserve_db });
+    samples.count_shares_of_room(options.objective == Objective::BestWorstMargin && !relaxes);
+    let (structure, prefilter) = (design.structure.clone(), design.prefilter.clone());
+    let shaping = Shaping::new(structure, prefilter, options.objective, samples)?;
+    let aim = match options.objective {
+        _ if relaxes => Aim::WorstMargin,
+        Objective::BestWorstMargin => Aim::WorstMargin,
+        Objective::LeastHighFrequencyGain | Objective::LeastBandwidth => Aim::Objective,
+    };
+    Ok((shaping, aim))
+}
+
+/// Adds to a search what lies beside the samples with the least margins at x, since a peak moves
+/// with the limits.
+///
+/// # Errors
+/// [`LoopDesignError`] for a structure that cannot be sampled.
+pub fn sample_beside_worst(shaping: &mut Shaping, x: &[f64]) -> Result<(), LoopDesignError> {
+    let frequencies = shaping.samples().frequencies_rad_per_s();
+    let (Some(&lowest), Some(&highest)) = (frequencies.first(), frequencies.last()) else { return Ok(()) };
+    let mut margins = shaping.margins(x);
+    sort_by_number(&mut margins, |margin| margin.margin_db);
+    let mut known: Vec<usize> = Vec::new();
+    for margin in margins {
+        if known.contains(&margin.specification) {
+            continue;
+        }
+        known.push(margin.specification);
+        let plants: Vec<PlantPoint> = std::iter::once(margin.plant).chain(margin.other).collect();
+        for factor in NEIGHBOURS {
+            shaping.add(&plants, (factor * margin.frequency_rad_per_s).clamp(lowest, highest))?;
+        }
+    }
+    Ok(())
+}
+
+impl Structure {
+    /// The same structure with poles that may lie where another range of them allows, in place of
+    /// the range that it was made with.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_qft::design::PoleRange;
+    /// use phea_qft::loop_shaping::{Structure, StructureFactor};
+    /// let fastest = |frequency: f64| Structure {
+    ///     sign: 1.0,
+    ///     gain: [0.1, 10.0],
+    ///     parts: vec![StructureFactor::RealPole { frequency: [1.0, frequency] }],
+    /// };
+    /// let range = |frequency: f64| PoleRange { fastest_rad_per_s: frequency, ..PoleRange::default() };
+    /// assert_eq!(fastest(100.0).with_poles_in([range(100.0), range(110.0)]), fastest(110.0));
+    /// ```
+    #[must_use]
+    pub fn with_poles_in(&self, [from, to]: [PoleRange; 2]) -> Structure {
+        let moved = |end: &mut f64, [from, to]: [f64; 2]| {
+            if *end == from {
+                *end = to;
+            }
+        };
+        let fastest = [from.fastest_rad_per_s, to.fastest_rad_per_s];
+        let damping = [from.least_damping_ratio, to.least_damping_ratio];
+        let mut structure = self.clone();
+        for part in &mut structure.parts {
+            match part {
+                StructureFactor::RealPole { frequency: [_, greatest] }
+                | StructureFactor::Notch { natural_frequency: [_, greatest], .. } => moved(greatest, fastest),
+                StructureFactor::PolePair { natural_frequency: [_, greatest], damping_ratio: [least, _] } => {
+                    moved(greatest, fastest);
+                    moved(least, damping);
+                }
+                StructureFactor::Fixed(_)
+                | StructureFactor::RealZero { .. }
+                | StructureFactor::ZeroPair { .. } => {}
+            }
+        }
+        structure
+    }
+}

@@ -1,0 +1,97 @@
+//! What a wider limit brings: a search that goes on from where it ended, with that limit wider.
+
+use phea_dynamics::watch::{Stopped, Watch};
+
+use super::descent::{DescentOptions, descend};
+use super::search::{Aim, Judgement, SearchProblem};
+
+/// Accuracy of what is gained, dB.
+const TOLERANCE_DB: f64 = 2e-3;
+/// A margin that misses its reserve by more than this at the end leaves nothing to compare, dB.
+const MISSED_DB: f64 = 0.1;
+/// Steps of one descent.
+const STEPS: usize = 20;
+
+/// A local optimum of a search, and what it reaches there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LocalOptimum {
+    /// Where it ended.
+    pub x: Vec<f64>,
+    /// The objective, or less the worst margin, dB: the less the better.
+    pub value_db: f64,
+    options: DescentOptions,
+}
+
+impl LocalOptimum {
+    /// The local optimum beside x, all margins keeping this reserve in dB where the objective is
+    /// what counts; `None` where they do not keep it there, or where a plant is not stable.
+    ///
+    /// # Errors
+    /// [`Stopped`] by the watch.
+    ///
+    /// # Example
+    /// The least x whose margin is ln x - c, and c less by 1/4:
+    /// ```
+    /// use phea_dynamics::watch::unwatched;
+    /// use phea_qft::loop_shaping::{Aim, Judgement, MarginRow, LocalOptimum, SearchProblem, Slopes};
+    ///
+    /// struct Least(f64, [[f64; 2]; 1]);
+    ///
+    /// impl SearchProblem for Least {
+    ///     fn bounds(&self) -> &[[f64; 2]] {
+    ///         &self.1
+    ///     }
+    ///     fn judge(&mut self, x: &[f64]) -> Judgement {
+    ///         Judgement { objective_db: x[0], worst_margin_db: x[0].ln() - self.0, stable: true, instability: 0.0 }
+    ///     }
+    ///     fn slopes(&mut self, x: &[f64]) -> Slopes {
+    ///         let row = MarginRow { sample: 0, margin_db: x[0].ln() - self.0, rate: 1.0, slopes: vec![1.0 / x[0]] };
+    ///         Slopes { objective_db: x[0], objective_slopes: vec![1.0], margins: vec![row] }
+    ///     }
+    /// }
+    ///
+    /// let mut least = |c: f64| Least(c, [[0.1, 100.0]]);
+    /// let end = LocalOptimum::beside(&mut least(1.0), &[3.0], (Aim::Objective, 0.0), &mut unwatched)?.unwrap();
+    /// let wider = end.continued(&mut least(0.75), &mut unwatched)?.unwrap();
+    /// assert!((end.value_db - wider.value_db - (1.0_f64.exp() - 0.75_f64.exp())).abs() < 0.01);
+    /// # Ok::<(), phea_dynamics::watch::Stopped>(())
+    /// ```
+    pub fn beside(
+        problem: &mut dyn SearchProblem,
+        x: &[f64],
+        (aim, reserve_db): (Aim, f64),
+        watch: Watch<'_>,
+    ) -> Result<Option<LocalOptimum>, Stopped> {
+        let options = DescentOptions {
+            reserve_db,
+            tolerance_db: TOLERANCE_DB,
+            steps_maximum: STEPS,
+            is_near: true,
+            ..DescentOptions::new(aim)
+        };
+        LocalOptimum { x: x.to_vec(), value_db: f64::NAN, options }.continued(problem, watch)
+    }
+
+    /// The end of the same search with other limits, from here on; `None` where it finds nothing
+    /// that keeps them.
+    ///
+    /// # Errors
+    /// [`Stopped`] by the watch.
+    pub fn continued(
+        &self,
+        problem: &mut dyn SearchProblem,
+        watch: Watch<'_>,
+    ) -> Result<Option<LocalOptimum>, Stopped> {
+        let found = descend(problem, &self.x, self.options, watch)?;
+        let value_db = |judgement: Judgement| match self.options.aim {
+            Aim::WorstMargin => Some(-judgement.worst_margin_db),
+            Aim::Objective => {
+                let is_kept = judgement.worst_margin_db >= self.options.reserve_db - MISSED_DB;
+                is_kept.then_some(judgement.objective_db)
+            }
+        };
+        let judgement = found.judgement.filter(|judgement| judgement.stable);
+        let value_db = judgement.and_then(value_db);
+        Ok(value_db.map(|value_db| LocalOptimum { x: found.x, value_db, options: self.options }))
+    }
+}

@@ -1,0 +1,144 @@
+//! What relaxing each limit that binds would buy.
+
+use phea_engineering::design::{
+    DesignLimitKind, Gained, RELAXED_BY, RelaxedGain, RelaxedLimit, limit_key, limit_unit_key, limit_words,
+};
+use phea_qft::design::{DesignStatus, Objective};
+use phea_qft::specification::Limit;
+
+use super::ProjectDesign;
+use crate::answer::{Object, significant};
+use crate::document::Document;
+use crate::quantity::DisplayUnit;
+
+/// A gain below this is within the accuracy of the search, dB.
+const ACCURACY_DB: f64 = 0.01;
+
+/// A sentence for each limit; empty where none binds.
+pub(super) fn document(view: &ProjectDesign) -> Document {
+    let mut out = Document::default();
+    if view.relaxations.limits.is_empty() {
+        return out;
+    }
+    out.heading("What relaxing a limit would buy");
+    out.explanation(
+        "The last search, continued from the controller that it found with nothing but this limit wider by a tenth: same structure, same plants and frequencies, without an audit. Another structure may gain more.",
+    );
+    out.sentences(view.relaxations.limits.iter().map(|one| sentence(view, one)));
+    out
+}
+
+/// Each limit in JSON.
+pub(super) fn rows(view: &ProjectDesign) -> Vec<Object> {
+    let row = |one: &RelaxedGain| {
+        let object = match one.limit {
+            RelaxedLimit::Specification(index) => Object::new().with("specification", index),
+            RelaxedLimit::Steps(index) => {
+                let finding = view.designed.view.in_time.get(index);
+                Object::new().maybe("number", finding.map(|finding| finding.requirement.number))
+            }
+            RelaxedLimit::Design(kind) => Object::new().with("key", limit_key(kind)),
+        };
+        object.with("name", name(view, one.limit)).with("relaxed_by", RELAXED_BY).and(gained(view, one))
+    };
+    view.relaxations.limits.iter().map(row).collect()
+}
+
+/// Of a limit of what may be built: its relaxed value, and what that would buy.
+pub(super) fn of_limit(view: &ProjectDesign, kind: DesignLimitKind, value: f64) -> Option<Object> {
+    let found = view.relaxations.limits.iter().find(|one| one.limit == RelaxedLimit::Design(kind))?;
+    Some(
+        Object::new()
+            .with(format!("value{}", limit_unit_key(kind)), kind.relaxed(value))
+            .and(gained(view, found)),
+    )
+}
+
+fn gained(view: &ProjectDesign, one: &RelaxedGain) -> Object {
+    let key = match view.relaxations.of {
+        Gained::Objective => "objective_gained_db",
+        Gained::WorstMargin => "worst_margin_gained_db",
+    };
+    Object::new().with(key, one.gained_db)
+}
+
+fn name(view: &ProjectDesign, limit: RelaxedLimit) -> String {
+    match limit {
+        RelaxedLimit::Specification(index) => view.designed.view.numbered(index),
+        RelaxedLimit::Steps(_) => "required step".to_string(),
+        RelaxedLimit::Design(kind) => limit_words(kind).to_string(),
+    }
+}
+
+fn sentence(view: &ProjectDesign, one: &RelaxedGain) -> String {
+    let name = match one.limit {
+        RelaxedLimit::Specification(_) => name(view, one.limit),
+        RelaxedLimit::Steps(_) | RelaxedLimit::Design(_) => format!("the {}", name(view, one.limit)),
+    };
+    let effect = match one.gained_db {
+        gained_db if gained_db < ACCURACY_DB => "would buy nothing: other limits bind too".to_string(),
+        gained_db => bought(view, &format!("{} dB", significant(gained_db, 2))),
+    };
+    format!("relaxing {name} {} {effect}", relaxed(view, one.limit))
+}
+
+/// From which value to which one.
+fn relaxed(view: &ProjectDesign, limit: RelaxedLimit) -> String {
+    let by = format!("by {} %", significant(100.0 * RELAXED_BY, 2));
+    let values = match limit {
+        RelaxedLimit::Specification(index) => {
+            let specification = view.designed.problem.specifications.get(index);
+            specification.and_then(|one| match one.requirement.limits() {
+                (None, Limit::Constant(limit)) => Some([*limit, (1.0 + RELAXED_BY) * limit]),
+                _ => None,
+            })
+        }
+        RelaxedLimit::Steps(index) => {
+            let finding = view.designed.view.in_time.get(index);
+            return finding.map_or(by, |found| {
+                format!("to {}", found.requirement.wish.wider(1.0 + RELAXED_BY).words())
+            });
+        }
+        RelaxedLimit::Design(kind) => {
+            let known = view.limits.iter().find(|limit| limit.kind == kind);
+            known.map(|limit| [limit.value, kind.relaxed(limit.value)])
+        }
+    };
+    let words = |value: f64| match limit {
+        RelaxedLimit::Design(kind) => value_words(kind, value),
+        RelaxedLimit::Specification(_) | RelaxedLimit::Steps(_) => significant(value, 3).to_string(),
+    };
+    values.map_or(by, |[from, to]| format!("from {} to {}", words(from), words(to)))
+}
+
+fn value_words(kind: DesignLimitKind, value: f64) -> String {
+    match kind {
+        DesignLimitKind::NoiseToCommand => format!("{} %", significant(100.0 * value, 3)),
+        DesignLimitKind::HighestBandwidth | DesignLimitKind::FastestPole => {
+            format!("{} rad/s", significant(value, 3))
+        }
+        DesignLimitKind::MinimumDelayMargin => DisplayUnit::MILLISECOND.text(value, 3),
+        DesignLimitKind::ModulusMargin
+        | DesignLimitKind::PoleDampingRatio
+        | DesignLimitKind::PrefilterGain
+        | DesignLimitKind::RequiredStep => significant(value, 3).to_string(),
+    }
+}
+
+/// What is gained, in words.
+fn bought(view: &ProjectDesign, gained: &str) -> String {
+    match (view.relaxations.of, view.options.objective, &view.design.status) {
+        (Gained::Objective, Objective::LeastBandwidth, _) => format!("would lower the bandwidth by {gained}"),
+        (Gained::Objective, ..) => {
+            format!("would lower the high-frequency gain, with which noise reaches the command, by {gained}")
+        }
+        (Gained::WorstMargin, _, DesignStatus::Infeasible(missed)) => {
+            let missing = significant(missed.relaxation_db, 3);
+            format!("would return {gained} of the {missing} dB that every limit lacks")
+        }
+        (Gained::WorstMargin, Objective::BestWorstMargin, _) if view.is_met() => {
+            format!("would raise the worst margin by {gained}")
+        }
+        (Gained::WorstMargin, ..) => format!("would return {gained} of what the worst margin lacks"),
+    }
+}
