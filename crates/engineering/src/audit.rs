@@ -19,7 +19,7 @@ pub use words::{evidence_key, evidence_sentence, finding_sentence, place_words};
 pub(crate) use alone::{caveat as caveat_of_rig, unexamined as unexamined_rig};
 pub use dead_time::LoopDeadTime;
 pub use in_time::{TimeFinding, TimeOutcome, Unexamined, WorstStep};
-pub(crate) use in_time::{spread_over, steps_of_members};
+pub(crate) use in_time::{VisitedPlant, spread_over, steps_of_members, visited, worst_beside};
 pub use margins::{AuditMargins, LoopMargin, MarginSet};
 pub(crate) use margins::{highest_crossover, plants_of_margins};
 pub(crate) use nominal::nominal_margins;

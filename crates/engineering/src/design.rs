@@ -5,6 +5,7 @@ mod added_by_rig;
 mod asked;
 mod below;
 mod by_steps;
+mod command_of_steps;
 mod comparison;
 mod damping;
 mod deployable;
@@ -27,6 +28,7 @@ pub use crate::limit_kind::{
     origin_key, origin_words,
 };
 pub use below::below_design;
+pub use command_of_steps::CommandOfSteps;
 pub use damping::{MissingPlants, PressureFeedbackDesign, with_free_pressure_feedback};
 pub use deployable::{DesignLimit, LimitFinding, design_limits};
 pub use factors::factored;
@@ -55,9 +57,7 @@ use phea_qft::verification::Verdict;
 
 use self::deployable::{limited, split};
 use self::driven::found_and_tried;
-use crate::audit::{
-    PrefilterGain, ProjectAudit, audit_problem, audit_request, caveat_of_rig, try_to_prove, unexamined_rig,
-};
+use crate::audit::{ProjectAudit, audit_problem, audit_request, caveat_of_rig, try_to_prove, unexamined_rig};
 use crate::project::{self, Project};
 use crate::quantity::{self, DisplayUnit};
 use crate::robust::{RobustError, RobustProblem, robust_problem};
@@ -170,6 +170,9 @@ pub struct ProjectDesign {
     pub gain_per: Option<DisplayUnit>,
     /// The structures that were tried, in turn.
     pub structures: Vec<ReachedStructure>,
+    /// The largest command that the steps of the scenarios take; absent where nothing limits it,
+    /// or where it is not known.
+    pub command_of_steps: Option<CommandOfSteps>,
     /// What relaxing each limit that binds would buy.
     pub relaxations: Relaxations,
     /// The pressure feedback that was found before the loop; absent where it is not free.
@@ -246,6 +249,7 @@ impl ProjectDesign {
             manual,
             gain_per: project.actuator.as_ref().map(|_| project.units.force),
             structures: vec![],
+            command_of_steps: None,
             relaxations: Relaxations::default(),
             pressure_feedback: None,
             declared_controller,
@@ -330,21 +334,13 @@ impl ProjectDesign {
         self.designed.view.verdict() == Verdict::Met
             && self.tolerates_its_delay
             && self.exceeded_prefilter_gain().is_none()
+            && self.exceeded_command().is_none()
             && self.keeps_its_limits()
     }
 
     /// True where every limit is kept by which a design is judged.
     fn keeps_its_limits(&self) -> bool {
         self.limit_findings.iter().all(|(kind, finding)| kind.is_led_to() || finding.verdict == Verdict::Met)
-    }
-
-    /// The largest gain that the designed prefilter may have and the one that it has, where that is
-    /// more.
-    pub fn exceeded_prefilter_gain(&self) -> Option<[f64; 2]> {
-        self.declared_prefilter.as_ref()?;
-        let most = deployable::limit_value(&self.limits, DesignLimitKind::PrefilterGain)?;
-        let largest = PrefilterGain::of_loop(&self.designed.problem.compensation).largest;
-        (largest > most).then_some([most, largest])
     }
 }
 

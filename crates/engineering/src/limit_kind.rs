@@ -18,6 +18,8 @@ pub enum DesignLimitKind {
     FastestPole,
     /// Gain of the prefilter.
     PrefilterGain,
+    /// Command of the steps of the reference in the scenarios.
+    CommandOfSteps,
     /// No limit but the way to a required step: limits of tracking that a search aims at.
     RequiredStep,
 }
@@ -32,6 +34,7 @@ pub fn limit_key(kind: DesignLimitKind) -> &'static str {
         DesignLimitKind::PoleDampingRatio => "pole_damping_ratio",
         DesignLimitKind::FastestPole => "fastest_pole",
         DesignLimitKind::PrefilterGain => "prefilter_gain",
+        DesignLimitKind::CommandOfSteps => "command_of_steps",
         DesignLimitKind::RequiredStep => "required_step",
     }
 }
@@ -45,6 +48,7 @@ pub fn limit_unit_key(kind: DesignLimitKind) -> &'static str {
         | DesignLimitKind::ModulusMargin
         | DesignLimitKind::PoleDampingRatio
         | DesignLimitKind::PrefilterGain
+        | DesignLimitKind::CommandOfSteps
         | DesignLimitKind::RequiredStep => "",
     }
 }
@@ -59,6 +63,7 @@ pub fn limit_words(kind: DesignLimitKind) -> &'static str {
         DesignLimitKind::PoleDampingRatio => "damping of poles",
         DesignLimitKind::FastestPole => "fastest pole",
         DesignLimitKind::PrefilterGain => "gain of the prefilter",
+        DesignLimitKind::CommandOfSteps => "command of steps",
         DesignLimitKind::RequiredStep => "way to the required step",
     }
 }
@@ -77,6 +82,7 @@ impl DesignLimitKind {
             | DesignLimitKind::HighestBandwidth
             | DesignLimitKind::FastestPole
             | DesignLimitKind::PrefilterGain
+            | DesignLimitKind::CommandOfSteps
             | DesignLimitKind::RequiredStep => (1.0 + RELAXED_BY) * value,
         }
     }

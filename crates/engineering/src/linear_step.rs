@@ -14,7 +14,7 @@ use phea_dynamics::uncertain_plant::PlantCoefficients;
 use phea_qft::closed_loop::{Compensation, Member};
 
 pub(crate) use of_responses::KnownResponses;
-use of_responses::{parts_of_change, real_parts};
+use of_responses::{ClosedParts, parts_of_change, real_parts};
 
 /// A step response from the step on: fraction of the step over time.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,6 +23,15 @@ pub struct StepResponse {
     pub times_s: Vec<f64>,
     /// 0 before, 1 at the new reference.
     pub values: Vec<f64>,
+}
+
+/// What a step of the reference is followed to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum StepSignal {
+    /// The output of the plant.
+    Output,
+    /// The command of the controller, in its unit for each unit of the reference.
+    Command,
 }
 
 /// The lowest frequency at which a change of the loop matters, over the inverse of the time.
@@ -42,13 +51,29 @@ pub fn linear_step(
     duration_s: f64,
     points: usize,
 ) -> Result<StepResponse, TimeResponseError> {
-    linear_step_knowing(member, compensation, (duration_s, points), &KnownResponses::default())
+    let known = KnownResponses::default();
+    linear_step_knowing((member, StepSignal::Output), compensation, (duration_s, points), &known)
 }
 
-/// The same with what is known of the response of this plant in a loop of the same timing and
-/// sensor.
-pub(crate) fn linear_step_knowing(
+/// The command of the controller in the same step, in its unit for each unit of the reference: the
+/// step response of F G/(1 + L). What an inner signal feeds back is part of the plant.
+///
+/// # Errors
+/// Those of [`linear_step`].
+pub fn linear_command_step(
     member: &Member,
+    compensation: &Compensation,
+    duration_s: f64,
+    points: usize,
+) -> Result<StepResponse, TimeResponseError> {
+    let known = KnownResponses::default();
+    linear_step_knowing((member, StepSignal::Command), compensation, (duration_s, points), &known)
+}
+
+/// The same of a signal of the loop, with what is known of the response of this plant in a loop of
+/// the same timing and sensor.
+pub(crate) fn linear_step_knowing(
+    (member, signal): (&Member, StepSignal),
     compensation: &Compensation,
     (duration_s, points): (f64, usize),
     known: &KnownResponses,
@@ -59,11 +84,15 @@ pub(crate) fn linear_step_knowing(
         |sample_time_s: f64| ((duration_s / sample_time_s).ceil() as usize + 1).clamp(10, SAMPLES_MAXIMUM);
     let (times_s, values) = match member {
         Member::Continuous { plant, sensor, .. } => {
-            let forward = of_coefficients(plant)?.series(feedback)?.with_dead_time(plant.dead_time_s)?;
-            if forward.dead_time_s() + sensor.dead_time_s() > 0.0 {
-                delayed_loop_step(&forward, sensor, &prefilter, duration_s, points)?
+            let path = of_coefficients(plant)?.with_dead_time(plant.dead_time_s)?;
+            let (forward, back) = match signal {
+                StepSignal::Output => (path.series(feedback)?, sensor.clone()),
+                StepSignal::Command => (feedback.clone(), path.series(sensor)?),
+            };
+            if forward.dead_time_s() + back.dead_time_s() > 0.0 {
+                delayed_loop_step(&forward, &back, &prefilter, duration_s, points)?
             } else {
-                let closed = prefilter.series(&forward.feedback(sensor)?)?;
+                let closed = prefilter.series(&forward.feedback(&back)?)?;
                 let times_s = uniform_times(duration_s, points + 1)?;
                 let values = step_response(&closed, &times_s)?;
                 (times_s, values)
@@ -71,14 +100,19 @@ pub(crate) fn linear_step_knowing(
         }
         Member::Sampled { command, with_sensor, .. } => {
             let count = samples(compensation.sample_time_s().unwrap_or(duration_s));
-            sampled_loop_step(command, with_sensor, feedback, &prefilter, count)?
+            let behind = match signal {
+                StepSignal::Output => command.clone(),
+                StepSignal::Command => TransferFunction::gain_only(1.0).in_domain(command.domain())?,
+            };
+            sampled_loop_step(&behind, with_sensor, feedback, &prefilter, count)?
         }
         Member::Responding { plant, .. } => {
             let sample_time_s = compensation.sample_time_s();
             let step_s = sample_time_s.unwrap_or(duration_s / points as f64);
-            let parts = real_parts(plant, compensation, known)?;
+            let ClosedParts { parts, scale, at_once } = real_parts((plant, signal), compensation, known)?;
             let count = samples(step_s);
             let values = step_of_frequency_response(&parts, step_s, count, sample_time_s.is_some());
+            let values = values.into_iter().map(|value| at_once + scale * value).collect();
             ((0..count).map(|sample| sample as f64 * step_s).collect(), values)
         }
         Member::Measured { .. } => return Err(LinearError::NoPlant.into()),

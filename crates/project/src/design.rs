@@ -34,6 +34,9 @@ pub struct DeclaredDesign {
     pub pole_damping_ratio: Option<f64>,
     /// Largest |F| of the designed prefilter; absent: of a rig 2.
     pub prefilter_gain: Option<f64>,
+    /// Largest command that a step of the reference in a scenario may take, over the valve's
+    /// nominal voltage; absent: of a rig 1.
+    pub command_of_steps: Option<f64>,
     /// Factor by which every limit is kept, above what counts as met; absent: what the recordings
     /// of an identified valve leave open.
     pub reserve: Option<f64>,
@@ -160,6 +163,7 @@ impl Default for DeclaredDesign {
             noise_to_command: None,
             pole_damping_ratio: None,
             prefilter_gain: None,
+            command_of_steps: None,
             reserve: None,
             gain: None,
             structure_choice: StructureChoice::Any,
@@ -203,6 +207,9 @@ impl DeclaredDesign {
         let doc = "Largest gain of the designed prefilter; absent: of a rig 2.";
         let k = key("prefilter_gain", &GAIN, doc).at_least(1.0).or_infinite();
         v.optional(k, &mut self.prefilter_gain);
+        let doc = "Command of the scenarios' steps over the nominal voltage; absent: of a rig 1.";
+        let k = key("command_of_steps", &RATIO, doc).positive().or_infinite();
+        v.optional(k, &mut self.command_of_steps);
         let doc = "Margin that the design keeps to every limit; absent: what recordings leave open.";
         v.optional(key("reserve", &GAIN, doc).at_least(1.0).at_most(2.0), &mut self.reserve);
         v.pair(key("gain", &RATIO, "Least and greatest gain of `structure`."), &mut self.gain);

@@ -10,6 +10,7 @@ mod ask;
 mod benchmark;
 mod campaign;
 mod campaign_rows;
+mod command_of_steps;
 mod coupled_plant;
 mod cross_port;
 mod derived_statements;

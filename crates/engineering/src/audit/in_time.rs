@@ -202,7 +202,7 @@ pub(crate) fn spread_over(family: &UncertainFamily, most: usize) -> Vec<Vec<f64>
 }
 
 /// Plants spread over the family, and those that the audit found worst.
-fn visited(family: &UncertainFamily, audit: &Audit) -> Vec<Vec<f64>> {
+pub(crate) fn visited(family: &UncertainFamily, audit: &Audit) -> Vec<Vec<f64>> {
     let is_rational = family.plant().is_rational();
     let mut found = spread_over(family, if is_rational { MEMBERS } else { MEMBERS_OF_RESPONSES });
     for plant in audit.specifications.iter().flat_map(worst_plants) {
@@ -319,29 +319,51 @@ impl StepSearch<'_> {
         Ok(())
     }
 
-    /// Moves from a plant to a worse one beside it, one coordinate after the other, and in smaller
-    /// steps once none is worse.
+    /// Moves from a plant to a worse one beside it.
     fn follow(&mut self, property: usize, start: Vec<f64>) -> Result<(), TimeResponseError> {
-        let mut worst = self.visit(&start)?[property];
-        let mut shares = self.family.shares(&start);
-        let mut step = FIRST_SHARE;
-        while step >= LEAST_SHARE && worst.is_finite() && self.visited.len() < VISITED_MAXIMUM {
-            let before = worst;
-            for coordinate in 0..shares.len() {
-                for moved in [step, -step] {
-                    let mut beside = shares.clone();
-                    beside[coordinate] = (beside[coordinate] + moved).clamp(0.0, 1.0);
-                    let value = self.visit(&self.family.values(&beside))?[property];
-                    if value > worst {
-                        (worst, shares) = (value, beside);
-                        break;
-                    }
+        let family = self.family;
+        worst_beside(family, start, |values| {
+            let value = self.visit(values)?[property];
+            Ok(VisitedPlant { value, is_last: self.visited.len() >= VISITED_MAXIMUM })
+        })
+    }
+}
+
+/// A plant that a search for a worse one visited.
+pub(crate) struct VisitedPlant {
+    /// The larger the worse.
+    pub(crate) value: f64,
+    /// Whether the search has visited as many as it may.
+    pub(crate) is_last: bool,
+}
+
+/// Moves from a plant of a family to a worse one beside it, one coordinate after the other, and in
+/// smaller steps once none is worse.
+pub(crate) fn worst_beside<E>(
+    family: &UncertainFamily,
+    start: Vec<f64>,
+    mut visit: impl FnMut(&[f64]) -> Result<VisitedPlant, E>,
+) -> Result<(), E> {
+    let VisitedPlant { value: mut worst, mut is_last } = visit(&start)?;
+    let mut shares = family.shares(&start);
+    let mut step = FIRST_SHARE;
+    while step >= LEAST_SHARE && worst.is_finite() && !is_last {
+        let before = worst;
+        for coordinate in 0..shares.len() {
+            for moved in [step, -step] {
+                let mut beside = shares.clone();
+                beside[coordinate] = (beside[coordinate] + moved).clamp(0.0, 1.0);
+                let found = visit(&family.values(&beside))?;
+                is_last = found.is_last;
+                if found.value > worst {
+                    (worst, shares) = (found.value, beside);
+                    break;
                 }
             }
-            if worst <= before {
-                step *= 0.5;
-            }
         }
-        Ok(())
+        if worst <= before {
+            step *= 0.5;
+        }
     }
+    Ok(())
 }

@@ -5,20 +5,25 @@
 //! noise to command     |G/(1+L)| <= a U_n/n           then rms(u) <= a U_n for white noise of n rms at the samples
 //! modulus margin       |1/(1+L)| <= 1/m               at every frequency
 //! bandwidth            |L/(1+L)| <= 1/sqrt(2)         from w_b on: a crossover beyond has a phase margin of 90 degrees
+//! command of steps     |u(t)| <= a U_n                of each step of the reference in a scenario
 //! ```
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use phea_dynamics::order::sorted_distinct;
 use phea_qft::design::PoleRange;
+use phea_qft::family::Family;
 use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{Audit, SpecificationFinding};
 
+use super::ProjectDesign;
+use crate::audit::PrefilterGain;
 use crate::limit_kind::{DesignLimitKind, LimitOrigin, limit_words};
 use crate::project::{DeclaredDesign, UnstatedLimits};
 use crate::rig::quarter_wave;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
+use crate::simulate::largest_reference_steps;
 
 /// Part of the nominal voltage that noise may take, rms.
 const NOISE_SHARE: f64 = 0.01;
@@ -30,6 +35,8 @@ const MODULUS_MARGIN: f64 = 0.5;
 const DELAY_MARGIN_S: f64 = 0.5e-3;
 const POLE_DAMPING_RATIO: f64 = 0.3;
 const PREFILTER_GAIN: f64 = 2.0;
+/// Part of the nominal voltage that the steps of the scenarios may take.
+const COMMAND_OF_STEPS: f64 = 1.0;
 /// Part of pi/T that a bandwidth may reach, and that a pole may.
 const BANDWIDTH_SHARE: f64 = 0.2;
 const FASTEST_SHARE: f64 = 0.5;
@@ -56,6 +63,12 @@ fn follows_reference(given: &RobustProblem) -> bool {
     given.specifications.iter().any(|one| one.requirement.is_tracking()) || !given.in_time.is_empty()
 }
 
+/// True where a scenario steps the reference of a valve around plants whose steps are known.
+fn steps_command(setup: &Setup<'_>, given: &RobustProblem) -> bool {
+    let has_steps = matches!(given.family, Family::Uncertain(_));
+    has_steps && setup.rig().is_ok() && !largest_reference_steps(setup.project).is_empty()
+}
+
 /// The limits of a design for this problem; none for a plant without a rig that states none.
 pub fn design_limits(setup: &Setup<'_>, given: &RobustProblem) -> Vec<DesignLimit> {
     let declared = setup.project.design.clone().unwrap_or_default();
@@ -76,6 +89,7 @@ pub fn design_limits(setup: &Setup<'_>, given: &RobustProblem) -> Vec<DesignLimi
         ),
         (DesignLimitKind::FastestPole, fastest_pole(setup, &declared, bandwidth)),
         (DesignLimitKind::PrefilterGain, stated(declared.prefilter_gain).or(default(PREFILTER_GAIN))),
+        (DesignLimitKind::CommandOfSteps, stated(declared.command_of_steps).or(default(COMMAND_OF_STEPS))),
     ];
     let asks = |(kind, found): (DesignLimitKind, Option<(f64, LimitOrigin)>)| {
         let (value, origin) = found.filter(|(value, _)| *value > 0.0 && value.is_finite())?;
@@ -85,6 +99,7 @@ pub fn design_limits(setup: &Setup<'_>, given: &RobustProblem) -> Vec<DesignLimi
         let is_void = match kind {
             DesignLimitKind::NoiseToCommand => specification.is_none(),
             DesignLimitKind::PrefilterGain => !follows_reference(given),
+            DesignLimitKind::CommandOfSteps => !steps_command(setup, given),
             _ => false,
         };
         (!is_void).then_some(DesignLimit { kind, value, origin, specification })
@@ -95,6 +110,17 @@ pub fn design_limits(setup: &Setup<'_>, given: &RobustProblem) -> Vec<DesignLimi
 /// The value of a limit, if there is one.
 pub(super) fn limit_value(limits: &[DesignLimit], kind: DesignLimitKind) -> Option<f64> {
     limits.iter().find(|limit| limit.kind == kind).map(|limit| limit.value)
+}
+
+impl ProjectDesign {
+    /// The largest gain that the designed prefilter may have and the one that it has, where that is
+    /// more.
+    pub fn exceeded_prefilter_gain(&self) -> Option<[f64; 2]> {
+        self.declared_prefilter.as_ref()?;
+        let most = limit_value(&self.limits, DesignLimitKind::PrefilterGain)?;
+        let largest = PrefilterGain::of_loop(&self.designed.problem.compensation).largest;
+        (largest > most).then_some([most, largest])
+    }
 }
 
 /// Where the poles of a designed controller may lie.
@@ -203,6 +229,7 @@ pub(super) fn specification(
         | DesignLimitKind::PoleDampingRatio
         | DesignLimitKind::FastestPole
         | DesignLimitKind::PrefilterGain
+        | DesignLimitKind::CommandOfSteps
         | DesignLimitKind::RequiredStep => None,
     }
 }

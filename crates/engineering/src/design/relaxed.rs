@@ -10,6 +10,7 @@
 //! result is not audited.
 
 use phea_dynamics::watch::{Watch, part};
+use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{
     BINDING_DB, DesignStatus, LoopDesignError, PoleRange, last_search, sample_beside_worst,
 };
@@ -18,6 +19,7 @@ use phea_qft::specification::Specification;
 
 use super::by_steps::{AimedSteps, StepShaping, last_step_search};
 use super::deployable::specification;
+use super::structures::noise_gain_around;
 use super::{DesignError, DesignLimit, DesignLimitKind, DesignRun, ProjectDesign};
 use crate::limit_kind::RELAXED_BY;
 use crate::robust::{RobustError, RobustProblem};
@@ -47,6 +49,9 @@ pub struct RelaxedGain {
     /// dB by which the objective would be lower or, where the worst margin counts, that margin
     /// larger.
     pub gained_db: f64,
+    /// dB by which the largest gain from the noise of the sensor to the command of the nominal loop
+    /// would be lower; absent where it is not known.
+    pub noise_gained_db: Option<f64>,
 }
 
 /// What counts in a design.
@@ -130,7 +135,12 @@ pub(super) fn relaxations<'a>(
         let Some(first) = end.continued(wider.problem(), watch)? else { continue };
         sample_beside_worst(wider.shaping(), &first.x)?;
         let Some(found) = first.continued(wider.problem(), watch)? else { continue };
-        limits.push(RelaxedGain { limit, gained_db: (end.value_db - found.value_db).max(0.0) });
+        let noise_db = |x: &[f64]| relaxed.noise_gain_db(x);
+        limits.push(RelaxedGain {
+            limit,
+            gained_db: (end.value_db - found.value_db).max(0.0),
+            noise_gained_db: noise_db(&end.x).zip(noise_db(&found.x)).map(|(own, other)| own - other),
+        });
     }
     let of = if aim == Aim::Objective { Gained::Objective } else { Gained::WorstMargin };
     Ok(Relaxations { of, limits })
@@ -167,6 +177,18 @@ impl<'a> LastSearch<'a> {
 }
 
 impl RelaxedDesign<'_> {
+    /// The largest gain of the nominal loop from the noise of the sensor to the command, dB.
+    fn noise_gain_db(&self, x: &[f64]) -> Option<f64> {
+        let shaping = match &self.search {
+            LastSearch::OverFrequency(shaping) => shaping,
+            LastSearch::BySteps(search) => &search.shaping,
+        };
+        let sensor = self.setup.sensor.clone();
+        let compensation = Compensation::new(&shaping.controller(x), sensor).ok()?;
+        let around = RobustProblem { compensation, ..self.told.designed.problem.clone() };
+        noise_gain_around(&around, &shaping.samples().frequencies_rad_per_s())
+    }
+
     /// The limits that bind: those within [`BINDING_DB`] of the loop or in conflict, ends of ranges
     /// that a free number reaches, and of a design that was led by its steps their requirement.
     fn binding(&self) -> Vec<RelaxedLimit> {
@@ -214,6 +236,8 @@ impl RelaxedDesign<'_> {
                 margin_s.is_some_and(|margin_s| margin_s <= (1.0 + NEAR) * limit.value)
             }
             DesignLimitKind::PrefilterGain | DesignLimitKind::RequiredStep => self.touches(limit.kind),
+            // no limit of a search over frequency
+            DesignLimitKind::CommandOfSteps => false,
             DesignLimitKind::PoleDampingRatio | DesignLimitKind::FastestPole => self.is_at_end(limit.kind),
         }
     }

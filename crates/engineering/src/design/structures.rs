@@ -181,15 +181,19 @@ fn noise_gain_db(run: &DesignRun, told: &ProjectDesign) -> Option<f64> {
     if told.options.objective != Objective::LeastHighFrequencyGain {
         return None;
     }
-    let around = &told.designed.problem;
+    let frequencies = run.outcome.samples()?.frequencies_rad_per_s();
+    noise_gain_around(&told.designed.problem, &frequencies)
+}
+
+/// The same of the loop of a problem, over these frequencies in rad/s.
+pub(super) fn noise_gain_around(around: &RobustProblem, frequencies_rad_per_s: &[f64]) -> Option<f64> {
     let nominal = around.nominal().ok()??;
     let gain = |frequency: &f64| {
         let response = around.response(&nominal, *frequency)?;
         let open_loop = response.plant * response.sensor * response.controller;
         Some(portable::magnitude(response.controller / (1.0 + open_loop)))
     };
-    let frequencies = run.outcome.samples()?.frequencies_rad_per_s();
-    frequencies.iter().filter_map(gain).reduce(f64::max).map(decibels)
+    frequencies_rad_per_s.iter().filter_map(gain).reduce(f64::max).map(decibels)
 }
 
 impl ProjectDesign {

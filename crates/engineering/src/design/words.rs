@@ -17,6 +17,7 @@ pub fn status_key(view: &ProjectDesign) -> &'static str {
         DesignStatus::Met if view.designed.view.audit.verdict == Verdict::Violated => "not_converged",
         DesignStatus::Met if view.designed.view.misses_in_time() || view.misses_on_rig() => "missed_in_time",
         DesignStatus::Met if view.exceeded_prefilter_gain().is_some() => "prefilter_amplifies",
+        DesignStatus::Met if view.exceeded_command().is_some() => "command_beyond_valve",
         DesignStatus::Met => "met",
         DesignStatus::Infeasible(_) => "infeasible",
         DesignStatus::NotConverged { .. } => "not_converged",
@@ -51,7 +52,15 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
             "not met: the controller satisfies every specification, and its prefilter amplifies by more than `design.prefilter_gain` allows: it commands in advance what the loop does not do"
                 .to_string()
         }
-        DesignStatus::Met => "met: the controller satisfies every specification".to_string(),
+        DesignStatus::Met => match view.exceeded_command() {
+            Some(command) => format!(
+                "not met: the controller satisfies every specification, and a step of the scenario `{}` takes {} V of the {} V that `design.command_of_steps` leaves the valve",
+                command.step.scenario,
+                significant(command.largest_v, 3),
+                significant(command.limit_v, 3)
+            ),
+            None => "met: the controller satisfies every specification".to_string(),
+        },
         DesignStatus::Infeasible(_) if keeps_all_but_steps(view) => format!(
             "infeasible: none of the controllers tried{} makes its steps as they are required; the nearest one keeps all that is required over frequency",
             tried(&view.options.controller)

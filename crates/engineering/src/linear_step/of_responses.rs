@@ -7,9 +7,12 @@ use std::sync::Arc;
 use num_complex::Complex64;
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_qft::closed_loop::{Compensation, Member, MemberResponse};
 use phea_qft::family::{FINE, tabulated};
+
+use super::StepSignal;
 
 /// Deviation of the closed loop's response from the line between two points that is allowed, as a
 /// share of the step.
@@ -45,16 +48,28 @@ impl KnownResponses {
     }
 }
 
-/// Frequencies in rad/s with the real part of F P G/(1 + L) there, straight between them: what
+/// Real parts of the response of a closed loop, as shares of a scale and without what passes at
+/// once.
+pub(super) struct ClosedParts {
+    /// Frequencies in rad/s with the real part there, straight between them.
+    pub(super) parts: Vec<(f64, f64)>,
+    /// What the parts are shares of.
+    pub(super) scale: f64,
+    /// The response of a continuous loop at infinite frequency.
+    pub(super) at_once: f64,
+}
+
+/// Frequencies in rad/s with the real part of F P G/(1 + L) there, or of F G/(1 + L), straight
+/// between them: what
 /// [`step_of_frequency_response`](phea_dynamics::time_response::step_of_frequency_response) takes.
 ///
 /// # Errors
 /// [`LinearError`] where the prefilter cannot be sampled.
 pub(super) fn real_parts(
-    plant: &Arc<dyn RespondingPlant>,
+    (plant, signal): (&Arc<dyn RespondingPlant>, StepSignal),
     compensation: &Compensation,
     known: &KnownResponses,
-) -> Result<Vec<(f64, f64)>, LinearError> {
+) -> Result<ClosedParts, LinearError> {
     let member = compensation.responding(plant.clone());
     let highest = compensation.highest_frequency_rad_per_s();
     let [from, to] = plant.range_rad_per_s();
@@ -63,11 +78,31 @@ pub(super) fn real_parts(
     let below = (1..=HALVINGS).rev().map(|halvings| lowest / f64::from(1_u32 << halvings));
     let grid: Vec<f64> = below.chain(own).collect();
     let prefilter = compensation.prefilter_of_step()?;
+    let is_continuous = compensation.sample_time_s().is_none();
+    let at_once = match signal {
+        StepSignal::Command if is_continuous => {
+            at_infinity(&prefilter) * at_infinity(compensation.feedback())
+        }
+        StepSignal::Command | StepSignal::Output => 0.0,
+    };
     let closed = |frequency: f64| {
         let plant = known.response(&member, frequency)?;
-        Some(closed(plant, compensation, &prefilter, frequency))
+        Some(closed((plant, signal), compensation, &prefilter, frequency) - at_once)
     };
-    Ok(straight(&grid, highest, closed))
+    let scale = match signal {
+        StepSignal::Output => 1.0,
+        StepSignal::Command => {
+            let sizes = grid.iter().filter_map(|frequency| closed(*frequency)).map(portable::magnitude);
+            sizes.fold(f64::MIN_POSITIVE, f64::max)
+        }
+    };
+    let parts = straight(&grid, highest, |frequency| closed(frequency).map(|value| value / scale));
+    Ok(ClosedParts { parts, scale, at_once })
+}
+
+/// The response of a continuous system at infinite frequency.
+fn at_infinity(system: &TransferFunction) -> f64 {
+    if system.zeros().len() < system.poles().len() { 0.0 } else { system.gain() }
 }
 
 /// Frequencies in rad/s with the real part of (1 + L)/(1 + L') - 1 there, straight between them: by
@@ -90,15 +125,20 @@ pub(super) fn parts_of_change(
     straight(&grid, f64::INFINITY, change)
 }
 
-/// F P G/(1 + L), with F as a step passes through it.
+/// F P G/(1 + L) or F G/(1 + L), with F as a step passes through it.
 fn closed(
-    plant: MemberResponse,
+    (plant, signal): (MemberResponse, StepSignal),
     compensation: &Compensation,
     prefilter: &TransferFunction,
     frequency: f64,
 ) -> Complex64 {
-    let forward = plant.plant * compensation.feedback().at_frequency(frequency);
-    prefilter.at_frequency(frequency) * forward / (1.0 + forward * plant.sensor)
+    let feedback = compensation.feedback().at_frequency(frequency);
+    let command =
+        prefilter.at_frequency(frequency) * feedback / (1.0 + plant.plant * feedback * plant.sensor);
+    match signal {
+        StepSignal::Output => command * plant.plant,
+        StepSignal::Command => command,
+    }
 }
 
 /// The real part at these frequencies, and between them until it is straight there.

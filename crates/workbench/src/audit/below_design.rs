@@ -54,6 +54,7 @@ fn words(kind: DesignLimitKind, value: f64) -> String {
         DesignLimitKind::ModulusMargin
         | DesignLimitKind::PoleDampingRatio
         | DesignLimitKind::PrefilterGain
+        | DesignLimitKind::CommandOfSteps
         | DesignLimitKind::RequiredStep => significant(value, 3),
     }
 }

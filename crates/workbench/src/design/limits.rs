@@ -1,7 +1,8 @@
 //! What may be built: the limits of a design beyond its specifications, with what it reaches.
 
 use phea_engineering::design::{
-    DesignLimit, DesignLimitKind, limit_key, limit_unit_key, limit_words, origin_key, origin_words,
+    CommandOfSteps, DesignLimit, DesignLimitKind, limit_key, limit_unit_key, limit_words, origin_key,
+    origin_words,
 };
 use phea_qft::design::BINDING_DB;
 use phea_qft::verification::{SpecificationFinding, Verdict};
@@ -37,7 +38,40 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
     out.table(
         Table::new(["limit", "key", "value", "from", "least margin", ""]).with(view.limits.iter().map(row)),
     );
+    out.sentences(view.command_of_steps.as_ref().map(|command| command_sentence(view, command)));
     out
+}
+
+/// The step that takes the largest command, and the largest one that the valve does.
+fn command_sentence(view: &ProjectDesign, command: &CommandOfSteps) -> String {
+    let unit = view.gain_per.unwrap_or(DisplayUnit::NEWTON);
+    let force = |newton: f64| unit.text(newton, 3);
+    let plant = view.designed.view.names.text(&command.plant);
+    let plant = if plant.is_empty() { String::new() } else { format!(" ({plant})") };
+    format!(
+        "the largest command of the scenarios' steps, a search over the linear steps of {} plants, is {} V, in the step from {} to {} of `{}`{plant}; a step of up to {} keeps within {} V",
+        command.plants,
+        significant(command.largest_v, 3),
+        force(command.step.from_n),
+        force(command.step.to_n),
+        command.step.scenario,
+        force(command.largest_step_n),
+        significant(command.limit_v, 3)
+    )
+}
+
+/// The same in JSON.
+fn command_object(view: &ProjectDesign, command: &CommandOfSteps) -> Object {
+    Object::new()
+        .with("scenario", command.step.scenario.as_str())
+        .with("from_n", command.step.from_n)
+        .with("to_n", command.step.to_n)
+        .with("largest_v", command.largest_v)
+        .with("limit_v", command.limit_v)
+        .with("largest_step_n", command.largest_step_n)
+        .with("evidence", "search")
+        .with("plants", command.plants)
+        .with("plant", view.designed.view.names.named(&command.plant))
 }
 
 /// The limits in JSON.
@@ -52,6 +86,7 @@ pub(crate) fn rows(view: &ProjectDesign) -> Vec<Object> {
             .with("kept", is_kept(view, limit))
             .maybe("worst_margin_db", margin)
             .maybe("binds", binds(view, limit))
+            .maybe("command", command(view, limit.kind).map(|found| command_object(view, found)))
             .maybe("relaxed", relaxed::of_limit(view, limit.kind, limit.value))
     };
     view.limits.iter().map(row).collect()
@@ -62,6 +97,9 @@ fn is_kept(view: &ProjectDesign, limit: &DesignLimit) -> bool {
     match limit.kind {
         DesignLimitKind::MinimumDelayMargin => view.tolerates_its_delay,
         DesignLimitKind::PrefilterGain => view.exceeded_prefilter_gain().is_none(),
+        DesignLimitKind::CommandOfSteps => {
+            view.command_of_steps.as_ref().is_some_and(CommandOfSteps::is_kept)
+        }
         DesignLimitKind::PoleDampingRatio | DesignLimitKind::FastestPole | DesignLimitKind::RequiredStep => {
             true
         }
@@ -73,17 +111,27 @@ fn is_kept(view: &ProjectDesign, limit: &DesignLimit) -> bool {
     }
 }
 
+/// The command of the scenarios' steps, of the limit on it.
+fn command(view: &ProjectDesign, kind: DesignLimitKind) -> Option<&CommandOfSteps> {
+    view.command_of_steps.as_ref().filter(|_| kind == DesignLimitKind::CommandOfSteps)
+}
+
 /// Whether a limit leaves no room; `None` where that is not known.
 fn binds(view: &ProjectDesign, limit: &DesignLimit) -> Option<bool> {
     if limit.kind == DesignLimitKind::MinimumDelayMargin {
         let margin_s = view.designed.figures.delay_margin_s?;
         return Some(margin_s <= (1.0 + DELAY_NEAR) * limit.value);
     }
+    if let Some(command) = command(view, limit.kind) {
+        return Some(command.largest_v >= (1.0 - COMMAND_NEAR) * command.limit_v);
+    }
     Some(finding(view, limit.kind)?.worst.as_ref()?.margin_db < BINDING_DB)
 }
 
 /// Share of a required delay margin within which it binds.
 const DELAY_NEAR: f64 = 0.01;
+/// The same of a limit on the command.
+const COMMAND_NEAR: f64 = 0.01;
 
 /// The finding of the audit for a limit that is a specification.
 fn finding(view: &ProjectDesign, kind: DesignLimitKind) -> Option<&SpecificationFinding> {
@@ -115,6 +163,16 @@ fn value_words(view: &ProjectDesign, limit: &DesignLimit) -> String {
         DesignLimitKind::PrefilterGain => {
             let reached = PrefilterGain::of_loop(&view.designed.problem.compensation).largest;
             format!("|F| at most {}; it has {}", significant(value, 3), significant(reached, 3))
+        }
+        DesignLimitKind::CommandOfSteps => {
+            let reached = view.command_of_steps.as_ref().map(|command| {
+                format!("; {} V of {} V", significant(command.largest_v, 3), significant(command.limit_v, 3))
+            });
+            format!(
+                "at most {} % of the nominal voltage{}",
+                significant(100.0 * value, 3),
+                reached.unwrap_or_default()
+            )
         }
         DesignLimitKind::RequiredStep => String::new(),
     }

@@ -59,7 +59,7 @@ fn gained(view: &ProjectDesign, one: &RelaxedGain) -> Object {
         Gained::Objective => "objective_gained_db",
         Gained::WorstMargin => "worst_margin_gained_db",
     };
-    Object::new().with(key, one.gained_db)
+    Object::new().with(key, one.gained_db).maybe("noise_gained_db", one.noise_gained_db)
 }
 
 fn name(view: &ProjectDesign, limit: RelaxedLimit) -> String {
@@ -77,7 +77,7 @@ fn sentence(view: &ProjectDesign, one: &RelaxedGain) -> String {
     };
     let effect = match one.gained_db {
         gained_db if gained_db < ACCURACY_DB => "would buy nothing: other limits bind too".to_string(),
-        gained_db => bought(view, &format!("{} dB", significant(gained_db, 2))),
+        gained_db => bought(view, &format!("{} dB", significant(gained_db, 2)), one.noise_gained_db),
     };
     format!("relaxing {name} {} {effect}", relaxed(view, one.limit))
 }
@@ -113,7 +113,9 @@ fn relaxed(view: &ProjectDesign, limit: RelaxedLimit) -> String {
 
 fn value_words(kind: DesignLimitKind, value: f64) -> String {
     match kind {
-        DesignLimitKind::NoiseToCommand => format!("{} %", significant(100.0 * value, 3)),
+        DesignLimitKind::NoiseToCommand | DesignLimitKind::CommandOfSteps => {
+            format!("{} %", significant(100.0 * value, 3))
+        }
         DesignLimitKind::HighestBandwidth | DesignLimitKind::FastestPole => {
             format!("{} rad/s", significant(value, 3))
         }
@@ -126,11 +128,15 @@ fn value_words(kind: DesignLimitKind, value: f64) -> String {
 }
 
 /// What is gained, in words.
-fn bought(view: &ProjectDesign, gained: &str) -> String {
+fn bought(view: &ProjectDesign, gained: &str, noise_gained_db: Option<f64>) -> String {
     match (view.relaxations.of, view.options.objective, &view.design.status) {
         (Gained::Objective, Objective::LeastBandwidth, _) => format!("would lower the bandwidth by {gained}"),
         (Gained::Objective, ..) => {
-            format!("would lower the high-frequency gain, with which noise reaches the command, by {gained}")
+            let noise = noise_gained_db.map(|gained_db| match gained_db {
+                lower if lower >= 0.0 => format!(", and the noise gain by {} dB", significant(lower, 2)),
+                higher => format!(", though the noise gain would rise by {} dB", significant(-higher, 2)),
+            });
+            format!("would lower the high-frequency gain by {gained}{}", noise.unwrap_or_default())
         }
         (Gained::WorstMargin, _, DesignStatus::Infeasible(missed)) => {
             let missing = significant(missed.relaxation_db, 3);

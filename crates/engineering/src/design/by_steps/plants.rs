@@ -7,10 +7,10 @@ use phea_dynamics::linear::LinearError;
 use phea_qft::closed_loop::{Compensation, Member};
 use phea_qft::family::UncertainFamily;
 
-use crate::linear_step::{CarriedDisturbance, KnownResponses, StepResponse, linear_step_knowing};
+use crate::linear_step::{CarriedDisturbance, KnownResponses, StepResponse, StepSignal, linear_step_knowing};
 
 /// A plant with what is known of its response in loops of one timing and sensor.
-pub(super) struct SteppedPlant {
+pub(in crate::design) struct SteppedPlant {
     pub(super) values: Vec<f64>,
     member: Member,
     known: KnownResponses,
@@ -26,7 +26,16 @@ pub(in crate::design) struct SteppedPlants {
 impl SteppedPlant {
     /// Its step over a time in s and about so many points; `None` where it cannot be computed.
     pub(super) fn step(&self, around: &Compensation, duration: (f64, usize)) -> Option<StepResponse> {
-        linear_step_knowing(&self.member, around, duration, &self.known).ok()
+        linear_step_knowing((&self.member, StepSignal::Output), around, duration, &self.known).ok()
+    }
+
+    /// The command that its step takes, likewise.
+    pub(in crate::design) fn command(
+        &self,
+        around: &Compensation,
+        duration: (f64, usize),
+    ) -> Option<StepResponse> {
+        linear_step_knowing((&self.member, StepSignal::Command), around, duration, &self.known).ok()
     }
 
     /// Carries a disturbance from the loop of one controller to that of another, in samples of this
@@ -39,7 +48,7 @@ impl SteppedPlant {
 impl SteppedPlants {
     /// The plant of a family with these parameters, in a loop of the timing and sensor that all
     /// loops of the design have.
-    pub(super) fn plant(
+    pub(in crate::design) fn plant(
         &self,
         values: &[f64],
         (family, around): (&UncertainFamily, &Compensation),
