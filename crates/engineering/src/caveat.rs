@@ -5,6 +5,7 @@
 
 mod fed;
 mod leakage_humps;
+mod misfit;
 mod moved_roots;
 mod null_sides;
 
@@ -14,6 +15,7 @@ use phea_hydraulics::series::MOST_SEGMENTS;
 
 use fed::{fed_in_loop, feed_forward, impedance, measured_without_pressures, pressures_in_loop};
 use leakage_humps::leakage_humps;
+use misfit::misfit;
 use moved_roots::moved_roots;
 
 use crate::family::{ShutGas, shut_gas};
@@ -38,7 +40,13 @@ pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
     let of_rig = of_rig.chain(adjustment(setup)).chain(gas_valve(setup));
     let of_rig = apart_from_lines(setup).chain(of_rig).chain(progression(setup)).chain(segments(setup));
     let of_valve = leakage_humps(setup).map(|sentence| Caveat { sentence, unproven: false });
-    of_valve.into_iter().chain(of_rig).chain(moved_roots(setup)).chain(blocked_piston(setup)).collect()
+    of_valve
+        .into_iter()
+        .chain(misfit(setup))
+        .chain(of_rig)
+        .chain(moved_roots(setup))
+        .chain(blocked_piston(setup))
+        .collect()
 }
 
 /// A region of positions alone under the force of a piston that is blocked at null.
@@ -80,6 +88,7 @@ pub fn of_models(setup: &Setup<'_>) -> Vec<String> {
         .chain(standing(project))
         .chain(null_sides::null_sides(setup))
         .chain(leakage_humps(setup))
+        .chain(misfit(setup).map(|caveat| caveat.sentence))
         .collect()
 }
 

@@ -29,22 +29,21 @@ pub use crate::limit_kind::{
 };
 pub use below::below_design;
 pub use command_of_steps::CommandOfSteps;
+pub use comparison::{compared, gain_at_high_frequency};
 pub use damping::{MissingPlants, PressureFeedbackDesign, with_free_pressure_feedback};
 pub use deployable::{DesignLimit, LimitFinding, design_limits};
+pub use explanation::Explanation;
 pub use factors::factored;
 pub use manual::{ManualGap, ManualLaw, ManualPart};
-pub use words::{objective_key, part_key, repair_key, repair_words, status_key};
-
-pub use explanation::Explanation;
 pub use problem::{design_options, design_problem};
 pub use relaxed::{Gained, Relaxations, RelaxedGain, RelaxedLimit};
 pub use repair::{Repair, RepairStatus};
 pub use rounding::Rounding;
 pub use side::{AuditedController, LoopFigures, NominalMargins};
 pub use structures::{ReachedStructure, structure_key};
-
-pub use comparison::{compared, gain_at_high_frequency};
-pub use words::{status_sentence, structure_words};
+pub use words::{
+    objective_key, part_key, repair_key, repair_words, status_key, status_sentence, structure_words,
+};
 
 use phea_dynamics::controller::{Controller, RateSensor, Timing};
 use phea_dynamics::linear::LinearError;

@@ -48,8 +48,19 @@ pub struct Valve {
     pub leakage: ValveCoefficients<NullLeakage>,
     /// s, step response time of the data sheet; for information.
     pub response_time: Option<f64>,
+    /// What its coefficients leave unexplained of the recordings that they were identified from.
+    pub misfit: Option<ValveMisfit>,
     /// What it costs and weighs.
     pub cost: PartCost,
+}
+
+/// The greatest misfit of identified coefficients.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ValveMisfit {
+    /// Its root mean square, over the range of the signal.
+    pub share: f64,
+    /// Which signal of which recording, and where.
+    pub at: Option<String>,
 }
 
 /// Coefficients of the edges as declared, or the data sheet values from which they follow, equal
@@ -130,6 +141,14 @@ impl RatedFlow {
     }
 }
 
+impl ValveMisfit {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("share", &RATIO, "Root mean square of the misfit, over the range of the signal.");
+        v.quantity(k.not_negative(), &mut self.share);
+        v.text(plain("at", "Which signal of which recording, and where."), &mut self.at, false);
+    }
+}
+
 impl NullLeakage {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("null_leakage", &FLOW, "Leakage at null, tare flow included; the lowest of a range.");
@@ -207,6 +226,8 @@ impl Valve {
         self.visit_coefficients(v);
         let k = key("response_time", &TIME, "Step response time of the data sheet; for information.");
         v.optional(k.positive(), &mut self.response_time);
+        let k = plain("misfit", "What these coefficients leave unexplained of recordings, as identified.");
+        v.table(k, &mut self.misfit, ValveMisfit::visit);
         self.cost.visit(v);
     }
 

@@ -46,6 +46,7 @@ mod linearize_and_derived;
 mod lines_in_motion;
 mod linkage;
 mod measured_noise;
+mod misfit;
 mod motor;
 mod neck;
 mod noise;

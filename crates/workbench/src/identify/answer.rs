@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::files::{TestBody, WarningBody};
 use super::numbers;
 use super::region::{FoundRegion, RegionBody, body};
-use super::{Bootstrap, COEFFICIENT_NAMES, ExplainedBy, Identification, Read, Untold};
+use super::{Bootstrap, COEFFICIENT_NAMES, ExplainedBy, Identification, Misfit, MisfitPlace, Read, Untold};
 use crate::answer::{self, Number, OutputFile, in_toml};
 use crate::project::{LEAKAGE_MODELS, Loaded, word_of};
 
@@ -35,6 +35,7 @@ struct IdentifyAnswer<'a> {
     cost: Number,
     residual_rms: Number,
     signals: Vec<SignalBody>,
+    misfits: Vec<MisfitBody>,
     correlations: Vec<CorrelationBody>,
     not_told: Vec<UntoldBody>,
     joint_region: Option<RegionBody>,
@@ -91,6 +92,23 @@ struct SignalBody {
 }
 
 #[derive(Serialize)]
+struct MisfitBody {
+    file: String,
+    signal: &'static str,
+    share: Number,
+    neighbour_correlation: Number,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    greatest: Option<MisfitPlaceBody>,
+}
+
+#[derive(Serialize)]
+struct MisfitPlaceBody {
+    command_rises: bool,
+    command_v: [Number; 2],
+    mean_share: Number,
+}
+
+#[derive(Serialize)]
 struct CorrelationBody {
     coefficients: [&'static str; 2],
     correlation: Number,
@@ -142,7 +160,7 @@ pub fn json(
         command: "identify",
         project_sha256: loaded.map(|loaded| loaded.sha256.as_str()),
         tests: read.tests(found),
-        warnings: read.warnings(),
+        warnings: read.warnings(found),
         flow_coefficients,
         leakage_coefficients,
         leakage_shape: next(),
@@ -159,6 +177,7 @@ pub fn json(
         cost: Number(found.cost),
         residual_rms: Number(found.residual_rms),
         signals: signals(found),
+        misfits: found.misfits().iter().map(|misfit| misfit_body(found, misfit)).collect(),
         correlations: correlations(found)
             .into_iter()
             .map(|(coefficients, correlation)| CorrelationBody {
@@ -212,6 +231,21 @@ fn signals(found: &Identification) -> Vec<SignalBody> {
         neighbour_correlation: Number(signal.correlation),
     };
     found.signals.iter().map(one).collect()
+}
+
+fn misfit_body(found: &Identification, misfit: &Misfit) -> MisfitBody {
+    let place = |place: MisfitPlace| MisfitPlaceBody {
+        command_rises: place.is_rising,
+        command_v: place.command.map(Number),
+        mean_share: Number(place.share),
+    };
+    MisfitBody {
+        file: found.recordings.get(misfit.recording).map_or(String::new(), |one| one.file.clone()),
+        signal: misfit.kind.name(),
+        share: Number(misfit.share),
+        neighbour_correlation: Number(misfit.correlation),
+        greatest: misfit.place.map(place),
+    }
 }
 
 /// Pairs of coefficients that move together, the closest first.
@@ -268,8 +302,10 @@ pub fn files(found: &Identification) -> Vec<OutputFile> {
     };
     let lines = |range: std::ops::Range<usize>| range.map(line).collect::<String>();
     let files: Vec<&str> = found.recordings.iter().map(|one| one.file.as_str()).collect();
+    let misfit = found.misfits().first().map(|one| format!("misfit = {}\n", found.misfit_in_toml(one)));
+    let misfit = misfit.unwrap_or_default();
     let text = format!(
-        "# Identified by phea from {}.\n[valve]\nnominal_voltage = \"{} V\"\ntransition_pressure = \"{} Pa\"\ntare_pressure = \"{} Pa\"\nleakage_model = \"{}\"\n{}\n[valve.flow_coefficients]    # m3/(s.Pa^0.5)\n{}\n[valve.leakage_coefficients]\n{}",
+        "# Identified by phea from {}.\n[valve]\nnominal_voltage = \"{} V\"\ntransition_pressure = \"{} Pa\"\ntare_pressure = \"{} Pa\"\nleakage_model = \"{}\"\n{}{misfit}\n[valve.flow_coefficients]    # m3/(s.Pa^0.5)\n{}\n[valve.leakage_coefficients]\n{}",
         files.join(", "),
         in_toml(found.tested.nominal_voltage, 6),
         in_toml(found.tested.transition_pressure, 6),

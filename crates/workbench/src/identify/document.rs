@@ -3,6 +3,7 @@
 use phea_hydraulics::servovalve::LeakageModel;
 
 use super::answer::{correlations, word};
+use super::files::misfit_in_words;
 use super::numbers;
 use super::region::{self, FoundRegion};
 use super::{Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, Read, SignalFit};
@@ -197,10 +198,10 @@ fn remarks(found: &Identification) -> Vec<String> {
     if !zero.is_empty() {
         remarks.push(format!("These may be zero: {}; the bounds from above have 95 %.", zero.join("; ")));
     }
-    let wrong: Vec<&str> =
-        found.signals.iter().filter(|one| one.correlation > 0.5).map(|one| one.kind.name()).collect();
-    if !wrong.is_empty() {
-        remarks.push(format!("Neighbouring residuals of {} are alike: the model does not explain all of it, and the intervals are too narrow.", wrong.join(", ")));
+    let misfits = found.misfits();
+    remarks.extend(misfits.iter().map(|one| format!("Misfit: {}.", misfit_in_words(found, one))));
+    if !misfits.is_empty() {
+        remarks.push("The intervals, those of a bootstrap too, count noise alone: they do not cover what the model does not explain.".to_string());
     }
     remarks
 }

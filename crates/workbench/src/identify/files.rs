@@ -1,10 +1,12 @@
 //! What the files hold, and what was dealt with in them.
 
+use std::borrow::Cow;
+
 use phea_hydraulics::servovalve::PortCircuit;
 use serde::Serialize;
 
-use super::{ColumnContents, FileContents, Identification};
-use crate::answer::Number;
+use super::{ColumnContents, FileContents, Identification, Misfit};
+use crate::answer::{Number, significant};
 use crate::document::{Cell, Document, Table};
 use crate::project::{Diagnostic, TestSignal};
 use crate::quantity::DisplayUnit;
@@ -42,7 +44,7 @@ struct ColumnBody<'a> {
 
 #[derive(Serialize)]
 pub(super) struct WarningBody<'a> {
-    message: &'a str,
+    message: Cow<'a, str>,
     file: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
     line: Option<usize>,
@@ -68,16 +70,22 @@ impl Read {
         .collect()
     }
 
-    pub(super) fn warnings(&self) -> Vec<WarningBody<'_>> {
+    /// What was dealt with, and what of the recordings the model does not explain.
+    pub(super) fn warnings<'a>(&'a self, found: &'a Identification) -> Vec<WarningBody<'a>> {
         let place = |number: usize| Some(number).filter(|number| *number > 0);
-        let all = self.warnings.iter();
-        all.map(|warning| WarningBody {
-            message: &warning.message,
+        let all = self.warnings.iter().map(|warning| WarningBody {
+            message: Cow::from(&warning.message),
             file: &warning.file,
             line: place(warning.line),
             column: place(warning.column),
-        })
-        .collect()
+        });
+        let misfits = found.misfits().into_iter().map(|misfit| WarningBody {
+            message: Cow::from(misfit_in_words(found, &misfit)),
+            file: found.recordings.get(misfit.recording).map_or("", |one| one.file.as_str()),
+            line: None,
+            column: None,
+        });
+        all.chain(misfits).collect()
     }
 
     /// A row for each column, and a sentence for what is not used and what was dealt with.
@@ -98,6 +106,21 @@ impl Read {
         });
         out.sentences(unused.chain(warnings));
     }
+}
+
+/// What the model does not explain of a signal.
+pub(super) fn misfit_in_words(found: &Identification, misfit: &Misfit) -> String {
+    let percent = |share: f64| format!("{} %", significant(100.0 * share, 3));
+    let by = misfit.place.map_or_else(String::new, |place| {
+        let more = if place.share > 0.0 { "more" } else { "less" };
+        format!(", where the model shows {} {more} than was recorded", percent(place.share.abs()))
+    });
+    format!(
+        "the model leaves {} of the range unexplained of the {}{by}: neighbouring residuals are alike (correlation {})",
+        percent(misfit.share),
+        found.misfit_at(misfit),
+        significant(misfit.correlation, 2)
+    )
 }
 
 fn column(column: &ColumnContents) -> ColumnBody<'_> {

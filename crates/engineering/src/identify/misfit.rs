@@ -1,0 +1,118 @@
+//! What the model of the valve leaves of the recordings that is not noise.
+//!
+//! ```text
+//! residual = misfit + noise,       misfit alike in neighbouring rows, noise not
+//! misfit^2 = r rms^2               rms of the residuals, r the correlation of neighbours
+//! ```
+
+use phea_dynamics::order::ends;
+
+use super::recording::SignalKind;
+use super::{Identification, SignalFit};
+use crate::quantity::{VOLTAGE, display, significant};
+
+/// Correlation of neighbouring residuals up to which they are noise: those of recordings that the
+/// model explains reach 0.23.
+const OF_NOISE: f64 = 0.4;
+/// Standard deviations of the correlation of independent residuals, 1/sqrt(rows), up to which it is
+/// chance.
+const CHANCE: f64 = 5.0;
+/// Misfits of a smaller share of the range are not told.
+const SMALLEST_SHARE: f64 = 1e-3;
+/// Ranges of the command that a misfit is looked for in, for either direction.
+const RANGES: usize = 10;
+
+/// A signal that the model does not explain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Misfit {
+    /// Index of the recording.
+    pub recording: usize,
+    /// Which signal.
+    pub kind: SignalKind,
+    /// Correlation of neighbouring residuals.
+    pub correlation: f64,
+    /// Root mean square of the misfit over the range of the signal.
+    pub share: f64,
+    /// Where it is greatest; `None` where no row shows it.
+    pub place: Option<MisfitPlace>,
+}
+
+/// Where a misfit is greatest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MisfitPlace {
+    /// True while the command rises.
+    pub is_rising: bool,
+    /// V, range of the command.
+    pub command: [f64; 2],
+    /// What the model shows there less what was recorded, on average, over the range of the signal.
+    pub share: f64,
+}
+
+impl Identification {
+    /// The signals that the model does not explain, the greatest misfit first.
+    pub fn misfits(&self) -> Vec<Misfit> {
+        let of = |signal: &SignalFit| {
+            let share = signal.rms * signal.correlation.max(0.0).sqrt() / signal.range;
+            let is_chance = signal.correlation * (signal.rows as f64).sqrt() <= CHANCE;
+            let is_told = signal.correlation > OF_NOISE && !is_chance && share >= SMALLEST_SHARE;
+            is_told.then(|| Misfit {
+                recording: signal.recording,
+                kind: signal.kind,
+                correlation: signal.correlation,
+                share,
+                place: self.place(signal),
+            })
+        };
+        let mut found: Vec<Misfit> = self.signals.iter().filter_map(of).collect();
+        found.sort_by(|one, other| other.share.total_cmp(&one.share));
+        found
+    }
+
+    /// Which signal of which recording, and where.
+    pub fn misfit_at(&self, misfit: &Misfit) -> String {
+        let file = self.recordings.get(misfit.recording).map_or("", |one| one.file.as_str());
+        let signal = misfit.kind.name().replace('_', " ");
+        let Some(MisfitPlace { is_rising, command, .. }) = misfit.place else {
+            return format!("{signal} of {file}");
+        };
+        let [from, to] = command.map(|end| display(end, &VOLTAGE, 3));
+        let (way, from, to) = if is_rising { ("rises", from, to) } else { ("falls", to, from) };
+        format!("{signal} of {file}, most while the command {way} from {from} to {to}")
+    }
+
+    /// The misfit as the value of `valve.misfit`.
+    pub fn misfit_in_toml(&self, misfit: &Misfit) -> String {
+        let at = self.misfit_at(misfit).replace(['"', '\\'], "/");
+        format!("{{ share = {}, at = \"{at}\" }}", significant(misfit.share, 3))
+    }
+
+    /// The part of the branches where the residuals of a signal have the greatest mean.
+    fn place(&self, signal: &SignalFit) -> Option<MisfitPlace> {
+        let inputs = &self.recordings.get(signal.recording)?.inputs;
+        let [least, greatest] = ends(inputs.iter().map(|input| input.command));
+        let width = (greatest - least) / RANGES as f64;
+        let mut sums = [[(0.0, 0_usize); RANGES]; 2];
+        let mut is_rising = true;
+        let mut before = inputs.first()?.command;
+        for (input, residual) in inputs.iter().zip(self.residuals(signal, &self.coefficients)) {
+            if input.command != before {
+                is_rising = input.command > before;
+            }
+            before = input.command;
+            let range = (((input.command - least) / width) as usize).min(RANGES - 1);
+            let branch = sums.get_mut(usize::from(is_rising)).and_then(|branch| branch.get_mut(range));
+            if let (Some((sum, rows)), Some(residual)) = (branch, residual) {
+                *sum += residual;
+                *rows += 1;
+            }
+        }
+        let all = [false, true].into_iter().zip(sums).flat_map(|(is_rising, branch)| {
+            branch.into_iter().enumerate().map(move |(range, found)| (is_rising, range, found))
+        });
+        let places = all.filter(|(.., (_, rows))| *rows > 0).map(|(is_rising, range, (sum, rows))| {
+            let from = least + range as f64 * width;
+            MisfitPlace { is_rising, command: [from, from + width], share: sum / rows as f64 / signal.range }
+        });
+        places.max_by(|one, other| one.share.abs().total_cmp(&other.share.abs()))
+    }
+}

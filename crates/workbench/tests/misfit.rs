@@ -1,0 +1,95 @@
+//! What the model of a valve does not explain of its recordings reaches every verdict on the valve.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
+
+use phea_workbench::command::{self, Request};
+use phea_workbench::identify::{Identification, Known, Search, SignalKind, identify, recordings};
+use phea_workbench::project::RecordedTest;
+use phea_workbench::source::Memory;
+use serde_json::Value;
+
+use crate::ask;
+
+const RECORDED: [(&str, &str); 4] = [
+    ("leakage.csv", include_str!("../../../examples/ybitu/recorded/leakage.csv")),
+    ("metering.csv", include_str!("../../../examples/ybitu/recorded/metering.csv")),
+    ("metering_low_flow.csv", include_str!("../../../examples/ybitu/recorded/metering_low_flow.csv")),
+    ("pressure_gain.csv", include_str!("../../../examples/ybitu/recorded/pressure_gain.csv")),
+];
+const COMMAND: usize = 1;
+const FLOW: usize = 5;
+
+/// The recordings with the flows of the metering tests changed: a function of the share of the
+/// test that is over, the command in V and the flow in L/min.
+fn identified(change: impl Fn(f64, f64, f64) -> f64) -> Identification {
+    let mut source = Memory::default();
+    for (name, text) in RECORDED {
+        let rows = text.lines().count() as f64;
+        let line = |(row, line): (usize, &str)| {
+            let mut cells: Vec<String> = line.split(',').map(ToString::to_string).collect();
+            if name.starts_with("metering")
+                && let Ok(flow) = cells[FLOW].parse::<f64>()
+            {
+                cells[FLOW] = change(row as f64 / rows, cells[COMMAND].parse().unwrap(), flow).to_string();
+            }
+            cells.join(",") + "\n"
+        };
+        source = source.with(name, text.lines().enumerate().map(line).collect::<String>());
+    }
+    let files = RECORDED.map(|(name, _)| RecordedTest::of(name));
+    let known = Known { supply_pressure: Some(70e5), ..Known::default() };
+    let read = recordings(&source, &files, &known).unwrap_or_else(|refusal| panic!("{refusal:?}"));
+    identify(read.recordings, &known, Search::default(), &mut phea_dynamics::watch::unwatched).unwrap()
+}
+
+/// Recordings of the model itself leave noise alone.
+#[test]
+fn recordings_of_the_model_have_no_misfit() {
+    let found = identified(|_, _, flow| flow);
+    assert!(found.misfits().is_empty(), "{:?}", found.misfits());
+}
+
+/// Flow forces close the spool as the flow grows; a meter whose gain drifts by a tenth over the
+/// test; a spool that passes nothing within a lap and less by it beyond: in each the flow is named,
+/// and what is left of it comes to the size of the change that no coefficients make.
+#[test]
+fn a_flow_that_no_valve_of_the_model_has_is_told() {
+    let by_flow_forces = identified(|_, _, flow| flow / (1.0 + flow * flow / 1000.0));
+    let drifting = identified(|share, _, flow| flow * (1.0 + 0.1 * share));
+    let lapped = identified(|_, command, flow| flow * (1.0 - (0.3 / command.abs().max(0.3))));
+    for (found, what) in [(&by_flow_forces, "flow forces"), (&drifting, "drift"), (&lapped, "lap")] {
+        let misfits = found.misfits();
+        let first = misfits.first().unwrap_or_else(|| panic!("{what}: {:?}", found.signals));
+        assert_eq!(first.kind, SignalKind::PortFlowMagnitude, "{what}");
+        assert!(found.recordings[first.recording].file.starts_with("metering"), "{what}");
+        assert!(first.correlation > 0.9 && first.share > 5e-3 && first.share < 0.3, "{what}: {first:?}");
+    }
+    // what is lost to flow forces is greatest where the flow is
+    let misfits = by_flow_forces.misfits();
+    let place = misfits[0].place.unwrap();
+    let inputs = &by_flow_forces.recordings[misfits[0].recording].inputs;
+    let greatest = inputs.iter().map(|input| input.command.abs()).fold(0.0, f64::max);
+    let farthest = place.command.iter().fold(0.0, |most: f64, end| most.max(end.abs()));
+    assert!((farthest / greatest - 1.0).abs() < 1e-9, "{place:?} of {greatest} V");
+    assert!(place.share > 0.0, "the model shows more there: {place:?}");
+}
+
+/// A verdict stands beside a small misfit, which is told, and not beside a large one.
+#[test]
+fn no_verdict_on_a_valve_of_a_large_misfit_is_met() {
+    let anything =
+        "specification=[{ kind = \"robust_stability\", limit = 1000, frequencies = [1], band = [1, 2] }]";
+    let verify = |misfit: &str| {
+        let loaded = ask::load(ask::HOSE, &[anything, &format!("valve.misfit={misfit}")], &[]);
+        let request = Request::Verify { proof: false, on_machine: false };
+        let answer = command::answer(&Memory::default(), &loaded, &[], &request).unwrap();
+        (serde_json::from_str::<Value>(&answer.json).unwrap(), answer.text)
+    };
+    let [small, large] =
+        ["{ share = 0.004 }", "{ share = \"1.2 %\", at = \"flow of metering.csv\" }"].map(verify);
+    assert_eq!(small.0["verdict"], "met", "{}", small.1);
+    assert!(small.1.contains("leave 0.400 % of the range"), "{}", small.1);
+    assert_eq!(large.0["verdict"], "not_proven", "{}", large.1);
+    assert!(large.1.contains("(valve.misfit, flow of metering.csv)"), "{}", large.1);
+}
