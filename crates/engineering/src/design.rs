@@ -10,6 +10,7 @@ mod comparison;
 mod damping;
 mod deployable;
 mod driven;
+mod error;
 mod explanation;
 mod factors;
 mod manual;
@@ -32,6 +33,7 @@ pub use command_of_steps::CommandOfSteps;
 pub use comparison::{compared, gain_at_high_frequency};
 pub use damping::{MissingPlants, PressureFeedbackDesign, with_free_pressure_feedback};
 pub use deployable::{DesignLimit, LimitFinding, design_limits};
+pub use error::DesignError;
 pub use explanation::Explanation;
 pub use factors::factored;
 pub use manual::{ManualGap, ManualLaw, ManualPart};
@@ -46,7 +48,6 @@ pub use words::{
 };
 
 use phea_dynamics::controller::{Controller, RateSensor, Timing};
-use phea_dynamics::linear::LinearError;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{
     Design, DesignOptions, DesignOutcome, DesignProblem, DesignStatus, PrefilterChoice, reshaped,
@@ -59,72 +60,20 @@ use self::driven::found_and_tried;
 use crate::audit::{ProjectAudit, audit_problem, audit_request, caveat_of_rig, try_to_prove, unexamined_rig};
 use crate::project::{self, Project};
 use crate::quantity::{self, DisplayUnit};
-use crate::robust::{RobustError, RobustProblem, robust_problem};
-use crate::setup::{ControlError, Setup, is_of_position};
+use crate::robust::{RobustProblem, robust_problem};
+use crate::setup::{Setup, is_of_position};
 use crate::source::Source;
-use crate::trial::{Agreement, DrivenCorners, Trial, TrialError, TrialRun, tried};
+use crate::trial::{Agreement, DrivenCorners, Trial, TrialRun, tried};
 use phea_dynamics::watch::{Stopped, Watch, part, within};
 
 /// Name of the file with the project that a design makes.
 pub const DESIGNED_PROJECT: &str = "designed.toml";
 
-/// Name of the file with the project under the controller that comes nearest to what the machine
-/// requires, where no controller satisfies it.
+/// Name of the file with the project under the nearest controller, where none suffices.
 pub const NEAREST_PROJECT: &str = "nearest.toml";
 
 /// Name of the file with the proof for the designed controller.
 pub const DESIGNED_CERTIFICATE: &str = "designed_certificate.json";
-
-/// Why nothing is designed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum DesignError {
-    /// There is no specification for a controller.
-    #[error(
-        "the project states no [[specification]] to design a controller for: add one, such as `kind = \"robust_stability\"` and `limit = 1.3`"
-    )]
-    NoSpecification,
-    /// The given controller is that of a position.
-    #[error(
-        "a design finds the controller G of the force, and controller.impedance.form = \"admittance\" states that of the position: design with \
-         form = \"impedance\", which is the same loop, and take C_x = G (M_v s^2 + B_v s + K_v)"
-    )]
-    Admittance,
-    /// The search found no controller at all; with what was known about the problem before.
-    #[error("the search ended without a controller{}", .0.iter().map(|one| format!("; {one}")).collect::<String>())]
-    NoController(Vec<String>),
-    /// A part of the problem cannot be searched with.
-    #[error(transparent)]
-    Search(#[from] phea_qft::design::LoopDesignError),
-    /// The controller, prefilter or sensor is not a transfer function.
-    #[error(transparent)]
-    Control(#[from] ControlError),
-    /// A linear system cannot be computed.
-    #[error("the linear models: {0}")]
-    Linear(#[from] LinearError),
-    /// The project is not a problem of the robust method.
-    #[error(transparent)]
-    Robust(#[from] RobustError),
-    /// The designed controller cannot be tried on the machine.
-    #[error(transparent)]
-    Trial(TrialError),
-    /// A free pressure feedback for a rig or family that has none.
-    #[error(
-        "design.pressure_feedback = \"free\" found no feedback: it needs plants of a rig, stable without it, and no gain keeps the limits of its own loop here"
-    )]
-    NoPressureFeedback,
-    /// The watch stopped it before anything was found.
-    #[error(transparent)]
-    Stopped(#[from] Stopped),
-}
-
-impl From<TrialError> for DesignError {
-    fn from(error: TrialError) -> DesignError {
-        match error {
-            TrialError::Stopped(stopped) => DesignError::Stopped(stopped),
-            error => DesignError::Trial(error),
-        }
-    }
-}
 
 /// A design, and the given controller for comparison.
 #[derive(Clone, Debug)]

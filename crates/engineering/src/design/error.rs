@@ -1,0 +1,59 @@
+//! Why nothing is designed.
+
+use phea_dynamics::linear::LinearError;
+use phea_dynamics::watch::Stopped;
+
+use crate::robust::RobustError;
+use crate::setup::ControlError;
+use crate::trial::TrialError;
+
+/// Why nothing is designed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DesignError {
+    /// There is no specification for a controller.
+    #[error(
+        "the project states no [[specification]] to design a controller for: add one, such as `kind = \"robust_stability\"` and `limit = 1.3`"
+    )]
+    NoSpecification,
+    /// The given controller is that of a position.
+    #[error(
+        "a design finds the controller G of the force, and controller.impedance.form = \"admittance\" states that of the position: design with \
+         form = \"impedance\", which is the same loop, and take C_x = G (M_v s^2 + B_v s + K_v)"
+    )]
+    Admittance,
+    /// The search found no controller; with what was known of the problem.
+    #[error("the search ended without a controller{}", .0.iter().map(|one| format!("; {one}")).collect::<String>())]
+    NoController(Vec<String>),
+    /// A part of the problem cannot be searched with.
+    #[error(transparent)]
+    Search(#[from] phea_qft::design::LoopDesignError),
+    /// The controller, prefilter or sensor is not a transfer function.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// A linear system cannot be computed.
+    #[error("the linear models: {0}")]
+    Linear(#[from] LinearError),
+    /// The project is not a problem of the robust method.
+    #[error(transparent)]
+    Robust(#[from] RobustError),
+    /// The designed controller cannot be tried on the machine.
+    #[error(transparent)]
+    Trial(TrialError),
+    /// A free pressure feedback for a rig or family that has none.
+    #[error(
+        "design.pressure_feedback = \"free\" found no feedback: it needs plants of a rig, stable without it, and no gain keeps the limits of its own loop here"
+    )]
+    NoPressureFeedback,
+    /// The watch stopped it before anything was found.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
+
+impl From<TrialError> for DesignError {
+    fn from(error: TrialError) -> DesignError {
+        match error {
+            TrialError::Stopped(stopped) => DesignError::Stopped(stopped),
+            error => DesignError::Trial(error),
+        }
+    }
+}
