@@ -165,14 +165,13 @@ fn value_words(view: &ProjectDesign, limit: &DesignLimit) -> String {
             format!("|F| at most {}; it has {}", significant(value, 3), significant(reached, 3))
         }
         DesignLimitKind::CommandOfSteps => {
-            let reached = view.command_of_steps.as_ref().map(|command| {
-                format!("; {} V of {} V", significant(command.largest_v, 3), significant(command.limit_v, 3))
-            });
-            format!(
-                "at most {} % of the nominal voltage{}",
-                significant(100.0 * value, 3),
-                reached.unwrap_or_default()
-            )
+            let volts = |value: f64| format!("{} V", significant(value, 3));
+            match &view.command_of_steps {
+                Some(found) => {
+                    format!("at most {}; they take {}", volts(found.limit_v), volts(found.largest_v))
+                }
+                None => format!("at most {} % of the nominal voltage", significant(100.0 * value, 3)),
+            }
         }
         DesignLimitKind::RequiredStep => String::new(),
     }
