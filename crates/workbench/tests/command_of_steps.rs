@@ -116,27 +116,35 @@ fn a_plant_known_by_its_response_takes_the_same_command() {
     }
 }
 
-/// A small step of the rig with hoses, without dry friction: the largest command of the nonlinear
-/// run is that of the operating point with the linear one.
-#[test]
-fn a_small_step_of_the_nonlinear_rig_takes_the_linear_command() {
+/// The rig with hoses alone: without dry friction, without load, with the same gain to both sides
+/// of its null, and without scenarios.
+fn simple_rig() -> String {
     let between = |text: &str, from: &str, to: &str, other: &str| {
         let (before, rest) = text.split_once(from).unwrap();
         format!("{before}{other}{to}{}", rest.split_once(to).unwrap().1)
     };
+    let equal = |value: &str| {
+        ["supply_to_a", "a_to_tank", "supply_to_b", "b_to_tank"]
+            .map(|edge| format!("{edge} = {value}\n"))
+            .concat()
+    };
     let viscous = "[cylinder.friction]\nmodel = \"viscous\"\nviscous = \"100 N.s/m\"\n";
-    let text = HOSE.split("[[scenario]]").next().unwrap();
-    let text = between(text, "[uncertainty]", "[[specification]]", "");
-    let text = between(&text, "[cylinder.friction]", "[line]", viscous);
-    // equal edges without load: the same gain to both sides of the null
-    let edges = ["supply_to_a", "a_to_tank", "supply_to_b", "b_to_tank"];
-    let equal = |value: &str| edges.map(|edge| format!("{edge} = {value}\n")).concat();
     let edges = format!(
         "[valve.flow_coefficients]\n{}[valve.leakage_coefficients]\n{}[operating_point]\nload_force = \"0 N\"\n",
         equal("3e-7"),
         equal("2.3e-9")
     );
-    let text = between(&text, "[valve.flow_coefficients]", "[cylinder]", &edges);
+    let text = HOSE.split("[[scenario]]").next().unwrap();
+    let text = between(text, "[uncertainty]", "[[specification]]", "");
+    let text = between(&text, "[cylinder.friction]", "[line]", viscous);
+    between(&text, "[valve.flow_coefficients]", "[cylinder]", &edges)
+}
+
+/// The largest command of the nonlinear run of a small step is that of the operating point with
+/// the linear one.
+#[test]
+fn a_small_step_of_the_nonlinear_rig_takes_the_linear_command() {
+    let text = simple_rig();
     let project = load(&text, &[], &[]).project;
     let setup = Setup::new(&project).unwrap();
     let problem = robust_problem(&source(&text), &setup).unwrap();
@@ -153,4 +161,37 @@ fn a_small_step_of_the_nonlinear_rig_takes_the_linear_command() {
     let run = json(&scenario, &[], &[], &Request::Simulate(Default::default()));
     let peak = number(&run, "scenarios.0.events.0.metrics.control_peak_v");
     within(peak, (rest_v + largest * step_n).abs(), 0.05 * largest * step_n);
+}
+
+/// The command that a design for limits of tracking takes free of any limit, then held to 85 % of
+/// it; and to less than holds the force, which no controller does.
+// ORIGIN: analytic, fractions of what the free design takes
+#[test]
+fn a_design_keeps_the_command_of_its_step() {
+    let text = simple_rig();
+    let (rig, _) = text.split_once("[controller]").unwrap();
+    let text = format!(
+        "{rig}[design]\nstructure = \"pi\"\nhighest_bandwidth = \"inf\"\n[[scenario]]\nname = \"step\"\nduration = \"2 s\"\n\
+         reference = [{{ at = \"0.5 s\", force = \"2 kN\" }}]\n"
+    );
+    let designed = |share: f64| {
+        let setting = format!("design.command_of_steps={share}");
+        json(&text, &[&setting], &[], &Request::Design { seed: None, stages: false, repair: false })
+    };
+    let command = |design: &serde_json::Value, key: &str| {
+        let limits = design["limits"].as_array().unwrap();
+        let own = limits.iter().find(|one| one["key"] == "command_of_steps").unwrap();
+        number(own, &format!("command.{key}"))
+    };
+    let free = designed(1.0);
+    assert_eq!(free["status"], "met", "{}", free["limits"]);
+    let largest_v = command(&free, "largest_v");
+    let share = 0.085 * largest_v;
+    let kept = designed(share);
+    assert_eq!(kept["status"], "met", "{}", kept["limits"]);
+    assert!(command(&kept, "largest_v") <= 10.0 * share * 1.001);
+    let at_rest_v = command(&free, "at_rest_v");
+    let beyond = designed(0.05 * at_rest_v);
+    assert_eq!(beyond["status"], "command_beyond_valve");
+    within(command(&beyond, "at_rest_v"), at_rest_v, 0.02 * at_rest_v);
 }

@@ -3,10 +3,11 @@
 //!
 //! ```text
 //! rows of the search: margins of the limits at the samples, beside margins of steps of the worst plants
-//! y(t) <= 1 + M,    |y(t) - 1| <= b from t_s on,    rise <= t_r
+//! y(t) <= 1 + M,    |y(t) - 1| <= b from t_s on,    rise <= t_r,    |u(t)| <= u_max in the steps of the scenarios
 //! search -> audit, with the worst steps between the samples -> what it finds joins the search
 //! ```
 
+mod commands;
 mod led;
 mod plants;
 mod shaping;
@@ -117,15 +118,17 @@ pub(super) fn shortened(
     found.map(|found| taken(found, (run, told))).transpose()
 }
 
-/// The problem of a design that is led; `None` where nothing is required in time, or the
-/// coefficients are rounded.
+/// The problem of a design that is led; `None` where nothing is required in time and no command is
+/// exceeded, or the coefficients are rounded.
 fn led<'a>(
     setup: &'a Setup<'_>,
     aimed: AimedSteps<'a>,
     (run, told): (&DesignRun, &ProjectDesign),
 ) -> Result<Option<LedDesign<'a>>, DesignError> {
     let given = aimed.given;
-    let required = given.in_time.iter().find(|one| one.follows);
+    let required = given.in_time.iter().find(|one| one.follows).map(|one| one.wish);
+    let required = required
+        .or((run.led.is_some() || told.exceeded_command().is_some()).then_some(TrackingWish::NOTHING));
     let (Some(required), Family::Uncertain(family)) = (required, &given.family) else { return Ok(None) };
     let (Some(samples), CoefficientFormat::Double) = (run.outcome.samples(), told.options.coefficients)
     else {
@@ -135,7 +138,7 @@ fn led<'a>(
     let samples = Samples::new(&problem, samples.plants(), &samples.frequencies_rad_per_s())
         .map_err(LoopDesignError::from)?;
     let looked_at = spread_over(family, LOOKED_AT);
-    Ok(Some(LedDesign { setup, aimed, looked_at, problem, samples, required: required.wish }))
+    Ok(Some(LedDesign { setup, aimed, looked_at, problem, samples, required }))
 }
 
 /// A design that was led, in place of the one before it.

@@ -10,7 +10,7 @@ use phea_qft::design::DesignStatus;
 
 use super::added_by_rig::added;
 use super::by_steps::{AimedSteps, SteppedPlants, by_steps, shortened};
-use super::command_of_steps::command_of_steps;
+use super::command_of_steps::{CommandDepth, command_of_steps};
 use super::relaxed::relaxations;
 use super::search::{found, rank};
 use super::step_aim::StepAim;
@@ -66,7 +66,9 @@ pub(super) fn found_and_tried(
     }
     let aimed = AimedSteps { added: &known, ..aimed };
     let (run, mut told) = shorter((source, setup), aimed, best, &mut within(&mut *watch, [0.9, 0.94]));
-    told.command_of_steps = command_of_steps(setup, &told, &plants);
+    if told.command_of_steps.is_none() {
+        told.command_of_steps = command_of_steps(setup, &told, &plants, CommandDepth::Whole);
+    }
     // a design that was led by its steps is not proven on the way
     if told.designed.view.proof.is_none() {
         let problem = told.designed.problem.clone();

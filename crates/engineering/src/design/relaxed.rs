@@ -87,6 +87,8 @@ struct SearchLimits {
     delay_s: f64,
     /// What a step may do, over what is required.
     steps: f64,
+    /// The command that a step may take, over its limit.
+    command: f64,
 }
 
 /// A design whose limits are relaxed in turn.
@@ -163,14 +165,14 @@ impl<'a> LastSearch<'a> {
     }
 
     fn with_limits(&self, limits: SearchLimits) -> LastSearch<'a> {
-        let SearchLimits { structure, specifications, delay_s, steps } = limits;
+        let SearchLimits { structure, specifications, delay_s, steps, command } = limits;
         let limits = (specifications, delay_s);
         match self {
             LastSearch::OverFrequency(shaping) => {
                 LastSearch::OverFrequency(Box::new(shaping.with_limits(structure, limits)))
             }
             LastSearch::BySteps(search) => {
-                LastSearch::BySteps(Box::new(search.with_limits(structure, limits, steps)))
+                LastSearch::BySteps(Box::new(search.with_limits(structure, limits, [steps, command])))
             }
         }
     }
@@ -237,7 +239,11 @@ impl RelaxedDesign<'_> {
             }
             DesignLimitKind::PrefilterGain | DesignLimitKind::RequiredStep => self.touches(limit.kind),
             // no limit of a search over frequency
-            DesignLimitKind::CommandOfSteps => false,
+            DesignLimitKind::CommandOfSteps => {
+                let command = self.told.command_of_steps.as_ref();
+                matches!(self.search, LastSearch::BySteps(_))
+                    && command.is_some_and(|command| command.ratio() >= 1.0 - NEAR)
+            }
             DesignLimitKind::PoleDampingRatio | DesignLimitKind::FastestPole => self.is_at_end(limit.kind),
         }
     }
@@ -288,7 +294,7 @@ impl RelaxedDesign<'_> {
     /// The limits of the search with one of them wider.
     fn wider(&self, limit: RelaxedLimit) -> Result<SearchLimits, DesignError> {
         let mut given = self.aimed.given.clone();
-        let (mut steps, mut gain, mut delay_s) = (1.0, 1.0, self.delay_s);
+        let (mut steps, mut command, mut gain, mut delay_s) = (1.0, 1.0, 1.0, self.delay_s);
         let mut structure = self.told.design.structure.clone();
         match limit {
             RelaxedLimit::Steps(index) => {
@@ -298,6 +304,7 @@ impl RelaxedDesign<'_> {
                 }
             }
             RelaxedLimit::Design(DesignLimitKind::PrefilterGain) => gain = 1.0 + RELAXED_BY,
+            RelaxedLimit::Design(kind @ DesignLimitKind::CommandOfSteps) => command = kind.relaxed(command),
             RelaxedLimit::Design(kind @ DesignLimitKind::MinimumDelayMargin) => {
                 delay_s = kind.relaxed(delay_s);
             }
@@ -325,6 +332,6 @@ impl RelaxedDesign<'_> {
             }
             RelaxedLimit::Steps(_) => {}
         }
-        Ok(SearchLimits { structure, specifications, delay_s, steps })
+        Ok(SearchLimits { structure, specifications, delay_s, steps, command })
     }
 }

@@ -15,7 +15,7 @@ use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::verification::Verdict;
 
 use super::by_steps::SteppedPlants;
-use super::command_of_steps::command_of_steps;
+use super::command_of_steps::{CommandDepth, command_of_steps};
 use super::{DesignError, DesignRun, ProjectDesign, tried_design};
 use crate::audit::{ProjectAudit, audit_problem, try_to_prove};
 use crate::family::family;
@@ -234,7 +234,7 @@ fn designed_again(
     if aimed.specifications[..own.len()] != own[..] {
         found = found.judged_by(&told.designed.problem, watch)?;
     }
-    found.command_of_steps = command_of_steps(setup, &found, &SteppedPlants::default());
+    found.command_of_steps = command_of_steps(setup, &found, &SteppedPlants::default(), CommandDepth::Whole);
     let trial = tried_design(source, setup.project, &found, watch)?;
     Ok(Some((status, ProjectDesign { trial, ..found })))
 }

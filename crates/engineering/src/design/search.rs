@@ -8,6 +8,7 @@ use phea_qft::design::{ControllerChoice, DesignStatus, Finding, design_stricter}
 use phea_qft::verification::Verdict;
 
 use super::by_steps::{AimedSteps, SteppedPlants, by_steps};
+use super::command_of_steps::{CommandDepth, command_of_steps};
 use super::problem::{design_options, design_problem};
 use super::step_aim::{REPETITIONS, StepAim};
 use super::{DesignError, DesignRun, Explanation, ProjectDesign, ReachedStructure, proven, structures};
@@ -36,7 +37,9 @@ pub(super) fn found(
         let before = found.last().map(|(_, run, told)| (run, told));
         let design = searched(setup, (given, &aimed), (seed, before), &mut within(&mut *watch, share));
         match design {
-            Ok(design) => {
+            Ok((run, mut told)) => {
+                told.command_of_steps = command_of_steps(setup, &told, plants, CommandDepth::Whole);
+                let design = (run, told);
                 let (run, told) =
                     led_by_steps(setup, (given, aim, plants), design, &mut within(&mut *watch, share));
                 found.push((aim, run, told));
@@ -67,7 +70,9 @@ fn led_by_steps(
     (run, mut told): (DesignRun, ProjectDesign),
     watch: Watch<'_>,
 ) -> (DesignRun, ProjectDesign) {
-    if told.stopped || !told.designed.view.in_time.iter().any(TimeFinding::violates) {
+    let misses = told.designed.view.in_time.iter().any(TimeFinding::violates);
+    let command = told.exceeded_command().is_some_and(|command| !command.is_out_of_reach());
+    if told.stopped || !(misses || command) {
         return (run, told);
     }
     let aimed = AimedSteps { given, aim, added: &[], plants };

@@ -11,7 +11,7 @@ use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::portable;
 use phea_qft::specification::{Limit, Requirement, Specification};
 
-use super::{DesignError, DesignLimitKind, ProjectDesign, limit_words};
+use super::{CommandOfSteps, DesignError, DesignLimitKind, ProjectDesign, limit_words};
 use crate::audit::TimeFinding;
 use crate::project::{DeclaredLimit, DeclaredSpecification, Project, ResponseWish, SpecificationKind};
 use crate::robust::{RobustError, RobustProblem};
@@ -77,7 +77,8 @@ impl StepAim {
             let wish = self.wish(finding.requirement.wish);
             finding.reached().map_or(f64::INFINITY, |reached| wish.excess(&reached))
         };
-        required.map(ratio).fold(0.0, f64::max)
+        let command = told.exceeded_command().map_or(0.0, CommandOfSteps::ratio);
+        required.map(ratio).fold(command, f64::max)
     }
 
     /// Stricter by what a design lacks: a loop that does by itself what its prefilter exaggerates,

@@ -5,7 +5,7 @@ use phea_qft::design::{ControllerChoice, DesignStatus, Objective};
 use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::verification::Verdict;
 
-use super::{ProjectDesign, Repair, RepairStatus};
+use super::{CommandOfSteps, ProjectDesign, Repair, RepairStatus};
 use crate::project::{DESIGN_OBJECTIVES, word_of};
 use crate::quantity::significant;
 
@@ -53,12 +53,7 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
                 .to_string()
         }
         DesignStatus::Met => match view.exceeded_command() {
-            Some(command) => format!(
-                "not met: the controller satisfies every specification, and a step of the scenario `{}` takes {} V of the {} V that `design.command_of_steps` leaves the valve",
-                command.step.scenario,
-                significant(command.largest_v, 3),
-                significant(command.limit_v, 3)
-            ),
+            Some(command) => command_words(command),
             None => "met: the controller satisfies every specification".to_string(),
         },
         DesignStatus::Infeasible(_) if keeps_all_but_steps(view) => format!(
@@ -84,6 +79,21 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
             )
         }
     }
+}
+
+/// The command of a scenario's step that is beyond its limit.
+fn command_words(command: &CommandOfSteps) -> String {
+    let volts = |value: f64| format!("{} V", significant(value, 3));
+    let hold = match command.is_out_of_reach() {
+        true => format!(": {} hold the force, whatever the controller", volts(command.at_rest_v)),
+        false => String::new(),
+    };
+    format!(
+        "not met: the controller satisfies every specification, and a step of the scenario `{}` takes {} of the {} that `design.command_of_steps` leaves the valve{hold}",
+        command.step.scenario,
+        volts(command.largest_v),
+        volts(command.limit_v)
+    )
 }
 
 /// True where a design misses what is required in time and nothing else.

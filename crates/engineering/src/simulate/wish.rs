@@ -52,6 +52,15 @@ pub struct HeldWish {
 }
 
 impl TrackingWish {
+    /// The requirement of nothing.
+    pub(crate) const NOTHING: TrackingWish = TrackingWish {
+        overshoot_percent: None,
+        settling_time_s: None,
+        rise_time_s: None,
+        band_percent: SETTLING_BAND_PERCENT,
+        horizon_s: HORIZON_S,
+    };
+
     /// The wish of these limits; `None` if there is none.
     pub fn of(wishes: &[CheckedWish]) -> Option<TrackingWish> {
         TrackingWish::of_specification(wishes, wishes.first()?.number)

@@ -49,12 +49,13 @@ fn command_sentence(view: &ProjectDesign, command: &CommandOfSteps) -> String {
     let plant = view.designed.view.names.text(&command.plant);
     let plant = if plant.is_empty() { String::new() } else { format!(" ({plant})") };
     format!(
-        "the largest command of the scenarios' steps, a search over the linear steps of {} plants, is {} V, in the step from {} to {} of `{}`{plant}; a step of up to {} keeps within {} V",
+        "the largest command of the scenarios' steps, a search over the linear steps of {} plants, is {} V, in the step from {} to {} of `{}`{plant}; {} V hold the force; a step of up to {} keeps within {} V",
         command.plants,
         significant(command.largest_v, 3),
         force(command.step.from_n),
         force(command.step.to_n),
         command.step.scenario,
+        significant(command.at_rest_v, 3),
         force(command.largest_step_n),
         significant(command.limit_v, 3)
     )
@@ -67,6 +68,7 @@ fn command_object(view: &ProjectDesign, command: &CommandOfSteps) -> Object {
         .with("from_n", command.step.from_n)
         .with("to_n", command.step.to_n)
         .with("largest_v", command.largest_v)
+        .with("at_rest_v", command.at_rest_v)
         .with("limit_v", command.limit_v)
         .with("largest_step_n", command.largest_step_n)
         .with("evidence", "search")

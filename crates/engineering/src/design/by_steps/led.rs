@@ -11,6 +11,7 @@ use super::shaping::{RESERVE_DB, StepShaping, StepWishes};
 use super::starts::SearchReach;
 use super::{AimedSteps, with_rig, with_room};
 use crate::audit::audit_request;
+use crate::design::command_of_steps::{CommandDepth, ScenarioSteps, command_of_steps};
 use crate::design::search::rank;
 use crate::design::{DesignError, ProjectDesign};
 use crate::robust::RobustProblem;
@@ -34,6 +35,8 @@ const FAST: f64 = 10.0;
 const NEAR: f64 = 1.1;
 /// Ratio of its steps to those of a start before from which one is given up.
 const FAR: f64 = 1.3;
+/// Fraction of its limit from which on the command of the scenarios' steps is part of each audit.
+const COMMAND_NEAR: f64 = 0.5;
 /// How often a search goes on with plants that were not part of it.
 const LOOKS: usize = 5;
 /// Steps of one search.
@@ -117,7 +120,8 @@ impl<'a> LedDesign<'a> {
             with_rig: with_rig(self.required),
         };
         let added = (wishes, self.aimed.added.to_vec());
-        let mut search = StepShaping::new(shaping, added, self.problem.sensor.clone(), self.aimed.plants);
+        let search = StepShaping::new(shaping, added, self.problem.sensor.clone(), self.aimed.plants);
+        let mut search = search.with_commands(ScenarioSteps::of(self.setup, told));
         if reach == SearchReach::Beside {
             search.stay_beside(&start.free_numbers);
         }
@@ -261,7 +265,17 @@ impl<'a> LedDesign<'a> {
         let status = DesignStatus::NotConverged { rounds: start.rounds.len() };
         let design = Design { status, ..start.clone() };
         let moved = design.moved(shaping, free_numbers.to_vec(), audit, &told.options);
-        ProjectDesign::new(self.setup, self.aimed.given, &self.problem, moved, told.options.clone(), watch)
+        let found = (self.aimed.given, &self.problem);
+        let mut found = ProjectDesign::new(self.setup, found.0, found.1, moved, told.options.clone(), watch)?;
+        let depth = match depth {
+            AuditDepth::KnownPlants => CommandDepth::KnownPlants,
+            AuditDepth::Whole => CommandDepth::Whole,
+        };
+        // what is far from its limit is looked at where the design has been found
+        if told.command_of_steps.as_ref().is_some_and(|command| command.ratio() > COMMAND_NEAR) {
+            found.command_of_steps = command_of_steps(self.setup, &found, self.aimed.plants, depth);
+        }
+        Ok(found)
     }
 
     /// The free numbers that a search from these finds, again with plants whose steps miss what is

@@ -10,9 +10,11 @@ use phea_qft::family::Family;
 use phea_qft::loop_shaping::{Judgement, MarginRow, SampledMargin, SearchProblem, Shaping, Slopes};
 use phea_qft::verification::PlantPoint;
 
+use super::commands::StepCommands;
 use super::plants::{SteppedPlant, SteppedPlants};
 use crate::audit::TimeOutcome;
 use crate::design::added_by_rig::{AddedByRig, added_to};
+use crate::design::command_of_steps::ScenarioSteps;
 use crate::design::{DesignError, ProjectDesign};
 use crate::linear_step::StepResponse;
 use crate::robust::RobustProblem;
@@ -32,7 +34,7 @@ const POINTS: usize = 600;
 /// dB of 1 + d for a small deviation d.
 const DB: f64 = 20.0 / std::f64::consts::LN_10;
 /// Change of a free number for a slope.
-const STEP: f64 = 1e-4;
+pub(super) const STEP: f64 = 1e-4;
 /// How far a search beside a design goes: the natural logarithm of a ratio of zeros, poles and
 /// gains.
 const BESIDE: f64 = 0.3;
@@ -50,6 +52,8 @@ pub(in crate::design) struct StepShaping<'a> {
     added: Vec<AddedByRig>,
     sensor: TransferFunction,
     plants: Vec<LedPlant>,
+    /// The commands of the scenarios' steps.
+    commands: StepCommands,
     /// Plants that all searches of a design share.
     all: &'a SteppedPlants,
     /// Least and greatest value of each free number.
@@ -91,7 +95,18 @@ impl StepShaping<'_> {
         all: &SteppedPlants,
     ) -> StepShaping<'_> {
         let bounds = shaping.bounds().to_vec();
-        StepShaping { shaping, wishes, added, sensor, plants: vec![], all, bounds }
+        let commands = StepCommands::default();
+        StepShaping { shaping, wishes, added, sensor, plants: vec![], commands, all, bounds }
+    }
+
+    /// The same with limits on the command of the scenarios' steps.
+    pub(super) fn with_commands(self, steps: Option<ScenarioSteps>) -> Self {
+        StepShaping { commands: StepCommands::new(steps), ..self }
+    }
+
+    /// Allows so many times as much command.
+    pub(super) fn allow_commands(&mut self, factor: f64) {
+        self.commands.allow(factor);
     }
 
     /// The same with other requirements of its steps.
@@ -137,7 +152,8 @@ impl StepShaping<'_> {
     /// The least margin of each plant's steps; negative infinity where they cannot be computed.
     fn least_margin(&self, x: &[f64]) -> f64 {
         let Some(around) = self.around(x) else { return f64::NEG_INFINITY };
-        self.plants.iter().map(|plant| self.least_of(plant, &around)).fold(f64::INFINITY, f64::min)
+        let of_commands = self.commands.least_db(&around);
+        self.plants.iter().map(|plant| self.least_of(plant, &around)).fold(of_commands, f64::min)
     }
 
     /// The least margin of a plant's steps; negative infinity where they cannot be computed.
@@ -235,6 +251,13 @@ impl StepShaping<'_> {
                 }
             }
         }
+        if let (Some(values), Family::Uncertain(family)) =
+            (self.commands.unseen(told), &told.designed.problem.family)
+        {
+            let around = &told.designed.problem.compensation;
+            self.commands.take(self.all.plant(values, (family, around))?);
+            is_new = true;
+        }
         Ok(is_new)
     }
 
@@ -317,6 +340,8 @@ impl SearchProblem for StepShaping<'_> {
             let near: Vec<PlacedMargin> = places.into_iter().filter(|one| one.2 <= near).collect();
             slopes.margins.extend(self.rows(index, plant, &near, &beside));
         }
+        let last = usize::MAX - ROWS * PLANTS;
+        slopes.margins.extend(self.commands.rows(&around, &beside, last));
         slopes
     }
 }

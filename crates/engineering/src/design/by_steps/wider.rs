@@ -5,6 +5,7 @@ use phea_qft::specification::Specification;
 
 use super::shaping::{RESERVE_DB, StepShaping, StepWishes};
 use super::{AimedSteps, DesignError, led, with_rig, with_room};
+use crate::design::command_of_steps::ScenarioSteps;
 use crate::design::{DesignRun, ProjectDesign};
 use crate::setup::Setup;
 
@@ -22,7 +23,8 @@ pub(in crate::design) fn last_step_search<'a>(
     let wishes =
         StepWishes { linear: with_room(aimed.aim.wish(led.required)), with_rig: with_rig(led.required) };
     let added = (wishes, aimed.added.to_vec());
-    let mut search = StepShaping::new(shaping.clone(), added, led.problem.sensor.clone(), aimed.plants);
+    let search = StepShaping::new(shaping.clone(), added, led.problem.sensor.clone(), aimed.plants);
+    let mut search = search.with_commands(ScenarioSteps::of(setup, told));
     search.take_worst(&told.design)?;
     search.take_steps(told)?;
     let aim = if told.is_met() { Aim::Objective } else { Aim::WorstMargin };
@@ -30,16 +32,17 @@ pub(in crate::design) fn last_step_search<'a>(
 }
 
 impl<'a> StepShaping<'a> {
-    /// The same plants, judged by other limits, and their steps by a requirement that allows this
-    /// many times as much.
+    /// The same plants, judged by other limits, and their steps and commands by what allows so many
+    /// times as much.
     pub(in crate::design) fn with_limits(
         &self,
         structure: Structure,
         limits: (Vec<Specification>, f64),
-        steps: f64,
+        [steps, command]: [f64; 2],
     ) -> StepShaping<'a> {
         let mut wider = self.clone();
         wider.shaping = self.shaping.with_limits(structure, limits);
+        wider.allow_commands(command);
         wider.with_wishes(|wish| wish.wider(steps))
     }
 }

@@ -1,0 +1,90 @@
+//! The command of the scenarios' steps as rows of a search that is led by its steps.
+//!
+//! ```text
+//! margin = 20 log10(limit/largest |u|)     of the step of each scenario, at the plants that the audits found worst
+//! ```
+
+use std::rc::Rc;
+
+use phea_dynamics::frequency::decibels;
+use phea_qft::closed_loop::Compensation;
+use phea_qft::loop_shaping::MarginRow;
+use phea_qft::verification::PlantPoint;
+
+use super::plants::SteppedPlant;
+use super::shaping::STEP;
+use crate::design::ProjectDesign;
+use crate::design::command_of_steps::ScenarioSteps;
+
+/// Most plants whose commands are rows.
+const PLANTS: usize = 6;
+/// Fraction of the limit from which on the worst plant joins the search.
+const NEAR: f64 = 0.8;
+/// Points of a continuous response.
+const POINTS: usize = 1000;
+
+/// The steps of the scenarios and the plants whose commands are rows of a search.
+#[derive(Clone, Default)]
+pub(super) struct StepCommands {
+    steps: Option<ScenarioSteps>,
+    plants: Vec<Rc<SteppedPlant>>,
+}
+
+impl StepCommands {
+    pub(super) fn new(steps: Option<ScenarioSteps>) -> StepCommands {
+        StepCommands { steps, plants: vec![] }
+    }
+
+    /// The parameters of the worst plant of a design, where its command is near the limit and it is
+    /// not among the rows.
+    pub(super) fn unseen<'a>(&self, told: &'a ProjectDesign) -> Option<&'a [f64]> {
+        let command = told.command_of_steps.as_ref()?;
+        let PlantPoint::Parameters(values) = &command.plant else { return None };
+        let is_known = self.plants.iter().any(|plant| plant.values == *values);
+        let joins = !is_known && self.plants.len() < PLANTS && command.largest_v >= NEAR * command.limit_v;
+        joins.then_some(values)
+    }
+
+    /// Allows so many times as much.
+    pub(super) fn allow(&mut self, factor: f64) {
+        if let Some(steps) = &mut self.steps {
+            steps.limit_v *= factor;
+        }
+    }
+
+    pub(super) fn take(&mut self, plant: Rc<SteppedPlant>) {
+        self.plants.push(plant);
+    }
+
+    /// The margin of a plant, dB; negative infinity where its command cannot be computed.
+    fn margin_db(&self, plant: &SteppedPlant, around: &Compensation) -> f64 {
+        let Some(steps) = &self.steps else { return f64::INFINITY };
+        let command = plant.command(around, (steps.duration_s, POINTS));
+        command.map_or(f64::NEG_INFINITY, |command| decibels(steps.limit_v / steps.largest_v(&command)))
+    }
+
+    /// The least margin of all, dB.
+    pub(super) fn least_db(&self, around: &Compensation) -> f64 {
+        self.plants.iter().map(|plant| self.margin_db(plant, around)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// A row for each plant, numbered down from a sample.
+    pub(super) fn rows(
+        &self,
+        around: &Compensation,
+        beside: &[Option<Compensation>],
+        last: usize,
+    ) -> Vec<MarginRow> {
+        let row = |(index, plant): (usize, &Rc<SteppedPlant>)| {
+            let margin_db = self.margin_db(plant, around);
+            let along = |moved: &Option<Compensation>| {
+                moved.as_ref().map_or(0.0, |moved| (self.margin_db(plant, moved) - margin_db) / STEP)
+            };
+            let slopes = beside.iter().map(along).collect();
+            MarginRow { sample: last - index, margin_db, rate: 1.0, slopes }
+        };
+        let is_finite =
+            |row: &MarginRow| row.margin_db.is_finite() && row.slopes.iter().all(|slope| slope.is_finite());
+        self.plants.iter().enumerate().map(row).filter(is_finite).collect()
+    }
+}
