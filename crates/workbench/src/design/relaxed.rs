@@ -77,7 +77,7 @@ fn sentence(view: &ProjectDesign, one: &RelaxedGain) -> String {
     };
     let effect = match one.gained_db {
         gained_db if gained_db < ACCURACY_DB => "would buy nothing: other limits bind too".to_string(),
-        gained_db => bought(view, &format!("{} dB", significant(gained_db, 2)), one.noise_gained_db),
+        gained_db => bought(view, gained_db, one.noise_gained_db),
     };
     format!("relaxing {name} {} {effect}", relaxed(view, one.limit))
 }
@@ -128,7 +128,8 @@ fn value_words(kind: DesignLimitKind, value: f64) -> String {
 }
 
 /// What is gained, in words.
-fn bought(view: &ProjectDesign, gained: &str, noise_gained_db: Option<f64>) -> String {
+fn bought(view: &ProjectDesign, gained_db: f64, noise_gained_db: Option<f64>) -> String {
+    let gained = format!("{} dB", significant(gained_db, 2));
     match (view.relaxations.of, view.options.objective, &view.design.status) {
         (Gained::Objective, Objective::LeastBandwidth, _) => format!("would lower the bandwidth by {gained}"),
         (Gained::Objective, ..) => {
@@ -137,6 +138,10 @@ fn bought(view: &ProjectDesign, gained: &str, noise_gained_db: Option<f64>) -> S
                 higher => format!(", though the noise gain would rise by {} dB", significant(-higher, 2)),
             });
             format!("would lower the high-frequency gain by {gained}{}", noise.unwrap_or_default())
+        }
+        (Gained::WorstMargin, _, DesignStatus::Infeasible(missed)) if gained_db >= missed.relaxation_db => {
+            let left = significant(gained_db - missed.relaxation_db, 2);
+            format!("would satisfy every limit, with {left} dB to spare")
         }
         (Gained::WorstMargin, _, DesignStatus::Infeasible(missed)) => {
             let missing = significant(missed.relaxation_db, 3);
