@@ -28,10 +28,9 @@ impl ReferenceStep {
 /// # Example
 /// ```
 /// use phea_project::source::Memory;
-/// let text = "schema = 1\n[plant]\nnumerator = \"1\"\ndenominator = \"s\"\n[[scenario]]\nname = \"there and back\"\n\
-///             duration = \"3 s\"\nreference = [{ at = \"0 s\", force = \"1 kN\" }, { at = \"1 s\", force = \"4 kN\" }, { at = \"2 s\", force = \"0 N\" }]\n";
-/// let source = Memory::default().with("servo.toml", text);
-/// let project = phea_project::read(&source, "servo.toml", &[], &[])?.project;
+/// let source = Memory::default().with("rig.toml", include_str!("../../../../examples/ybitu/hose.toml"));
+/// let scenario = r#"scenario=[{ name = "there and back", duration = "3 s", reference = [{ at = "0 s", force = "1 kN" }, { at = "1 s", force = "4 kN" }, { at = "2 s", force = "0 N" }] }]"#;
+/// let project = phea_project::read(&source, "rig.toml", &[scenario.to_string()], &[])?.project;
 /// let [step] = &phea_engineering::simulate::largest_reference_steps(&project)[..] else { panic!() };
 /// assert_eq!((step.from_n, step.to_n, step.hold_s), (4000.0, 0.0, 1.0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())

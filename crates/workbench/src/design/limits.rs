@@ -49,7 +49,7 @@ fn command_sentence(view: &ProjectDesign, command: &CommandOfSteps) -> String {
     let plant = view.designed.view.names.text(&command.plant);
     let plant = if plant.is_empty() { String::new() } else { format!(" ({plant})") };
     format!(
-        "the largest command of the scenarios' steps, a search over the linear steps of {} plants, is {} V, in the step from {} to {} of `{}`{plant}; {} V hold the force; a step of up to {} keeps within {} V",
+        "the largest command of the scenarios' steps, a search over the linear steps of {} plants, is {} V, in the step from {} to {} of `{}`{plant}; {} V of them hold the change of force once it is reached, under any controller; a step of up to {} keeps within {} V, where supply and sensor allow it",
         command.plants,
         significant(command.largest_v, 3),
         force(command.step.from_n),

@@ -83,7 +83,7 @@ fn meanings(trial: &Trial) -> Vec<String> {
     }
     if trial.runs.iter().any(|run| run.remaining_amplitude_n.is_some()) {
         told.push(
-            "\"remains\": half the range of the force over the last fifth of a step, the largest of the three steps"
+            "\"remains\": half the range of the force over the last fifth of a step; a run steps there, back and there again, and the largest counts"
                 .to_string(),
         );
     }
