@@ -94,7 +94,7 @@ pub fn audit_project(
 /// The given controller in a loop with the whole family, and what it is audited for.
 ///
 /// # Errors
-/// Those of [`audit_project`], but for the watch.
+/// The errors of [`audit_project`], but for the watch.
 pub fn problem_to_audit(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustProblem, AuditError> {
     let project = setup.project;
     match &project.controller {
@@ -202,7 +202,7 @@ pub enum LimitSide {
 }
 
 /// 20 log10(e)
-const DECIBELS_PER_NEPER: f64 = 20.0 * std::f64::consts::LOG10_E;
+pub(crate) const DECIBELS_PER_NEPER: f64 = 20.0 * std::f64::consts::LOG10_E;
 
 /// What the worst plant reaches; `None` for a spread, and at the ends of the frequency axis where
 /// there are two limits.

@@ -121,7 +121,7 @@ pub struct ProjectDesign {
     /// The largest command that the steps of the scenarios take; absent where nothing limits it,
     /// or where it is not known.
     pub command_of_steps: Option<CommandOfSteps>,
-    /// What relaxing each limit that binds would buy.
+    /// The gain from relaxing each limit that binds.
     pub relaxations: Relaxations,
     /// The pressure feedback that was found before the loop; absent where it is not free.
     pub pressure_feedback: Option<PressureFeedbackDesign>,

@@ -5,7 +5,6 @@ mod alternative;
 mod catalogue_parts;
 mod consequences;
 mod formula;
-mod kernels;
 mod malformed;
 mod mutation;
 mod percentages;

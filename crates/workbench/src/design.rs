@@ -17,6 +17,7 @@ pub(crate) use document::{costs, explanation_words, laws, side_by_side, status};
 pub(crate) use limits::document as limits;
 pub(crate) use manual::document as manual;
 pub(crate) use pressure_feedback::document as pressure_feedback;
+pub use pressure_feedback::{pressure_feedback_document, pressure_feedback_object};
 pub(crate) use stages::bound_files;
 pub use stages::{files, stage_files};
 pub(crate) use structures::document as structures;

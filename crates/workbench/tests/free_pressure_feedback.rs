@@ -6,7 +6,8 @@
 use phea_qft::verification::Audit;
 use phea_workbench::audit::audit_project;
 use phea_workbench::design::{
-    self, DesignLimitKind, ProjectDesign, design_limits, design_project, with_free_pressure_feedback,
+    self, DesignLimitKind, PressureFeedbackDesign, ProjectDesign, design_limits, design_project,
+    pressure_feedback_document, pressure_feedback_object, with_free_pressure_feedback,
 };
 use phea_workbench::project::{self, Loaded, Project};
 use phea_workbench::robust::robust_problem;
@@ -137,9 +138,16 @@ fn plants_with_waves_that_are_missing_are_stated() {
     let loaded = loaded(&without_step(), &[thin, FREE]);
     let setup = Setup::new(&loaded.project).unwrap();
     let found = with_free_pressure_feedback(&Memory::default(), &setup, &mut |_| true).unwrap().unwrap().1;
-    let missing = found.missing_with_waves.unwrap();
+    let missing = found.missing_with_waves.clone().unwrap();
     assert_eq!([missing.count, missing.of], [found.plants; 2]);
     assert!(missing.reason.contains("dissipation number"), "{}", missing.reason);
+    let sentence = format!("it was found without {0} of {0} plants with waves in their lines", found.plants);
+    for is_used in [true, false] {
+        let text = pressure_feedback_document(&PressureFeedbackDesign { is_used, ..found.clone() }).text();
+        assert!(text.contains(&sentence), "{text}");
+    }
+    let json = pressure_feedback_object(&found).print();
+    assert!(json.contains("\"missing_with_waves\""), "{json}");
 }
 
 /// Where every plant has its waves, none is stated to be missing.
@@ -149,5 +157,7 @@ fn no_plant_with_waves_is_missing_from_the_structural_rig() {
     let setup = Setup::new(&loaded.project).unwrap();
     let found = with_free_pressure_feedback(&Memory::default(), &setup, &mut |_| true).unwrap().unwrap().1;
     assert_eq!(found.missing_with_waves, None);
+    assert!(!pressure_feedback_document(&found).text().contains("was found without"));
+    assert!(!pressure_feedback_object(&found).print().contains("missing_with_waves"));
     assert_eq!(found.plants % 2, 0, "{found:?}");
 }

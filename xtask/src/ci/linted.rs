@@ -24,7 +24,7 @@ const PLAIN_TESTS: [&str; 4] = ["phea-dynamics", "phea-figure", "phea-project", 
 
 /// The libraries that are compiled once more for the unit tests of their kernels, without
 /// optimisation: these tests take no time.
-const PLAIN_UNIT_TESTS: [&str; 2] = ["phea_dynamics", "phea_hydraulics"];
+const PLAIN_UNIT_TESTS: [&str; 4] = ["phea_dynamics", "phea_engineering", "phea_hydraulics", "phea_project"];
 
 /// The variables with which commands of cargo build so. All commands of a run need the same, or
 /// cargo would build everything once more.

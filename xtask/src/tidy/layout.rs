@@ -1,5 +1,6 @@
 //! One concept a file, named after it: `foo.rs` next to `foo/`, no drawer for leftovers. The tests
-//! of a package are one program, and no file of tests is left out of it.
+//! of a package are one program, and no file of tests is left out of it. Unit tests of a library
+//! that is not built for tests are built by that program.
 
 use super::Violation;
 use crate::repository::Repository;
@@ -8,7 +9,26 @@ const LEFTOVERS: [&str; 8] = ["mod", "utils", "util", "common", "helpers", "help
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
     let names = repository.texts(|path| path.ends_with(".rs")).filter_map(|(path, _)| check_name(path));
-    names.chain(unnamed_tests(repository)).collect()
+    names.chain(unnamed_tests(repository)).chain(unbuilt_tests(repository)).collect()
+}
+
+/// Unit tests of a library that is not built for tests, which no file below `tests/` builds.
+fn unbuilt_tests(repository: &Repository) -> Vec<Violation> {
+    let sources = repository.texts(|path| path.ends_with(".rs") && path.contains("/src/"));
+    let unbuilt = sources.filter(|(_, text)| text.contains("#[cfg(test)]")).filter_map(|(path, _)| {
+        let (package, file) = path.split_once("/src/")?;
+        let manifest = repository.text(&format!("{package}/Cargo.toml"))?;
+        let is_built =
+            !manifest.split("\n[").any(|part| part.starts_with("lib]") && part.contains("\ntest = false"));
+        let (tests, named) = (format!("{package}/tests/"), format!("/src/{file}\""));
+        let is_named = || {
+            let mut all = repository.texts(|path| path.starts_with(&tests) && path.ends_with(".rs"));
+            all.any(|(_, text)| text.contains(&named))
+        };
+        let lacks = || format!("its tests are never built: name it in {tests}kernels.rs");
+        (!is_built && !is_named()).then(|| Violation::new(path, 0, lacks()))
+    });
+    unbuilt.collect()
 }
 
 /// Files below `tests/` that the file above them does not declare: they would not even be compiled.
@@ -72,5 +92,28 @@ mod tests {
         assert_eq!(found("mod laws;\n"), [lost]);
         let laws = "crates/a/tests/laws.rs: lacks `mod laws;` in crates/a/tests/all.rs";
         assert_eq!(found("mod flaws;\n"), [laws, lost]);
+    }
+
+    #[test]
+    fn unit_tests_that_nothing_builds_are_refused() {
+        let found = |manifest: &str, kernels: &str| {
+            let files = [
+                ("crates/a/Cargo.toml", manifest),
+                ("crates/a/src/laws/limit.rs", "#[cfg(test)]\nmod tests {}\n"),
+                ("crates/a/tests/kernels.rs", kernels),
+            ];
+            unbuilt_tests(&Repository::from_texts(&files))
+                .iter()
+                .map(Violation::to_string)
+                .collect::<Vec<_>>()
+        };
+        let unbuilt = "[package]\nname = \"a\"\n\n[lib]\ntest = false\n";
+        let named = "#[path = \"../src/laws/limit.rs\"]\nmod limit;\n";
+        let told =
+            "crates/a/src/laws/limit.rs: its tests are never built: name it in crates/a/tests/kernels.rs";
+        assert_eq!(found(unbuilt, ""), [told]);
+        assert!(found(unbuilt, named).is_empty());
+        let built = "[lib]\nbench = false\n\n[[test]]\nname = \"all\"\ntest = false\n";
+        assert!(found(built, "").is_empty());
     }
 }

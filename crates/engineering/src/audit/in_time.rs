@@ -333,7 +333,7 @@ impl StepSearch<'_> {
 pub(crate) struct VisitedPlant {
     /// The larger the worse.
     pub(crate) value: f64,
-    /// Whether the search has visited as many as it may.
+    /// True where the search has visited as many plants as it may.
     pub(crate) is_last: bool,
 }
 

@@ -19,7 +19,7 @@ pub struct NominalMargins {
     pub phase_margin_deg: f64,
     /// The highest frequency at which |L| = 1, rad/s; zero if |L| never is 1.
     pub crossover_rad_per_s: f64,
-    /// Where |L| falls below 1, and where it rises above 1 again.
+    /// The frequencies at which |L| falls below 1, and between which it is above 1 again.
     pub crossovers: Crossovers,
     /// The least delay that makes it unstable, s.
     pub delay_margin_s: f64,

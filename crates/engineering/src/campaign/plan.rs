@@ -93,7 +93,7 @@ pub struct Draw {
     pub(super) noise_seed: Option<u32>,
 }
 
-/// What the box of a family ranges over.
+/// The numbers over which the box of a family ranges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FamilyBox {
     /// There is none.
@@ -107,7 +107,7 @@ pub enum FamilyBox {
 /// A number that is drawn beyond the box for which the controller is judged.
 #[derive(Clone, Copy, Debug)]
 pub struct BeyondBox<'a> {
-    /// What is drawn; of a normal distribution two standard deviations to both sides.
+    /// The range of the draws; of a normal distribution two standard deviations to both sides.
     pub range: &'a VariedRange,
     /// Its range in the box; `None` where it is not in the box.
     pub designed_for: Option<[f64; 2]>,
@@ -235,7 +235,7 @@ impl Plan {
         Some([uncertain.minimum, uncertain.maximum])
     }
 
-    /// What the box of the family ranges over.
+    /// The numbers over which the box of the family ranges.
     pub fn box_of_family(&self) -> FamilyBox {
         let uncertain = &self.project.uncertainty;
         if uncertain.iter().any(|one| one.name.contains('.')) {

@@ -7,7 +7,7 @@ use crate::setup::Setup;
 /// Part of the range of a signal up to which a misfit leaves a verdict on its valve as it is.
 const BOUND: f64 = 5e-3;
 
-/// What identified coefficients leave unexplained, and whether a verdict may rest on them.
+/// The misfit of identified coefficients; beyond the bound no verdict rests on them.
 pub(super) fn misfit(setup: &Setup<'_>) -> Option<Caveat> {
     let found = setup.project.actuator.as_ref()?.valve.misfit.as_ref()?;
     let [share, bound] = [found.share, BOUND].map(|share| significant(100.0 * share, 3));

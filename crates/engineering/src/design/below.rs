@@ -11,13 +11,10 @@ use phea_qft::verification::{
 
 use super::deployable::{DesignLimit, design_limits};
 use super::problem::design_problem;
-use crate::audit::{PrefilterGain, ProjectAudit, plants_of_margins};
+use crate::audit::{DECIBELS_PER_NEPER, PrefilterGain, ProjectAudit, plants_of_margins};
 use crate::limit_kind::{DesignLimitKind, ExceededLimit};
 use crate::robust::RobustProblem;
 use crate::setup::{Setup, is_of_position};
-
-/// 20 log10(e)
-const DECIBELS_PER_NEPER: f64 = 20.0 * std::f64::consts::LOG10_E;
 
 /// The limits of `[design]`, stated or by default, that the audited loop does not keep; none where
 /// the family is not stable, which no design would return either, and for a plant without a rig

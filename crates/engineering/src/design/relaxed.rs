@@ -100,7 +100,7 @@ struct RelaxedDesign<'a> {
     delay_s: f64,
 }
 
-/// What relaxing each limit that binds would buy; nothing where no search ended.
+/// The gain from relaxing each limit that binds; none where no search ended.
 ///
 /// # Errors
 /// [`DesignError`] for a loop that cannot be sampled, and by the watch.

@@ -49,13 +49,27 @@ const BAND_ROOM_DB: f64 = 3.0;
 const FIRST_PREFILTER_ORDER: usize = 2;
 /// How far inside its limits a search stays, dB, so that what the audit finds between the samples
 /// still satisfies them.
-pub(super) const RESERVE_DB: f64 = 0.001;
+const RESERVE_DB: f64 = 0.001;
 
 impl DesignOptions {
     /// The least worst margin of the samples with which a structure may still meet the
     /// specifications, dB.
     pub(super) fn feasible_db(&self) -> f64 {
         -self.tolerance_db - BEYOND_TOLERANCE_DB
+    }
+
+    /// What a search is after, the least relaxation or a controller that needs none.
+    pub(super) fn aim(&self, relaxes: bool) -> Aim {
+        match self.objective {
+            _ if relaxes => Aim::WorstMargin,
+            Objective::BestWorstMargin => Aim::WorstMargin,
+            Objective::LeastHighFrequencyGain | Objective::LeastBandwidth => Aim::Objective,
+        }
+    }
+
+    /// How far inside its limits such a search stays, dB.
+    pub(super) fn search_reserve_db(&self, relaxes: bool) -> f64 {
+        if relaxes { 0.0 } else { RESERVE_DB + self.reserve_db }
     }
 }
 
@@ -138,13 +152,9 @@ impl Attempt {
         relaxes: bool,
         beginning: StartingPoints,
     ) -> Result<Attempt, LoopDesignError> {
-        let reserve_db = if relaxes { 0.0 } else { RESERVE_DB + options.reserve_db };
+        let reserve_db = options.search_reserve_db(relaxes);
         samples.keep_in_reserve(reserve_db);
-        let aim = match options.objective {
-            _ if relaxes => Aim::WorstMargin,
-            Objective::BestWorstMargin => Aim::WorstMargin,
-            Objective::LeastHighFrequencyGain | Objective::LeastBandwidth => Aim::Objective,
-        };
+        let aim = options.aim(relaxes);
         let given = match &options.prefilter {
             PrefilterChoice::Given(prefilter) if tracks(samples.problem()).is_some() => {
                 Some(Structure::fixed_to(prefilter))

@@ -3,7 +3,7 @@
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::order::sort_by_number;
 
-use super::attempt::{LoopDesignError, NEIGHBOURS, RESERVE_DB};
+use super::attempt::{LoopDesignError, NEIGHBOURS};
 use super::problem::DesignOptions;
 use super::result::{Design, DesignStatus};
 use super::{Objective, PoleRange};
@@ -21,16 +21,11 @@ pub fn last_search(
     options: &DesignOptions,
 ) -> Result<(Shaping, Aim), LinearError> {
     let relaxes = matches!(design.status, DesignStatus::Infeasible(_));
-    samples.keep_in_reserve(if relaxes { 0.0 } else { RESERVE_DB + options.reserve_db });
+    samples.keep_in_reserve(options.search_reserve_db(relaxes));
     samples.count_shares_of_room(options.objective == Objective::BestWorstMargin && !relaxes);
     let (structure, prefilter) = (design.structure.clone(), design.prefilter.clone());
     let shaping = Shaping::new(structure, prefilter, options.objective, samples)?;
-    let aim = match options.objective {
-        _ if relaxes => Aim::WorstMargin,
-        Objective::BestWorstMargin => Aim::WorstMargin,
-        Objective::LeastHighFrequencyGain | Objective::LeastBandwidth => Aim::Objective,
-    };
-    Ok((shaping, aim))
+    Ok((shaping, options.aim(relaxes)))
 }
 
 /// Adds to a search what lies beside the samples with the least margins at x, since a peak moves

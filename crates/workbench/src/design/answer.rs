@@ -9,7 +9,7 @@ use phea_qft::verification::PlantPoint;
 
 use super::AuditedController;
 use super::{Explanation, ProjectDesign};
-use super::{limits, manual, pressure_feedback, relaxed, structures};
+use super::{limits, manual, pressure_feedback_object, relaxed, structures};
 use super::{objective_key, part_key, status_key, structure_key};
 use crate::answer::{Json, Object};
 use crate::audit;
@@ -50,7 +50,7 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
         .with("seed", view.options.seed)
         .with("controller", factors(side.problem.compensation.feedback()))
         .known("prefilter", prefilter, "no prefilter is needed or requested")
-        .maybe("pressure_feedback", view.pressure_feedback.as_ref().map(pressure_feedback::object))
+        .maybe("pressure_feedback", view.pressure_feedback.as_ref().map(pressure_feedback_object))
         .maybe("continuous_law", continuous_law(side)?)
         .with("figures", figures(side))
         .and(of_structures(view))

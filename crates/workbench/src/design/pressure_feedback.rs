@@ -9,10 +9,11 @@ use crate::quantity::{ANGULAR_FREQUENCY, VOLTAGE_PER_PRESSURE, display};
 
 /// The feedback with what it gains; empty where it was not free.
 pub(crate) fn document(view: &ProjectDesign) -> Document {
-    view.pressure_feedback.as_ref().map(found_document).unwrap_or_default()
+    view.pressure_feedback.as_ref().map(pressure_feedback_document).unwrap_or_default()
 }
 
-fn found_document(found: &PressureFeedbackDesign) -> Document {
+/// A feedback that was found before the loop, with what it gains, for people.
+pub fn pressure_feedback_document(found: &PressureFeedbackDesign) -> Document {
     let mut out = Document::default();
     out.heading("Pressure feedback, found before the loop");
     let factor = significant(found.loop_gain_factor, 3);
@@ -61,7 +62,7 @@ fn missing(plants: &MissingPlants) -> String {
 }
 
 /// The same in JSON.
-pub(super) fn object(found: &PressureFeedbackDesign) -> Object {
+pub fn pressure_feedback_object(found: &PressureFeedbackDesign) -> Object {
     let [limited_without, limited] = found.limited_at_rad_per_s;
     let damping = found.least_damping_ratio;
     let missing = |plants: &MissingPlants| {
@@ -81,37 +82,4 @@ pub(super) fn object(found: &PressureFeedbackDesign) -> Object {
         .maybe("least_damping_ratio_without", damping.map(|[without, _]| without))
         .with("plants", found.plants)
         .maybe("missing_with_waves", found.missing_with_waves.as_ref().map(missing))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::project::DeclaredPressureFeedback;
-
-    /// Text and JSON state what is missing, whether the feedback is used or not, and nothing where
-    /// nothing is missing.
-    #[test]
-    fn missing_plants_are_stated() {
-        let missing = MissingPlants { count: 2, of: 5, reason: "why".to_string() };
-        let found = PressureFeedbackDesign {
-            declared: DeclaredPressureFeedback { gain: 1e-7, ..DeclaredPressureFeedback::default() },
-            is_used: true,
-            loop_gain_factor: 1.5,
-            proportional_gain: [1e-4, 1.5e-4],
-            limited_at_rad_per_s: [300.0, 310.0],
-            least_damping_ratio: None,
-            plants: 8,
-            missing_with_waves: Some(missing),
-        };
-        let sentence = "it was found without 2 of 5 plants with waves in their lines: why";
-        for is_used in [true, false] {
-            let text = found_document(&PressureFeedbackDesign { is_used, ..found.clone() }).text();
-            assert!(text.contains(sentence), "{text}");
-        }
-        let json = object(&found).print();
-        assert!(json.contains("\"missing_with_waves\""), "{json}");
-        let complete = PressureFeedbackDesign { missing_with_waves: None, ..found };
-        assert!(!found_document(&complete).text().contains("was found without"));
-        assert!(!object(&complete).print().contains("missing_with_waves"));
-    }
 }

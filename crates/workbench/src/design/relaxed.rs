@@ -1,4 +1,4 @@
-//! What relaxing each limit that binds would buy.
+//! The gain from relaxing each limit that binds.
 
 use phea_engineering::design::{
     DesignLimitKind, Gained, RELAXED_BY, RelaxedGain, RelaxedLimit, limit_key, limit_unit_key, limit_words,

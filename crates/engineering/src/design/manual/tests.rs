@@ -1,5 +1,6 @@
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::portable;
 
 use super::*;
 
@@ -14,7 +15,7 @@ fn words_of(law: &Compensator, name: Option<NamedStructure>) -> Vec<ManualPart> 
     let words = ManualLaw::new(law, name).unwrap();
     let (given, again) = (law.transfer_function().unwrap(), words.compensator().transfer_function().unwrap());
     for exponent in -40..60 {
-        let frequency = 10_f64.powf(0.1 * f64::from(exponent));
+        let frequency = portable::pow(10.0, 0.1 * f64::from(exponent));
         let [one, other] = [&given, &again].map(|function| function.at_frequency(frequency));
         assert!(
             (one - other).norm_sqr().sqrt() <= 1e-12 * one.norm_sqr().sqrt(),
