@@ -20,6 +20,7 @@ mod labview;
 mod layout;
 mod parquet;
 mod text;
+mod thousands;
 mod times;
 
 pub use column::{Column, Measurand, Sought, TIME_NAMES, TIMES};

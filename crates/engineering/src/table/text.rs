@@ -7,6 +7,7 @@ use super::faults::Faults;
 use super::heading::{bare, unit_meant};
 use super::labview;
 use super::layout::{self, is_row, lines};
+use super::thousands::ThousandsSigns;
 use super::{ColumnNumbers, Heading};
 use crate::project::{Place, RawFinding};
 use crate::spelling::nearest;
@@ -200,6 +201,7 @@ impl TextRows {
             incomplete: Faults::default(),
             wrong: vec![Faults::default(); columns.len()],
             clocks: vec![ClockReading::default(); columns.len()],
+            signs: vec![ThousandsSigns::default(); columns.len()],
             point: None,
             comma: None,
         };
@@ -222,9 +224,11 @@ impl TextRows {
                 reading.skip(row);
             }
         }
-        let TextReading { numbers, incomplete, wrong, point, comma, .. } = reading;
+        let TextReading { numbers, incomplete, wrong, signs, point, comma, .. } = reading;
         let mut found = incomplete.told(self.starts.len());
         found.extend(wrong.into_iter().flat_map(|wrong| wrong.told(self.starts.len())));
+        let signs = signs.into_iter().zip(columns);
+        found.extend(signs.filter_map(|(signs, column)| signs.told(self.text, column)));
         found.extend(two_signs(content, point, comma));
         (numbers, found)
     }
@@ -259,6 +263,8 @@ struct TextReading {
     incomplete: Faults,
     /// What is not a number, for each column.
     wrong: Vec<Faults>,
+    /// How the numbers of each column are written.
+    signs: Vec<ThousandsSigns>,
     /// Stamps of each column.
     clocks: Vec<ClockReading>,
     /// The first number with a decimal point, and the first with a decimal comma.
@@ -272,6 +278,11 @@ impl TextReading {
         let value = if is_clock { None } else { column.scale.read(cell.text) };
         if self.point.is_none() && value.is_some() && cell.text.contains('.') {
             self.point = Some(cell.place(self.text));
+        }
+        if value.is_some()
+            && let Some(signs) = self.signs.get_mut(slot)
+        {
+            signs.take(cell);
         }
         let value = value.unwrap_or_else(|| self.other(row, slot, column, cell));
         if let Some(values) = self.numbers.columns.get_mut(slot) {
@@ -295,6 +306,7 @@ impl TextReading {
             && let Some(value) = column.scale.read(&cell.text.replace(',', "."))
         {
             self.comma.get_or_insert(cell.place(self.text));
+            self.signs.get_mut(slot).into_iter().for_each(|signs| signs.take(cell));
             return value;
         }
         let place = cell.place(self.text);
