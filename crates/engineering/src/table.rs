@@ -15,6 +15,7 @@ mod clock;
 mod column;
 mod decode;
 mod faults;
+mod gauge;
 mod heading;
 mod labview;
 mod layout;

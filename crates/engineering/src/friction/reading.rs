@@ -123,6 +123,12 @@ fn recording(
     let (times, motion) = (numbers.next()?, numbers.next()?);
     let mut next = |column: Option<&Column>| column.and_then(|_| numbers.next()).unwrap_or_default();
     let [pressures_a, pressures_b, loads] = [pressure_a, pressure_b, force].map(&mut next);
+    for (column, pressures) in [(pressure_a, &pressures_a), (pressure_b, &pressures_b)] {
+        column.into_iter().for_each(|column| table.check_gauge(column, pressures, |row| row, findings));
+    }
+    if findings.error_count() > before {
+        return None;
+    }
     let spacing = RowSpacing::of(&times);
     let (time_step, motion, [pressures_a, pressures_b, loads]) = if is_software_timed(&spacing, &times) {
         let even = |values: &[f64]| interpolated(&times, values, spacing.usual);

@@ -2,7 +2,7 @@
 
 use super::{Known, Taken};
 use crate::project::{Findings, RawFinding, TestSignal};
-use crate::quantity::{UnitScale, display};
+use crate::quantity::{PRESSURE, UnitScale, display};
 use crate::table::{Column, MeasuredTable};
 
 /// What the numbers of a column usually reach, in SI: least and most.
@@ -70,6 +70,9 @@ pub(super) fn check(
         if !(limits[0]..=limits[1]).contains(&level) {
             findings.push(implausible(table, (*signal, column), level, limits, of_supply));
             continue;
+        }
+        if std::ptr::eq(signal.dimension(), &PRESSURE) {
+            table.check_gauge(column, values, |row| rows.get(row).copied().unwrap_or(0), findings);
         }
         let most = greatest(*signal, nominal_voltage);
         for (row, value) in rows.iter().zip(values).filter(|(_, value)| value.abs() > most) {

@@ -1,0 +1,57 @@
+//! Gauge pressures below the atmosphere.
+
+use super::{Column, MeasuredTable};
+use crate::project::{Findings, RawFinding};
+use crate::quantity::{PRESSURE, display};
+
+/// Pa, gauge pressure of a vacuum.
+const VACUUM: f64 = -101_325.0;
+/// Pa, below which a twentieth of a column is when the zero of its transducer is off, rather than
+/// by noise.
+const ZERO_OFF: f64 = -2e4;
+
+impl MeasuredTable {
+    /// Refuses a column with pressures below a vacuum, and warns of one that is below the
+    /// atmosphere by more than noise. `row` is the row of the table for each value; NaN is no
+    /// value.
+    pub(crate) fn check_gauge(
+        &self,
+        column: &Column,
+        values: &[f64],
+        row: impl Fn(usize) -> usize,
+        findings: &mut Findings,
+    ) {
+        let heading = self.heading(column);
+        let shown = |pressure: f64| display(pressure, &PRESSURE, 3);
+        let is_impossible = |value: &f64| *value < VACUUM;
+        if let Some(first) = values.iter().position(is_impossible) {
+            let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let count = values.iter().filter(|value| is_impossible(value)).count();
+            let message = format!(
+                "`{heading}` falls to {}, which is below a vacuum, in {count} of {} rows",
+                shown(least),
+                values.len()
+            );
+            let found = self.error(row(first), column, message, findings);
+            let found = found.expected(format!("a gauge pressure above {}", display(VACUUM, &PRESSURE, 4)));
+            findings.push(found.help("is the zero of its transducer off, or the sign or unit wrong?"));
+            return;
+        }
+        let mut sorted: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
+        if sorted.is_empty() {
+            return;
+        }
+        let index = sorted.len() / 20;
+        let low = *sorted.select_nth_unstable_by(index, f64::total_cmp).1;
+        if low < ZERO_OFF {
+            let negative = sorted.iter().filter(|value| **value < 0.0).count();
+            let place = self.headings.get(column.index).map(|heading| heading.place).unwrap_or_default();
+            let message = format!(
+                "`{heading}` is below the atmosphere in {negative} of {} rows, by {}: the zero of its transducer may be off",
+                sorted.len(),
+                shown(-low)
+            );
+            findings.push(RawFinding::warning(place, message));
+        }
+    }
+}
