@@ -18,6 +18,7 @@ mod problem;
 mod reading;
 mod shaking;
 mod shown;
+mod signs;
 mod told;
 
 pub use motion::ConstantVelocity;

@@ -49,6 +49,7 @@ pub mod simulate;
 pub mod sizing;
 pub mod specification;
 pub mod table;
+mod tendency;
 pub mod trial;
 
 pub(crate) use phea_project::{self as project, catalogue, source};

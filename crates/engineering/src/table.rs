@@ -114,11 +114,11 @@ impl MeasuredTable {
         ends.map_or(Place::default(), |(first, last)| Place { end: last.place.end, ..first.place })
     }
 
-    /// The numbers of these columns. What is not a number is an error, and a row with more or fewer
-    /// values than there are columns; gaps and a last row that was cut off are reported in the
-    /// result.
+    /// The numbers of these columns, with the opposite sign where a column is reversed. What is not
+    /// a number is an error, and a row with more or fewer values than there are columns; gaps and a
+    /// last row that was cut off are reported in the result.
     pub fn numbers(&self, columns: &[&Column], findings: &mut Findings) -> ColumnNumbers {
-        match &self.rows {
+        let mut numbers = match &self.rows {
             TableRows::Text(rows) => {
                 let (numbers, found) =
                     rows.numbers(findings.content(rows.text), self.headings.len(), columns);
@@ -126,7 +126,11 @@ impl MeasuredTable {
                 numbers
             }
             TableRows::Parquet(rows) => rows.numbers(&self.headings, columns, findings),
-        }
+        };
+        let reversed = columns.iter().zip(&mut numbers.columns).filter(|(column, _)| column.is_reversed);
+        // zero stays zero, without a sign
+        reversed.for_each(|(_, values)| values.iter_mut().for_each(|value| *value = 0.0 - *value));
+        numbers
     }
 
     /// The same where nothing may be missing: gaps, a last row that was cut off and rows that hold

@@ -225,6 +225,8 @@ pub struct RecordedColumn {
     pub column: Option<String>,
     /// Its unit; absent: as the heading says.
     pub unit: Option<String>,
+    /// The signal is its numbers with the opposite sign.
+    pub reversed: bool,
 }
 
 impl Identify {
@@ -300,5 +302,7 @@ impl RecordedColumn {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         v.text(plain("column", "Its heading; absent: the name of the signal."), &mut self.column, false);
         v.text(plain("unit", "Its unit; absent: as the heading says."), &mut self.unit, false);
+        let k = plain("reversed", "Read with the opposite sign; absent: as written.");
+        v.flag(k, &mut self.reversed);
     }
 }

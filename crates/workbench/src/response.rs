@@ -14,8 +14,18 @@ pub(crate) use figures::pictures;
 pub use files::files;
 
 use num_complex::Complex64;
+use phea_dynamics::portable::argument;
 
+use crate::answer::significant;
+use crate::quantity::DisplayUnit;
 use crate::rig::Rig;
+
+/// Points, the lowest frequencies first, that show the sign of a response.
+const LOWEST: usize = 3;
+/// Cosine of the angle between a response and its plant, below which they are opposite.
+const OPPOSITE: f64 = -0.5;
+/// Degrees by which a reversed force lags the opposite of its command.
+const REVERSED_LAG: [f64; 2] = [-15.0, 105.0];
 
 /// A member, and the linear plant of a project at its frequencies.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +44,42 @@ impl Compared {
         let plant =
             plant.map(|rig| member.points.iter().map(|point| rig.response(point.frequency)).collect());
         Compared { member, plant }
+    }
+
+    /// Whether the output goes against the input at the lowest frequencies: with a plant, in
+    /// comparison with it; without, a valve that fills a chamber leads to a force that lags its
+    /// command by 0 to 90 degrees, and a reversed one by 180 degrees more.
+    pub(crate) fn is_reversed(&self) -> bool {
+        let lowest = self.member.points.iter().take(LOWEST);
+        let is_opposite = |(index, point): (usize, &phea_dynamics::spectrum::SpectralPoint)| {
+            let plant = self.plant.as_ref().and_then(|plant| plant.get(index));
+            match plant {
+                Some(plant) => {
+                    let along = (point.response * plant.conj()).re;
+                    along < OPPOSITE * (point.response.norm_sqr() * plant.norm_sqr()).sqrt()
+                }
+                None => {
+                    let lag = -argument(-point.response).to_degrees();
+                    (REVERSED_LAG[0]..=REVERSED_LAG[1]).contains(&lag)
+                }
+            }
+        };
+        let is_of_force = self.member.units == ["V", "N"];
+        is_of_force && !self.member.points.is_empty() && lowest.enumerate().all(is_opposite)
+    }
+
+    /// Warnings on the record, in sentences without a full stop.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        let Some(lowest) = self.member.points.first().filter(|_| self.is_reversed()) else {
+            return Vec::new();
+        };
+        let [input, output] = self.member.signals;
+        vec![format!(
+            "{}: `{output}` goes against `{input}`: at {} Hz its phase is {} degrees, and a positive command extends the rod; state `{output} = {{ reversed = true }}` in its [[identify.response]], or `{input} = {{ reversed = true }}`",
+            self.member.file,
+            significant(DisplayUnit::HERTZ.of(lowest.frequency), 3),
+            significant(argument(lowest.response).to_degrees(), 3),
+        )]
     }
 
     /// Discs that hold the plant, and how far it is away at most, in dB.

@@ -62,6 +62,7 @@ mod prefilter_gain;
 mod pressure_feedback;
 mod proof;
 mod proof_region;
+mod recorded_signs;
 mod recorded_tables;
 mod region_coverage;
 mod relaxed_limits;

@@ -1,3 +1,4 @@
+use super::signs;
 use crate::identify::IdentifyError;
 use crate::project::{Findings, Project};
 use crate::quantity::{FORCE, LENGTH, PRESSURE, TIME, VELOCITY};
@@ -126,6 +127,7 @@ fn recording(
     for (column, pressures) in [(pressure_a, &pressures_a), (pressure_b, &pressures_b)] {
         column.into_iter().for_each(|column| table.check_gauge(column, pressures, |row| row, findings));
     }
+    signs::velocity_along_position(&table, position, velocity, &motion, findings);
     if findings.error_count() > before {
         return None;
     }
@@ -137,17 +139,17 @@ fn recording(
         let step = time_step(&table, time?, &times, "a run of the cylinder", findings)?;
         (step, motion, [pressures_a, pressures_b, loads])
     };
-    table.close(findings);
     let at = |values: &[f64], row: usize| values.get(row).copied().unwrap_or(0.0);
     let [a, b] = known.areas;
     let drive = |row: usize| a * at(&pressures_a, row) - b * at(&pressures_b, row) - at(&loads, row);
-    Some(FrictionRecording {
-        file: file.to_string(),
-        time_step,
-        forces: (0..motion.len()).map(drive).collect(),
-        has_position: position.is_some(),
-        positions: if position.is_some() { motion } else { integrated(&motion, time_step) },
-    })
+    let forces: Vec<f64> = (0..motion.len()).map(drive).collect();
+    let positions = if position.is_some() { motion } else { integrated(&motion, time_step) };
+    let pushing = [pressure_a, pressure_b, force];
+    signs::force_along_motion(&table, position.or(velocity)?, pushing, [&positions, &forces], findings);
+    table.close(findings);
+    let (file, has_position) = (file.to_string(), position.is_some());
+    let is_right = findings.error_count() == before;
+    is_right.then_some(FrictionRecording { file, time_step, positions, has_position, forces })
 }
 
 /// The longest time between two rows that a line bridges, in usual ones.

@@ -10,6 +10,7 @@
 
 mod assembled;
 mod plausible;
+mod polarity;
 mod rows;
 
 use phea_dynamics::order::ends;
@@ -96,6 +97,21 @@ pub fn recordings(
     Ok(recorded)
 }
 
+/// The signals with what the project says of their columns, in the order of [`TestSignal::ALL`].
+fn sought(declared: &RecordedTest) -> Vec<Sought<'_>> {
+    let all = TestSignal::ALL.iter().zip(&MEASURANDS);
+    let of = |(signal, measurand): (&TestSignal, &'static Measurand)| {
+        let column = declared.column(*signal);
+        Sought {
+            measurand,
+            heading: column.and_then(|column| column.column.as_deref()),
+            unit: column.and_then(|column| column.unit.as_deref()),
+            is_reversed: column.is_some_and(|column| column.reversed),
+        }
+    };
+    all.map(of).collect()
+}
+
 /// The test of one file.
 fn recording(
     declared: &RecordedTest,
@@ -104,15 +120,7 @@ fn recording(
     findings: &mut Findings,
 ) -> Option<(Recording, FileContents)> {
     let separator = declared.separator.as_ref().and_then(|text| text.chars().next());
-    let sought = TestSignal::ALL.iter().zip(&MEASURANDS).map(|(signal, measurand)| {
-        let column = declared.column(*signal);
-        Sought {
-            measurand,
-            heading: column.and_then(|column| column.column.as_deref()),
-            unit: column.and_then(|column| column.unit.as_deref()),
-        }
-    });
-    let sought: Vec<Sought<'_>> = sought.collect();
+    let sought = sought(declared);
     let table = MeasuredTable::read(&declared.file, bytes, &sought, separator, findings)?;
     let Chosen { columns, unused } = columns(declared, &table, &sought, known, findings)?;
     let circuit = circuit(declared, &columns);
@@ -134,6 +142,9 @@ fn recording(
         plausible::check(&table, &columns, &taken, (&used, known), findings);
         is_above_tank(&table, &columns, &taken, &used, known, findings);
     }
+    if findings.error_count() == before {
+        polarity::check(&table, &columns, &taken, circuit, findings);
+    }
     let whole = table.header_place();
     if taken.rows() < FEWEST_ROWS && findings.error_count() == before {
         let found = RawFinding::error(whole, format!("{} rows are too few for a test", taken.rows()));
@@ -146,6 +157,7 @@ fn recording(
         heading: table.heading(column).to_string(),
         signal: *signal,
         unit: column.unit.clone(),
+        is_reversed: column.is_reversed,
         range: ends(taken.of(*signal).unwrap_or_default().iter().copied()),
         gaps,
     });

@@ -9,6 +9,7 @@ use crate::quantity::{FLOW, LENGTH, PRESSURE, TIME, VOLUME};
 use crate::response::{SampledPair, time_step};
 use crate::source::Source;
 use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES, not_increasing};
+use crate::tendency::Tendency;
 
 /// A recording of a blocked line.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,8 +77,7 @@ fn record(file: &str, bytes: Vec<u8>, piston_area: f64, findings: &mut Findings)
         return None;
     }
     let before = findings.error_count();
-    let wanted: Vec<&Column> =
-        [Some(&pressure), Some(&displaced), time.as_ref()].into_iter().flatten().collect();
+    let wanted: Vec<&Column> = [&pressure, &displaced].into_iter().chain(time.as_ref()).collect();
     let mut numbers = table.all_numbers(&wanted, findings).into_iter();
     let (pressures, values) = (numbers.next()?, numbers.next()?);
     let times = numbers.next().unwrap_or_default();
@@ -107,8 +107,30 @@ fn record(file: &str, bytes: Vec<u8>, piston_area: f64, findings: &mut Findings)
             output: pressures,
         }));
     }
+    table.check_gauge(&pressure, &pressures, |row| row, findings);
+    rises_with_volume(&table, [&pressure, &displaced], [&pressures, &volumes], findings);
     table.close(findings);
-    Some(LineRecord::Rise(RiseRecord { file: file.to_string(), source: from, times, volumes, pressures }))
+    let is_right = findings.error_count() == before;
+    let file = file.to_string();
+    is_right.then_some(LineRecord::Rise(RiseRecord { file, source: from, times, volumes, pressures }))
+}
+
+/// Refuses a record whose pressure falls while its volume grows.
+fn rises_with_volume(
+    table: &MeasuredTable,
+    columns: [&Column; 2],
+    [pressures, volumes]: [&[f64]; 2],
+    findings: &mut Findings,
+) {
+    let together = Tendency::of(volumes, pressures).filter(Tendency::is_opposite);
+    let Some(Tendency { correlation, rows }) = together else { return };
+    let [pressure, volume] = columns.map(|column| table.heading(column));
+    let message = format!(
+        "`{pressure}` falls while `{volume}` fills the line (correlation {correlation:.2} over {rows} rows)"
+    );
+    let found = RawFinding::error(table.header_place(), message);
+    let found = found.expected("a pressure that rises with the oil in the line");
+    findings.push(found.help(format!("change the sign of `{volume}`")));
 }
 
 fn are_enough(table: &MeasuredTable, rows: &[f64], findings: &mut Findings) -> bool {

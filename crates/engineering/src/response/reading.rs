@@ -65,6 +65,7 @@ fn pair(declared: &RecordedResponse, bytes: Vec<u8>, findings: &mut Findings) ->
         measurand,
         heading: stated(measurand.name).and_then(|column| column.column.as_deref()),
         unit: stated(measurand.name).and_then(|column| column.unit.as_deref()),
+        is_reversed: stated(measurand.name).is_some_and(|column| column.reversed),
     });
     let sought: Vec<Sought<'_>> = sought.collect();
     let separator = declared.separator.as_ref().and_then(|text| text.chars().next());

@@ -120,11 +120,17 @@ fn of_file(
     let measurands: Vec<Measurand> =
         declared.signals.iter().map(|one| Measurand::of(one.signal, one.dimension())).collect();
     let time_unit = declared.time_column.as_ref().map(|_| declared.time_unit.as_deref().unwrap_or(TIME.si));
-    let time = Sought { measurand: &TIMES, heading: declared.time_column.as_deref(), unit: time_unit };
+    let time = Sought {
+        measurand: &TIMES,
+        heading: declared.time_column.as_deref(),
+        unit: time_unit,
+        is_reversed: false,
+    };
     let named = declared.signals.iter().zip(&measurands).map(|(one, measurand)| Sought {
         measurand,
         heading: Some(one.column()),
         unit: Some(one.unit()),
+        is_reversed: false,
     });
     let sought: Vec<Sought<'_>> = std::iter::once(time).chain(named).collect();
     let table = MeasuredTable::read(path, bytes, &sought, None, findings)?;

@@ -48,6 +48,8 @@ pub struct Sought<'a> {
     pub heading: Option<&'a str>,
     /// Its unit; absent, that of the heading.
     pub unit: Option<&'a str>,
+    /// Its numbers have the opposite sign of the signal.
+    pub is_reversed: bool,
 }
 
 /// A column that was found.
@@ -59,6 +61,8 @@ pub struct Column {
     pub unit: String,
     /// Whether its numbers are shares.
     pub is_share: bool,
+    /// Whether the signal is its numbers with the opposite sign.
+    pub is_reversed: bool,
     pub(super) scale: UnitScale,
     /// Whether it may have stamps of a clock.
     pub(super) is_time: bool,
@@ -77,7 +81,7 @@ const BRACKETS: [char; 5] = ['[', '(', '{', '<', '/'];
 impl<'a> Sought<'a> {
     /// By its own name.
     pub fn by_name(measurand: &'a Measurand) -> Sought<'a> {
-        Sought { measurand, heading: None, unit: None }
+        Sought { measurand, heading: None, unit: None, is_reversed: false }
     }
 
     /// What the heading says of the unit, if it is that of the signal.
@@ -178,7 +182,8 @@ impl MeasuredTable {
         let is_time = std::ptr::eq(sought.measurand.dimension, &TIME);
         if is_time && self.is_clock(index, findings) {
             let scale = UnitScale::new(TIME.si, &TIME).ok()?;
-            return Some(Column { index, unit: TIME.si.to_string(), is_share: false, scale, is_time });
+            let unit = TIME.si.to_string();
+            return Some(Column { index, unit, is_share: false, is_reversed: false, scale, is_time });
         }
         let Some((unit, scale)) = sought.unit_of(sought.unit.unwrap_or(said)) else {
             findings.push(self.without_unit(sought, heading, sought.unit.unwrap_or(said)));
@@ -193,7 +198,7 @@ impl MeasuredTable {
             findings.push(RawFinding::warning(heading.place, message));
         }
         let is_share = sought.measurand.may_be_share && unit == "%";
-        Some(Column { index, unit, is_share, scale, is_time })
+        Some(Column { index, unit, is_share, is_reversed: sought.is_reversed, scale, is_time })
     }
 
     fn without_unit(&self, sought: &Sought<'_>, heading: &Heading, written: &str) -> RawFinding {

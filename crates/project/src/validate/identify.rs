@@ -1,7 +1,9 @@
 //! `[[identify.recording]]`.
 
 use super::Check;
-use crate::{IdentifiedUse, Identify, Project, RecordedTest, ResponseSignal, StaticTest, TestSignal};
+use crate::{
+    IdentifiedUse, Identify, Project, RecordedColumn, RecordedTest, ResponseSignal, StaticTest, TestSignal,
+};
 use phea_quantity::{self as quantity, Dimension, RATIO};
 
 /// Files that are there twice, units that do not fit, and signals that a test does not have.
@@ -19,8 +21,12 @@ pub(super) fn identify(identify: &Identify, check: &mut Check<'_, '_>) {
         let path = format!("identify.response[{index}]");
         separator(recorded.separator.as_deref(), &path, check);
         for (signal, column) in ResponseSignal::ALL.into_iter().zip(&recorded.columns) {
+            let path = format!("{path}.{}", signal.name());
+            if let Some(column) = column {
+                reversed(column, signal != ResponseSignal::Time, &path, check);
+            }
             if let Some(unit) = column.as_ref().and_then(|column| column.unit.as_deref()) {
-                unit_of(unit, signal.dimension(), &format!("{path}.{}", signal.name()), check);
+                unit_of(unit, signal.dimension(), &path, check);
             }
         }
     }
@@ -64,10 +70,21 @@ fn columns(recorded: &RecordedTest, path: &str, check: &mut Check<'_, '_>) {
             check
                 .error(&path, format!("a {} test has no `{}`", test.name().replace('_', " "), signal.name()));
         }
+        let may_reverse = matches!(signal, TestSignal::Command | TestSignal::LeakFlow | TestSignal::Flow);
+        reversed(column, may_reverse, &path, check);
         let Some(unit) = &column.unit else { continue };
         let is_share = signal == TestSignal::Command && unit == "%";
         let dimension = if is_share { &RATIO } else { signal.dimension() };
         unit_of(unit, dimension, &path, check);
+    }
+}
+
+/// Times, pressures and temperatures have one sign.
+fn reversed(column: &RecordedColumn, may_reverse: bool, path: &str, check: &mut Check<'_, '_>) {
+    if column.reversed && !may_reverse {
+        let message = "only a command, a flow or a force can be reversed";
+        let help = "where the columns of two ports are exchanged, name each by its `column`";
+        check.error_with_help(&format!("{path}.reversed"), message, help);
     }
 }
 

@@ -37,6 +37,8 @@ struct ColumnBody<'a> {
     heading: &'a str,
     signal: &'static str,
     read_in: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reversed: Option<bool>,
     unit: &'static str,
     range: [Number; 2],
     gaps: usize,
@@ -128,6 +130,7 @@ fn column(column: &ColumnContents) -> ColumnBody<'_> {
         heading: &column.heading,
         signal: column.signal.name(),
         read_in: &column.unit,
+        reversed: column.is_reversed.then_some(true),
         unit: column.signal.dimension().si,
         range: column.range.map(Number),
         gaps: column.gaps,
@@ -142,10 +145,12 @@ fn row(column: &ColumnContents) -> [Cell; 6] {
         TestSignal::OilTemperature => DisplayUnit::DEGREE_CELSIUS,
         _ => DisplayUnit::BAR,
     };
+    let signal = column.signal.name().replace('_', " ");
+    let holds = if column.is_reversed { format!("{signal}, reversed") } else { signal };
     let [least, greatest] = column.range.map(|value| Cell::number(unit.of(value), 4));
     [
         Cell::Code(column.heading.clone()),
-        Cell::from(column.signal.name().replace('_', " ")),
+        Cell::from(holds),
         least,
         greatest,
         Cell::from(unit.symbol),

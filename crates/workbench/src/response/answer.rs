@@ -37,6 +37,8 @@ struct AnsweredResponse<'a> {
     lines_not_excited: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     linear_plant: Option<BesidePlant>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    warnings: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -115,5 +117,6 @@ fn member(compared: &Compared) -> AnsweredResponse<'_> {
             within_confidence_95: held,
             largest_difference_db: Number(apart),
         }),
+        warnings: compared.warnings(),
     }
 }

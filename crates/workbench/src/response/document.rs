@@ -35,6 +35,7 @@ pub(crate) fn document(found: &[Compared]) -> Document {
         }
         out.sentences(left_out(member));
         out.sentences(agreement(compared));
+        out.sentences(compared.warnings().into_iter().map(|warning| format!("{warning}.")));
     }
     out
 }

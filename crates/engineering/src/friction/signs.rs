@@ -1,0 +1,99 @@
+//! Signals of a run that go against each other.
+//!
+//! Friction takes energy from the mass: what drives it, A_A p_A - A_B p_B - F_e, acts in the
+//! direction of the motion, over both ways whatever the zero of the instruments is.
+
+use phea_dynamics::order;
+
+use crate::project::{Findings, RawFinding};
+use crate::table::{Column, MeasuredTable};
+use crate::tendency::Tendency;
+
+/// Most blocks of rows that a run is averaged over.
+const BLOCKS: usize = 1000;
+/// Path over the distance between its ends, beyond which a run goes both ways.
+const BOTH_WAYS: f64 = 3.0;
+/// m, shortest distance between the ends of a run that slides. Less is a piston on its bristles,
+/// whose elastic force is in phase with the position, not the velocity.
+const SLIDING: f64 = 2e-4;
+
+/// Refuses a run in which the recorded velocity goes against the slope of the position.
+pub(super) fn velocity_along_position(
+    table: &MeasuredTable,
+    position: Option<&Column>,
+    velocity: Option<&Column>,
+    positions: &[f64],
+    findings: &mut Findings,
+) {
+    let (Some(position), Some(velocity)) = (position, velocity) else { return };
+    let numbers = table.numbers(&[velocity], findings);
+    let velocities = numbers.columns.first().map(Vec::as_slice).unwrap_or_default();
+    let [distances, means] = [moved(positions), averaged(velocities)];
+    let opposite = Tendency::about_zero(&means, &distances).filter(Tendency::is_opposite);
+    let Some(tendency) = opposite else { return };
+    let [position, name] = [position, velocity].map(|column| table.heading(column));
+    let message = format!("`{name}` is against the slope of `{position}` ({})", shown(tendency));
+    let place = table.headings.get(velocity.index).map(|heading| heading.place).unwrap_or_default();
+    let found = RawFinding::error(place, message).expected("the velocity with which the position grows");
+    findings.push(found.help(format!("change the sign of `{name}` or of `{position}`")));
+}
+
+/// Refuses a run in which the force that drives the mass is against its motion.
+pub(super) fn force_along_motion(
+    table: &MeasuredTable,
+    motion: &Column,
+    pushing: [Option<&Column>; 3],
+    [positions, forces]: [&[f64]; 2],
+    findings: &mut Findings,
+) {
+    let [least, most] = order::ends(positions.iter().copied());
+    if most - least < SLIDING {
+        return;
+    }
+    let [distances, means] = [moved(positions), averaged(forces)];
+    let path: f64 = distances.iter().map(|distance| distance.abs()).sum();
+    let goes_both_ways = path > BOTH_WAYS * distances.iter().sum::<f64>().abs();
+    let tendency = match goes_both_ways {
+        true => Tendency::of(&means, &distances),
+        false => Tendency::about_zero(&means, &distances),
+    };
+    let Some(tendency) = tendency.filter(Tendency::is_opposite) else { return };
+    let quoted = |column: &&Column| format!("`{}`", table.heading(column));
+    let names: Vec<String> = pushing.iter().flatten().map(quoted).collect();
+    let motion_name = quoted(&motion);
+    let message = format!(
+        "the force that drives the piston, of {}, is against its motion by {motion_name} ({})",
+        names.join(", "),
+        shown(tendency)
+    );
+    let place = table.headings.get(motion.index).map(|heading| heading.place).unwrap_or_default();
+    let found = RawFinding::error(place, message)
+        .expected("A_A p_A - A_B p_B - F_e in the direction of the motion, which friction opposes");
+    let exchanged = if names.len() > 1 { ", or the columns of the ports are exchanged" } else { "" };
+    let zero = if goes_both_ways { "" } else { ", or their zero is off by more than the friction" };
+    findings.push(found.help(format!(
+        "{motion_name} grows as the rod extends, and a load cell reads positive where the rod pushes: one of them has the other sign{exchanged}{zero}"
+    )));
+}
+
+fn shown(Tendency { correlation, rows }: Tendency) -> String {
+    format!("correlation {correlation:.2} over {rows} blocks of rows")
+}
+
+/// Rows of a block.
+fn width(values: &[f64]) -> usize {
+    values.len().div_ceil(BLOCKS).max(1)
+}
+
+/// Distance moved from block to block.
+fn moved(positions: &[f64]) -> Vec<f64> {
+    let width = width(positions);
+    let end = positions.last().copied();
+    let starts: Vec<f64> = positions.iter().step_by(width).copied().chain(end).collect();
+    starts.windows(2).filter_map(|pair| Some(pair.last()? - pair.first()?)).collect()
+}
+
+/// Mean of each block.
+fn averaged(values: &[f64]) -> Vec<f64> {
+    values.chunks(width(values)).map(|block| block.iter().sum::<f64>() / block.len() as f64).collect()
+}
