@@ -43,7 +43,7 @@ use phea_hydraulics::servovalve::{LeakageModel, STATIC_COEFFICIENTS, StaticCoeff
 
 use self::fit::Fit;
 use self::variables::Variables;
-use crate::project::{Project, Refusal};
+use crate::project::{Project, RatedFlow, Refusal, ValveCoefficients};
 
 /// Names of the coefficients, in order, and their units.
 pub const COEFFICIENT_NAMES: [(&str, &str); STATIC_COEFFICIENTS] = [
@@ -78,6 +78,9 @@ pub struct Known {
     pub leakage_model: LeakageModel,
     /// Rated flow in m3/s and its drop in Pa, where a data sheet states them.
     pub rated_flow: Option<[f64; 2]>,
+    /// m³/(s·√Pa), of both edges in series that a positive and a negative command open, where the
+    /// valve is declared.
+    pub path_coefficients: Option<[f64; 2]>,
 }
 
 impl Default for Known {
@@ -90,6 +93,7 @@ impl Default for Known {
             tare_pressure: None,
             leakage_model: LeakageModel::EachEdge,
             rated_flow: None,
+            path_coefficients: None,
         }
     }
 }
@@ -101,6 +105,7 @@ impl Known {
         let valve = &actuator.valve;
         Known {
             rated_flow: valve.flow.rating().map(|rated| [rated.flow, rated.pressure_drop]),
+            path_coefficients: Some(path_coefficients(&valve.flow)),
             nominal_voltage: valve.nominal_voltage,
             transition_pressure: valve.transition_pressure,
             supply_pressure: Some(actuator.supply.pressure),
@@ -108,6 +113,17 @@ impl Known {
             tare_pressure: valve.tare_pressure,
             leakage_model: valve.leakage_model,
         }
+    }
+}
+
+/// Coefficients of the two edges in series that a positive and a negative command open.
+fn path_coefficients(flow: &ValveCoefficients<RatedFlow>) -> [f64; 2] {
+    match flow {
+        ValveCoefficients::Edges { edges, .. } => {
+            let series = |one: f64, other: f64| 1.0 / (1.0 / (one * one) + 1.0 / (other * other)).sqrt();
+            [series(edges.supply_to_a, edges.b_to_tank), series(edges.supply_to_b, edges.a_to_tank)]
+        }
+        ValveCoefficients::Rated(rated) => [rated.flow / rated.pressure_drop.sqrt(); 2],
     }
 }
 

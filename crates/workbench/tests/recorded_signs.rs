@@ -225,6 +225,33 @@ fn a_force_against_its_command_is_warned_of_with_the_key() {
     assert_eq!(warnings(-1.0, "command = { reversed = true }"), [""; 0]);
 }
 
+/// The flow that the valve of the example passes at each command, times a factor.
+#[test]
+fn a_flow_that_the_declared_valve_does_not_pass_is_named_with_its_unit() {
+    // K of edges 3 and 6 in series, and of 5 and 4. ORIGIN: thesis Table 5.1
+    let path = |one: f64, other: f64| one * other / (one * one + other * other).sqrt();
+    let [positive, negative] = [path(3.2e-7, 3.85e-7), path(2.0e-7, 2.5e-7)];
+    let known = Known::of(&load(HOSE, &[], &[]).project);
+    let read = |factor: f64| {
+        let mut text = String::from("time_s,command_v,supply_pressure_bar,flow_l_per_min\n");
+        for row in 0..ROWS {
+            let command = 3.0 * (TAU * row as f64 / ROWS as f64).sin();
+            let path = if command > 0.0 { positive } else { negative };
+            let flow = path * command.abs() / 10.0 * 70e5_f64.sqrt() * 6e4;
+            writeln!(text, "{row},{command:.6},70,{:.6}", factor * flow).unwrap();
+        }
+        let source = Memory::default().with("flow.csv", text);
+        recordings(&source, &[RecordedTest::of("flow.csv")], &known)
+    };
+    assert!(read(1.0).unwrap().warnings.is_empty());
+    assert!(read(1.5).unwrap().warnings.is_empty());
+    let gallons = read(1.0 / 3.785).unwrap();
+    let [warned] = gallons.warnings.as_slice() else { panic!("{:?}", gallons.warnings) };
+    assert!(warned.help.as_deref().unwrap().contains("unit = \"gpm\""), "{warned:?}");
+    let refusal = read(1000.0).unwrap_err();
+    assert!(refusal.to_string().contains("unit = \"mL/min\""), "{refusal}");
+}
+
 /// Blocked ports go from tank to supply pressure: a transducer that reads 0.5 bar too little is
 /// below the atmosphere for half of the test, and one that reads 2 bar too little below a vacuum.
 #[test]

@@ -11,6 +11,7 @@
 mod assembled;
 mod plausible;
 mod polarity;
+mod rated;
 mod rows;
 
 use phea_dynamics::order::ends;
@@ -144,6 +145,7 @@ fn recording(
     }
     if findings.error_count() == before {
         polarity::check(&table, &columns, &taken, circuit, findings);
+        rated::check(&table, &columns, &taken, (circuit, known), findings);
     }
     let whole = table.header_place();
     if taken.rows() < FEWEST_ROWS && findings.error_count() == before {
