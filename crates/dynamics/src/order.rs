@@ -58,6 +58,20 @@ pub fn sort_numbers(numbers: &mut [f64]) {
     numbers.sort_by(f64::total_cmp);
 }
 
+/// The middle of some numbers, the upper one of an even count; NaN of none.
+///
+/// # Example
+/// ```
+/// use phea_dynamics::order::median;
+///
+/// assert_eq!(median(vec![5.0, -1.0, 2.0]), 2.0);
+/// assert!(median(vec![]).is_nan());
+/// ```
+pub fn median(mut numbers: Vec<f64>) -> f64 {
+    sort_numbers(&mut numbers);
+    numbers.get(numbers.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
 /// The least and the greatest of numbers, NaN left out; of none, infinity and minus infinity.
 ///
 /// # Example

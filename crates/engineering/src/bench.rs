@@ -22,6 +22,7 @@ use phea_hydraulics::servovalve::{OilLaw, SlowSpool, SpoolImperfection, TestStan
 
 use self::command_path::CommandPath;
 pub(crate) use self::instrument::Instruments;
+use crate::followed::{followed, roughness};
 pub use crate::project::StaticTest;
 use crate::project::{Bench, DeclaredActuator, FlowMeter, OilTemperature, SupplyModel};
 use crate::quantity::{DisplayUnit, TIME, display};
@@ -292,6 +293,7 @@ fn record(
         let leakage = state.ports.supply_flow + state.tare_flow;
         let leak_flow = instruments.flow(&settings.leak_meter, leakage, viscosity_ratio, &mut noise);
         let flow = instruments.flow(&meter, state.ports.port_flow, viscosity_ratio, &mut noise);
+        let command = instruments.recorded_command(command, &mut noise);
         let oil_temperature = oil.map(|(temperature, _)| temperature);
         found.rows.push(BenchRow {
             time,
@@ -305,8 +307,10 @@ fn record(
         });
     }
     if let Some(reversals) = settings.reversals.filter(|_| series == BenchSeries::Reversals) {
-        let commands = found.rows.iter().map(|row| (row.command, row.flow.abs()));
-        found.reversals = reversals::read(&commands.collect::<Vec<_>>(), &reversals, nominal_voltage, watch)?;
+        let recorded: Vec<f64> = found.rows.iter().map(|row| row.command).collect();
+        let commands = followed(&recorded, roughness(&recorded)).into_iter();
+        let rows = commands.zip(&found.rows).map(|(command, row)| (command, row.flow.abs()));
+        found.reversals = reversals::read(&rows.collect::<Vec<_>>(), &reversals, nominal_voltage, watch)?;
     }
     Ok(found)
 }

@@ -24,6 +24,7 @@ mod residuals;
 mod simple;
 mod told;
 mod variables;
+mod warm;
 
 pub use bootstrap::{Bootstrap, FEWEST_REPETITIONS};
 pub use contents::{ColumnContents, FileContents, RecordedFiles};
@@ -32,14 +33,16 @@ pub use in_use::{in_use, recorded_files};
 pub use joint::{COVERAGE, JointRegion, JointRegionError, SMALLEST_EFFECT, joint_region, with_valve};
 pub use misfit::{Misfit, MisfitPlace};
 pub use reading::recordings;
-pub(crate) use recording::median;
 pub use recording::{RecordedSignal, Recording, SignalKind};
 pub use simple::{CurveReading, NullMethod, NullReading, SimpleCalculations};
 pub use told::Untold;
+pub use warm::TestOil;
 
 use phea_dynamics::least_squares::Ending;
 use phea_dynamics::watch::{Stopped, Watch};
-use phea_hydraulics::servovalve::{LeakageModel, STATIC_COEFFICIENTS, StaticCoefficients, TestedValve};
+use phea_hydraulics::servovalve::{
+    LeakageModel, OilLaw, STATIC_COEFFICIENTS, StaticCoefficients, TestedValve,
+};
 
 use self::fit::Fit;
 use self::variables::Variables;
@@ -76,6 +79,10 @@ pub struct Known {
     pub tare_pressure: Option<f64>,
     /// Model of the leakage where the recordings do not decide.
     pub leakage_model: LeakageModel,
+    /// How the oil changes with its temperature.
+    pub oil: OilLaw,
+    /// degC, that the coefficients are to be stated at; absent: the mean of the files.
+    pub oil_reference: Option<f64>,
     /// Rated flow in m3/s and its drop in Pa, where a data sheet states them.
     pub rated_flow: Option<[f64; 2]>,
     /// m³/(s·√Pa), of both edges in series that a positive and a negative command open, where the
@@ -91,6 +98,8 @@ impl Default for Known {
             supply_pressure: None,
             tank_pressure: 0.0,
             tare_pressure: None,
+            oil: OilLaw::default(),
+            oil_reference: None,
             leakage_model: LeakageModel::EachEdge,
             rated_flow: None,
             path_coefficients: None,
@@ -101,7 +110,13 @@ impl Default for Known {
 impl Known {
     /// What a project states of its valve and of its supply; the defaults where it has no actuator.
     pub fn of(project: &Project) -> Known {
-        let Some(actuator) = &project.actuator else { return Known::default() };
+        let temperature = project.identify.as_ref().map(|one| one.oil_temperature).unwrap_or_default();
+        let oil =
+            OilLaw { viscosity_slope: temperature.viscosity_slope, density_slope: temperature.density_slope };
+        let oil_reference = temperature.reference;
+        let Some(actuator) = &project.actuator else {
+            return Known { oil, oil_reference, ..Known::default() };
+        };
         let valve = &actuator.valve;
         Known {
             rated_flow: valve.flow.rating().map(|rated| [rated.flow, rated.pressure_drop]),
@@ -111,6 +126,8 @@ impl Known {
             supply_pressure: Some(actuator.supply.pressure),
             tank_pressure: actuator.supply.tank_pressure,
             tare_pressure: valve.tare_pressure,
+            oil,
+            oil_reference,
             leakage_model: valve.leakage_model,
         }
     }
@@ -187,6 +204,8 @@ pub struct Identification {
     pub ending: Ending,
     /// What was taken as known.
     pub tested: TestedValve,
+    /// The oil, where its temperature was recorded.
+    pub oil: Option<TestOil>,
 }
 
 impl Identification {
@@ -246,11 +265,12 @@ impl From<Stopped> for IdentifyError {
 /// # Errors
 /// [`IdentifyError`] where the recordings cannot be explained by any valve, and when it is stopped.
 pub fn identify(
-    recordings: Vec<Recording>,
+    mut recordings: Vec<Recording>,
     known: &Known,
     search: Search,
     watch: Watch<'_>,
 ) -> Result<Identification, IdentifyError> {
+    let oil = warm::warm(&mut recordings, known.oil, known.oil_reference);
     let tested = TestedValve {
         nominal_voltage: known.nominal_voltage,
         transition_pressure: known.transition_pressure,
@@ -264,7 +284,7 @@ pub fn identify(
     let starts = first.starts;
     let (evidence, found) = best_model(first, (search.leakage_model, known.leakage_model), watch)?;
     let coefficients = found.coefficients();
-    let groups = found.together.groups();
+    let groups = found.together.groups(found.block_rows());
     let told = intervals::told(&found.minimum.linearised, &groups, &variables, &coefficients);
     let signals = found.signals();
     let mut intervals = intervals::intervals(&variables, &coefficients, &told.deviations);
@@ -302,6 +322,7 @@ pub fn identify(
         starts,
         ending: found.minimum.ending,
         tested,
+        oil,
         recordings,
     })
 }

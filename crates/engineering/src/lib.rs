@@ -25,6 +25,7 @@ pub mod csv;
 pub mod derived;
 pub mod design;
 pub mod family;
+mod followed;
 pub mod friction;
 pub mod identify;
 pub mod impossible;

@@ -134,8 +134,7 @@ fn check_sensitivities(tested: &TestedValve) {
     let commands = [-3.0, -0.2, -0.02, 0.04, 0.1, 2.0, 0.3, 0.05, -0.03, -1.0];
     for circuit in [PortCircuit::Blocked, PortCircuit::Connected] {
         let load = |command: f64| if circuit == PortCircuit::Connected { 1e5 * command } else { 0.0 };
-        let inputs =
-            commands.map(|command| TestInput { command, supply: SUPPLY, load_pressure: load(command) });
+        let inputs = commands.map(|command| TestInput::new(command, SUPPLY, load(command)));
         let found = tested.sensitive_outputs(&coefficients, circuit, &inputs);
         for index in 0..12 {
             let at = |share: f64| {
@@ -172,7 +171,7 @@ fn a_shut_edge_has_finite_derivatives() {
         null_bias: 0.0,
         hysteresis_width: 1e-6,
     };
-    let inputs = [TestInput { command: 10.0, supply: SUPPLY, load_pressure: 0.0 }];
+    let inputs = [TestInput::new(10.0, SUPPLY, 0.0)];
     let circuits = [PortCircuit::Blocked, PortCircuit::Connected];
     for (circuit, leakage_model) in
         circuits.into_iter().flat_map(|circuit| MODELS.map(|model| (circuit, model)))

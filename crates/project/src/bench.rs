@@ -10,7 +10,7 @@ pub use line::{LineBench, LineSide};
 
 use super::key::{Key, key, plain};
 use super::visitor::Visitor;
-use phea_quantity::{FLOW, PRESSURE, RATIO, TEMPERATURE, TEMPERATURE_COEFFICIENT, TIME};
+use phea_quantity::{FLOW, PRESSURE, RATIO, TEMPERATURE, TEMPERATURE_COEFFICIENT, TIME, VOLTAGE};
 
 /// The form of the command over a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -56,6 +56,8 @@ pub struct Bench {
     pub friction: Option<FrictionBench>,
     /// Pa, root mean square of the noise of every pressure.
     pub pressure_noise: f64,
+    /// V, root mean square of the noise of the recorded command.
+    pub command_noise: f64,
     /// Pa, range of every pressure transducer, from zero.
     pub pressure_range: f64,
     /// Bits of the converters of all signals; zero: no conversion.
@@ -180,6 +182,7 @@ impl Default for Bench {
             line: None,
             friction: None,
             pressure_noise: 5e3,
+            command_noise: 0.0,
             pressure_range: 100e5,
             converter_bits: 16,
             seed: 1,
@@ -223,6 +226,8 @@ impl Bench {
         v.table(k, &mut self.friction, FrictionBench::visit);
         let k = key("pressure_noise", &PRESSURE, "Root mean square of the noise of every pressure.");
         v.quantity(k.not_negative().or(5e3), &mut self.pressure_noise);
+        let k = key("command_noise", &VOLTAGE, "Root mean square of the noise of the recorded command.");
+        v.quantity(k.not_negative().or(0.0), &mut self.command_noise);
         let k = key("pressure_range", &PRESSURE, "Range of every pressure transducer, from zero.");
         v.quantity(k.positive().or(100e5), &mut self.pressure_range);
         let k = key("converter_bits", &RATIO, "Bits of the converters of all signals; 0: no conversion.");

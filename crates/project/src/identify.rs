@@ -1,10 +1,10 @@
 //! `[identify]`: recorded static tests of the servovalve and what their columns hold; recordings of
 //! a line and of the cylinder.
 
-use super::key::plain;
+use super::key::{key, plain};
 use super::visitor::Visitor;
-use phea_hydraulics::servovalve::PortCircuit;
-use phea_quantity::{Dimension, FLOW, FORCE, PRESSURE, TEMPERATURE, TIME, VOLTAGE};
+use phea_hydraulics::servovalve::{OilLaw, PortCircuit};
+use phea_quantity::{Dimension, FLOW, FORCE, PRESSURE, TEMPERATURE, TEMPERATURE_COEFFICIENT, TIME, VOLTAGE};
 
 /// One of the static tests of ISO 10770-1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,7 +118,7 @@ impl TestSignal {
             TestSignal::LeakFlow => "Column of the flow from the supply while the ports are blocked.",
             TestSignal::Flow => "Column of the flow from port A to port B.",
             TestSignal::OilTemperature => {
-                "Column of the temperature of the oil, which is printed but not used in the fit."
+                "Column of the temperature of the oil, with which flow and leakage change."
             }
         }
     }
@@ -192,6 +192,40 @@ pub struct Identify {
     pub line: Vec<String>,
     /// Recorded runs of the cylinder, as paths relative to the project file.
     pub friction: Vec<String>,
+    /// How the oil of the valve's tests changes with its temperature.
+    pub oil_temperature: TestOilTemperature,
+}
+
+/// What is known of the oil whose temperature is recorded. Units: degC, 1/degC.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TestOilTemperature {
+    /// That the coefficients are to be stated at; absent: the mean of the recordings.
+    pub reference: Option<f64>,
+    /// Share by which the dynamic viscosity falls with each degree.
+    pub viscosity_slope: f64,
+    /// Share by which the density falls with each degree.
+    pub density_slope: f64,
+}
+
+impl Default for TestOilTemperature {
+    fn default() -> TestOilTemperature {
+        let OilLaw { viscosity_slope, density_slope } = OilLaw::default();
+        TestOilTemperature { reference: None, viscosity_slope, density_slope }
+    }
+}
+
+impl TestOilTemperature {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let usual = TestOilTemperature::default();
+        let doc = "Temperature that the coefficients are stated at; absent: the mean of the recordings.";
+        v.optional(key("reference", &TEMPERATURE, doc).above(-50.0).at_most(150.0), &mut self.reference);
+        let doc = "Share by which the dynamic viscosity falls with each degree.";
+        let k = key("viscosity_slope", &TEMPERATURE_COEFFICIENT, doc).not_negative().at_most(0.2);
+        v.quantity(k.or(usual.viscosity_slope), &mut self.viscosity_slope);
+        let doc = "Share by which the density falls with each degree.";
+        let k = key("density_slope", &TEMPERATURE_COEFFICIENT, doc).not_negative().at_most(0.004);
+        v.quantity(k.or(usual.density_slope), &mut self.density_slope);
+    }
 }
 
 /// A file with a recorded test.
@@ -247,6 +281,8 @@ impl Identify {
         v.texts(k, &mut self.line);
         let k = plain("friction", "Recorded runs of the cylinder, for `--of friction`.");
         v.texts(k, &mut self.friction);
+        let k = plain("oil_temperature", "How the oil of the valve's tests changes with its temperature.");
+        v.table_or_default(k, &mut self.oil_temperature, TestOilTemperature::visit);
     }
 }
 

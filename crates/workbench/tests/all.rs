@@ -111,6 +111,7 @@ mod valve_coverage;
 mod valve_evidence;
 mod valve_identification;
 mod valve_in_use;
+mod valve_instruments;
 mod valve_numbers;
 mod valve_reversals;
 mod valve_tests;

@@ -246,7 +246,7 @@ fn true_inputs(
     };
     let last = (bench.duration / bench.sample_time) as usize;
     let mut inputs: Vec<TestInput> =
-        (0..=last).map(|row| TestInput { command: command(row), supply, load_pressure: 0.0 }).collect();
+        (0..=last).map(|row| TestInput::new(command(row), supply, 0.0)).collect();
     if test.circuit() == PortCircuit::Connected {
         let meter = bench.flow_meter;
         for _ in 0..20 {

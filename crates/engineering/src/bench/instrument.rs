@@ -13,6 +13,7 @@ pub(crate) struct Instruments {
     command: Option<Converter>,
     pressure: Option<Converter>,
     pressure_noise: f64,
+    command_noise: f64,
     bits: u32,
 }
 
@@ -24,6 +25,7 @@ impl Instruments {
             pressure: Converter::new(bits, [-LIVE_ZERO * settings.pressure_range, settings.pressure_range])
                 .ok(),
             pressure_noise: settings.pressure_noise,
+            command_noise: settings.command_noise,
             bits,
         }
     }
@@ -31,6 +33,15 @@ impl Instruments {
     /// The command that leaves the computer, in V.
     pub(super) fn command(&self, wanted: f64) -> f64 {
         self.command.as_ref().map_or(wanted, |converter| converter.rounded(wanted))
+    }
+
+    /// What is recorded of a command, in V.
+    pub(super) fn recorded_command(&self, command: f64, noise: &mut u64) -> f64 {
+        if self.command_noise == 0.0 {
+            return command;
+        }
+        let shown = command + self.command_noise * normal(noise);
+        self.command.as_ref().map_or(shown, |converter| converter.rounded(shown))
     }
 
     /// The reading of a pressure in Pa.

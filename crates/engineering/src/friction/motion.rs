@@ -5,7 +5,7 @@ use std::ops::Range;
 use phea_hydraulics::friction::SlidBlock;
 
 use super::FrictionRecording;
-use crate::identify::median;
+use phea_dynamics::order::median;
 
 /// Rows over which the piston slides at a constant velocity.
 #[derive(Clone, Debug, PartialEq)]

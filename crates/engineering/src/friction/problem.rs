@@ -13,7 +13,7 @@ use super::FrictionRecording;
 use super::motion::ConstantVelocity;
 use super::pressing::PressedRows;
 use super::shaking::ShakenRows;
-use crate::identify::median;
+use phea_dynamics::order::median;
 
 /// The variables that are of no recording: the coefficients, and the zero of the force.
 pub(super) const SHARED: usize = FRICTION_COEFFICIENTS + 1;

@@ -1,8 +1,9 @@
 //! Averages over neighbouring rows, from which a search over all rows begins.
 
-use phea_hydraulics::servovalve::{Supply, TestInput};
+use phea_hydraulics::servovalve::{Supply, TestInput, WarmOil};
 
-use super::recording::{RecordedSignal, Recording, median};
+use super::recording::{RecordedSignal, Recording};
+use phea_dynamics::order::median;
 
 /// About how many averages a recording has near null, and away from it, where leakage is still
 /// curved: its curvature within an average counts with the fourth power of their length.
@@ -29,11 +30,17 @@ pub(super) fn averaged(recording: &Recording) -> Recording {
         let all: Vec<f64> = recording.inputs.iter().map(of).collect();
         blocks.iter().map(|block| mean(&all, block)).collect()
     };
-    let commands = of_inputs(|input| input.command);
+    let commands = of_inputs(|input| input.command).into_iter();
+    let commands = commands.zip(of_inputs(|input| input.followed_command));
     let supplies = of_inputs(|input| input.supply.pressure);
     let tanks = of_inputs(|input| input.supply.tank_pressure);
     let loads = of_inputs(|input| input.load_pressure);
-    let inputs = commands.iter().zip(supplies).zip(tanks).zip(loads);
+    let densities = of_inputs(|input| input.oil.density_ratio).into_iter();
+    let viscosities = of_inputs(|input| input.oil.viscosity_ratio);
+    let oils = densities
+        .zip(viscosities)
+        .map(|(density_ratio, viscosity_ratio)| WarmOil { density_ratio, viscosity_ratio });
+    let inputs = commands.zip(supplies).zip(tanks).zip(loads).zip(oils);
     let signals = recording.signals.iter().map(|signal| RecordedSignal {
         kind: signal.kind,
         values: blocks.iter().map(|block| inner_mean(signal.values.get(block.clone())?)).collect(),
@@ -42,12 +49,17 @@ pub(super) fn averaged(recording: &Recording) -> Recording {
     Recording {
         file: recording.file.clone(),
         circuit: recording.circuit,
+        command_roughness: recording.command_roughness,
         times: these(&recording.times),
         inputs: inputs
-            .map(|(((command, pressure), tank_pressure), load_pressure)| TestInput {
-                command: *command,
-                supply: Supply { pressure, tank_pressure },
-                load_pressure,
+            .map(|(((((command, followed_command), pressure), tank_pressure), load_pressure), oil)| {
+                TestInput {
+                    command,
+                    followed_command,
+                    supply: Supply { pressure, tank_pressure },
+                    load_pressure,
+                    oil,
+                }
             })
             .collect(),
         oil_temperature: recording.oil_temperature.as_ref().map(these),
@@ -57,7 +69,7 @@ pub(super) fn averaged(recording: &Recording) -> Recording {
 
 /// Neighbouring rows that are averaged: fewer near null.
 fn blocks(recording: &Recording) -> Vec<std::ops::Range<usize>> {
-    let commands: Vec<f64> = recording.inputs.iter().map(|input| input.command).collect();
+    let commands: Vec<f64> = recording.inputs.iter().map(|input| input.followed_command).collect();
     let bound = NEAR_NULL * commands.iter().fold(0.0, |most: f64, command| most.max(command.abs()));
     let is_near = |row: usize| commands.get(row).is_some_and(|command| command.abs() < bound);
     let near = (0..commands.len()).filter(|row| is_near(*row)).count();

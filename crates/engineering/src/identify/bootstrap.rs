@@ -1,6 +1,6 @@
 //! Intervals from repeated fits with resampled noise.
 
-use phea_dynamics::least_squares::{Ending, Settings};
+use phea_dynamics::least_squares::Ending;
 use phea_dynamics::order::sort_numbers;
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::watch::{Stopped, Watch, tell, unwatched};
@@ -15,9 +15,6 @@ pub const FEWEST_REPETITIONS: usize = 50;
 
 /// Relative decrease of the sum at which a repetition ends.
 const TOLERANCE: f64 = 1e-7;
-
-/// Longest block, as share of a recording.
-const LONGEST_BLOCK: usize = 10;
 
 /// Intervals by the bootstrap.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +47,7 @@ pub(super) fn bootstrap(
     watch: Watch<'_>,
 ) -> Result<Bootstrap, Stopped> {
     let together = &fit.together;
-    let block_rows = block_rows(fit);
+    let block_rows = fit.block_rows();
     let residuals = fit.minimum.linearised.residuals.len() as f64;
     let widening = (residuals / (residuals - COUNT as f64)).sqrt();
     let mut estimates: [Vec<f64>; COUNT] = std::array::from_fn(|_| Vec::with_capacity(repetitions));
@@ -106,7 +103,7 @@ fn repeated(fit: &Fit<'_>, widening: f64, block_rows: usize, state: &mut u64) ->
         };
         let Some(signal) = recording.signals.get_mut(channel.signal) else { continue };
         let signs = signs.iter().flat_map(|sign| std::iter::repeat_n(sign, block_rows));
-        replace(signal, residuals, channel.scale, signs);
+        replace(signal, residuals, together.scales(channel), signs);
     }
     recordings
 }
@@ -115,32 +112,13 @@ fn repeated(fit: &Fit<'_>, widening: f64, block_rows: usize, state: &mut u64) ->
 fn replace<'s>(
     signal: &mut RecordedSignal,
     residuals: &[f64],
-    scale: f64,
+    scales: impl Iterator<Item = f64>,
     signs: impl Iterator<Item = &'s f64>,
 ) {
     let read = signal.values.iter_mut().zip(signs).filter_map(|(value, sign)| Some((value.as_mut()?, sign)));
-    for ((value, sign), residual) in read.zip(residuals) {
+    for (((value, sign), residual), scale) in read.zip(residuals).zip(scales) {
         *value += residual * scale * (1.0 - sign);
     }
-}
-
-/// Number of rows after which the residuals of no signal are correlated.
-fn block_rows(fit: &Fit<'_>) -> usize {
-    let beyond = Settings::default().robust_beyond;
-    let residuals = fit.together.by_channel(&fit.minimum.linearised.residuals);
-    let of = |own: &[f64]| {
-        // a single outlier has no effect on its neighbours
-        let own: Vec<f64> = own.iter().map(|residual| residual.max(-beyond).min(beyond)).collect();
-        let squares: f64 = own.iter().map(|residual| residual * residual).sum();
-        let limit = 2.0 / (own.len() as f64).sqrt() * squares;
-        let alike = |lag: &usize| {
-            let products = own.iter().zip(own.iter().skip(*lag)).map(|(one, next)| one * next);
-            products.sum::<f64>() < limit
-        };
-        let longest = (own.len() / LONGEST_BLOCK).max(1);
-        (1..longest).find(alike).unwrap_or(longest)
-    };
-    residuals.into_iter().map(of).max().unwrap_or(1)
 }
 
 /// Percentile of sorted numbers; NaN if there are none.

@@ -1,11 +1,13 @@
 //! The recorded signals that are explained together, and their residuals.
 
 use phea_dynamics::least_squares::{Linearised, Minimum, Settings, minimise};
+use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch, tell};
-use phea_hydraulics::servovalve::{TestOutput, TestedValve};
+use phea_hydraulics::servovalve::{Sensitive, TestOutput, TestedValve};
 
-use super::recording::{RecordedSignal, Recording, median};
-use super::variables::Variables;
+use super::recording::{RecordedSignal, Recording};
+use super::variables::{NULL_BIAS, Variables};
+use phea_dynamics::order::median;
 
 /// Initial scale of a residual, over the range of its signal.
 const FIRST_SCALE: f64 = 0.01;
@@ -27,12 +29,21 @@ const NO_EVIDENCE: f64 = 1e-3;
 /// Damping of a search that begins near its end.
 const UNDAMPED: f64 = 1e-10;
 
+/// Rows of a recording from which the noise of its command is told.
+const FEWEST_STEEP: usize = 10;
+
+/// A row is steep where the noise of the command shows in a signal by this many of its scales.
+const STEEP: f64 = 2.0;
+
 /// A signal and the scale of its residuals.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Channel {
     pub(super) recording: usize,
     pub(super) signal: usize,
     pub(super) scale: f64,
+    /// What the noise of the command makes of the signal, row by row, as a standard deviation;
+    /// empty where it has none.
+    pub(super) by_command: Vec<f64>,
     /// Largest less smallest value.
     pub(super) range: f64,
     /// Step of the converter that the values show.
@@ -40,6 +51,15 @@ pub(super) struct Channel {
 }
 
 impl Channel {
+    /// Scale of the residual of a row: by the signal's own noise and that of the command together.
+    ///
+    /// ```text
+    /// s_i^2 = s_c^2 + (sigma_U dy/dU)^2                                        Orear (1982)
+    /// ```
+    fn scale_at(&self, row: usize) -> f64 {
+        self.by_command.get(row).map_or(self.scale, |own| portable::hypot(self.scale, *own))
+    }
+
     /// What no instrument resolves, and the standard deviation of rounding to the converter's
     /// steps: where most rows are rounded to one value, their residuals say nothing of the noise.
     pub(super) fn least_scale(&self) -> f64 {
@@ -68,7 +88,15 @@ impl<'a> Together<'a> {
                 let [least, most] = values.range();
                 let range = most - least;
                 let scale = FIRST_SCALE * range;
-                (range > 0.0).then(|| Channel { recording, signal, scale, range, step: values.step() })
+                let by_command = Vec::new();
+                (range > 0.0).then(|| Channel {
+                    recording,
+                    signal,
+                    scale,
+                    by_command,
+                    range,
+                    step: values.step(),
+                })
             })
         });
         Together { recordings, channels: channels.collect(), tested, variables }
@@ -89,12 +117,13 @@ impl<'a> Together<'a> {
             let Some((signal, outputs)) = self.signal(channel).zip(outputs.get(channel.recording)) else {
                 continue;
             };
-            for (output, value) in outputs.iter().zip(&signal.values) {
+            for (row, (output, value)) in outputs.iter().zip(&signal.values).enumerate() {
                 let Some(value) = value else { continue };
                 let shown = output.combined(signal.kind.weights(&output.values()));
-                found.residuals.push((shown.value() - value) / channel.scale);
+                let scale = channel.scale_at(row);
+                found.residuals.push((shown.value() - value) / scale);
                 let gradient = shown.gradient().iter().zip(slopes);
-                found.jacobian.extend(gradient.map(|(slope, own)| slope * own / channel.scale));
+                found.jacobian.extend(gradient.map(|(slope, own)| slope * own / scale));
             }
         }
         found
@@ -107,21 +136,22 @@ impl<'a> Together<'a> {
         let outputs: Vec<_> = self.recordings.iter().map(of).collect();
         let of_channel = |channel: &Channel| {
             let (signal, outputs) = self.signal(channel).zip(outputs.get(channel.recording))?;
-            let one = |(output, value): (&TestOutput, &Option<f64>)| {
-                Some((signal.kind.shown(output) - (*value)?) / channel.scale)
+            let one = |(row, (output, value)): (usize, (&TestOutput, &Option<f64>))| {
+                Some((signal.kind.shown(output) - (*value)?) / channel.scale_at(row))
             };
-            Some(outputs.iter().zip(&signal.values).filter_map(one).collect::<Vec<f64>>())
+            Some(outputs.iter().zip(&signal.values).enumerate().filter_map(one).collect::<Vec<f64>>())
         };
         self.channels.iter().filter_map(of_channel).flatten().collect()
     }
 
-    /// The group of each residual: the readings of one instant.
-    pub(super) fn groups(&self) -> Vec<usize> {
+    /// The group of each residual: the readings of one instant, or of so many rows whose residuals
+    /// are alike.
+    pub(super) fn groups(&self, block_rows: usize) -> Vec<usize> {
         let mut before = 0;
         let mut firsts = Vec::with_capacity(self.recordings.len());
         for recording in self.recordings {
             firsts.push(before);
-            before += recording.inputs.len();
+            before += recording.inputs.len().div_ceil(block_rows);
         }
         let mut groups = Vec::new();
         for channel in &self.channels {
@@ -129,7 +159,7 @@ impl<'a> Together<'a> {
                 continue;
             };
             let read = signal.values.iter().enumerate().filter(|(_, value)| value.is_some());
-            groups.extend(read.map(|(row, _)| first + row));
+            groups.extend(read.map(|(row, _)| first + row / block_rows));
         }
         groups
     }
@@ -186,18 +216,87 @@ impl<'a> Together<'a> {
         self.channels.iter().map(&mut split).collect()
     }
 
+    /// Scales of the residuals of a channel, row by row that was read.
+    pub(super) fn scales<'c>(&'c self, channel: &'c Channel) -> impl Iterator<Item = f64> + 'c {
+        let values = self.signal(channel).into_iter().flat_map(|signal| &signal.values);
+        values.enumerate().filter(|(_, value)| value.is_some()).map(|(row, _)| channel.scale_at(row))
+    }
+
     /// Takes the scale of each signal from its residuals: 1.4826 times their median magnitude,
-    /// which outliers do not move; at least what the instrument resolves. Returns the largest
-    /// relative change.
-    pub(super) fn rescale(&mut self, residuals: &[f64]) -> f64 {
+    /// which outliers do not move; at least what the instrument resolves. Then that of the command
+    /// of each recording. Returns the largest relative change of the scale of a signal.
+    pub(super) fn rescale(&mut self, variables: &[f64], residuals: &[f64]) -> f64 {
         let of = |own: &[f64]| median(own.iter().map(|residual| residual.abs()).collect());
         let medians: Vec<f64> = self.by_channel(residuals).into_iter().map(of).collect();
+        let unscaled = self.unscaled(residuals);
         let mut change = 0.0_f64;
         for (channel, median) in self.channels.iter_mut().zip(medians) {
             let scale = (1.4826 * median * channel.scale).max(channel.least_scale());
             change = change.max((scale / channel.scale - 1.0).abs());
             channel.scale = scale;
         }
+        let recordings = self.recordings;
+        for (index, recording) in recordings.iter().enumerate().filter(|(_, one)| one.command_roughness > 0.0)
+        {
+            self.takes_command_noise(index, recording, variables, &unscaled);
+        }
         change
+    }
+
+    /// Residuals of each channel row by row that was read, in the unit of the signal.
+    fn unscaled(&self, residuals: &[f64]) -> Vec<Vec<f64>> {
+        let own = self.channels.iter().zip(self.by_channel(residuals));
+        own.map(|(channel, own)| {
+            own.iter().zip(self.scales(channel)).map(|(one, scale)| one * scale).collect()
+        })
+        .collect()
+    }
+
+    /// What the noise of the command makes of the signals of a recording.
+    ///
+    /// The record of the command shows how rough it is; that the valve did not follow this is told
+    /// by the residuals where a signal is steep. The noise is that of the record, or less where
+    /// they are smaller: a command that was sent as it is recorded is rounded, and without noise.
+    fn takes_command_noise(
+        &mut self,
+        index: usize,
+        recording: &Recording,
+        variables: &[f64],
+        unscaled: &[Vec<f64>],
+    ) {
+        let slopes = self.command_slopes(recording, variables);
+        let mut noises = Vec::new();
+        let own = self.channels.iter().zip(unscaled).filter(|(channel, _)| channel.recording == index);
+        for (channel, residuals) in own {
+            let Some(signal) = recording.signals.get(channel.signal) else { continue };
+            let read = signal.values.iter().zip(&slopes).filter(|(value, _)| value.is_some());
+            let slopes = read.map(|(_, slopes)| slopes.get(channel.signal).copied().unwrap_or(0.0));
+            let steep = slopes.zip(residuals);
+            let least = STEEP * channel.scale / recording.command_roughness;
+            noises.extend(steep.filter(|(slope, _)| *slope > least).map(|(slope, own)| own.abs() / slope));
+        }
+        let told = noises.len() >= FEWEST_STEEP;
+        let noise = if told { 1.4826 * median(noises) } else { f64::INFINITY };
+        let noise = noise.min(recording.command_roughness);
+        for channel in self.channels.iter_mut().filter(|channel| channel.recording == index) {
+            let signal = channel.signal;
+            let of = |slopes: &Vec<f64>| noise * slopes.get(signal).copied().unwrap_or(0.0);
+            channel.by_command = slopes.iter().map(of).collect();
+        }
+    }
+
+    /// Magnitude of the slope of each signal of a recording over the command, row by row.
+    fn command_slopes(&self, recording: &Recording, variables: &[f64]) -> Vec<Vec<f64>> {
+        let coefficients = self.variables.coefficients(variables);
+        let outputs = self.tested.sensitive_outputs(&coefficients, recording.circuit, &recording.inputs);
+        let of = |output: &TestOutput<Sensitive>| {
+            let slope = |signal: &RecordedSignal| {
+                let shown = output.combined(signal.kind.weights(&output.values()));
+                // the edges move with the command as they do against the null bias
+                shown.gradient().get(NULL_BIAS).map_or(0.0, |slope| slope.abs())
+            };
+            recording.signals.iter().map(slope).collect()
+        };
+        outputs.iter().map(of).collect()
     }
 }

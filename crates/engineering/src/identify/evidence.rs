@@ -115,7 +115,8 @@ fn losses(fit: &Fit<'_>) -> Vec<f64> {
             let inside = relative.min(beyond);
             inside * (relative - inside / 2.0)
         };
-        count * portable::ln(scale * channel.scale) + own.iter().map(loss).sum::<f64>()
+        let scales = fit.together.scales(channel).map(portable::ln).sum::<f64>();
+        count * portable::ln(scale) + scales + own.iter().map(loss).sum::<f64>()
     };
     fit.together.channels.iter().zip(residuals).map(of).collect()
 }

@@ -1,6 +1,6 @@
 //! Least squares over all signals of all recordings, with one model of the leakage.
 
-use phea_dynamics::least_squares::{Ending, Minimum};
+use phea_dynamics::least_squares::{Ending, Minimum, Settings};
 use phea_dynamics::random::stream;
 use phea_dynamics::watch::{Stopped, Watch};
 use phea_hydraulics::servovalve::{LeakageModel, StaticCoefficients, TestedValve};
@@ -31,6 +31,9 @@ const MANY_ROWS: usize = 20_000;
 /// Evaluations over all of many rows of a model that need not be the one that is wanted.
 const ROUGH_EVALUATIONS: usize = 12;
 
+/// Longest block, as share of a recording.
+const LONGEST_BLOCK: usize = 10;
+
 /// The valve that explains the recordings best, with the signals and their scales.
 pub(super) struct Fit<'a> {
     pub(super) together: Together<'a>,
@@ -54,17 +57,38 @@ impl Fit<'_> {
         at.map(|(_, (_, (name, _)))| name).collect()
     }
 
+    /// Number of rows after which the residuals of no signal are correlated.
+    pub(super) fn block_rows(&self) -> usize {
+        let beyond = Settings::default().robust_beyond;
+        let residuals = self.together.by_channel(&self.minimum.linearised.residuals);
+        let of = |own: &[f64]| {
+            // a single outlier has no effect on its neighbours
+            let own: Vec<f64> = own.iter().map(|residual| residual.max(-beyond).min(beyond)).collect();
+            let squares: f64 = own.iter().map(|residual| residual * residual).sum();
+            let limit = 2.0 / (own.len() as f64).sqrt() * squares;
+            let alike = |lag: &usize| {
+                let products = own.iter().zip(own.iter().skip(*lag)).map(|(one, next)| one * next);
+                products.sum::<f64>() < limit
+            };
+            let longest = (own.len() / LONGEST_BLOCK).max(1);
+            (1..longest).find(alike).unwrap_or(longest)
+        };
+        residuals.into_iter().map(of).max().unwrap_or(1)
+    }
+
     /// How well each signal is explained.
     pub(super) fn signals(&self) -> Vec<SignalFit> {
         let residuals = self.together.by_channel(&self.minimum.linearised.residuals);
         let one = |(channel, own): (&Channel, &[f64])| {
             let squares: f64 = own.iter().map(|residual| residual * residual).sum();
+            let unscaled = own.iter().zip(self.together.scales(channel)).map(|(one, scale)| one * scale);
+            let mean_square = unscaled.map(|one| one * one).sum::<f64>() / own.len().max(1) as f64;
             let neighbours: f64 = own.iter().zip(own.iter().skip(1)).map(|(one, next)| one * next).sum();
             Some(SignalFit {
                 recording: channel.recording,
                 kind: self.together.signal(channel)?.kind,
                 rows: own.len(),
-                rms: channel.scale * (squares / own.len().max(1) as f64).sqrt(),
+                rms: mean_square.sqrt(),
                 scale: channel.scale,
                 range: channel.range,
                 correlation: if squares > 0.0 { neighbours / squares } else { 0.0 },
@@ -115,7 +139,7 @@ fn fitted_from<'a>(
         let fewer: Vec<Recording> = together.recordings.iter().map(averaged).collect();
         let mut few = Together::new(&fewer, together.tested, together.variables);
         let near = settled(&mut few, &start, watch)?.variables;
-        together.rescale(&together.residuals(&near));
+        together.rescale(&near, &together.residuals(&near));
         near_minimum(&together, &near, most, watch)?
     } else {
         settled(&mut together, &start, watch)?
@@ -170,7 +194,7 @@ fn near_minimum(
 fn settled(together: &mut Together<'_>, start: &[f64], watch: Watch<'_>) -> Result<Minimum, Stopped> {
     let mut minimum = together.searched(start, ROUGH, watch)?;
     for _ in 0..ROUNDS {
-        let change = together.rescale(&minimum.linearised.residuals);
+        let change = together.rescale(&minimum.variables, &minimum.linearised.residuals);
         minimum = together.searched(&minimum.variables, ROUGH, watch)?;
         if change < SAME_SCALE {
             break;

@@ -93,12 +93,12 @@ impl Identification {
         let width = (greatest - least) / RANGES as f64;
         let mut sums = [[(0.0, 0_usize); RANGES]; 2];
         let mut is_rising = true;
-        let mut before = inputs.first()?.command;
+        let mut before = inputs.first()?.followed_command;
         for (input, residual) in inputs.iter().zip(self.residuals(signal, &self.coefficients)) {
-            if input.command != before {
-                is_rising = input.command > before;
+            if input.followed_command != before {
+                is_rising = input.followed_command > before;
             }
-            before = input.command;
+            before = input.followed_command;
             let range = (((input.command - least) / width) as usize).min(RANGES - 1);
             let branch = sums.get_mut(usize::from(is_rising)).and_then(|branch| branch.get_mut(range));
             if let (Some((sum, rows)), Some(residual)) = (branch, residual) {

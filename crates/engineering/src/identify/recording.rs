@@ -1,6 +1,6 @@
 //! A static test as it was recorded.
 
-use phea_dynamics::order::{ends, sort_numbers};
+use phea_dynamics::order::{ends, median, sort_numbers};
 use phea_hydraulics::servovalve::{PortCircuit, TestInput, TestOutput};
 
 /// Differences of values, over their range, that are the rounding of their digits.
@@ -16,11 +16,13 @@ pub struct Recording {
     pub file: String,
     /// How the ports were piped.
     pub circuit: PortCircuit,
+    /// V, deviation of what differs from row to row in the command: noise and rounding.
+    pub command_roughness: f64,
     /// s, of each row.
     pub times: Vec<f64>,
     /// What acted on the valve.
     pub inputs: Vec<TestInput>,
-    /// degC, of the oil in each row, where it was recorded; it has no part in the fit.
+    /// degC, of the oil in each row, where it was recorded.
     pub oil_temperature: Option<Vec<f64>>,
     /// What was recorded of it.
     pub signals: Vec<RecordedSignal>,
@@ -105,6 +107,7 @@ impl Recording {
         Recording {
             file: self.file.clone(),
             circuit: self.circuit,
+            command_roughness: self.command_roughness,
             times: these(&self.times),
             inputs,
             oil_temperature: self.oil_temperature.as_ref().map(these),
@@ -152,10 +155,4 @@ impl RecordedSignal {
 pub(super) fn usual_drop(recordings: &[Recording]) -> f64 {
     let inputs = recordings.iter().flat_map(|recording| &recording.inputs);
     median(inputs.map(|input| input.supply.pressure - input.supply.tank_pressure).collect())
-}
-
-/// Middle of some numbers; NaN of none.
-pub(crate) fn median(mut values: Vec<f64>) -> f64 {
-    sort_numbers(&mut values);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }

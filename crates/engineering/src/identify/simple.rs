@@ -12,7 +12,8 @@ pub use reading::CurveReading;
 
 use self::half_height::{Flank, peak};
 use self::straight_line::straight_line;
-use super::recording::{Recording, SignalKind, median, usual_drop};
+use super::recording::{Recording, SignalKind, usual_drop};
+use phea_dynamics::order::median;
 
 /// What shows where null is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -229,8 +230,8 @@ fn base_flow(base: &[f64], least: f64) -> (CurveReading, f64) {
 
 /// Whether the command rises at a row; `None` where it does not change.
 pub(super) fn direction(recording: &Recording, row: usize) -> Option<bool> {
-    let before = recording.inputs.get(row.checked_sub(1)?)?.command;
-    let now = recording.inputs.get(row)?.command;
+    let before = recording.inputs.get(row.checked_sub(1)?)?.followed_command;
+    let now = recording.inputs.get(row)?.followed_command;
     (now != before).then_some(now > before)
 }
 

@@ -77,7 +77,7 @@ fn sensitivities(
         .map(|step| f64::from(step) / f64::from(ROWS))
         // finer around null
         .map(|position| share * tested.nominal_voltage * position * position.abs())
-        .map(|command| TestInput { command, supply, load_pressure: 0.0 })
+        .map(|command| TestInput::new(command, supply, 0.0))
         .collect();
     let outputs = tested.sensitive_outputs(coefficients, test.circuit(), &inputs);
     let kinds: &[SignalKind] = match test {

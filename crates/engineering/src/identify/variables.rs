@@ -9,7 +9,7 @@ pub(super) const COUNT: usize = STATIC_COEFFICIENTS;
 /// Indices of the shape, the tare flow, the null bias and the width of the hysteresis.
 const SHAPE: usize = 8;
 pub(super) const TARE_FLOW: usize = 9;
-const NULL_BIAS: usize = 10;
+pub(super) const NULL_BIAS: usize = 10;
 const HYSTERESIS: usize = 11;
 
 /// Flow coefficients, the first ones.

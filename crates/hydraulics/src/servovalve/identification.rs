@@ -4,7 +4,7 @@ use phea_dynamics::scalar::{Dual, Parameters, Scalar};
 
 use super::ports::KnownPorts;
 use super::{
-    Edges, LeakageModel, PortState, Servovalve, SlowSpool, SpoolImperfection, Supply, blocked_ports,
+    Edges, LeakageModel, PortState, Servovalve, SlowSpool, SpoolImperfection, Supply, WarmOil, blocked_ports,
     connected_ports, edge_conductances, tare_flow,
 };
 
@@ -67,12 +67,23 @@ pub enum PortCircuit {
 /// What acts on the valve in one row of a test. Units: V, Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TestInput {
-    /// Command U_C.
+    /// Command U_C as it was recorded.
     pub command: f64,
+    /// The same without the noise of its record: the memories of the spool follow it.
+    pub followed_command: f64,
     /// Supply and tank pressure.
     pub supply: Supply,
     /// p_A - p_B across the meter, where the ports are joined.
     pub load_pressure: f64,
+    /// The oil, against that which the coefficients are stated at.
+    pub oil: WarmOil,
+}
+
+impl TestInput {
+    /// A row whose command is known without noise, with the oil that the valve is stated at.
+    pub fn new(command: f64, supply: Supply, load_pressure: f64) -> TestInput {
+        TestInput { command, followed_command: command, supply, load_pressure, oil: WarmOil::STATED }
+    }
 }
 
 /// What one row of a test shows. Units: Pa, m3/s.
@@ -134,6 +145,7 @@ impl TestedValve {
         let valve = self.servovalve(coefficients);
         let openings = openings(coefficients, inputs);
         let one = |(input, opening): (&TestInput, f64)| {
+            let valve = input.oil.valve(&valve);
             let found = match circuit {
                 PortCircuit::Blocked => blocked_ports(&valve, &input.supply, opening),
                 PortCircuit::Connected => {
@@ -167,7 +179,7 @@ impl TestedValve {
     ///     tare_flow: 7.55e-6, null_bias: 0.0, hysteresis_width: 0.1,
     /// };
     /// let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };
-    /// let inputs = [TestInput { command: 0.3, supply, load_pressure: 0.0 }];
+    /// let inputs = [TestInput::new(0.3, supply, 0.0)];
     /// let found = tested.sensitive_outputs(&coefficients, PortCircuit::Blocked, &inputs);
     /// assert!((found[0].leak_flow.gradient()[9] - 1.0).abs() < 1e-12);
     /// ```
@@ -192,6 +204,7 @@ impl TestedValve {
                 transition_pressure: self.transition_pressure,
                 pressures: [known.pressure_a, known.pressure_b],
             };
+            let valve = input.oil.valve(&valve);
             let edges = edge_conductances(&valve, opening).to_array();
             let [pressure_a, pressure_b, supply_flow, port_flow] = Sensitive::local(&ports, edges);
             let supply = input.supply.convert(&mut Sensitive::from);
@@ -227,8 +240,9 @@ fn openings<S: Scalar>(coefficients: &StaticCoefficients<S>, inputs: &[TestInput
     };
     let mut memory = None;
     let one = |input: &TestInput| {
-        let command = S::from(input.command);
-        spool.slow_opening(memory.get_or_insert(SlowSpool::at(command)), command)
+        let followed = S::from(input.followed_command);
+        let opening = spool.slow_opening(memory.get_or_insert(SlowSpool::at(followed)), followed);
+        opening + S::from(input.command - input.followed_command)
     };
     inputs.iter().map(one).collect()
 }

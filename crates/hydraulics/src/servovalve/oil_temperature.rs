@@ -21,6 +21,13 @@ pub struct WarmOil {
     pub viscosity_ratio: f64,
 }
 
+/// That of mineral oil, with the viscosity of ISO VG 46 near 40 degC.
+impl Default for OilLaw {
+    fn default() -> OilLaw {
+        OilLaw { viscosity_slope: 0.045, density_slope: 7e-4 }
+    }
+}
+
 impl OilLaw {
     /// The oil that is warmer by some degrees.
     ///
@@ -44,6 +51,9 @@ impl OilLaw {
 }
 
 impl WarmOil {
+    /// The oil that the valve is stated at.
+    pub const STATED: WarmOil = WarmOil { density_ratio: 1.0, viscosity_ratio: 1.0 };
+
     /// By what a turbulent flow coefficient grows: sqrt(rho_0/rho).
     pub fn turbulent_ratio(&self) -> f64 {
         (1.0 / self.density_ratio).sqrt()
@@ -74,14 +84,14 @@ impl WarmOil {
     /// assert!((warm.flow_coefficients.supply_to_a / 3.2e-7 - 1.00035).abs() < 1e-6);
     /// assert!((warm.leakage_coefficients.supply_to_a / valve().leakage_coefficients.supply_to_a - 1.046).abs() < 1e-4);
     /// ```
-    pub fn valve(&self, valve: &Servovalve) -> Servovalve {
-        let times = |edges: &Edges<f64>, factor: f64| {
-            Edges::from_array(edges.to_array().map(|coefficient| coefficient * factor))
+    pub fn valve<S: Scalar>(&self, valve: &Servovalve<S>) -> Servovalve<S> {
+        let times = |edges: &Edges<S>, factor: f64| {
+            Edges::from_array(edges.to_array().map(|coefficient| coefficient.times(factor)))
         };
         Servovalve {
             flow_coefficients: times(&valve.flow_coefficients, self.turbulent_ratio()),
             leakage_coefficients: times(&valve.leakage_coefficients, 1.0 / self.viscosity_ratio),
-            tare_flow: valve.tare_flow * self.turbulent_ratio(),
+            tare_flow: valve.tare_flow.times(self.turbulent_ratio()),
             ..*valve
         }
     }

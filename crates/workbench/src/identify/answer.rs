@@ -7,7 +7,9 @@ use serde::Serialize;
 use super::files::{TestBody, WarningBody};
 use super::numbers;
 use super::region::{FoundRegion, RegionBody, body};
-use super::{Bootstrap, COEFFICIENT_NAMES, ExplainedBy, Identification, Misfit, MisfitPlace, Read, Untold};
+use super::{
+    Bootstrap, COEFFICIENT_NAMES, ExplainedBy, Identification, Misfit, MisfitPlace, Read, TestOil, Untold,
+};
 use crate::answer::{self, Number, OutputFile, in_toml};
 use crate::project::{LEAKAGE_MODELS, Loaded, word_of};
 
@@ -24,6 +26,7 @@ struct IdentifyAnswer<'a> {
     leakage_shape: Estimate,
     tare_flow_m3_per_s: Estimate,
     tare_pressure_pa: f64,
+    oil_temperature: Option<OilBody>,
     null_bias_v: Estimate,
     hysteresis_v: Estimate,
     leakage_model: &'static str,
@@ -44,6 +47,15 @@ struct IdentifyAnswer<'a> {
     starts_that_agree: usize,
     converged: bool,
     at_bounds: &'a [&'static str],
+}
+
+/// The oil of the tests: degC, 1/degC.
+#[derive(Serialize)]
+struct OilBody {
+    stated_at_degc: Number,
+    recorded_degc: [Number; 2],
+    viscosity_slope_per_degc: f64,
+    density_slope_per_degc: f64,
 }
 
 #[derive(Serialize)]
@@ -166,6 +178,7 @@ pub fn json(
         leakage_shape: next(),
         tare_flow_m3_per_s: next(),
         tare_pressure_pa: found.tested.tare_reference_drop,
+        oil_temperature: found.oil.as_ref().map(oil_body),
         null_bias_v: next(),
         hysteresis_v: next(),
         leakage_model: word(found.tested.leakage_model),
@@ -231,6 +244,15 @@ fn signals(found: &Identification) -> Vec<SignalBody> {
         neighbour_correlation: Number(signal.correlation),
     };
     found.signals.iter().map(one).collect()
+}
+
+fn oil_body(oil: &TestOil) -> OilBody {
+    OilBody {
+        stated_at_degc: Number(oil.reference),
+        recorded_degc: oil.range.map(Number),
+        viscosity_slope_per_degc: oil.law.viscosity_slope,
+        density_slope_per_degc: oil.law.density_slope,
+    }
 }
 
 fn misfit_body(found: &Identification, misfit: &Misfit) -> MisfitBody {

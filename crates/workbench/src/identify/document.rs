@@ -6,7 +6,7 @@ use super::answer::{correlations, word};
 use super::files::misfit_in_words;
 use super::numbers;
 use super::region::{self, FoundRegion};
-use super::{Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, Read, SignalFit};
+use super::{Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, Read, SignalFit, TestOil};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
@@ -45,6 +45,18 @@ pub(crate) fn tell_coefficients(found: &Identification, out: &mut Document) {
             .to_string(),
     ]);
     out.sentences(found.bootstrap.as_ref().map(bootstrap));
+    out.sentences(found.oil.as_ref().map(warm_oil));
+}
+
+/// The temperature that the coefficients are stated at.
+fn warm_oil(oil: &TestOil) -> String {
+    let [from, to, reference] =
+        [oil.range[0], oil.range[1], oil.reference].map(|temperature| significant(temperature, 4));
+    let [viscosity, density] =
+        [oil.law.viscosity_slope, oil.law.density_slope].map(|slope| significant(100.0 * slope, 3));
+    format!(
+        "The coefficients are those at {reference} degC; the oil was recorded from {from} to {to} degC, and its viscosity is taken to fall by {viscosity} % for each degree and its density by {density} % (`[identify.oil_temperature]`)."
+    )
 }
 
 /// How well the signals are explained, and what the data do not determine.

@@ -161,7 +161,7 @@ fn series(found: &Identification, index: usize, recording: &Recording) -> Figure
 
 /// Rows of one way of the command; those before its first reversal only where there are no others.
 fn rows_of(recording: &Recording, rising: bool) -> Vec<usize> {
-    let commands = || recording.inputs.iter().map(|input| input.command);
+    let commands = || recording.inputs.iter().map(|input| input.followed_command);
     let steps: Vec<f64> = commands().zip(commands().skip(1)).map(|(before, now)| now - before).collect();
     let way = |row: &usize| row.checked_sub(1).and_then(|before| steps.get(before)).copied().unwrap_or(0.0);
     let first = (0..recording.inputs.len()).map(|row| way(&row)).find(|step| *step != 0.0).unwrap_or(0.0);

@@ -8,7 +8,7 @@ use phea_dynamics::portable;
 use phea_dynamics::spectrum::Transform;
 use phea_hydraulics::friction::{TRENDS, trends};
 
-use crate::identify::median;
+use phea_dynamics::order::median;
 
 /// Power of a line in both signals together over that of the noise of both from which it is one:
 /// white noise reaches it once in twenty thousand.

@@ -1,8 +1,9 @@
 //! From columns to a test: what acted on the valve, and what was recorded of it.
 
-use phea_hydraulics::servovalve::{PortCircuit, Supply, TestInput};
+use phea_hydraulics::servovalve::{PortCircuit, Supply, TestInput, WarmOil};
 
 use super::{Known, Taken};
+use crate::followed::{followed, roughness};
 use crate::identify::recording::{RecordedSignal, Recording, SignalKind};
 use crate::project::{Findings, Place, RawFinding, TestSignal};
 
@@ -12,10 +13,13 @@ pub(super) fn assembled(file: &str, taken: &Taken, circuit: PortCircuit, known: 
     let flow = taken.of(TestSignal::Flow);
     let [command, supply, tank] =
         [TestSignal::Command, TestSignal::SupplyPressure, TestSignal::TankPressure].map(|one| taken.of(one));
+    let command_roughness = command.map_or(0.0, roughness);
+    let followed = command.map(|command| followed(command, command_roughness));
     let input = |row: usize| {
         let at = |values: Option<&[f64]>| values.and_then(|values| values.get(row).copied());
         TestInput {
             command: at(command).unwrap_or(0.0),
+            followed_command: at(followed.as_deref()).unwrap_or(0.0),
             supply: Supply {
                 pressure: at(supply).or(known.supply_pressure).unwrap_or(0.0),
                 tank_pressure: at(tank).unwrap_or(known.tank_pressure),
@@ -24,6 +28,7 @@ pub(super) fn assembled(file: &str, taken: &Taken, circuit: PortCircuit, known: 
                 PortCircuit::Connected => at(a).zip(at(b)).map_or(0.0, |(a, b)| a - b),
                 PortCircuit::Blocked => 0.0,
             },
+            oil: WarmOil::STATED,
         }
     };
     let inputs: Vec<TestInput> = (0..taken.rows()).map(input).collect();
@@ -56,6 +61,7 @@ pub(super) fn assembled(file: &str, taken: &Taken, circuit: PortCircuit, known: 
     Recording {
         file: file.to_string(),
         circuit,
+        command_roughness,
         times: taken.of(TestSignal::Time).unwrap_or_default().to_vec(),
         inputs,
         oil_temperature: taken.of(TestSignal::OilTemperature).map(<[f64]>::to_vec),

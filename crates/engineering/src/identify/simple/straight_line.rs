@@ -1,5 +1,5 @@
 use super::CurveReading;
-use crate::identify::recording::median;
+use phea_dynamics::order::median;
 
 /// A straight line through points.
 #[derive(Clone, Copy)]

@@ -1,0 +1,107 @@
+//! The coefficients of a valve from recordings as instruments make them: noise on the command, oil
+//! that warms, coarse converters.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
+#![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
+
+use serde_json::Value;
+
+use crate::valve_identification::{TRUTH, identified, interval, recorded, value};
+
+/// How many of the twelve intervals of each seed hold the truth.
+fn covered(settings: &[&str], seeds: std::ops::Range<usize>) -> usize {
+    let of_seed = |seed: usize| {
+        let seed = format!("bench.seed={seed}");
+        let found = identified(&recorded(&[settings, &[seed.as_str()]].concat()));
+        let holds = |(path, truth): &&(&str, f64)| {
+            interval(&found, path).is_some_and(|[low, high]| low <= *truth && *truth <= high)
+        };
+        TRUTH.iter().filter(holds).count()
+    };
+    seeds.map(of_seed).sum()
+}
+
+fn off(found: &Value, path: &str) -> f64 {
+    let (_, truth) = TRUTH.into_iter().find(|(one, _)| *one == path).unwrap();
+    (value(found, path) / truth - 1.0).abs()
+}
+
+/// 2 mV rms on a command of 10 V: a memory that follows the record finds a hysteresis of twice the
+/// width. What is left is the noise of the flow that the command's noise makes.
+#[test]
+fn noise_of_the_command_does_not_widen_the_hysteresis() {
+    for noise in ["0.5 mV", "2 mV", "5 mV"] {
+        let noise = format!("bench.command_noise=\"{noise}\"");
+        let found = identified(&recorded(&[&noise]));
+        assert!(off(&found, "/hysteresis_v") < 0.015, "{noise}: {}", value(&found, "/hysteresis_v"));
+        for path in ["supply_to_a", "a_to_tank", "supply_to_b", "b_to_tank"] {
+            assert!(off(&found, &format!("/flow_coefficients/{path}")) < 0.003, "{noise}: {path}");
+        }
+        assert_eq!(found["misfits"], Value::Array(vec![]), "{noise}");
+    }
+}
+
+/// Of 96 intervals of 95 % as many hold as of recordings with an exact command: about 91, less than
+/// 82 once in a thousand were they independent; those of one recording are not.
+#[test]
+fn intervals_hold_with_noise_of_the_command() {
+    let held = covered(&["bench.command_noise=\"2 mV\""], 1..9);
+    assert!(held >= 80, "{held}");
+}
+
+/// Oil that warms by 2 degC raises the leakage by 9 %; coefficients are those at the mean, and
+/// hold.
+#[test]
+fn the_recorded_temperature_is_in_the_model() {
+    let warm = ["bench.oil_temperature={ start = \"36 degC\", end = \"38 degC\", reference = \"37 degC\" }"];
+    let files = recorded(&warm);
+    let found = identified(&files);
+    for (path, _) in TRUTH.into_iter().filter(|(path, _)| *path != "/null_bias_v") {
+        assert!(off(&found, path) < 0.01, "{path} {}", value(&found, path));
+    }
+    let oil = &found["oil_temperature"];
+    assert!((oil["stated_at_degc"].as_f64().unwrap() - 37.0).abs() < 1e-9, "{oil}");
+    assert_eq!(oil["recorded_degc"], serde_json::json!([36.0, 38.0]));
+    let without = |(name, text): &(String, String)| {
+        let line = |line: &str| line.rsplit_once(',').unwrap().0.to_string();
+        (name.clone(), text.lines().map(line).collect::<Vec<_>>().join("\n"))
+    };
+    let blind = identified(&files.iter().map(without).collect::<Vec<_>>());
+    assert_eq!(blind["oil_temperature"], Value::Null);
+    assert!(
+        value(&blind, "/leakage_coefficients/supply_to_a")
+            != value(&found, "/leakage_coefficients/supply_to_a")
+    );
+    assert!(covered(&warm, 1..9) >= 80);
+}
+
+/// Coefficients at a stated temperature: the leakage goes with the viscosity, the flow with the
+/// root of the density.
+#[test]
+fn coefficients_are_stated_at_a_temperature() {
+    use crate::ask::{HOSE, load};
+    use crate::valve_identification::files_of;
+    use phea_workbench::command::identify_watched;
+    use phea_workbench::source::Memory;
+    let warm = ["bench.oil_temperature={ start = \"36 degC\", end = \"38 degC\", reference = \"37 degC\" }"];
+    let files = recorded(&warm);
+    let source =
+        files.iter().fold(Memory::default(), |source, (name, text)| source.with(name, text.as_str()));
+    let asked = |settings: &[&str]| -> Value {
+        let loaded = load(HOSE, settings, &[]);
+        let found = identify_watched(&source, Some(&loaded), &files_of(&files), &mut |_| true);
+        serde_json::from_str(&found.unwrap_or_else(|error| panic!("{error}")).json).unwrap()
+    };
+    let [mean, hot] = [&[][..], &["identify.oil_temperature.reference=\"47 degC\""]].map(asked);
+    let ratio = |path: &str| value(&hot, path) / value(&mean, path);
+    assert!((ratio("/leakage_coefficients/supply_to_a") / 0.45_f64.exp() - 1.0).abs() < 1e-4);
+    assert!((ratio("/flow_coefficients/supply_to_a") * (1.0 - 7e-3_f64).sqrt() - 1.0).abs() < 5e-5);
+}
+
+/// Rounding is alike in neighbouring rows where a signal changes by less than a step: blocks of
+/// them count as one row.
+#[test]
+fn intervals_hold_with_coarse_converters() {
+    let held = covered(&["bench.converter_bits=12"], 1..9);
+    assert!(held >= 80, "{held}");
+}
