@@ -13,14 +13,14 @@ mod required;
 mod rigs;
 mod run;
 mod steps;
-pub use judge::{OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, percent_words};
+pub use judge::{OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, SETTLING_ROOM, percent_words};
 
 pub use crate::linear_step::StepResponse;
 use corners::{runs_of_corners, worst_of};
 pub use required::HeldRequirement;
 pub(crate) use rigs::waves_alone;
 pub use rigs::with_waves;
-pub use run::{Agreement, BAND_PERCENT, Leg, StepSize, TrialRun, TrialStep, agreement_word};
+pub use run::{Agreement, BAND_PERCENT, Leg, StepSize, TrialRun, TrialStep, agreement_key, agreement_word};
 use run::{DrivenSteps, TriedMachine};
 
 use crate::audit::ProjectAudit;
@@ -122,7 +122,7 @@ pub fn tried(
         }
         let Some(driven) = machine.driven(source, &mut within)? else { return Err(Stopped.into()) };
         for mut run in machine.judged(&driven, problem, view) {
-            if rig.quarter_wave_rad_per_s.is_some() && run.agreement != Agreement::Agrees {
+            if rig.quarter_wave_rad_per_s.is_some() && run.agreement >= Agreement::Differs {
                 let lumped = lumped(source, &rigs, (&driven, &run, &runs), (problem, view), &mut within)?;
                 run.reason = machine.with_waves_named(&run, lumped.as_ref());
             }

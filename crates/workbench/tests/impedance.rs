@@ -346,7 +346,8 @@ fn a_proof_and_a_trial_are_of_the_loop_with_it() {
         (Some("met"), Some("proof")),
         "{found:#}"
     );
-    assert_eq!(found["machine"]["verdict"], "agrees", "{:#}", found["machine"]);
+    let runs = found["machine"]["runs"].as_array().unwrap();
+    assert!(runs.iter().all(|run| run["agrees"] == true), "{:#}", found["machine"]);
     let without = answer(
         &text,
         &["controller.impedance.stiffness=0", "controller.impedance.damping=0"],

@@ -88,6 +88,14 @@ fn is_all_proven(answer: &Value) -> bool {
     std::iter::once(&answer["proof"]["stable"]["proven"]).chain(each).all(|proven| proven == true)
 }
 
+/// The verdict of the nonlinear simulation as the page has it.
+fn agreement_words(answer: &Value) -> &str {
+    match answer["machine"]["verdict"].as_str().unwrap() {
+        "agrees_but_for_settling" => "agrees but for the settling",
+        verdict => verdict,
+    }
+}
+
 /// One report of the hose against the commands that it repeats: verdicts of `verify` and `design`,
 /// numbers of `simulate`.
 #[test]
@@ -108,8 +116,7 @@ fn both_controllers_stand_there_as_the_commands_tell_them() {
     let decided = [&told.decision.given, &told.decision.designed];
     let decided_proven = decided.map(|one| one.as_ref().and_then(|one| one.proven));
     assert_eq!(decided_proven, [Some(false), Some(!proven.is_empty())]);
-    let machines =
-        [&verified["machine"], &designed["machine"]].map(|machine| machine["verdict"].as_str().unwrap());
+    let machines = [&verified, &designed].map(agreement_words);
     let tried = &rows(&page, "tried on the rig")[0];
     assert!(tried[1].starts_with(machines[0]) && tried[2].starts_with(machines[1]), "{tried:?}");
     for (index, name) in ["1 robust stability", "2 sensitivity", "3 tracking"].iter().enumerate() {

@@ -22,6 +22,8 @@ use phea_dynamics::watch::{Watch, part};
 pub enum Agreement {
     /// It behaves as the linear loop predicts.
     Agrees,
+    /// It does but for its settling time, which is within a factor of two of the prediction.
+    AgreesButForSettling,
     /// It settles, but not as predicted, or meets a limit on the way.
     Differs,
     /// It does not behave as a met verdict promises.
@@ -440,10 +442,19 @@ fn damping_wall(project: &Project) -> &'static str {
     }
 }
 
-/// The word of an agreement.
+/// The word of an agreement for programs.
+pub fn agreement_key(agreement: Agreement) -> &'static str {
+    match agreement {
+        Agreement::AgreesButForSettling => "agrees_but_for_settling",
+        Agreement::Agrees | Agreement::Differs | Agreement::Contradicts => agreement_word(agreement),
+    }
+}
+
+/// The words of an agreement for people.
 pub fn agreement_word(agreement: Agreement) -> &'static str {
     match agreement {
         Agreement::Agrees => "agrees",
+        Agreement::AgreesButForSettling => "agrees but for the settling",
         Agreement::Differs => "differs",
         Agreement::Contradicts => "contradicts",
     }

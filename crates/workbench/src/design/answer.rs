@@ -40,9 +40,9 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
         true => "the design was stopped before it was tried in the nonlinear simulation",
         false => "the project describes a plant and no machine",
     };
-    let no_repair = match view.agreement() {
-        Agreement::Contradicts => "it was not asked for",
-        Agreement::Agrees | Agreement::Differs => "no machine contradicts the design",
+    let no_repair = match view.agreement() == Agreement::Contradicts {
+        true => "it was not asked for",
+        false => "no machine contradicts the design",
     };
     Ok(Object::new()
         .with("status", status_key(view))

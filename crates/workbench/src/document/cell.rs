@@ -41,7 +41,7 @@ impl From<Agreement> for StatusMark {
     fn from(agreement: Agreement) -> StatusMark {
         match agreement {
             Agreement::Agrees => StatusMark::Good,
-            Agreement::Differs => StatusMark::Note,
+            Agreement::AgreesButForSettling | Agreement::Differs => StatusMark::Note,
             Agreement::Contradicts => StatusMark::Bad,
         }
     }

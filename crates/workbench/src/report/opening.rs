@@ -18,7 +18,7 @@ use crate::document::{Document, StatusMark};
 use crate::figure::Figure;
 use crate::setup::Setup;
 use crate::simulate::at_a_glance;
-use crate::trial::agreement_word;
+use crate::trial::agreement_key;
 use next::next_steps;
 use side::{Side, sides};
 
@@ -133,7 +133,7 @@ fn decided(contents: &Contents<'_>, side: &Side<'_>) -> Decided {
         verdict: side.view.map(|view| verdict_key(view.verdict())),
         specifications: findings.iter().map(|finding| verdict_key(finding.verdict)).collect(),
         proven: side.is_proven(),
-        machine: side.trial.map(|trial| agreement_word(trial.agreement())),
+        machine: side.trial.map(|trial| agreement_key(trial.agreement())),
         wishes_kept: wish.and_then(|wish| side.keeps(wish)),
     }
 }

@@ -1,13 +1,13 @@
 //! The key `machine` of an answer.
 
-use super::{Agreement, HeldRequirement, Leg, StepSize, Trial, TrialRun, TrialStep, agreement_word};
+use super::{Agreement, HeldRequirement, Leg, StepSize, Trial, TrialRun, TrialStep, agreement_key};
 use crate::answer::Object;
 use crate::simulate::satisfied_word;
 
 /// A trial in JSON.
 pub(crate) fn body(trial: &Trial) -> Object {
     Object::new()
-        .with("verdict", agreement_word(trial.agreement()))
+        .with("verdict", agreement_key(trial.agreement()))
         .maybe("requirements", trial.satisfies().map(satisfied_word))
         .each("runs", &trial.runs, row)
         .with("not_driven", trial.not_driven.as_slice())
@@ -19,8 +19,8 @@ fn row(run: &TrialRun) -> Object {
         .with("what", run.what.as_str())
         .maybe("plant", run.plant.clone())
         .with("status", run.status)
-        .with("agrees", run.agreement == Agreement::Agrees)
-        .with("agreement", agreement_word(run.agreement))
+        .with("agrees", run.agreement <= Agreement::AgreesButForSettling)
+        .with("agreement", agreement_key(run.agreement))
         .with("reason", run.reason.as_str())
         .with("reference_n", run.reference_n)
         .with("step", size_word(run.size))

@@ -200,7 +200,7 @@ fn infeasible_words(view: &ProjectDesign, relaxation: &Relaxation) -> String {
 fn machine(side: &Side<'_>) -> Vec<String> {
     let Some(trial) = side.trial else { return vec![] };
     let mut others: Vec<&TrialRun> =
-        trial.runs.iter().filter(|run| run.agreement != Agreement::Agrees).collect();
+        trial.runs.iter().filter(|run| run.agreement >= Agreement::Differs).collect();
     others.sort_by_key(|run| std::cmp::Reverse(run.agreement));
     let with_waves = others.iter().find(|run| run.quarter_wave_rad_per_s.is_some());
     let of_plant = others.iter().find(|run| run.plant.is_some());
@@ -216,7 +216,7 @@ fn machine_words(side: &Side<'_>, run: &TrialRun) -> String {
     let why = why.split(": at the end it swings").next().unwrap_or_default();
     let verdict = match run.agreement {
         Agreement::Contradicts => "the nonlinear simulation contradicts the verdict, ",
-        Agreement::Differs | Agreement::Agrees => "",
+        Agreement::Differs | Agreement::AgreesButForSettling | Agreement::Agrees => "",
     };
     match run.quarter_wave_rad_per_s {
         Some(quarter) => format!(
