@@ -4,6 +4,7 @@
 mod added_by_rig;
 mod asked;
 mod below;
+mod binding;
 mod by_steps;
 mod command_of_steps;
 mod comparison;
@@ -29,6 +30,7 @@ pub use crate::limit_kind::{
     origin_key, origin_words,
 };
 pub use below::below_design;
+pub use binding::LedBy;
 pub use command_of_steps::CommandOfSteps;
 pub use comparison::{compared, gain_at_high_frequency};
 pub use damping::{MissingPlants, PressureFeedbackDesign, with_free_pressure_feedback};
@@ -121,6 +123,8 @@ pub struct ProjectDesign {
     /// The largest command that the steps of the scenarios take; absent where nothing limits it,
     /// or where it is not known.
     pub command_of_steps: Option<CommandOfSteps>,
+    /// What its last search was led by.
+    pub led_by: LedBy,
     /// The gain from relaxing each limit that binds.
     pub relaxations: Relaxations,
     /// The pressure feedback that was found before the loop; absent where it is not free.
@@ -198,6 +202,7 @@ impl ProjectDesign {
             gain_per: project.actuator.as_ref().map(|_| project.units.force),
             structures: vec![],
             command_of_steps: None,
+            led_by: LedBy::Frequency,
             relaxations: Relaxations::default(),
             pressure_feedback: None,
             declared_controller,

@@ -28,7 +28,7 @@ pub(super) use self::wider::last_step_search;
 use super::added_by_rig::AddedByRig;
 use super::problem::design_problem;
 use super::step_aim::StepAim;
-use super::{DesignError, DesignRun, ProjectDesign, structures};
+use super::{DesignError, DesignRun, LedBy, ProjectDesign, structures};
 use crate::audit::spread_over;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
@@ -101,7 +101,7 @@ pub(super) fn by_steps(
     }
     let Some(best) = best else { return Ok(None) };
     let best = led.completed(best, told, &mut within(watch, [0.9, 1.0]))?;
-    Ok(Some(taken(best, (run, told))?))
+    Ok(Some(taken(best, aimed.added, (run, told))?))
 }
 
 /// The design without zeros and poles that do next to nothing, led again; `None` where it has none,
@@ -115,7 +115,7 @@ pub(super) fn shortened(
     let Some(led) = led(setup, aimed, (run, told))? else { return Ok(None) };
     let Some(begun) = led.shorter(told, watch)? else { return Ok(None) };
     let found = led.agreed(begun, None, told, watch)?.filter(AuditedStep::is_reached);
-    found.map(|found| taken(found, (run, told))).transpose()
+    found.map(|found| taken(found, aimed.added, (run, told))).transpose()
 }
 
 /// The problem of a design that is led; `None` where nothing is required in time and no command is
@@ -144,11 +144,13 @@ fn led<'a>(
 /// A design that was led, in place of the one before it.
 fn taken(
     found: AuditedStep,
+    added: &[AddedByRig],
     (run, told): (&DesignRun, &ProjectDesign),
 ) -> Result<(DesignRun, ProjectDesign), DesignError> {
     let AuditedStep { told: mut best, least, shaping, .. } = found;
     best.structures = structures::led(run, told, &best, least)?;
     best.explanations = told.explanations.clone();
+    best.led_by = if added.is_empty() { LedBy::LinearSteps } else { LedBy::NonlinearRuns };
     let mut outcome = run.outcome.clone();
     outcome.design = Some(best.design.clone());
     let (aimed, problem) = (run.aimed.clone(), run.problem.clone());

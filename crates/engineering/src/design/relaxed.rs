@@ -11,9 +11,7 @@
 
 use phea_dynamics::watch::{Watch, part};
 use phea_qft::closed_loop::Compensation;
-use phea_qft::design::{
-    BINDING_DB, DesignStatus, LoopDesignError, PoleRange, last_search, sample_beside_worst,
-};
+use phea_qft::design::{BINDING_DB, DesignStatus, LoopDesignError, last_search, sample_beside_worst};
 use phea_qft::loop_shaping::{Aim, LocalOptimum, SearchProblem, Shaping, Structure};
 use phea_qft::specification::Specification;
 
@@ -25,8 +23,6 @@ use crate::limit_kind::RELAXED_BY;
 use crate::robust::{RobustError, RobustProblem};
 use crate::setup::Setup;
 
-/// Part of a required delay margin, and of the end of a range of poles, within which it binds.
-const NEAR: f64 = 0.01;
 /// Name of the stage.
 const STAGE: &str = "relaxing each limit";
 
@@ -195,18 +191,12 @@ impl RelaxedDesign<'_> {
     /// that a free number reaches, and of a design that was led by its steps their requirement.
     fn binding(&self) -> Vec<RelaxedLimit> {
         let own = self.told.designed.problem.specifications.len();
-        let design = &self.told.design;
-        let conflicts = match &design.status {
-            DesignStatus::Infeasible(relaxation) => relaxation.conflicts.as_slice(),
-            _ => &[],
-        };
-        let touched = design.binding.iter().map(|one| one.specification);
-        let touched: Vec<usize> = touched.chain(conflicts.iter().map(|one| one.specification)).collect();
+        let touched = self.told.touched();
         let specifications = (0..own).filter(|index| touched.contains(index));
         let steps = self.told.designed.view.in_time.iter().enumerate();
         let steps =
             steps.filter(|(_, finding)| finding.requirement.limits.is_none() && self.leads_to_steps());
-        let limits = self.told.limits.iter().filter(|limit| self.binds(limit, &touched));
+        let limits = self.told.limits.iter().filter(|limit| self.is_relaxed(limit));
         specifications
             .map(RelaxedLimit::Specification)
             .chain(steps.map(|(index, _)| RelaxedLimit::Steps(index)))
@@ -216,65 +206,26 @@ impl RelaxedDesign<'_> {
 
     /// True where the search was led by its steps, or its limits on the way to them bind.
     fn leads_to_steps(&self) -> bool {
-        matches!(self.search, LastSearch::BySteps(_)) || self.touches(DesignLimitKind::RequiredStep)
+        matches!(self.search, LastSearch::BySteps(_)) || self.touches_way()
     }
 
-    /// True where the audit finds a specification of the search within [`BINDING_DB`].
-    fn touches(&self, kind: DesignLimitKind) -> bool {
-        let mut findings = self.told.limit_findings.iter().filter(|(known, _)| *known == kind);
-        findings.any(|(_, found)| found.worst.as_ref().is_some_and(|worst| worst.margin_db < BINDING_DB))
+    /// True where the limits of tracking on the way to a required step bind.
+    fn touches_way(&self) -> bool {
+        let worst = self.told.limit_finding(DesignLimitKind::RequiredStep);
+        worst.and_then(|found| found.worst.as_ref()).is_some_and(|worst| worst.margin_db < BINDING_DB)
     }
 
-    fn binds(&self, limit: &DesignLimit, touched: &[usize]) -> bool {
-        let own = self.told.designed.problem.specifications.len();
-        match limit.kind {
-            DesignLimitKind::NoiseToCommand
-            | DesignLimitKind::ModulusMargin
-            | DesignLimitKind::HighestBandwidth => {
-                self.index(limit.kind).is_some_and(|index| touched.contains(&(own + index)))
-            }
-            DesignLimitKind::MinimumDelayMargin => {
-                let margin_s = self.told.designed.figures.delay_margin_s;
-                margin_s.is_some_and(|margin_s| margin_s <= (1.0 + NEAR) * limit.value)
-            }
-            DesignLimitKind::PrefilterGain | DesignLimitKind::RequiredStep => self.touches(limit.kind),
-            // no limit of a search over frequency
-            DesignLimitKind::CommandOfSteps => {
-                let command = self.told.command_of_steps.as_ref();
-                matches!(self.search, LastSearch::BySteps(_))
-                    && command.is_some_and(|command| command.ratio() >= 1.0 - NEAR)
-            }
-            DesignLimitKind::PoleDampingRatio | DesignLimitKind::FastestPole => self.is_at_end(limit.kind),
-        }
+    /// True where a limit binds and this search can relax it: the command of steps is no limit of
+    /// one over frequency.
+    fn is_relaxed(&self, limit: &DesignLimit) -> bool {
+        let is_searched =
+            limit.kind != DesignLimitKind::CommandOfSteps || matches!(self.search, LastSearch::BySteps(_));
+        is_searched && self.told.binds(limit) == Some(true)
     }
 
     /// The index of a limit among those that are specifications.
     fn index(&self, kind: DesignLimitKind) -> Option<usize> {
         self.told.limit_findings.iter().position(|(known, _)| *known == kind)
-    }
-
-    /// True where a free number is at an end of its range that this limit moves.
-    fn is_at_end(&self, kind: DesignLimitKind) -> bool {
-        let (own, wider) = (self.told.design.structure.bounds(), self.structure(kind).bounds());
-        let is_near = |one: f64, other: f64| (one - other).abs() < NEAR;
-        own.iter().zip(wider).zip(&self.told.design.free_numbers).any(|((own, wider), number)| {
-            [0, 1].into_iter().any(|end| own[end] != wider[end] && is_near(own[end], *number))
-        })
-    }
-
-    /// The structure with poles in a range that is wider by this limit.
-    fn structure(&self, kind: DesignLimitKind) -> Structure {
-        let poles = self.told.options.poles;
-        let wider = match kind {
-            DesignLimitKind::PoleDampingRatio => {
-                PoleRange { least_damping_ratio: kind.relaxed(poles.least_damping_ratio), ..poles }
-            }
-            DesignLimitKind::FastestPole => {
-                PoleRange { fastest_rad_per_s: kind.relaxed(poles.fastest_rad_per_s), ..poles }
-            }
-            _ => poles,
-        };
-        self.told.design.structure.with_poles_in([poles, wider])
     }
 
     /// The specifications that the search was made for, where this is given, and the prefilter may
@@ -308,7 +259,7 @@ impl RelaxedDesign<'_> {
             RelaxedLimit::Design(kind @ DesignLimitKind::MinimumDelayMargin) => {
                 delay_s = kind.relaxed(delay_s);
             }
-            RelaxedLimit::Design(kind) => structure = self.structure(kind),
+            RelaxedLimit::Design(kind) => structure = self.told.structure_with_wider(kind),
             RelaxedLimit::Specification(_) => {}
         }
         let mut specifications = self.specifications(given, gain)?;

@@ -5,7 +5,9 @@ use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
 use phea_qft::closed_loop::Compensation;
-use phea_qft::design::{NamedStructure, Objective, PrefilterChoice, StructureEnding, TriedStructure};
+use phea_qft::design::{
+    BINDING_DB, NamedStructure, Objective, PrefilterChoice, StructureEnding, TriedStructure,
+};
 use phea_qft::loop_shaping::{SampledMargin, Structure};
 
 use super::{DesignError, DesignRun, ManualLaw, ManualPart, NominalMargins, ProjectDesign};
@@ -30,9 +32,9 @@ pub struct ReachedStructure {
     /// Whether the design has it.
     pub is_chosen: bool,
     /// The least margin, to the limits that were searched with, of the plants and frequencies that
-    /// were searched with: what binds; absent where no controller makes them stable.
+    /// were searched with; absent where no controller makes them stable.
     pub least: Option<SampledMargin>,
-    /// What that limit is called.
+    /// What that limit is called, where it leaves the loop no room.
     pub binding: Option<String>,
     /// The lowest frequency that a zero was looked for at, where one ended there, rad/s.
     pub slowest_zero_rad_per_s: Option<f64>,
@@ -120,6 +122,12 @@ fn reached_by(
         index if index < own => Some(told.named(index)),
         index => run.aimed.specification_names.get(index).cloned(),
     };
+    let leaves_no_room = |margin: &&SampledMargin| match told.options.objective {
+        Objective::BestWorstMargin => true,
+        Objective::LeastHighFrequencyGain | Objective::LeastBandwidth => {
+            margin.margin_db <= told.options.reserve_db + BINDING_DB
+        }
+    };
     let has_prefilter = law.is_some_and(|law| !law.prefilter.stages.is_empty());
     let is_fitted = has_prefilter || !matches!(told.options.prefilter, PrefilterChoice::Grow { .. });
     let steps = match (told.designed.view.in_time.first(), &around) {
@@ -137,7 +145,7 @@ fn reached_by(
         slowest_zero_rad_per_s: tried.structure.slowest_zero_touched(&tried.free_numbers),
         structure: tried.structure.clone(),
         ending: tried.ending,
-        binding: least.as_ref().and_then(name_of),
+        binding: least.as_ref().filter(leaves_no_room).and_then(name_of),
         least,
         nominal,
         high_frequency_gain_db,

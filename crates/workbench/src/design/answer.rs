@@ -88,6 +88,7 @@ fn of_structures(view: &ProjectDesign) -> Object {
         .with("structure", structure(&design.structure).maybe("name", name))
         .known("manual", view.manual.as_ref().ok().map(manual::object), &gap)
         .with("structures", structures::rows(view))
+        .with("led_by", structures::led_key(view.led_by))
         .maybe("earned_per_pole_db", structures::earned_per_pole_db(view))
 }
 

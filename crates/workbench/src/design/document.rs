@@ -1,6 +1,7 @@
 //! A design for people.
 
 use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
+use phea_engineering::design::LedBy;
 use phea_qft::design::{BINDING_DB, DesignRound, DesignStatus, Objective, Starts};
 use phea_qft::verification::{PlantPoint, Verdict};
 
@@ -162,6 +163,7 @@ pub(crate) fn costs(view: &ProjectDesign) -> Document {
             "The specifications that come within {BINDING_DB} dB of {touched}, at the design frequencies and where each is worst over its whole band, with the plant that sets it. These cost: relaxed there they may allow a better controller; relaxing any other gains nothing."
         ));
     }
+    out.sentences(led_sentence(view).filter(|_| !touches));
     out.append(relaxed::document(view));
     out.heading("Rounds of search and audit");
     out.explanation(
@@ -179,6 +181,16 @@ pub(crate) fn costs(view: &ProjectDesign) -> Document {
         std::iter::once(seed_sentence(view)).chain(view.design.starts.as_ref().map(starts_sentence)),
     );
     out
+}
+
+/// What led a design that touches no limit over frequency.
+fn led_sentence(view: &ProjectDesign) -> Option<String> {
+    let led_by = match view.led_by {
+        LedBy::Frequency => return None,
+        LedBy::LinearSteps => "the steps of the linear loop",
+        LedBy::NonlinearRuns => "the steps of the nonlinear rig",
+    };
+    Some(format!("The loop touches no limit over frequency: {led_by} led the search, and limit it."))
 }
 
 /// The sentence, and the first plant that it concerns.

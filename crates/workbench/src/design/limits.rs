@@ -4,8 +4,7 @@ use phea_engineering::design::{
     CommandOfSteps, DesignLimit, DesignLimitKind, limit_key, limit_unit_key, limit_words, origin_key,
     origin_words,
 };
-use phea_qft::design::BINDING_DB;
-use phea_qft::verification::{SpecificationFinding, Verdict};
+use phea_qft::verification::Verdict;
 
 use super::{ProjectDesign, relaxed};
 use crate::answer::{Object, significant};
@@ -29,10 +28,10 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
             Cell::Code(format!("design.{}", limit_key(limit.kind))),
             value_words(view, limit).into(),
             origin_words(limit.origin).into(),
-            finding(view, limit.kind)
+            view.limit_finding(limit.kind)
                 .and_then(|found| found.worst.as_ref())
                 .map_or(Cell::Missing, |worst| Cell::margin(worst.margin_db)),
-            Cell::from(binds(view, limit).map(|binds| if binds { "binds" } else { "" }.to_string())),
+            Cell::from(view.binds(limit).map(|binds| if binds { "binds" } else { "" }.to_string())),
         ]
     };
     out.table(
@@ -79,7 +78,7 @@ fn command_object(view: &ProjectDesign, command: &CommandOfSteps) -> Object {
 /// The limits in JSON.
 pub(crate) fn rows(view: &ProjectDesign) -> Vec<Object> {
     let row = |limit: &DesignLimit| {
-        let found = finding(view, limit.kind);
+        let found = view.limit_finding(limit.kind);
         let margin = found.and_then(|found| found.worst.as_ref()).map(|worst| worst.margin_db);
         Object::new()
             .with("key", limit_key(limit.kind))
@@ -87,7 +86,7 @@ pub(crate) fn rows(view: &ProjectDesign) -> Vec<Object> {
             .with("origin", origin_key(limit.origin))
             .with("kept", is_kept(view, limit))
             .maybe("worst_margin_db", margin)
-            .maybe("binds", binds(view, limit))
+            .maybe("binds", view.binds(limit))
             .maybe("command", command(view, limit.kind).map(|found| command_object(view, found)))
             .maybe("relaxed", relaxed::of_limit(view, limit.kind, limit.value))
     };
@@ -108,7 +107,7 @@ fn is_kept(view: &ProjectDesign, limit: &DesignLimit) -> bool {
         DesignLimitKind::NoiseToCommand
         | DesignLimitKind::ModulusMargin
         | DesignLimitKind::HighestBandwidth => {
-            finding(view, limit.kind).is_some_and(|found| found.verdict == Verdict::Met)
+            view.limit_finding(limit.kind).is_some_and(|found| found.verdict == Verdict::Met)
         }
     }
 }
@@ -116,28 +115,6 @@ fn is_kept(view: &ProjectDesign, limit: &DesignLimit) -> bool {
 /// The command of the scenarios' steps, of the limit on it.
 fn command(view: &ProjectDesign, kind: DesignLimitKind) -> Option<&CommandOfSteps> {
     view.command_of_steps.as_ref().filter(|_| kind == DesignLimitKind::CommandOfSteps)
-}
-
-/// Whether a limit leaves no room; `None` where that is not known.
-fn binds(view: &ProjectDesign, limit: &DesignLimit) -> Option<bool> {
-    if limit.kind == DesignLimitKind::MinimumDelayMargin {
-        let margin_s = view.designed.figures.delay_margin_s?;
-        return Some(margin_s <= (1.0 + DELAY_NEAR) * limit.value);
-    }
-    if let Some(command) = command(view, limit.kind) {
-        return Some(command.largest_v >= (1.0 - COMMAND_NEAR) * command.limit_v);
-    }
-    Some(finding(view, limit.kind)?.worst.as_ref()?.margin_db < BINDING_DB)
-}
-
-/// Share of a required delay margin within which it binds.
-const DELAY_NEAR: f64 = 0.01;
-/// The same of a limit on the command.
-const COMMAND_NEAR: f64 = 0.01;
-
-/// The finding of the audit for a limit that is a specification.
-fn finding(view: &ProjectDesign, kind: DesignLimitKind) -> Option<&SpecificationFinding> {
-    view.limit_findings.iter().find(|(known, _)| *known == kind).map(|(_, found)| found)
 }
 
 fn value_words(view: &ProjectDesign, limit: &DesignLimit) -> String {

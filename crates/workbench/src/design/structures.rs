@@ -1,7 +1,8 @@
 //! The structures that were tried against what each reaches.
 
 use phea_engineering::design::{
-    DesignLimitKind, ReachedStructure, gain_at_high_frequency, limit_words, structure_key, structure_words,
+    DesignLimitKind, LedBy, ReachedStructure, gain_at_high_frequency, limit_words, structure_key,
+    structure_words,
 };
 use phea_qft::design::{ControllerChoice, Objective, StructureEnding};
 
@@ -19,7 +20,7 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
     }
     out.heading("The structures that were tried");
     out.explanation(
-        "The shortest structure that is met is taken. The least margin, and the limit that binds, are those of the plants and frequencies that the search evaluated; crossover and delay margin are those of the nominal loop; overshoot and settling time are the worst of the linear steps, of the structure that is taken over the whole family, of others over 40 of its members; the noise gain is its largest |G/(1+L)|, from the noise of the sensor to the command.",
+        "The shortest structure that is met is taken. The least margin, and the limit that binds (leaves no room), are those of the plants and frequencies that the search evaluated; crossover and delay margin are those of the nominal loop; overshoot and settling time are the worst of the linear steps, of the structure that is taken over the whole family, of others over 40 of its members; the noise gain is its largest |G/(1+L)|, from the noise of the sensor to the command.",
     );
     let compares_noise = view.options.objective == Objective::LeastHighFrequencyGain;
     let headings = [
@@ -80,6 +81,34 @@ fn laws_that_differ(view: &ProjectDesign) -> Vec<String> {
     renamed.chain(risen).collect()
 }
 
+/// What a design was led by, of the structure that is taken; `None` where limits over frequency
+/// led.
+fn led_words(view: &ProjectDesign, one: &ReachedStructure) -> Option<String> {
+    let words = match view.led_by {
+        LedBy::Frequency => return None,
+        LedBy::LinearSteps => "linear steps",
+        LedBy::NonlinearRuns => "nonlinear runs",
+    };
+    one.is_chosen.then(|| words.to_string())
+}
+
+/// The word of what led a design, in JSON.
+pub(super) fn led_key(led_by: LedBy) -> &'static str {
+    match led_by {
+        LedBy::Frequency => "frequency",
+        LedBy::LinearSteps => "linear_steps",
+        LedBy::NonlinearRuns => "nonlinear_runs",
+    }
+}
+
+/// What the high-frequency gain is that of, in a sampled loop.
+fn sampled_gain(view: &ProjectDesign) -> Option<String> {
+    let is_sampled = view.designed.problem.compensation.sample_time_s().is_some();
+    is_sampled.then(|| {
+        "the high-frequency gain is that of the continuous law, before it is sampled: the limit of s^r G, r poles more than zeros".to_string()
+    })
+}
+
 /// What a longer structure must gain, dB, where that decides.
 pub(super) fn earned_per_pole_db(view: &ProjectDesign) -> Option<f64> {
     match view.options.controller {
@@ -128,7 +157,7 @@ fn row(view: &ProjectDesign, one: &ReachedStructure) -> Vec<Cell> {
         Cell::count(one.order),
         ending_words(view, one).into(),
         one.least.as_ref().map_or(Cell::Missing, |least| Cell::margin(least.margin_db)),
-        or_missing(one.binding.clone()),
+        or_missing(one.binding.clone().or_else(|| led_words(view, one))),
         or_missing(crossover),
         or_missing(delay),
         or_missing(gain),
