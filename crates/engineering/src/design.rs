@@ -31,7 +31,7 @@ pub use crate::limit_kind::{
 };
 pub use below::below_design;
 pub use binding::LedBy;
-pub use command_of_steps::CommandOfSteps;
+pub use command_of_steps::{CommandOfSteps, StepLimit};
 pub use comparison::{compared, gain_at_high_frequency};
 pub use damping::{MissingPlants, PressureFeedbackDesign, with_free_pressure_feedback};
 pub use deployable::{DesignLimit, LimitFinding, design_limits};

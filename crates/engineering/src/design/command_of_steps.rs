@@ -1,31 +1,32 @@
 //! The command that the steps of the scenarios take, held against what the valve has.
 //!
 //! ```text
-//! u(t) = u_0 + (r_1 - r_0) w(t),   w the unit step through F G/(1 + L)         |u(t)| <= share U_n
+//! u(t) = u_0 + sum of (r_k - r_(k-1)) w(t - t_k),   w the unit step through F G/(1 + L)         |u(t)| <= limit
 //! ```
 //!
-//! u_0 is the command of the operating point. The loop is linear, so that the largest step which
-//! the valve does follows from w.
+//! The sum is over the steps of one scenario, r_k the reference from t_k on, and u_0 the command
+//! that holds the rig at the reference r_0 with which it begins. The loop is linear, so that the
+//! largest step that the valve does follows from w as well.
+
+mod scenario_steps;
 
 use phea_qft::closed_loop::Member;
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::verification::{PlantPoint, Verdict};
 
+pub(super) use self::scenario_steps::ScenarioSteps;
+use self::scenario_steps::{CommandedSteps, last};
 use super::ProjectDesign;
 use super::by_steps::SteppedPlants;
-use super::deployable::limit_value;
 use crate::audit::{VisitedPlant, visited, worst_beside};
-use crate::limit_kind::DesignLimitKind;
 use crate::linear_step::{KnownResponses, StepResponse, StepSignal, linear_step_knowing};
 use crate::setup::Setup;
-use crate::simulate::{ReferenceStep, largest_reference_steps};
+use crate::simulate::{ForceLimit, ForceLimits, ReferenceStep};
 
 /// Points of a continuous response, over the whole of it and over its first part.
 const POINTS: usize = 1000;
 /// The first part of a continuous response, which has as many points by itself.
 const SOON: f64 = 0.1;
-/// Duration of a step, in settling times that are required, where one is.
-const SETTLING_TIMES: f64 = 10.0;
 /// Plants from which the search begins, and most plants that it visits.
 const STARTS: usize = 3;
 const VISITED_MAXIMUM: usize = 400;
@@ -36,21 +37,39 @@ const ACCURACY: f64 = 1e-3;
 /// The largest command that the steps of the scenarios take: evidence of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandOfSteps {
-    /// The step that takes most of the limit.
+    /// The name of the scenario whose command takes most of the limit.
+    pub scenario: String,
+    /// The step after which it does.
     pub step: ReferenceStep,
-    /// The largest magnitude of the command in it, V.
+    /// When, in the time of the scenario, s.
+    pub at_s: f64,
+    /// The largest magnitude of the command, V.
     pub largest_v: f64,
-    /// The largest that is left at the end of a step: what holds the force, which no controller
-    /// changes, V.
+    /// The largest that remains between steps once the loop has settled: what holds the force,
+    /// which no controller changes, V.
     pub at_rest_v: f64,
     /// Most that it may be, V.
     pub limit_v: f64,
-    /// The largest step of that sign that keeps the limit, N.
+    /// The largest single step of that sign, from rest where this one begins, that keeps the limit
+    /// and that supply and sensor allow, N.
     pub largest_step_n: f64,
+    /// What keeps a step from being larger.
+    pub step_limit: StepLimit,
     /// How many plants were visited.
     pub plants: usize,
     /// The plant with the largest command.
     pub plant: PlantPoint,
+    /// Indices of its parameters that move the largest command; the others have any value.
+    pub moved_by: Vec<usize>,
+}
+
+/// What keeps a step from being larger.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepLimit {
+    /// The command of the valve.
+    Command,
+    /// A force that the rig does not reach, or that its sensor does not withstand.
+    Force(ForceLimit),
 }
 
 impl CommandOfSteps {
@@ -62,6 +81,11 @@ impl CommandOfSteps {
     /// True where the command that holds the force is beyond the limit, whatever the controller.
     pub fn is_out_of_reach(&self) -> bool {
         self.at_rest_v > (1.0 + ACCURACY) * self.limit_v
+    }
+
+    /// True where the largest command is what holds a force, and no peak on the way there.
+    pub fn is_at_rest(&self) -> bool {
+        self.largest_v <= (1.0 + ACCURACY) * self.at_rest_v
     }
 
     /// The ratio of the command to its limit.
@@ -77,26 +101,12 @@ impl ProjectDesign {
     }
 }
 
-/// The steps of the scenarios, and what limits their commands.
+/// The command of a unit step of one plant, V/N, and the largest in any scenario, V.
 #[derive(Clone, Debug)]
-pub(super) struct ScenarioSteps {
-    steps: Vec<ReferenceStep>,
-    /// Command of the operating point, V.
-    initial_v: f64,
-    /// Most that a command may be, V.
-    pub(super) limit_v: f64,
-    /// How long a step is followed, s.
-    pub(super) duration_s: f64,
-}
-
-/// The command of a unit step of one plant.
-#[derive(Clone, Debug)]
-struct CommandRange {
+struct UnitCommand {
     values: Vec<f64>,
-    /// Least and greatest, V/N, zero among them.
-    range: [f64; 2],
-    /// At the end, V/N.
-    last: f64,
+    unit: StepResponse,
+    largest_v: f64,
 }
 
 /// A search for the plant whose steps take the largest command.
@@ -105,7 +115,7 @@ struct CommandSearch<'a> {
     family: &'a UncertainFamily,
     plants: &'a SteppedPlants,
     of: ScenarioSteps,
-    visited: Vec<CommandRange>,
+    visited: Vec<UnitCommand>,
 }
 
 /// Where a search for the largest command looks.
@@ -138,57 +148,22 @@ pub(super) fn command_of_steps(
     if is_whole && family.plant().is_rational() {
         search.between()?;
     }
-    search.worst()
-}
-
-impl ScenarioSteps {
-    /// Those of a project; `None` where nothing limits their command.
-    pub(super) fn of(setup: &Setup<'_>, told: &ProjectDesign) -> Option<ScenarioSteps> {
-        let share = limit_value(&told.limits, DesignLimitKind::CommandOfSteps)?;
-        let rig = setup.rig().ok()?;
-        let steps = largest_reference_steps(setup.project);
-        let hold_s = steps.iter().map(|step| step.hold_s).fold(0.0, f64::max);
-        let required = told.designed.problem.in_time.iter().map(|one| SETTLING_TIMES * one.wish.horizon_s);
-        Some(ScenarioSteps {
-            steps,
-            initial_v: rig.point.command,
-            limit_v: share * rig.actuator.components().valve.nominal_voltage,
-            duration_s: required.reduce(f64::max).unwrap_or(f64::INFINITY).min(hold_s),
-        })
-    }
-
-    /// The largest magnitude of the command in any step, of this command in a unit step, V.
-    pub(super) fn largest_v(&self, unit: &StepResponse) -> f64 {
-        self.largest_in(range(unit))
-    }
-
-    fn largest_in(&self, range: [f64; 2]) -> f64 {
-        self.steps.iter().map(|step| self.in_step(step, range)).fold(0.0, f64::max)
-    }
-
-    fn in_step(&self, step: &ReferenceStep, range: [f64; 2]) -> f64 {
-        range.map(|one| (self.initial_v + step.size_n() * one).abs()).into_iter().fold(0.0, f64::max)
-    }
-}
-
-/// Least and greatest value of a response, zero among them.
-fn range(response: &StepResponse) -> [f64; 2] {
-    response.values.iter().fold([0.0_f64; 2], |[low, high], one| [low.min(*one), high.max(*one)])
+    let found = search.worst(setup)?;
+    let moved_by = match (depth, family.extent()) {
+        (CommandDepth::Whole, Extent::Box) => search.moved_by(&found)?,
+        // beside a listed member there is no plant
+        _ => (0..family.plant().parameters().len()).collect(),
+    };
+    Some(CommandOfSteps { moved_by, ..found })
 }
 
 impl CommandSearch<'_> {
     /// The command of a unit step; `None` where it cannot be computed.
-    fn command(&self, values: &[f64]) -> Option<CommandRange> {
+    fn command(&self, values: &[f64]) -> Option<StepResponse> {
         let compensation = &self.told.designed.problem.compensation;
-        let of = |response: &StepResponse, range: [f64; 2]| CommandRange {
-            values: values.to_vec(),
-            range,
-            last: response.values.last().copied().unwrap_or(0.0),
-        };
         if !self.family.plant().is_rational() {
             let plant = self.plants.plant(values, (self.family, compensation)).ok()?;
-            let found = plant.command(compensation, (self.of.duration_s, POINTS))?;
-            return Some(of(&found, range(&found)));
+            return plant.command(compensation, (self.of.duration_s, POINTS));
         }
         let member = compensation.member_of(self.family.plant(), values).ok()?;
         let within = |duration_s: f64| {
@@ -196,36 +171,35 @@ impl CommandSearch<'_> {
             let of = (&member, StepSignal::Command);
             linear_step_knowing(of, compensation, (duration_s, POINTS), &known).ok()
         };
-        let found = within(self.of.duration_s)?;
-        let [low, high] = range(&found);
+        let whole = within(self.of.duration_s)?;
         if !matches!(member, Member::Continuous { .. }) {
-            return Some(of(&found, [low, high]));
+            return Some(whole);
         }
-        let soon = range(&within(SOON * self.of.duration_s)?);
-        Some(of(&found, [low.min(soon[0]), high.max(soon[1])]))
+        let StepResponse { mut times_s, mut values } = within(SOON * self.of.duration_s)?;
+        let soon_s = times_s.last().copied().unwrap_or(0.0);
+        let later = whole.times_s.into_iter().zip(whole.values).filter(|(time_s, _)| *time_s > soon_s);
+        for (time_s, value) in later {
+            times_s.push(time_s);
+            values.push(value);
+        }
+        Some(StepResponse { times_s, values })
     }
 
-    /// The largest magnitude of the command in any step, V.
+    /// The largest magnitude of the command in any scenario, V.
     fn visit(&mut self, values: &[f64]) -> Option<f64> {
-        let known = self.visited.iter().find(|known| known.values == values);
-        let range = match known {
-            Some(known) => known.range,
-            None => {
-                let found = self.command(values)?;
-                let range = found.range;
-                self.visited.push(found);
-                range
-            }
-        };
-        Some(self.of.largest_in(range))
+        if let Some(known) = self.visited.iter().find(|known| known.values == values) {
+            return Some(known.largest_v);
+        }
+        let unit = self.command(values)?;
+        let largest_v = self.of.largest_v(&unit);
+        self.visited.push(UnitCommand { values: values.to_vec(), unit, largest_v });
+        Some(largest_v)
     }
 
     /// Follows the worst plants to worse ones between the members.
     fn between(&mut self) -> Option<()> {
-        let mut sorted: Vec<(f64, Vec<f64>)> = Vec::new();
-        for known in self.visited.clone() {
-            sorted.push((self.visit(&known.values)?, known.values));
-        }
+        let mut sorted: Vec<(f64, Vec<f64>)> =
+            self.visited.iter().map(|known| (known.largest_v, known.values.clone())).collect();
         sorted.sort_by(|(one, _), (other, _)| other.total_cmp(one));
         let family = self.family;
         for (_, start) in sorted.into_iter().take(STARTS) {
@@ -238,25 +212,83 @@ impl CommandSearch<'_> {
         Some(())
     }
 
-    /// The step and the plant with the largest command.
-    fn worst(&self) -> Option<CommandOfSteps> {
-        let ScenarioSteps { steps, initial_v, limit_v, .. } = &self.of;
-        let each = steps.iter().flat_map(|step| self.visited.iter().map(move |plant| (step, plant)));
-        let largest = each.map(|(step, plant)| (self.of.in_step(step, plant.range), step, plant));
-        let (largest_v, step, plant) = largest.max_by(|one, other| one.0.total_cmp(&other.0))?;
-        let direction = step.size_n().signum();
-        let room = |rate: f64| (limit_v - initial_v * rate.signum()) / rate.abs();
-        let rates = self.visited.iter().flat_map(|plant| plant.range).map(|rate| direction * rate);
-        let most = rates.filter(|rate| *rate != 0.0).map(room).fold(f64::INFINITY, f64::min);
-        let at_rest = self.visited.iter().map(|plant| self.of.largest_in([plant.last; 2]));
+    /// The scenario, the step and the plant with the largest command.
+    fn worst(&self, setup: &Setup<'_>) -> Option<CommandOfSteps> {
+        let plant = self.visited.iter().max_by(|one, other| one.largest_v.total_cmp(&other.largest_v))?;
+        let peaks = self.of.peaks(&plant.unit);
+        let (scenario, peak) = peaks.max_by(|(_, one), (_, other)| one.value_v.total_cmp(&other.value_v))?;
+        let (largest_step_n, step_limit) = self.largest_step(setup, scenario, &peak.step);
+        let at_rest = self.visited.iter().map(|plant| self.of.at_rest_v(&plant.unit));
         Some(CommandOfSteps {
-            step: step.clone(),
-            largest_v,
+            scenario: scenario.reference.scenario.clone(),
+            step: peak.step,
+            at_s: peak.at_s,
+            largest_v: peak.value_v,
             at_rest_v: at_rest.fold(0.0, f64::max),
-            limit_v: *limit_v,
-            largest_step_n: direction * most.max(0.0),
+            limit_v: self.of.limit_v,
+            largest_step_n,
+            step_limit,
             plants: self.visited.len(),
             plant: PlantPoint::Parameters(plant.values.clone()),
+            moved_by: vec![],
         })
+    }
+
+    /// The largest step in the direction of this one, from rest where it begins, that keeps the
+    /// limit at every plant visited, and that supply and sensor allow; N, with what limits it.
+    fn largest_step(
+        &self,
+        setup: &Setup<'_>,
+        scenario: &CommandedSteps,
+        step: &ReferenceStep,
+    ) -> (f64, StepLimit) {
+        let direction = step.size_n().signum();
+        let room = |plant: &UnitCommand| {
+            let resting_v = scenario.resting_v(step.from_n, last(&plant.unit));
+            let of = |value: &f64| {
+                let rate = direction * value;
+                if rate == 0.0 {
+                    return f64::INFINITY;
+                }
+                (self.of.limit_v - resting_v * rate.signum()) / rate.abs()
+            };
+            plant.unit.values.iter().map(of).fold(f64::INFINITY, f64::min)
+        };
+        let by_command = self.visited.iter().map(room).fold(f64::INFINITY, f64::min).max(0.0);
+        let limits = setup.project.actuator.as_ref().map(|actuator| ForceLimits::of(setup.project, actuator));
+        let by_force = limits.map(|limits| limits.greatest(direction)).map(|(force_n, limit)| {
+            let room_n = (direction * (force_n - step.from_n)).max(0.0);
+            (room_n, StepLimit::Force(limit))
+        });
+        let (size_n, limit) = match by_force.filter(|(room_n, _)| *room_n < by_command) {
+            Some(found) => found,
+            None => (by_command, StepLimit::Command),
+        };
+        (direction * size_n, limit)
+    }
+
+    /// The parameters of the worst plant that move the largest command at an end of their range,
+    /// the others unchanged; `None` where a command cannot be computed.
+    fn moved_by(&self, found: &CommandOfSteps) -> Option<Vec<usize>> {
+        let PlantPoint::Parameters(values) = &found.plant else { return Some(vec![]) };
+        let mut moved_by = Vec::new();
+        for (index, coordinate) in self.family.coordinates().iter().enumerate() {
+            for end in [0.0, 1.0] {
+                let mut shares = self.family.shares(values);
+                *shares.get_mut(index)? = end;
+                let moved = self.family.values(&shares);
+                let known = self.visited.iter().find(|known| known.values == moved);
+                let largest_v = match known {
+                    Some(known) => known.largest_v,
+                    None => self.of.largest_v(&self.command(&moved)?),
+                };
+                if (largest_v - found.largest_v).abs() > ACCURACY * found.largest_v {
+                    moved_by.extend(&coordinate.parameters);
+                    break;
+                }
+            }
+        }
+        moved_by.sort_unstable();
+        Some(moved_by)
     }
 }

@@ -23,7 +23,7 @@ use crate::project::{DeclaredDesign, UnstatedLimits};
 use crate::rig::quarter_wave;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
-use crate::simulate::largest_reference_steps;
+use crate::simulate::stepped_references;
 
 /// Part of the nominal voltage that noise may take, rms.
 const NOISE_SHARE: f64 = 0.01;
@@ -66,7 +66,7 @@ fn follows_reference(given: &RobustProblem) -> bool {
 /// True where a scenario steps the reference of a valve around plants whose steps are known.
 fn steps_command(setup: &Setup<'_>, given: &RobustProblem) -> bool {
     let has_steps = matches!(given.family, Family::Uncertain(_));
-    has_steps && setup.rig().is_ok() && !largest_reference_steps(setup.project).is_empty()
+    has_steps && setup.rig().is_ok() && !stepped_references(setup.project).is_empty()
 }
 
 /// The limits of a design for this problem; none for a plant without a rig that states none.

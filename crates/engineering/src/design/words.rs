@@ -89,8 +89,8 @@ fn command_words(command: &CommandOfSteps) -> String {
         false => String::new(),
     };
     format!(
-        "not met: the controller satisfies every specification, and a step of the scenario `{}` takes {} of the {} that `design.command_of_steps` leaves the valve{hold}",
-        command.step.scenario,
+        "not met: the controller satisfies every specification, and the steps of the scenario `{}` take {} of the {} that `design.command_of_steps` leaves the valve{hold}",
+        command.scenario,
         volts(command.largest_v),
         volts(command.limit_v)
     )

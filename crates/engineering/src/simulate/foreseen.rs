@@ -2,14 +2,13 @@
 //! read, and references and motions that the rig cannot follow.
 
 use phea_dynamics::simulation::Profile;
-use phea_hydraulics::actuator::Components;
 
 use super::bench::ControlledMachine;
 use super::course::driven_by;
+use super::force_limits::ForceLimits;
 use super::{SimulateError, measured};
 use crate::project::{DeclaredActuator, Findings, LateError, Load, MotionShape, Project, Scenario, Signal};
 use crate::quantity::{FORCE, LENGTH, PRESSURE, TIME, display};
-use crate::rig::{Numbers, components};
 use crate::setup::Setup;
 use crate::source::Source;
 
@@ -122,28 +121,7 @@ fn ends(profile: &Profile, end_s: f64) -> [(f64, f64); 2] {
     found
 }
 
-/// Forces that a rig reaches, and those that its sensor withstands.
-struct ForceLimits<'a> {
-    project: &'a Project,
-    /// Pa and N: the supply as declared and, where it is uncertain, the lowest of the family.
-    stall: Vec<(f64, [f64; 2])>,
-    capacity: Option<f64>,
-}
-
-impl<'a> ForceLimits<'a> {
-    fn of(project: &'a Project, actuator: &'a DeclaredActuator) -> ForceLimits<'a> {
-        let Components { cylinder, supply, .. } = components(actuator, &Numbers::declared());
-        let range = project.uncertainty.iter().find(|one| one.name == "supply.pressure");
-        let lowest = range.map(|range| range.minimum).filter(|lowest| *lowest < supply.pressure);
-        let pressures = std::iter::once(supply.pressure).chain(lowest);
-        let stall = |pressure: f64| {
-            let supply = phea_hydraulics::servovalve::Supply { pressure, ..supply };
-            (pressure, cylinder.stall_forces(&supply))
-        };
-        let capacity = actuator.force_sensor.capacity;
-        ForceLimits { project, stall: pressures.map(stall).collect(), capacity }
-    }
-
+impl ForceLimits<'_> {
     /// What a reference between these ends exceeds, in words.
     fn exceeded_by(&self, [least, most]: [(f64, f64); 2]) -> Vec<String> {
         let force = |value: f64| display(value, self.project.motion().dimension(&FORCE), 4);

@@ -2,17 +2,15 @@
 
 use crate::project::{Project, Scenario, Signal};
 
-/// A step of the reference in a scenario.
-#[derive(Clone, Debug, PartialEq)]
+/// A step of the reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceStep {
-    /// The name of the scenario.
-    pub scenario: String,
+    /// When, s.
+    pub at_s: f64,
     /// Before, N.
     pub from_n: f64,
     /// From then on, N.
     pub to_n: f64,
-    /// Until the next step or the end, s.
-    pub hold_s: f64,
 }
 
 impl ReferenceStep {
@@ -22,8 +20,19 @@ impl ReferenceStep {
     }
 }
 
-/// The largest step of the reference in each scenario that has one, whatever moves beside it; a
-/// ramp or a sine is no step, nor is what a run that begins at rest begins with.
+/// All steps of the reference in one scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SteppedReference {
+    /// The name of the scenario.
+    pub scenario: String,
+    /// In the order of time; at least one.
+    pub steps: Vec<ReferenceStep>,
+    /// When the scenario ends, s.
+    pub end_s: f64,
+}
+
+/// The steps of the reference in each scenario that has any, whatever moves beside it; a ramp or a
+/// sine is no step, nor is what a run that begins at rest begins with.
 ///
 /// # Example
 /// ```
@@ -31,15 +40,17 @@ impl ReferenceStep {
 /// let source = Memory::default().with("rig.toml", include_str!("../../../../examples/ybitu/hose.toml"));
 /// let scenario = r#"scenario=[{ name = "there and back", duration = "3 s", reference = [{ at = "0 s", force = "1 kN" }, { at = "1 s", force = "4 kN" }, { at = "2 s", force = "0 N" }] }]"#;
 /// let project = phea_project::read(&source, "rig.toml", &[scenario.to_string()], &[])?.project;
-/// let [step] = &phea_engineering::simulate::largest_reference_steps(&project)[..] else { panic!() };
-/// assert_eq!((step.from_n, step.to_n, step.hold_s), (4000.0, 0.0, 1.0));
+/// let [stepped] = &phea_engineering::simulate::stepped_references(&project)[..] else { panic!() };
+/// let [there, back] = stepped.steps[..] else { panic!() };
+/// assert_eq!((there.at_s, there.from_n, there.to_n), (1.0, 1000.0, 4000.0));
+/// assert_eq!((back.at_s, back.size_n(), stepped.end_s), (2.0, -4000.0, 3.0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn largest_reference_steps(project: &Project) -> Vec<ReferenceStep> {
-    project.scenarios.iter().filter_map(largest).collect()
+pub fn stepped_references(project: &Project) -> Vec<SteppedReference> {
+    project.scenarios.iter().filter_map(stepped).collect()
 }
 
-fn largest(scenario: &Scenario) -> Option<ReferenceStep> {
+fn stepped(scenario: &Scenario) -> Option<SteppedReference> {
     if !scenario.command.is_empty() {
         return None;
     }
@@ -59,15 +70,12 @@ fn largest(scenario: &Scenario) -> Option<ReferenceStep> {
         parts.iter().map(held).sum()
     };
     let begins = |time_s: f64| time_s < scenario.duration && (time_s > 0.0 || scenario.start.is_some());
-    let steps = times_s.iter().filter(|time_s| begins(**time_s)).map(|&time_s| {
-        let next = times_s.iter().copied().find(|other| *other > time_s);
-        ReferenceStep {
-            scenario: scenario.name.clone(),
-            from_n: value(&|other| other < time_s),
-            to_n: value(&|other| other <= time_s),
-            hold_s: next.unwrap_or(scenario.duration).min(scenario.duration) - time_s,
-        }
+    let steps = times_s.iter().filter(|time_s| begins(**time_s)).map(|&time_s| ReferenceStep {
+        at_s: time_s,
+        from_n: value(&|other| other < time_s),
+        to_n: value(&|other| other <= time_s),
     });
-    let steps = steps.filter(|step| step.from_n != step.to_n);
-    steps.max_by(|one, other| one.size_n().abs().total_cmp(&other.size_n().abs()))
+    let steps: Vec<ReferenceStep> = steps.filter(|step| step.from_n != step.to_n).collect();
+    let end_s = scenario.duration;
+    (!steps.is_empty()).then(|| SteppedReference { scenario: scenario.name.clone(), steps, end_s })
 }

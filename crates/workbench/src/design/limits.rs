@@ -1,9 +1,11 @@
 //! What may be built: the limits of a design beyond its specifications, with what it reaches.
 
 use phea_engineering::design::{
-    CommandOfSteps, DesignLimit, DesignLimitKind, limit_key, limit_unit_key, limit_words, origin_key,
-    origin_words,
+    CommandOfSteps, DesignLimit, DesignLimitKind, StepLimit, limit_key, limit_unit_key, limit_words,
+    origin_key, origin_words,
 };
+use phea_engineering::plant_names::NamedPlant;
+use phea_engineering::simulate::ForceLimit;
 use phea_qft::verification::Verdict;
 
 use super::{ProjectDesign, relaxed};
@@ -41,38 +43,88 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
     out
 }
 
-/// The step that takes the largest command, and the largest one that the valve does.
+/// The largest command of the scenarios' steps, and the largest step that valve, supply and sensor
+/// allow.
 fn command_sentence(view: &ProjectDesign, command: &CommandOfSteps) -> String {
     let unit = view.gain_per.unwrap_or(DisplayUnit::NEWTON);
     let force = |newton: f64| unit.text(newton, 3);
-    let plant = view.designed.view.names.text(&command.plant);
-    let plant = if plant.is_empty() { String::new() } else { format!(" ({plant})") };
+    let volts = |value: f64| format!("{} V", significant(value, 3));
+    let step = &command.step;
+    let [from, to] = [step.from_n, step.to_n].map(force);
+    let place = match command.is_at_rest() {
+        true => {
+            let scenario = &command.scenario;
+            format!("what holds {to} after the step from {from} in `{scenario}` under any controller")
+        }
+        false => {
+            let after = DisplayUnit::MILLISECOND.text(command.at_s - step.at_s, 3);
+            format!("{after} after the step from {from} to {to} in `{}`", command.scenario)
+        }
+    };
+    let room = match command.step_limit {
+        StepLimit::Command => format!("keeps within {}", volts(command.limit_v)),
+        StepLimit::Force(limit) => {
+            let end = match limit {
+                ForceLimit::Supply => "the force at which the lowest supply pressure stalls the piston",
+                ForceLimit::Sensor => "the declared capacity of the sensor",
+            };
+            format!("reaches {end}, and the valve would do more within {}", volts(command.limit_v))
+        }
+    };
+    let at_rest = match command.is_at_rest() {
+        true => String::new(),
+        false => {
+            format!("{} hold the force once it is reached, under any controller; ", volts(command.at_rest_v))
+        }
+    };
     format!(
-        "the largest command of the scenarios' steps, a search over the linear steps of {} plants, is {} V, in the step from {} to {} of `{}`{plant}; {} V of them hold the change of force once it is reached, under any controller; a step of up to {} keeps within {} V, where supply and sensor allow it",
+        "the largest command of the scenarios' steps, a search over the linear steps of {} plants, is {}, {place}{}; {at_rest}a single step of {} from {from} {room}",
         command.plants,
-        significant(command.largest_v, 3),
-        force(command.step.from_n),
-        force(command.step.to_n),
-        command.step.scenario,
-        significant(command.at_rest_v, 3),
+        volts(command.largest_v),
+        set_by(view, command),
         force(command.largest_step_n),
-        significant(command.limit_v, 3)
     )
+}
+
+/// The parameters that set the largest command.
+fn set_by(view: &ProjectDesign, command: &CommandOfSteps) -> String {
+    let names = &view.designed.view.names;
+    let NamedPlant(all) = names.named(&command.plant);
+    let count = all.len();
+    let moved_by = all.into_iter().enumerate().filter(|(index, _)| command.moved_by.contains(index));
+    let set_by = NamedPlant(moved_by.map(|(_, one)| one).collect());
+    match set_by.0.len() {
+        0 if count == 0 => String::new(),
+        0 => ", at every plant alike".to_string(),
+        own if own == count => format!(" ({})", set_by.words()),
+        _ => format!(" ({}, whatever the other parameters)", set_by.words()),
+    }
 }
 
 /// The same in JSON.
 fn command_object(view: &ProjectDesign, command: &CommandOfSteps) -> Object {
+    let names = view.designed.view.names.headings();
+    let moved_by = command.moved_by.iter().filter_map(|index| names.get(*index).copied());
+    let step_limit = match command.step_limit {
+        StepLimit::Command => "command",
+        StepLimit::Force(ForceLimit::Supply) => "supply",
+        StepLimit::Force(ForceLimit::Sensor) => "sensor",
+    };
     Object::new()
-        .with("scenario", command.step.scenario.as_str())
+        .with("scenario", command.scenario.as_str())
         .with("from_n", command.step.from_n)
         .with("to_n", command.step.to_n)
+        .with("at_s", command.at_s)
+        .with("peak", if command.is_at_rest() { "at_rest" } else { "transient" })
         .with("largest_v", command.largest_v)
         .with("at_rest_v", command.at_rest_v)
         .with("limit_v", command.limit_v)
         .with("largest_step_n", command.largest_step_n)
+        .with("step_limit", step_limit)
         .with("evidence", "search")
         .with("plants", command.plants)
         .with("plant", view.designed.view.names.named(&command.plant))
+        .with("moved_by", moved_by.collect::<Vec<&str>>())
 }
 
 /// The limits in JSON.

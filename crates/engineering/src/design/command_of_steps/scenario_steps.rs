@@ -1,0 +1,223 @@
+//! The steps of the scenarios, and the command that they take of one plant.
+//!
+//! ```text
+//! u(t) = u_0 + sum of (r_k - r_(k-1)) w(t - t_k)
+//! ```
+
+use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
+
+use crate::design::ProjectDesign;
+use crate::design::deployable::limit_value;
+use crate::limit_kind::DesignLimitKind;
+use crate::linear_step::StepResponse;
+use crate::rig::Rig;
+use crate::setup::Setup;
+use crate::simulate::{ReferenceStep, SteppedReference, stepped_references};
+
+/// Duration of a step, in settling times that are required, where one is.
+const SETTLING_TIMES: f64 = 10.0;
+/// Relative difference of two commands that is rounding.
+const SAME: f64 = 1e-9;
+
+/// The steps of the scenarios, and what limits their commands.
+#[derive(Clone, Debug)]
+pub(in crate::design) struct ScenarioSteps {
+    scenarios: Vec<CommandedSteps>,
+    /// Most that a command may be, V.
+    pub(in crate::design) limit_v: f64,
+    /// How long a step is followed, s.
+    pub(in crate::design) duration_s: f64,
+}
+
+/// The steps of one scenario, and the command with which it begins.
+#[derive(Clone, Debug)]
+pub(super) struct CommandedSteps {
+    pub(super) reference: SteppedReference,
+    /// V.
+    initial_v: f64,
+}
+
+/// The largest command of a scenario, of one plant.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CommandPeak {
+    /// Magnitude, V.
+    pub(super) value_v: f64,
+    /// In the time of the scenario, s.
+    pub(super) at_s: f64,
+    /// The step after which it is.
+    pub(super) step: ReferenceStep,
+}
+
+/// The command that holds a rig at a reference in N at rest; that of its operating point where the
+/// rig does not reach it.
+fn resting_command(rig: &Rig, reference_n: f64) -> f64 {
+    let held = Condition::Load(SteadyLoad::Force(reference_n));
+    let point = operating_point(&rig.actuator, rig.point.position, held);
+    point.map_or(rig.point.command, |point| point.command)
+}
+
+impl ScenarioSteps {
+    /// Those of a project; `None` where nothing limits their command.
+    pub(in crate::design) fn of(setup: &Setup<'_>, told: &ProjectDesign) -> Option<ScenarioSteps> {
+        let share = limit_value(&told.limits, DesignLimitKind::CommandOfSteps)?;
+        let rig = setup.rig().ok()?;
+        let commanded = |reference: SteppedReference| {
+            let initial_v = resting_command(rig, reference.steps.first()?.from_n);
+            Some(CommandedSteps { reference, initial_v })
+        };
+        let scenarios: Vec<CommandedSteps> =
+            stepped_references(setup.project).into_iter().filter_map(commanded).collect();
+        let lasts_s = |one: &CommandedSteps| {
+            one.reference.steps.first().map_or(0.0, |first| one.reference.end_s - first.at_s)
+        };
+        let longest_s = scenarios.iter().map(lasts_s).fold(0.0, f64::max);
+        let required = told.designed.problem.in_time.iter().map(|one| SETTLING_TIMES * one.wish.horizon_s);
+        Some(ScenarioSteps {
+            scenarios,
+            limit_v: share * rig.actuator.components().valve.nominal_voltage,
+            duration_s: required.reduce(f64::max).unwrap_or(f64::INFINITY).min(longest_s),
+        })
+    }
+
+    /// The largest magnitude of the command in any scenario, of this command in a unit step, V.
+    pub(in crate::design) fn largest_v(&self, unit: &StepResponse) -> f64 {
+        self.peaks(unit).map(|(_, peak)| peak.value_v).fold(0.0, f64::max)
+    }
+
+    /// The largest command of each scenario.
+    pub(super) fn peaks(&self, unit: &StepResponse) -> impl Iterator<Item = (&CommandedSteps, CommandPeak)> {
+        self.scenarios.iter().filter_map(|one| Some((one, one.peak(unit)?)))
+    }
+
+    /// The largest magnitude of the command at rest, at the beginning of any scenario and between
+    /// its steps, V.
+    pub(super) fn at_rest_v(&self, unit: &StepResponse) -> f64 {
+        let last = last(unit);
+        let of = |one: &CommandedSteps| {
+            let levels = one.reference.steps.iter().map(|step| one.resting_v(step.to_n, last).abs());
+            levels.fold(one.initial_v.abs(), f64::max)
+        };
+        self.scenarios.iter().map(of).fold(0.0, f64::max)
+    }
+}
+
+impl CommandedSteps {
+    /// The largest command: after every step the sum of all that were made.
+    fn peak(&self, unit: &StepResponse) -> Option<CommandPeak> {
+        let CommandedSteps { reference: SteppedReference { steps, end_s, .. }, initial_v } = self;
+        let first = *steps.first()?;
+        let mut peak = CommandPeak { value_v: initial_v.abs(), at_s: first.at_s, step: first };
+        for (index, step) in steps.iter().enumerate() {
+            let ends_s = steps.get(index + 1).map_or(*end_s, |next| next.at_s) - step.at_s;
+            let points = unit.times_s.iter().copied().zip(unit.values.iter().copied());
+            let within = points.take_while(|(time_s, _)| *time_s < ends_s);
+            for (time_s, value) in within.chain([(ends_s, value_at(unit, ends_s))]) {
+                let earlier = steps.iter().take(index);
+                let earlier = earlier.map(|one| one.size_n() * value_at(unit, step.at_s - one.at_s + time_s));
+                let command_v = initial_v + earlier.sum::<f64>() + step.size_n() * value;
+                // the end of one step is the beginning of the next
+                if command_v.abs() > (1.0 + SAME) * peak.value_v {
+                    let at_s = step.at_s + time_s;
+                    peak = CommandPeak { value_v: command_v.abs(), at_s, step: *step };
+                }
+            }
+        }
+        Some(peak)
+    }
+
+    /// The command at rest under a reference, for this one of a unit step at rest, V.
+    pub(super) fn resting_v(&self, reference_n: f64, last: f64) -> f64 {
+        let begins_n = self.reference.steps.first().map_or(0.0, |step| step.from_n);
+        self.initial_v + (reference_n - begins_n) * last
+    }
+}
+
+/// A response at a time in s: linear between its points, and as it ends from there on.
+fn value_at(response: &StepResponse, time_s: f64) -> f64 {
+    let StepResponse { times_s, values } = response;
+    let after = times_s.partition_point(|known_s| *known_s <= time_s);
+    let point = |index: usize| Some((*times_s.get(index)?, *values.get(index)?));
+    match (after.checked_sub(1).and_then(point), point(after)) {
+        (Some((from_s, from)), Some((to_s, to))) => from + (to - from) * (time_s - from_s) / (to_s - from_s),
+        (Some((_, last)), None) => last,
+        (None, _) => 0.0,
+    }
+}
+
+/// The end of a response.
+pub(super) fn last(response: &StepResponse) -> f64 {
+    response.values.last().copied().unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use phea_dynamics::portable::exp;
+
+    use super::*;
+
+    const TIME_CONSTANT_S: f64 = 0.2;
+    const APART_S: f64 = 0.1;
+    const BEGINS_V: f64 = 0.5;
+
+    /// 1 + e^(-t/T): twice as much at once as at rest.
+    fn unit() -> StepResponse {
+        let times_s: Vec<f64> = (0..=10_000).map(|index| f64::from(index) * 1e-3).collect();
+        let values = times_s.iter().map(|time_s| 1.0 + exp(-time_s / TIME_CONSTANT_S)).collect();
+        StepResponse { times_s, values }
+    }
+
+    fn steps(references_n: &[f64]) -> CommandedSteps {
+        let step = |(index, pair): (usize, &[f64])| ReferenceStep {
+            at_s: 1.0 + index as f64 * APART_S,
+            from_n: pair[0],
+            to_n: pair[1],
+        };
+        let steps = references_n.windows(2).enumerate().map(step).collect();
+        let reference = SteppedReference { scenario: "steps".to_string(), steps, end_s: 9.0 };
+        CommandedSteps { reference, initial_v: BEGINS_V }
+    }
+
+    fn assert_near(found: f64, expected: f64) {
+        assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+    }
+
+    /// The second of two steps finds what the first one has left, in either direction.
+    // ORIGIN: analytic
+    #[test]
+    fn the_command_of_a_scenario_is_the_sum_of_its_steps() {
+        let left = exp(-APART_S / TIME_CONSTANT_S);
+        let up = steps(&[10.0, 11.0, 12.0]).peak(&unit()).unwrap();
+        assert_near(up.value_v, BEGINS_V + (1.0 + left) + 2.0);
+        assert_near(up.at_s, 1.0 + APART_S);
+        assert_eq!((up.step.from_n, up.step.to_n), (11.0, 12.0));
+        let back = steps(&[10.0, 11.0, 8.0]).peak(&unit()).unwrap();
+        assert_near(back.value_v, -(BEGINS_V + (1.0 + left) - 6.0));
+        // alone the larger of them would take 6 V from rest
+        assert_near(steps(&[11.0, 8.0]).peak(&unit()).unwrap().value_v, 6.0 - BEGINS_V);
+        // what the first step ends with belongs to it
+        let rising = StepResponse { values: vec![0.0, 1.0], times_s: vec![0.0, APART_S] };
+        let there = steps(&[10.0, 14.0, 10.0]).peak(&rising).unwrap();
+        assert_eq!((there.step.from_n, there.step.to_n), (10.0, 14.0));
+        assert_near(there.value_v, BEGINS_V + 4.0);
+    }
+
+    /// Where no command passes its end value the largest one is that at rest.
+    #[test]
+    fn the_command_at_rest_is_that_of_the_farthest_reference() {
+        let monotone = StepResponse { values: vec![0.0, 0.5, 1.0], times_s: vec![0.0, 1.0, 2.0] };
+        let one = steps(&[10.0, 13.0, 9.0]);
+        assert_near(one.resting_v(13.0, last(&monotone)), BEGINS_V + 3.0);
+        let of = ScenarioSteps { scenarios: vec![one], limit_v: 10.0, duration_s: 2.0 };
+        assert_near(of.at_rest_v(&monotone), BEGINS_V + 3.0);
+        assert!(of.largest_v(&monotone) < of.at_rest_v(&monotone));
+    }
+
+    #[test]
+    fn a_response_is_linear_between_its_points_and_stays_as_it_ends() {
+        let response = StepResponse { values: vec![1.0, 3.0], times_s: vec![0.0, 2.0] };
+        assert_eq!(
+            [-1.0, 0.0, 0.5, 2.0, 7.0].map(|time_s| value_at(&response, time_s)),
+            [0.0, 1.0, 1.5, 3.0, 3.0]
+        );
+    }
+}
