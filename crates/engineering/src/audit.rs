@@ -41,7 +41,7 @@ use phea_qft::verification::{
 };
 
 use crate::caveat::Caveat;
-use crate::limit_kind::ExceededLimit;
+use crate::limit_kind::JudgedLimits;
 use crate::plant_names::PlantNames;
 use crate::quantity::DisplayUnit;
 use crate::robust::{LINES_IN_MOTION, RobustError, RobustProblem, robust_problem};
@@ -174,9 +174,9 @@ pub struct ProjectAudit {
     pub amplifying_prefilter: Option<PrefilterGain>,
     /// What was proven about it, if a proof was requested.
     pub proof: Option<Proof>,
-    /// The limits of a design that the loop does not keep, which are no part of the verdict;
-    /// `None` where they were not examined.
-    pub below_design: Option<Vec<ExceededLimit>>,
+    /// The limits of a design that the loop keeps and does not keep, which are no part of the
+    /// verdict; `None` where they were not examined.
+    pub below_design: Option<JudgedLimits>,
 }
 
 /// A closed-loop magnitude and the limit that it comes nearest to, or violates.

@@ -135,6 +135,15 @@ pub fn origin_words(origin: LimitOrigin) -> &'static str {
     }
 }
 
+/// The limits of a design that an audited loop keeps and does not keep.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct JudgedLimits {
+    /// Those that it does not keep.
+    pub exceeded: Vec<ExceededLimit>,
+    /// Those that it keeps.
+    pub kept: Vec<DesignLimitKind>,
+}
+
 /// A limit that an audited loop does not keep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExceededLimit {

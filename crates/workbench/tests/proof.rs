@@ -278,3 +278,24 @@ fn a_certificate_without_stability_says_so() {
     assert!(!compared.affirmative);
     assert!(compared.text.contains("does not claim that every plant is stable"), "{}", compared.text);
 }
+
+/// 1/(s + 1) closed, whose magnitude is 1 at low frequencies, against a limit that is lower by half
+/// of what the tolerance allows.
+// ORIGIN: analytic, 20 log10(1/0.9994) = 0.0052 dB
+#[test]
+fn what_is_proven_within_the_tolerance_says_so() {
+    let text = |limit: f64| {
+        format!(
+            "schema = 1\ntitle = \"lag\"\n[plant]\nnumerator = \"k\"\ndenominator = \"s\"\n\
+             [uncertainty]\nk = {{ nominal = 1, minimum = 0.5, maximum = 1, points = 2 }}\n[controller]\nnumerator = \"1\"\n\
+             denominator = \"1\"\n[[specification]]\nkind = \"robust_stability\"\nlimit = {limit}\nfrequencies = [1]\n\
+             band = [0.001, 10]\n"
+        )
+    };
+    for (limit, is_allowed) in [(0.9994, true), (1.01, false)] {
+        let said = answer(&text(limit), &[], &[], &PROVEN);
+        let object: Value = serde_json::from_str(&said.json).unwrap();
+        assert_eq!(object["specifications"][0]["verdict"], "met", "{}", said.text);
+        assert_eq!(said.text.contains(", within the 0.01 dB allowed"), is_allowed, "{}", said.text);
+    }
+}

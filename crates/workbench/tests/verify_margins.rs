@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use crate::ask::{HOSE, answer, json};
 use phea_workbench::audit::Crossovers;
 use phea_workbench::command::Request;
-use serde_json::Value;
+use serde_json::{Value, json as object_of};
 
 const VERIFY: Request = Request::Verify { proof: false, on_machine: false };
 
@@ -138,6 +138,8 @@ fn a_loop_says_which_limits_of_a_design_it_does_not_keep() {
     // it tolerates 2 ms where half a millisecond is enough
     assert!(of_key(found, "minimum_delay_margin").is_none());
     assert!(said.text.contains("`phea design` would refuse this loop"), "{}", said.text);
+    let explained = said.text.contains("The bandwidth is the frequency above which |L/(1+L)| of every plant");
+    assert_eq!(explained, of_key(found, "highest_bandwidth").is_some(), "{}", said.text);
     let reached = modulus["value"].as_f64().unwrap();
     for (share, is_below) in [(0.98, false), (1.02, true)] {
         let stated = format!("design.modulus_margin={}", share * reached);
@@ -149,6 +151,23 @@ fn a_loop_says_which_limits_of_a_design_it_does_not_keep() {
     let found = below(HOSE, &[&format!("design.minimum_delay_margin={}", 1.1 * delay_s)]);
     close(&of_key(&found, "minimum_delay_margin").unwrap()["value_s"], delay_s);
     assert!(below(DELAYED, &[]).is_empty());
+}
+
+/// k/s under a gain of 1: |1 + L| is 1 at least, and the phase may lag by a right angle.
+#[test]
+fn a_loop_that_keeps_the_limits_of_a_design_says_which() {
+    let plant = DELAYED.replace("delay = \"0.1 s\"\n", "");
+    let said = answer(&plant, &["design.modulus_margin=0.9"], &[], &VERIFY);
+    let object: Value = serde_json::from_str(&said.json).unwrap();
+    assert_eq!(
+        (&object["below_design"], &object["kept_of_design"]),
+        (&object_of!([]), &object_of!(["modulus_margin"]))
+    );
+    let kept = "the loop keeps every limit of `[design]` that a given loop is held against, stated or by default: modulus margin";
+    assert!(said.text.contains(kept), "{}", said.text);
+    assert!(said.text.contains("90.0 deg of lag"), "{}", said.text);
+    let nothing = answer(&plant, &[], &[], &VERIFY);
+    assert!(!nothing.text.contains("`[design]`"), "{}", nothing.text);
 }
 
 /// What noise takes of the command is reached where a limit just above it is kept and one just

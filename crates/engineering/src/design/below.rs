@@ -12,11 +12,11 @@ use phea_qft::verification::{
 use super::deployable::{DesignLimit, design_limits};
 use super::problem::design_problem;
 use crate::audit::{DECIBELS_PER_NEPER, PrefilterGain, ProjectAudit, plants_of_margins};
-use crate::limit_kind::{DesignLimitKind, ExceededLimit};
+use crate::limit_kind::{DesignLimitKind, ExceededLimit, JudgedLimits};
 use crate::robust::RobustProblem;
 use crate::setup::{Setup, is_of_position};
 
-/// The limits of `[design]`, stated or by default, that the audited loop does not keep; none where
+/// The limits of `[design]`, stated or by default, that the audited loop keeps or not; none where
 /// the family is not stable, which no design would return either, and for a plant without a rig
 /// that states none.
 ///
@@ -31,9 +31,9 @@ pub fn below_design(
     given: &RobustProblem,
     view: &ProjectAudit,
     watch: Watch<'_>,
-) -> Result<Vec<ExceededLimit>, Stopped> {
+) -> Result<JudgedLimits, Stopped> {
     if view.margins.family.is_none() || is_of_position(setup.project) {
-        return Ok(vec![]);
+        return Ok(JudgedLimits::default());
     }
     let limits = design_limits(setup, given);
     let (searched, stated) = limits.into_iter().partition::<Vec<DesignLimit>, _>(is_searched);
@@ -59,7 +59,28 @@ pub fn below_design(
         limit: limit.value,
         origin: limit.origin,
     };
-    Ok(of_audit.chain(of_search).map(exceeded).collect())
+    let exceeded: Vec<ExceededLimit> = of_audit.chain(of_search).map(exceeded).collect();
+    let judged = searched.iter().chain(&stated).map(|limit| limit.kind);
+    let is_kept =
+        |kind: &DesignLimitKind| is_of_loop(*kind, given) && exceeded.iter().all(|one| one.kind != *kind);
+    let kept = judged.filter(is_kept).collect();
+    Ok(JudgedLimits { exceeded, kept })
+}
+
+/// True of a limit that holds for a given loop too, and not for a search or for the scenarios
+/// alone.
+fn is_of_loop(kind: DesignLimitKind, given: &RobustProblem) -> bool {
+    match kind {
+        DesignLimitKind::NoiseToCommand
+        | DesignLimitKind::ModulusMargin
+        | DesignLimitKind::HighestBandwidth
+        | DesignLimitKind::MinimumDelayMargin => true,
+        DesignLimitKind::PrefilterGain => given.has_prefilter,
+        DesignLimitKind::PoleDampingRatio
+        | DesignLimitKind::FastestPole
+        | DesignLimitKind::CommandOfSteps
+        | DesignLimitKind::RequiredStep => false,
+    }
 }
 
 /// True of a limit for which the family is searched; the audit itself has the worst modulus.

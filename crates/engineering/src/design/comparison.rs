@@ -52,6 +52,10 @@ fn high_frequency_words(side: &AuditedController, per: Option<&str>) -> String {
     let gain = significant(side.figures.high_frequency_gain_db, 5);
     match side.is_in_z() {
         true => format!("{}, |G| at pi/T", gain_at_high_frequency(&gain, 0, per)),
+        false if side.problem.compensation.sample_time_s().is_some() => {
+            let gain = gain_at_high_frequency(&gain, side.figures.relative_degree, per);
+            format!("{gain}, of the continuous law")
+        }
         false => gain_at_high_frequency(&gain, side.figures.relative_degree, per),
     }
 }

@@ -58,7 +58,7 @@ impl AuditedController {
     }
 
     /// Whether the controller itself is given in z.
-    pub(crate) fn is_in_z(&self) -> bool {
+    pub fn is_in_z(&self) -> bool {
         let law = self.controller.feedback.transfer_function();
         law.is_ok_and(|law| law.domain() != TimeDomain::Continuous)
     }

@@ -51,6 +51,11 @@ pub struct HeldWish {
     pub kept: Option<bool>,
 }
 
+/// A number to twelve digits: 1.65 where 1.1 times 1.5 is 1.6500000000000001.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
+}
+
 impl TrackingWish {
     /// The requirement of nothing.
     pub(crate) const NOTHING: TrackingWish = TrackingWish {
@@ -97,12 +102,13 @@ impl TrackingWish {
         }
     }
 
-    /// The requirement that allows this many times as much of each property.
+    /// The requirement that allows this many times as much of each property, to twelve digits.
     pub fn wider(self, factor: f64) -> TrackingWish {
+        let times = |value: f64| rounded(factor * value);
         TrackingWish {
-            overshoot_percent: self.overshoot_percent.map(|most| factor * most),
-            settling_time_s: self.settling_time_s.map(|time_s| factor * time_s),
-            rise_time_s: self.rise_time_s.map(|time_s| factor * time_s),
+            overshoot_percent: self.overshoot_percent.map(times),
+            settling_time_s: self.settling_time_s.map(times),
+            rise_time_s: self.rise_time_s.map(times),
             horizon_s: factor * self.horizon_s,
             ..self
         }

@@ -14,6 +14,7 @@ use crate::answer::{Csv, Object, OutputFile, envelope};
 use crate::plant_names::PlantNames;
 use crate::project::Loaded;
 use crate::specification::{kind_key, kind_words};
+use phea_engineering::limit_kind::limit_key;
 
 /// The JSON object of `verify`, as a file.
 pub(crate) fn json(loaded: &Loaded, view: &ProjectAudit) -> String {
@@ -70,7 +71,11 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
         .each("specifications", in_file_order(view), |one| one)
         .each("warnings", &view.caveats, |caveat| caveat.sentence.as_str());
     match &view.below_design {
-        Some(limits) => own.each("below_design", limits, below_design::object),
+        Some(limits) => own.each("below_design", &limits.exceeded, below_design::object).each(
+            "kept_of_design",
+            &limits.kept,
+            |kind| limit_key(*kind),
+        ),
         None => own,
     }
 }

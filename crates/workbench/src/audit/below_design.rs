@@ -1,7 +1,8 @@
-//! The limits of a design that a given loop does not keep, in words and in JSON.
+//! The limits of a design that a given loop keeps or not, in words and in JSON.
 
 use phea_engineering::limit_kind::{
-    DesignLimitKind, ExceededLimit, limit_key, limit_unit_key, limit_words, origin_key, origin_words,
+    DesignLimitKind, ExceededLimit, JudgedLimits, limit_key, limit_unit_key, limit_words, origin_key,
+    origin_words,
 };
 use phea_qft::verification::Verdict;
 
@@ -10,11 +11,19 @@ use crate::answer::Object;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::{DisplayUnit, significant};
 
-/// A table of them, and what it means for the loop; empty where there are none.
+/// A table of those that the loop does not keep, and what it means, or that it keeps all of them;
+/// empty where none was judged.
 pub(super) fn document(view: &ProjectAudit) -> Document {
     let mut out = Document::default();
-    let exceeded = view.below_design.as_deref().unwrap_or_default();
+    let Some(JudgedLimits { exceeded, kept }) = &view.below_design else { return out };
     if exceeded.is_empty() {
+        let names: Vec<&str> = kept.iter().map(|kind| limit_words(*kind)).collect();
+        out.sentences((!names.is_empty()).then(|| {
+            format!(
+                "the loop keeps every limit of `[design]` that a given loop is held against, stated or by default: {}",
+                names.join(", ")
+            )
+        }));
         return out;
     }
     let row = |one: &ExceededLimit| {
@@ -37,6 +46,10 @@ pub(super) fn document(view: &ProjectAudit) -> Document {
     out.sentences([format!(
         "{lead}: a loop that is to be built keeps them, as `[design]` states them or by default. They are no part of the verdict."
     )]);
+    let has_bandwidth = exceeded.iter().any(|one| one.kind == DesignLimitKind::HighestBandwidth);
+    out.sentences(has_bandwidth.then(|| {
+        "The bandwidth is the frequency above which |L/(1+L)| of every plant stays below -3 dB.".to_string()
+    }));
     out
 }
 

@@ -135,7 +135,12 @@ pub(crate) fn proven(view: &ProjectAudit, title: &str) -> Document {
     let word = |standing: &Standing| Cell::from(standing_word(standing)).marked(mark_of(standing));
     rows.row(["every plant is stable".into(), word(&proof.stability), Cell::Missing, Cell::Missing]);
     for (index, own) in proof.specifications.iter().enumerate() {
-        let [least, most] = [own.least_db, own.most_db].map(|end| end.map(Cell::margin).into());
+        let [least, most]: [Cell; 2] = [own.least_db, own.most_db].map(|end| end.map(Cell::margin).into());
+        let is_allowed = own.standing == Standing::Proven && own.most_db.is_some_and(|most_db| most_db > 0.0);
+        let most: Cell = match is_allowed {
+            true => most.then(Cell::from(allowed_words(view.audit.tolerance_db))),
+            false => most,
+        };
         rows.row([view.numbered(index).into(), word(&own.standing), least, most]);
     }
     out.section(title, rows);
@@ -145,6 +150,11 @@ pub(crate) fn proven(view: &ProjectAudit, title: &str) -> Document {
         "what is required in time: the steps of the plants are searched, and no proof covers them".to_string()
     }));
     out
+}
+
+/// The room for a closed loop that is proven to be at most so many dB over its limit.
+fn allowed_words(tolerance_db: f64) -> String {
+    format!(", within the {tolerance_db} dB allowed")
 }
 
 /// Why claims are neither proven nor refuted, each reason once.

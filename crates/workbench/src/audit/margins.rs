@@ -91,12 +91,15 @@ fn rows_of() -> [PrintedMargin; 5] {
     ]
 }
 
-/// A margin and its frequency; a fall of the gain without its sign.
+/// A margin and its frequency; a fall of the gain without its sign, a phase with its side.
 fn cells(margin: &LoopMargin, unit: DisplayUnit) -> [Cell; 2] {
     if margin.value.is_infinite() {
         return ["no limit".into(), Cell::Missing];
     }
-    let value = Cell::quantity(margin.value.abs(), 3, unit);
+    let mut value = Cell::quantity(margin.value.abs(), 3, unit);
+    if unit == DEGREE {
+        value = value.then(Cell::from(if margin.value < 0.0 { " of lead" } else { " of lag" }));
+    }
     [value, margin.frequency_rad_per_s.map_or(Cell::Missing, Cell::frequency)]
 }
 

@@ -130,6 +130,7 @@ fn figures(side: &AuditedController) -> Object {
         .with("relative_degree", figures.relative_degree)
         .with("prefilter_order", figures.prefilter_order)
         .with("high_frequency_gain_db", figures.high_frequency_gain_db)
+        .with("high_frequency_gain_of", if side.is_in_z() { "law_in_z" } else { "continuous_law" })
         .with("modulus_margin", figures.modulus_margin)
         .with("gain_margin_db", nominal.map(|margins| margins.gain_margin_db))
         .with("gain_reduction_db", nominal.map(|margins| margins.gain_reduction_db))

@@ -2,6 +2,7 @@
 
 use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
 use phea_engineering::design::LedBy;
+use phea_qft::design::quantization::CoefficientFormat;
 use phea_qft::design::{BINDING_DB, DesignRound, DesignStatus, Objective, Starts};
 use phea_qft::verification::{PlantPoint, Verdict};
 
@@ -112,11 +113,21 @@ pub(crate) fn status(view: &ProjectDesign) -> Document {
     let mut sentences: Vec<String> =
         view.explanations.iter().map(|explanation| explanation_words(view, explanation)).collect();
     sentences.extend(summary(&view.designed.view));
+    sentences.extend(not_led_sentence(view));
     sentences.extend(view.rounding.iter().flat_map(Rounding::sentences));
     let mut out = Document::default();
     let mark = view.designed.view.verdict().into();
     out.verdict(mark, format!("Design: {}", status_sentence(view)), sentences);
     out
+}
+
+/// Why the steps of a design with rounded coefficients did not lead it, where they are missed.
+fn not_led_sentence(view: &ProjectDesign) -> Option<String> {
+    let misses = view.designed.view.misses_in_time() || view.misses_on_rig();
+    let is_missed = misses || view.exceeded_command().is_some();
+    (is_missed && view.options.coefficients != CoefficientFormat::Double).then(|| {
+        "the coefficients are rounded, and a search with rounded coefficients is not led by its steps: without `controller.quantization.coefficients` they may be satisfied".to_string()
+    })
 }
 
 /// The consequences of the machine's contradiction, with the controllers that come nearest to what

@@ -23,10 +23,12 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
         "The shortest structure that is met is taken. The least margin, and the limit that binds (leaves no room), are those of the plants and frequencies that the search evaluated; crossover and delay margin are those of the nominal loop; overshoot and settling time are the worst of the linear steps, of the structure that is taken over the whole family, of others over 40 of its members; the noise gain is its largest |G/(1+L)|, from the noise of the sensor to the command.",
     );
     let compares_noise = view.options.objective == Objective::LeastHighFrequencyGain;
+    let band = view.designed.view.in_time.first().map(|finding| finding.requirement.wish.band_percent);
+    let settles = band.map_or("settles in".to_string(), |band| format!("settles in ({band} %)"));
     let headings = [
         "structure",
         "poles",
-        "",
+        "result",
         "least margin",
         "binds",
         "nominal crossover",
@@ -34,9 +36,10 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
         "high-frequency gain",
         if compares_noise { "noise gain" } else { "compared" },
         "overshoot",
-        "settles in",
+        &settles,
     ];
     out.table(Table::new(headings).with(view.structures.iter().map(|one| row(view, one))));
+    out.sentences(sampled_gain(view));
     out.sentences(earned_sentence(view));
     out.sentences(laws_that_differ(view));
     out.sentences(view.structures.iter().filter_map(|one| {

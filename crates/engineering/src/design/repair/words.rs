@@ -24,9 +24,19 @@ pub(super) fn sentences(
         sentences.extend(crossing(repair, told));
         sentences.push(help(project, repair, told));
         sentences.extend(nearest(found));
+        sentences.extend(not_led(found));
     }
     sentences.push(whole(repair.whole.as_ref()));
     sentences
+}
+
+/// Why the steps of the nearest controller did not lead to it, where they are missed.
+fn not_led(found: &ProjectDesign) -> Option<String> {
+    let misses = found.designed.view.misses_in_time() || found.exceeded_command().is_some();
+    misses.then(|| {
+        "the search with the added plant is one over frequency, which the steps do not lead: `design` with `line.model = \"transmission_line\"` is led by them"
+            .to_string()
+    })
 }
 
 /// What is known about the plants that were not added.
