@@ -39,18 +39,27 @@ impl LedDesign<'_> {
             let is_own = one.structure == design.structure && one.free_numbers == design.free_numbers;
             one.least.is_some() && !is_own
         };
-        let mut others: Vec<&TriedStructure> = tried.iter().filter(|one| is_other(one)).collect();
-        others.sort_by(|one, other| least(other).total_cmp(&least(one)));
-        let near = others.iter().take_while(|one| least(one) >= -NEARLY_DB).count();
-        others[..near].sort_by_key(|one| one.structure.dimension());
-        others.truncate(STARTS - 1);
-        let others = others.into_iter().map(|tried| begun_from(tried, design));
+        let others: Vec<&TriedStructure> = tried.iter().filter(|one| is_other(one)).collect();
+        let others = in_order(others, |one| (least(one), one.structure.dimension()));
+        let others = others.into_iter().take(STARTS - 1).map(|tried| begun_from(tried, design));
         let anywhere =
             std::iter::once(design.clone()).chain(others).map(|start| (start, SearchReach::Anywhere));
         let is_near = !self.aimed.added.is_empty() && told.worst_run() <= NEAR;
         let beside = is_near.then(|| (design.clone(), SearchReach::Beside));
         beside.into_iter().chain(anywhere).filter(|(one, _)| !one.free_numbers.is_empty()).collect()
     }
+}
+
+/// In the order in which searches begin from them, of each its least margin in dB and the number of
+/// its free numbers: those that miss nothing by more than [`NEARLY_DB`], the fewest numbers first,
+/// then the others by their margins, the largest first.
+fn in_order<One>(mut others: Vec<One>, of: impl Fn(&One) -> (f64, usize)) -> Vec<One> {
+    others.sort_by(|one, other| of(other).0.total_cmp(&of(one).0));
+    let near = others.iter().take_while(|one| of(one).0 >= -NEARLY_DB).count();
+    if let Some(near) = others.get_mut(..near) {
+        near.sort_by_key(|one| of(one).1);
+    }
+    others
 }
 
 /// A structure as it was found, behind the prefilter of a design where it has none.
@@ -66,4 +75,19 @@ fn begun_from(tried: &TriedStructure, design: &Design) -> Design {
     };
     let structure = tried.structure.clone();
     Design { structure, prefilter, free_numbers, name: tried.name, ..design.clone() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_order;
+
+    /// Within 0.3 dB the simplest first, and of equals the one with the larger margin; beyond, the
+    /// nearest first, however simple.
+    // ORIGIN: written by hand, margins in dB and numbers
+    #[test]
+    fn the_simplest_that_nearly_meet_come_first_then_the_nearest() {
+        let given = vec![(-4.0, 1), (1.2, 6), (-0.31, 2), (-0.29, 3), (0.0, 5), (-2.0, 4), (0.4, 3)];
+        let expected = vec![(0.4, 3), (-0.29, 3), (0.0, 5), (1.2, 6), (-0.31, 2), (-2.0, 4), (-4.0, 1)];
+        assert_eq!(in_order(given, |one| *one), expected);
+    }
 }
