@@ -46,9 +46,11 @@ fn soak_the_book_says_what_the_front_shows() {
     };
     let by_volume = |length: f64| of("by volume", length);
     // the findings, to the digits of the book
-    assert_eq!((by_volume(0.5) - by_volume(1.0)).round(), 188.0);
-    assert_eq!((by_volume(2.0) - by_volume(2.5)).round(), 80.0);
-    assert_eq!((100.0 * (1.0 - by_volume(2.5) / by_volume(0.5))).round(), 27.0);
+    assert_eq!((by_volume(0.5) - by_volume(1.0)).round(), 251.0);
+    assert_eq!((by_volume(1.0) - by_volume(1.5)).round(), 108.0);
+    assert_eq!((100.0 * (1.0 - by_volume(1.5) / by_volume(0.5))).round(), 19.0);
+    assert_eq!((100.0 * (by_volume(1.0) / by_volume(1.5) - 1.0)).round(), 7.0);
+    assert!(by_volume(2.5) > by_volume(1.5));
 }
 
 fn front(columns: &str, sweep: &str) -> Request {
