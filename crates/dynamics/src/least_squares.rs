@@ -14,7 +14,7 @@ mod uncertainty;
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-pub use uncertainty::{Direction, Uncertainty, uncertainty, uncertainty_by_scale};
+pub use uncertainty::{Direction, Uncertainty, uncertainty, uncertainty_by_scale, uncertainty_with_shared};
 
 use crate::watch::Stopped;
 

@@ -15,6 +15,7 @@ mod evidence;
 mod fit;
 mod guess;
 mod in_use;
+mod instruments;
 mod intervals;
 mod joint;
 mod misfit;
@@ -285,7 +286,8 @@ pub fn identify(
     let (evidence, found) = best_model(first, (search.leakage_model, known.leakage_model), watch)?;
     let coefficients = found.coefficients();
     let groups = found.together.groups(found.block_rows());
-    let told = intervals::told(&found.minimum.linearised, &groups, &variables, &coefficients);
+    let shared = instruments::shared_changes(&found.together, &found.minimum.variables, oil.as_ref());
+    let told = intervals::told(&found.minimum.linearised, (&groups, &shared), &variables, &coefficients);
     let signals = found.signals();
     let mut intervals = intervals::intervals(&variables, &coefficients, &told.deviations);
     intervals::lowered_tare_flow(&mut intervals, &recordings, &signals);

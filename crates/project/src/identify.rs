@@ -4,7 +4,10 @@
 use super::key::{key, plain};
 use super::visitor::Visitor;
 use phea_hydraulics::servovalve::{OilLaw, PortCircuit};
-use phea_quantity::{Dimension, FLOW, FORCE, PRESSURE, TEMPERATURE, TEMPERATURE_COEFFICIENT, TIME, VOLTAGE};
+use phea_quantity::{
+    self as quantity, Dimension, FLOW, FORCE, PRESSURE, RATIO, TEMPERATURE, TEMPERATURE_COEFFICIENT, TIME,
+    VOLTAGE,
+};
 
 /// One of the static tests of ISO 10770-1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -261,6 +264,30 @@ pub struct RecordedColumn {
     pub unit: Option<String>,
     /// The signal is its numbers with the opposite sign.
     pub reversed: bool,
+    /// What the instrument may be wrong by, as it was written; absent: nothing.
+    pub accuracy: Option<String>,
+}
+
+/// What an instrument may be wrong by throughout a test.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Accuracy {
+    /// A share of what it reads.
+    OfReading(f64),
+    /// In the unit of the signal: at zero, and again at its greatest reading.
+    OfRange(f64),
+}
+
+impl RecordedColumn {
+    /// What the instrument may be wrong by; `None` where nothing is said, or nothing that can be
+    /// read.
+    pub fn stated_accuracy(&self, dimension: &Dimension) -> Option<Accuracy> {
+        let text = self.accuracy.as_ref()?;
+        let share = || quantity::parse(text, &RATIO).ok().map(Accuracy::OfReading);
+        if text.trim_end().ends_with('%') {
+            return share();
+        }
+        quantity::parse(text, dimension).ok().map(Accuracy::OfRange).or_else(share)
+    }
 }
 
 impl Identify {
@@ -340,5 +367,7 @@ impl RecordedColumn {
         v.text(plain("unit", "Its unit; absent: as the heading says."), &mut self.unit, false);
         let k = plain("reversed", "Read with the opposite sign; absent: as written.");
         v.flag(k, &mut self.reversed);
+        let doc = "What the instrument may be wrong by, of its reading or in its unit; absent: nothing.";
+        v.text(plain("accuracy", doc), &mut self.accuracy, false);
     }
 }

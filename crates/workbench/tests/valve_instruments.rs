@@ -105,3 +105,45 @@ fn intervals_hold_with_coarse_converters() {
     let held = covered(&["bench.converter_bits=12"], 1..9);
     assert!(held >= 80, "{held}");
 }
+
+/// Of a meter that may be wrong by 1 % of its reading the flow coefficients are known to that, and
+/// no better; of one that is, the intervals hold the truth, which those by noise alone do not.
+#[test]
+fn a_stated_accuracy_is_in_the_intervals() {
+    use crate::ask::{HOSE, load};
+    use phea_workbench::command::{IdentifyRequest, identify_watched};
+    use phea_workbench::source::Memory;
+    let files = recorded(&[]);
+    let source = files.iter().fold(Memory::default(), |source, (name, text)| {
+        let lines = text.lines().enumerate().map(|(index, line)| match line.rsplit_once(',') {
+            Some((before, flow)) if name == "metering.csv" && index > 0 => {
+                format!("{before},{}", 1.005 * flow.parse::<f64>().unwrap())
+            }
+            _ => line.to_string(),
+        });
+        source.with(name, lines.collect::<Vec<_>>().join("\n"))
+    });
+    let asked = |accuracy: &str| -> Value {
+        let recording = format!(
+            "identify.recording=[{{ file = \"leakage.csv\" }}, {{ file = \"pressure_gain.csv\" }}, {{ file = \"metering.csv\"{accuracy} }}]"
+        );
+        let loaded = load(HOSE, &[&recording], &[]);
+        let request = IdentifyRequest { starts: Some(1), seed: 1, ..IdentifyRequest::default() };
+        let found = identify_watched(&source, Some(&loaded), &request, &mut |_| true);
+        serde_json::from_str(&found.unwrap_or_else(|error| panic!("{error}")).json).unwrap()
+    };
+    let path = "/flow_coefficients/supply_to_a";
+    let holds =
+        |found: &Value| interval(found, path).is_some_and(|[low, high]| low <= 3.2e-7 && 3.2e-7 <= high);
+    assert!(!holds(&asked("")));
+    let found = asked(", flow = { accuracy = \"1 %\" }");
+    assert!(holds(&found));
+    let [low, high] = interval(&found, path).unwrap();
+    // GUM: 1.96 times 1 % over the root of three
+    let half = (high - low) / 2.0 / value(&found, path);
+    assert!((half / (0.0196 / 3.0_f64.sqrt()) - 1.0).abs() < 0.1, "{half}");
+    // the zero and the span of a transducer of 0.3 bar
+    let pressures = asked(", pressure_a = { accuracy = \"0.3 bar\" }");
+    let width = |found: &Value| interval(found, "/null_bias_v").map_or(0.0, |[low, high]| high - low);
+    assert!(width(&pressures) > width(&asked("")));
+}

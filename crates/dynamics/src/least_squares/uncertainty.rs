@@ -55,6 +55,37 @@ const ROUNDING: f64 = 1e-15;
 /// assert!((pairs.deviations[0] / alone.deviations[0] - 2.0_f64.sqrt()).abs() < 1e-12);
 /// ```
 pub fn uncertainty(at: &Linearised, groups: &[usize], count: usize, robust_beyond: f64) -> Uncertainty {
+    uncertainty_with_shared(at, groups, count, robust_beyond, &[])
+}
+
+/// The same where residuals also share errors that more data do not average out: an instrument that
+/// is wrong by the same all the time.
+///
+/// ```text
+/// S = sum over groups of g g' n/(n - m) + sum over errors of e e'       e = sum psi' j d
+/// ```
+///
+/// with d the change of each residual by one standard deviation of the error; `shared` has one row
+/// of them for each error.
+///
+/// # Example
+/// The mean of many readings is known no better than the zero of the instrument.
+/// ```
+/// use phea_dynamics::least_squares::{Linearised, uncertainty_with_shared};
+/// let residuals = (0..10_000).map(|row| if row % 2 == 0 { 1.0 } else { -1.0 }).collect();
+/// let found = Linearised { residuals, jacobian: vec![1.0; 10_000] };
+/// let groups: Vec<usize> = (0..10_000).collect();
+/// let zero = vec![0.5; 10_000];
+/// let told = uncertainty_with_shared(&found, &groups, 1, f64::INFINITY, &[zero]);
+/// assert!((told.deviations[0] - (0.25_f64 + 1e-4).sqrt()).abs() < 1e-6);
+/// ```
+pub fn uncertainty_with_shared(
+    at: &Linearised,
+    groups: &[usize],
+    count: usize,
+    robust_beyond: f64,
+    shared: &[Vec<f64>],
+) -> Uncertainty {
     let mut information = DMatrix::<f64>::zeros(count, count);
     let last = groups.iter().copied().max().unwrap_or(0);
     let mut scores = vec![0.0; (last + 1) * count];
@@ -73,11 +104,21 @@ pub fn uncertainty(at: &Linearised, groups: &[usize], count: usize, robust_beyon
     for scores in scores.chunks_exact(count) {
         add_square(&mut scatter, scores);
     }
+    let mut of_errors = DMatrix::<f64>::zeros(count, count);
+    for changes in shared {
+        let mut score = vec![0.0; count];
+        let rows = at.residuals.iter().zip(at.jacobian.chunks_exact(count)).zip(changes);
+        for ((_, row), change) in rows.filter(|((residual, _), _)| residual.abs() <= robust_beyond) {
+            score.iter_mut().zip(row).for_each(|(sum, slope)| *sum += slope * change);
+        }
+        add_square(&mut of_errors, &score);
+    }
     information.fill_upper_triangle_with_lower_triangle();
     scatter.fill_upper_triangle_with_lower_triangle();
+    of_errors.fill_upper_triangle_with_lower_triangle();
     let (rows, variables) = (at.residuals.len() as f64, count as f64);
     let freedom = if rows > variables { rows / (rows - variables) } else { f64::INFINITY };
-    sandwich(information, &(scatter * freedom))
+    sandwich(information, &(scatter * freedom + of_errors))
 }
 
 /// Efficiency of the loss with the usual bend where the noise is normal (Huber 1981).

@@ -63,6 +63,7 @@ pub(super) fn averaged(recording: &Recording) -> Recording {
             })
             .collect(),
         oil_temperature: recording.oil_temperature.as_ref().map(these),
+        accuracies: recording.accuracies.clone(),
         signals: signals.collect(),
     }
 }

@@ -24,7 +24,7 @@ const SAME_SCALE: f64 = 1e-3;
 const OTHERS: usize = 150;
 const NEAR: usize = 1500;
 
-/// Rows of a recording beyond which the minimum is found over averages of its rows first. The last
+/// Rows of all recordings beyond which the minimum is found over averages of rows first. The last
 /// search is over all rows from there, and ends after few evaluations.
 const MANY_ROWS: usize = 20_000;
 
@@ -152,7 +152,7 @@ fn fitted_from<'a>(
 
 /// Whether the minimum is found over averages first.
 fn has_many_rows(recordings: &[Recording]) -> bool {
-    recordings.iter().any(|one| one.inputs.len() > MANY_ROWS)
+    recordings.iter().map(|one| one.inputs.len()).sum::<usize>() > MANY_ROWS
 }
 
 impl Fit<'_> {

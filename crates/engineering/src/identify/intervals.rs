@@ -1,6 +1,6 @@
 //! 95 % intervals by linearisation, of coefficients that may vanish too.
 
-use phea_dynamics::least_squares::{Linearised, Settings, Uncertainty, uncertainty};
+use phea_dynamics::least_squares::{Linearised, Settings, Uncertainty, uncertainty_with_shared};
 use phea_dynamics::portable;
 use phea_hydraulics::servovalve::StaticCoefficients;
 
@@ -19,7 +19,7 @@ const NOTHING_SAID: f64 = 14.0;
 /// [`Variables::scales`].
 pub(super) fn told(
     at: &Linearised,
-    groups: &[usize],
+    (groups, shared): (&[usize], &[Vec<f64>]),
     variables: &Variables,
     coefficients: &StaticCoefficients,
 ) -> Uncertainty {
@@ -35,7 +35,7 @@ pub(super) fn told(
             *slope *= factor;
         }
     }
-    uncertainty(&at, groups, COUNT, Settings::default().robust_beyond)
+    uncertainty_with_shared(&at, groups, COUNT, Settings::default().robust_beyond, shared)
 }
 
 /// 1.4826 times the median distance of the magnitude of normal noise from where it is fitted, over

@@ -174,7 +174,7 @@ fn recording(
     let is_test = assembled::is_test(&taken, circuit, whole, findings);
     // a long text and the test made of it need not be held at once
     table.close(findings);
-    is_test.then(|| (assembled::assembled(&declared.file, &taken, circuit, known), contents))
+    is_test.then(|| (assembled::assembled(declared, &taken, circuit, known), contents))
 }
 
 /// The columns that are used, and the headings of the others.

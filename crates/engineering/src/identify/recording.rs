@@ -3,6 +3,8 @@
 use phea_dynamics::order::{ends, median, sort_numbers};
 use phea_hydraulics::servovalve::{PortCircuit, TestInput, TestOutput};
 
+use crate::project::{Accuracy, TestSignal};
+
 /// Differences of values, over their range, that are the rounding of their digits.
 const ROUNDING: f64 = 1e-9;
 
@@ -24,6 +26,8 @@ pub struct Recording {
     pub inputs: Vec<TestInput>,
     /// degC, of the oil in each row, where it was recorded.
     pub oil_temperature: Option<Vec<f64>>,
+    /// What the instruments of its columns may be wrong by, where it is stated.
+    pub accuracies: Vec<(TestSignal, Accuracy)>,
     /// What was recorded of it.
     pub signals: Vec<RecordedSignal>,
 }
@@ -111,6 +115,7 @@ impl Recording {
             times: these(&self.times),
             inputs,
             oil_temperature: self.oil_temperature.as_ref().map(these),
+            accuracies: self.accuracies.clone(),
             signals: signals.collect(),
         }
     }

@@ -1,19 +1,24 @@
 //! Gauge pressures below the atmosphere.
 
 use super::{Column, MeasuredTable};
+use crate::followed::roughness;
 use crate::project::{Findings, RawFinding};
 use crate::quantity::{PRESSURE, display};
 
 /// Pa, gauge pressure of a vacuum.
 const VACUUM: f64 = -101_325.0;
-/// Pa, below which a twentieth of a column is when the zero of its transducer is off, rather than
-/// by noise.
+/// Pa, below which a twentieth of a column is, its noise apart, when the zero of its transducer is
+/// off.
 const ZERO_OFF: f64 = -2e4;
 
+/// Deviations of the noise by which a single row, and a twentieth of all rows, may lie below.
+const OF_A_ROW: f64 = 5.0;
+const OF_A_TWENTIETH: f64 = 2.0;
+
 impl MeasuredTable {
-    /// Refuses a column with pressures below a vacuum, and warns of one that is below the
-    /// atmosphere by more than noise. `row` is the row of the table for each value; NaN is no
-    /// value.
+    /// Refuses a column with pressures that lie below a vacuum by more than its noise, and warns of
+    /// one that is below the atmosphere by more than noise. `row` is the row of the table for each
+    /// value; NaN is no value.
     pub(crate) fn check_gauge(
         &self,
         column: &Column,
@@ -23,7 +28,9 @@ impl MeasuredTable {
     ) {
         let heading = self.heading(column);
         let shown = |pressure: f64| display(pressure, &PRESSURE, 3);
-        let is_impossible = |value: &f64| *value < VACUUM;
+        let read: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
+        let noise = roughness(&read);
+        let is_impossible = |value: &f64| *value < VACUUM - OF_A_ROW * noise;
         if let Some(first) = values.iter().position(is_impossible) {
             let least = values.iter().copied().fold(f64::INFINITY, f64::min);
             let count = values.iter().filter(|value| is_impossible(value)).count();
@@ -37,13 +44,13 @@ impl MeasuredTable {
             findings.push(found.help("is the zero of its transducer off, or the sign or unit wrong?"));
             return;
         }
-        let mut sorted: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
+        let mut sorted = read;
         if sorted.is_empty() {
             return;
         }
         let index = sorted.len() / 20;
         let low = *sorted.select_nth_unstable_by(index, f64::total_cmp).1;
-        if low < ZERO_OFF {
+        if low < ZERO_OFF - OF_A_TWENTIETH * noise {
             let negative = sorted.iter().filter(|value| **value < 0.0).count();
             let place = self.headings.get(column.index).map(|heading| heading.place).unwrap_or_default();
             let message = format!(

@@ -2,7 +2,8 @@
 
 use super::Check;
 use crate::{
-    IdentifiedUse, Identify, Project, RecordedColumn, RecordedTest, ResponseSignal, StaticTest, TestSignal,
+    Accuracy, IdentifiedUse, Identify, Project, RecordedColumn, RecordedTest, ResponseSignal, StaticTest,
+    TestSignal,
 };
 use phea_quantity::{self as quantity, Dimension, RATIO};
 
@@ -24,6 +25,7 @@ pub(super) fn identify(identify: &Identify, check: &mut Check<'_, '_>) {
             let path = format!("{path}.{}", signal.name());
             if let Some(column) = column {
                 reversed(column, signal != ResponseSignal::Time, &path, check);
+                accuracy(column, None, &path, check);
             }
             if let Some(unit) = column.as_ref().and_then(|column| column.unit.as_deref()) {
                 unit_of(unit, signal.dimension(), &path, check);
@@ -72,6 +74,7 @@ fn columns(recorded: &RecordedTest, path: &str, check: &mut Check<'_, '_>) {
         }
         let may_reverse = matches!(signal, TestSignal::Command | TestSignal::LeakFlow | TestSignal::Flow);
         reversed(column, may_reverse, &path, check);
+        accuracy(column, (signal != TestSignal::Time).then_some(signal.dimension()), &path, check);
         let Some(unit) = &column.unit else { continue };
         let is_share = signal == TestSignal::Command && unit == "%";
         let dimension = if is_share { &RATIO } else { signal.dimension() };
@@ -85,6 +88,29 @@ fn reversed(column: &RecordedColumn, may_reverse: bool, path: &str, check: &mut 
         let message = "only a command, a flow or a force can be reversed";
         let help = "where the columns of two ports are exchanged, name each by its `column`";
         check.error_with_help(&format!("{path}.reversed"), message, help);
+    }
+}
+
+/// An accuracy that can be read, of a signal whose errors are counted.
+fn accuracy(column: &RecordedColumn, of: Option<&'static Dimension>, path: &str, check: &mut Check<'_, '_>) {
+    let Some(text) = &column.accuracy else { return };
+    let path = format!("{path}.accuracy");
+    let Some(dimension) = of else {
+        let help = "it widens the intervals of a valve's coefficients, for command, pressures, flows and temperature";
+        check.error_with_help(&path, "no accuracy of this signal is counted", help);
+        return;
+    };
+    let size = column.stated_accuracy(dimension).map(|stated| match stated {
+        Accuracy::OfReading(size) | Accuracy::OfRange(size) => size,
+    });
+    if !size.is_some_and(|size| size.is_finite() && size >= 0.0) {
+        let message = format!("`{text}` is not an accuracy of {}", dimension.name);
+        let unit = dimension.units.first().copied().unwrap_or("%");
+        check.error_with_help(
+            &path,
+            message,
+            format!("such as \"0.5 %\", of its reading, or \"0.3 {unit}\""),
+        );
     }
 }
 

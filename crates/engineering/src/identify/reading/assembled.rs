@@ -5,10 +5,15 @@ use phea_hydraulics::servovalve::{PortCircuit, Supply, TestInput, WarmOil};
 use super::{Known, Taken};
 use crate::followed::{followed, roughness};
 use crate::identify::recording::{RecordedSignal, Recording, SignalKind};
-use crate::project::{Findings, Place, RawFinding, TestSignal};
+use crate::project::{Accuracy, Findings, Place, RawFinding, RecordedTest, TestSignal};
 
 /// The columns as a test.
-pub(super) fn assembled(file: &str, taken: &Taken, circuit: PortCircuit, known: &Known) -> Recording {
+pub(super) fn assembled(
+    declared: &RecordedTest,
+    taken: &Taken,
+    circuit: PortCircuit,
+    known: &Known,
+) -> Recording {
     let [a, b] = [TestSignal::PressureA, TestSignal::PressureB].map(|signal| taken.of(signal));
     let flow = taken.of(TestSignal::Flow);
     let [command, supply, tank] =
@@ -59,14 +64,24 @@ pub(super) fn assembled(file: &str, taken: &Taken, circuit: PortCircuit, known: 
         }
     }
     Recording {
-        file: file.to_string(),
+        file: declared.file.clone(),
         circuit,
         command_roughness,
         times: taken.of(TestSignal::Time).unwrap_or_default().to_vec(),
         inputs,
         oil_temperature: taken.of(TestSignal::OilTemperature).map(<[f64]>::to_vec),
+        accuracies: accuracies(declared, taken),
         signals,
     }
+}
+
+/// What is stated of the instruments of the columns that are there.
+fn accuracies(declared: &RecordedTest, taken: &Taken) -> Vec<(TestSignal, Accuracy)> {
+    let of = |signal: TestSignal| {
+        taken.of(signal)?;
+        Some((signal, declared.column(signal)?.stated_accuracy(signal.dimension())?))
+    };
+    TestSignal::ALL.into_iter().filter_map(of).collect()
 }
 
 /// A flow between the ports: by a meter that indicates the direction if some of it is negative.

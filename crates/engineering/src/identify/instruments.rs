@@ -1,0 +1,157 @@
+//! What instruments are wrong by throughout the tests, and what that does to the residuals.
+
+use super::channels::Together;
+use super::recording::{Recording, SignalKind};
+use super::warm::TestOil;
+use crate::project::{Accuracy, TestSignal};
+
+/// An error of an instrument that is the same in all rows, of one standard deviation.
+#[derive(Clone, Copy, Debug)]
+enum SharedError {
+    /// A share of what is read.
+    Gain(f64),
+    /// In the unit of the signal.
+    Zero(f64),
+}
+
+impl SharedError {
+    fn on(self, value: f64) -> f64 {
+        match self {
+            SharedError::Gain(share) => value * share,
+            SharedError::Zero(size) => size,
+        }
+    }
+}
+
+/// The change of every residual by one standard deviation of each error that the instruments are
+/// stated to have.
+///
+/// An accuracy bounds the error, and nothing is known of where within the bounds it lies: its
+/// deviation is the bound over sqrt(3) (GUM, 4.3.7). Columns of one signal with the same accuracy
+/// are of one instrument.
+pub(super) fn shared_changes(
+    together: &Together<'_>,
+    variables: &[f64],
+    oil: Option<&TestOil>,
+) -> Vec<Vec<f64>> {
+    let undisturbed = together.residuals(variables);
+    let change = |(signal, accuracy, error): &(TestSignal, Accuracy, SharedError)| {
+        let disturbed = |recording: &Recording| match recording.accuracies.contains(&(*signal, *accuracy)) {
+            true => disturbed(recording, *signal, *error, oil),
+            false => recording.clone(),
+        };
+        let recordings: Vec<Recording> = together.recordings.iter().map(disturbed).collect();
+        let moved = Together { recordings: &recordings, ..together.clone() }.residuals(variables);
+        moved.iter().zip(&undisturbed).map(|(moved, own)| moved - own).collect()
+    };
+    errors(together.recordings).iter().map(change).collect()
+}
+
+/// All errors of all instruments, each once.
+fn errors(recordings: &[Recording]) -> Vec<(TestSignal, Accuracy, SharedError)> {
+    let mut instruments: Vec<(TestSignal, Accuracy)> = Vec::new();
+    for instrument in recordings.iter().flat_map(|one| &one.accuracies) {
+        if !instruments.contains(instrument) {
+            instruments.push(*instrument);
+        }
+    }
+    let of = |(signal, accuracy): (TestSignal, Accuracy)| {
+        let root = 3.0_f64.sqrt();
+        let found = match accuracy {
+            Accuracy::OfReading(share) => vec![SharedError::Gain(share / root)],
+            Accuracy::OfRange(size) => {
+                let own = recordings.iter().filter(|one| one.accuracies.contains(&(signal, accuracy)));
+                let greatest = own.map(|one| greatest(one, signal)).fold(0.0, f64::max);
+                let gain = if greatest > 0.0 { size / root / greatest } else { 0.0 };
+                vec![SharedError::Zero(size / root), SharedError::Gain(gain)]
+            }
+        };
+        found.into_iter().map(move |error| (signal, accuracy, error))
+    };
+    instruments.into_iter().flat_map(of).collect()
+}
+
+/// The greatest magnitude that a signal was recorded with.
+fn greatest(recording: &Recording, signal: TestSignal) -> f64 {
+    let of_inputs = |of: fn(&phea_hydraulics::servovalve::TestInput) -> f64| {
+        recording.inputs.iter().map(of).fold(0.0, |most: f64, value| most.max(value.abs()))
+    };
+    let of_signal = |kinds: &[SignalKind]| {
+        let values = kinds.iter().filter_map(|kind| recording.signal(*kind)).flat_map(|one| &one.values);
+        values.flatten().fold(0.0, |most: f64, value| most.max(value.abs()))
+    };
+    match signal {
+        TestSignal::Command => of_inputs(|input| input.command),
+        TestSignal::SupplyPressure => of_inputs(|input| input.supply.pressure),
+        TestSignal::TankPressure => of_inputs(|input| input.supply.tank_pressure),
+        TestSignal::PressureA => of_signal(&[SignalKind::PressureA, SignalKind::MeanPressure]),
+        TestSignal::PressureB => of_signal(&[SignalKind::PressureB, SignalKind::MeanPressure]),
+        TestSignal::LeakFlow => of_signal(&[SignalKind::LeakFlow]),
+        TestSignal::Flow => of_signal(&[SignalKind::PortFlow, SignalKind::PortFlowMagnitude]),
+        TestSignal::OilTemperature | TestSignal::Time => 0.0,
+    }
+}
+
+/// The recording as it would be were a signal recorded with this error more.
+fn disturbed(
+    recording: &Recording,
+    signal: TestSignal,
+    error: SharedError,
+    oil: Option<&TestOil>,
+) -> Recording {
+    let mut found = recording.clone();
+    match signal {
+        TestSignal::Command => found.inputs.iter_mut().for_each(|input| {
+            input.command += error.on(input.command);
+            input.followed_command += error.on(input.followed_command);
+        }),
+        TestSignal::SupplyPressure => {
+            found
+                .inputs
+                .iter_mut()
+                .for_each(|input| input.supply.pressure += error.on(input.supply.pressure));
+        }
+        TestSignal::TankPressure => found
+            .inputs
+            .iter_mut()
+            .for_each(|input| input.supply.tank_pressure += error.on(input.supply.tank_pressure)),
+        TestSignal::PressureA => port_pressure(&mut found, SignalKind::PressureA, (1.0, error)),
+        TestSignal::PressureB => port_pressure(&mut found, SignalKind::PressureB, (-1.0, error)),
+        TestSignal::LeakFlow => values(&mut found, &[SignalKind::LeakFlow], error),
+        TestSignal::Flow => {
+            values(&mut found, &[SignalKind::PortFlow, SignalKind::PortFlowMagnitude], error);
+        }
+        TestSignal::OilTemperature => warmer(&mut found, error, oil),
+        TestSignal::Time => {}
+    }
+    found
+}
+
+fn values(recording: &mut Recording, kinds: &[SignalKind], error: SharedError) {
+    let signals = recording.signals.iter_mut().filter(|one| kinds.contains(&one.kind));
+    for value in signals.flat_map(|one| &mut one.values).flatten() {
+        *value += error.on(*value);
+    }
+}
+
+/// A port's own pressure where the ports are shut; of joined ports it is in the mean, and with its
+/// sign in the drop across the meter.
+fn port_pressure(recording: &mut Recording, kind: SignalKind, (sign, error): (f64, SharedError)) {
+    values(recording, &[kind], error);
+    let means = recording.signals.iter_mut().find(|one| one.kind == SignalKind::MeanPressure);
+    let Some(means) = means else { return };
+    for (mean, input) in means.values.iter_mut().zip(&mut recording.inputs) {
+        let Some(mean) = mean else { continue };
+        let change = error.on(*mean + sign * input.load_pressure / 2.0);
+        *mean += change / 2.0;
+        input.load_pressure += sign * change;
+    }
+}
+
+fn warmer(recording: &mut Recording, error: SharedError, oil: Option<&TestOil>) {
+    let Some((oil, temperatures)) = oil.zip(recording.oil_temperature.as_ref()) else { return };
+    let read = recording.inputs.iter_mut().zip(temperatures).filter(|(_, one)| one.is_finite());
+    for (input, temperature) in read {
+        input.oil = oil.law.warmer(temperature + error.on(*temperature) - oil.reference);
+    }
+}
