@@ -1,0 +1,109 @@
+"""Counts how many discs of 95 % of `phea identify --of response` hold the true response.
+
+    python comparisons/response_coverage.py PHEA [--recordings 200] [--only KIND]
+
+For each excitation, in the open loop, with noise on the recorded input too, and in the closed loop with and without
+the reference in the file: recordings that gave a response, were refused, or were warned of; discs; the percentage of
+them that hold the truth, over all frequencies and at the worst of ten bands; the median radius over the response.
+"""
+
+import argparse
+import json
+import pathlib
+import subprocess
+import tempfile
+
+import numpy as np
+
+import response_records as records
+
+CASES = [
+    ("open", records.OPEN, dict(), False),
+    ("open, noise on both", records.OPEN, dict(input_noise=0.02), False),
+    ("closed, reference", records.CLOSED, dict(output_noise=1.0), True),
+    ("closed, none", records.CLOSED, dict(output_noise=1.0), False),
+]
+
+
+def identified(phea, columns, has_reference, folder):
+    """The member of JSON, or the text of a refusal."""
+    path = pathlib.Path(folder) / "record.csv"
+    time, reference, given, shown = columns
+    table, names = ([time, reference, given, shown], "time_s,set_point,input,output")
+    if not has_reference:
+        table, names = ([time, given, shown], "time_s,input,output")
+    np.savetxt(path, np.column_stack(table), "%.10g", ",", header=names, comments="")
+    done = subprocess.run(
+        [phea, "identify", "--of", "response", str(path), "--json"], capture_output=True, text=True
+    )
+    if done.returncode not in (0, 1):
+        return None, done.stderr + done.stdout
+    (member,) = json.loads(done.stdout)["response"]["members"]
+    return member, None
+
+
+def errors(member):
+    """rad/s, |error|/radius and radius/|truth| of each row."""
+    rows = member["frequencies"]
+    of = {name: np.array([row[name] for row in rows], float) for name in rows[0]}
+    response = 10 ** (of["magnitude_db"] / 20) * np.exp(1j * np.radians(of["phase_deg"]))
+    true = records.truth(of["frequency_rad_per_s"])
+    return of["frequency_rad_per_s"], np.abs(response - true) / of["confidence_95"], of["confidence_95"] / abs(true)
+
+
+def counted(phea, kind, case, count):
+    name, loop, how, has_reference = case
+    given, refused, warned, why = [], 0, 0, ""
+    with tempfile.TemporaryDirectory() as folder:
+        for seed in range(count):
+            columns = records.recording(kind, loop, seed, **how)
+            member, text = identified(phea, columns, has_reference, folder)
+            if member is None or not member["frequencies"]:
+                refused, why = refused + 1, text
+                continue
+            warned += bool(member.get("warnings"))
+            given.append(errors(member))
+    if not given:
+        return dict(kind=kind, case=name, given=0, refused=refused, warned=0, why=why)
+    at, off, radius = (np.concatenate(values) for values in zip(*given))
+    held = off <= 1
+    bands = np.array_split(np.argsort(at, kind="stable"), 10)
+    return dict(
+        kind=kind,
+        case=name,
+        given=len(given),
+        refused=refused,
+        warned=warned,
+        discs=held.size,
+        held=100 * held.mean(),
+        lowest=min(100 * held[band].mean() for band in bands if band.size),
+        worst=off.max(),
+        radius=100 * np.median(radius),
+        why=why,
+    )
+
+
+def main():
+    reader = argparse.ArgumentParser()
+    reader.add_argument("phea")
+    reader.add_argument("--recordings", type=int, default=200)
+    reader.add_argument("--only")
+    reader.add_argument("--case")
+    asked = reader.parse_args()
+    print("| excitation | loop | estimated | refused | warned | discs | held (%) | worst band (%) | worst error (radii) | radius (%) |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
+    for case in CASES:
+        for kind in records.KINDS:
+            if (asked.only and asked.only != kind) or (asked.case and asked.case != case[0]):
+                continue
+            row = counted(asked.phea, kind, case, asked.recordings)
+            line = f"| {row['kind']} | {row['case']} | {row['given']} | {row['refused']} | {row['warned']} |"
+            if row["given"]:
+                line += f" {row['discs']} | {row['held']:.1f} | {row['lowest']:.1f} | {row['worst']:.1f} | {row['radius']:.1f} |"
+            else:
+                line += f" {row['why'][:160]!r}"
+            print(line, flush=True)
+
+
+if __name__ == "__main__":
+    main()
