@@ -2,12 +2,15 @@ use std::f64::consts::PI;
 
 use num_complex::Complex64;
 
+use super::estimate::fisher;
 use super::{SpectralPoint, Transform, disc_radius};
 use crate::portable::cos;
 
-/// Power of the mean over that of the differences, below which a line of the input is noise: with
-/// five periods, noise is above it once in a thousand lines.
-const NOISE: f64 = 20.0;
+/// Chance that a line of the input that is noise counts as excited, because its mean over the
+/// periods is larger than their differences.
+const NOISE: f64 = 1e-5;
+/// Lines to each side whose differences show how large noise is.
+const AROUND: usize = 5;
 
 /// Transforms of an input and of an output, block by block.
 #[derive(Clone, Debug)]
@@ -15,11 +18,11 @@ pub struct Blocks {
     /// rad/s between lines.
     spacing: f64,
     /// Of each block, input and output at all lines up to half of the sampling frequency.
-    lines: Vec<[Vec<Complex64>; 2]>,
+    pub(super) lines: Vec<[Vec<Complex64>; 2]>,
     /// As how many independent blocks they count.
     independent: f64,
     /// Whether all blocks are the response to the same input.
-    is_repeated: bool,
+    pub(super) is_repeated: bool,
 }
 
 /// The last whole periods of two signals that are sampled in steps of `time_step` seconds, after
@@ -131,16 +134,23 @@ impl Blocks {
     ///
     /// ```text
     /// same input in all blocks:  G = sum Y / sum U        otherwise:  G = sum U* Y / sum |U|^2   (H1)
-    /// sigma^2 = sum |Y - G U|^2/(n - 1) / sum |U|^2
+    /// sigma^2 = sum |Y - G U|^2/(n - 1) / sum |U|^2       sigma^2 = m/(m - 1) K/n_d sum |U|^2 |Y - G U|^2/(sum |U|^2)^2
+    /// m = n_d/K (sum |U|^2)^2/sum |U|^4
     /// gamma^2 = |sum U* Y|^2/(sum |U|^2 sum |Y|^2)
     /// ```
     ///
-    /// The first counts noise of the input as well (Pintelon and Schoukens 2012, section 2.4); for
-    /// the second, sigma^2 is that of Bendat and Piersol (2010), section 9.2: (1 - gamma^2)
-    /// S_yy/((n - 1) S_uu).
+    /// The first counts noise of the input as well (Pintelon and Schoukens 2012, section 2.4). In
+    /// the second a segment counts as it is excited (White 1980), m times together: a sweep passes
+    /// a frequency in one segment or two, however many there are, and what leaks there is in these.
+    /// Where all are excited alike it is that of Bendat and Piersol (2010), section 9.2: (1 -
+    /// gamma^2) S_yy/((n - 1) S_uu).
     pub fn points(&self) -> Vec<SpectralPoint> {
         let lines = self.lines.first().map_or(0, |[input, _]| input.len());
-        let mut points: Vec<SpectralPoint> = (1..lines).map(|line| self.point(line)).collect();
+        let (mut points, scatter): (Vec<SpectralPoint>, Vec<f64>) =
+            (1..lines).map(|line| self.point(line)).unzip();
+        if self.is_repeated {
+            self.without_noise(&mut points, &scatter);
+        }
         let strongest = points.iter().map(|point| point.excitation).fold(0.0, f64::max);
         for point in &mut points {
             point.excitation /= strongest;
@@ -148,7 +158,20 @@ impl Blocks {
         points
     }
 
-    fn point(&self, line: usize) -> SpectralPoint {
+    /// Takes the excitation from lines of the input that are no larger in the mean of the periods
+    /// than noise would be, as the periods differ from each other there and at the lines around.
+    fn without_noise(&self, points: &mut [SpectralPoint], scatter: &[f64]) {
+        for (index, point) in points.iter_mut().enumerate() {
+            let around = index.saturating_sub(AROUND)..(index + AROUND + 1).min(scatter.len());
+            let count = around.len() as f64;
+            let noise = scatter.get(around).unwrap_or_default().iter().sum::<f64>() / count;
+            let most = fisher(count * (self.independent - 1.0), NOISE) * noise;
+            point.excitation = if point.excitation < most { 0.0 } else { point.excitation };
+        }
+    }
+
+    /// A line, whose excitation is the power of the input, and the variance of the input there.
+    fn point(&self, line: usize) -> (SpectralPoint, f64) {
         let pairs = || {
             let at = |values: &[Complex64]| values.get(line).copied().unwrap_or_default();
             self.lines.iter().map(move |[input, output]| (at(input), at(output)))
@@ -160,21 +183,32 @@ impl Blocks {
             [inputs + input, outputs + output]
         });
         let response = if self.is_repeated { sums[1] / sums[0] } else { cross / input_power };
-        let rest: f64 = pairs().map(|(input, output)| (output - response * input).norm_sqr()).sum();
+        let rests =
+            || pairs().map(|(input, output)| [input, output - response * input].map(|line| line.norm_sqr()));
+        let rest: f64 = rests().map(|[_, rest]| rest).sum();
         let power = if self.is_repeated { sums[0].norm_sqr() / self.independent } else { input_power };
-        // a line of noise is as strong in the mean of the blocks as they differ from each other
         let scatter = (input_power - power).max(0.0) / (self.independent - 1.0);
-        let is_noise = self.is_repeated && power < NOISE * scatter;
-        let variance = rest / (self.independent - 1.0) / power;
         let coherence = cross.norm_sqr() / (input_power * output_power);
-        let deviation = variance.sqrt();
-        SpectralPoint {
+        let (variance, independent) = if self.is_repeated {
+            (rest / (self.independent - 1.0) / power, self.independent)
+        } else {
+            // a block counts as much as the input excites in it, its noise or leakage likewise
+            let alike = self.independent / self.lines.len() as f64;
+            let squares: f64 = rests().map(|[power, _]| power * power).sum();
+            let independent = alike * input_power * input_power / squares;
+            let weighed: f64 = rests().map(|[power, rest]| power * rest).sum();
+            let few = independent / (independent - 1.0);
+            (weighed / (input_power * input_power) / alike * few, independent)
+        };
+        let deviation = if variance >= 0.0 { variance.sqrt() } else { f64::INFINITY };
+        let point = SpectralPoint {
             frequency: line as f64 * self.spacing,
             response,
             coherence: if coherence.is_finite() { coherence.min(1.0) } else { 0.0 },
             deviation,
-            radius: disc_radius(deviation, self.independent),
-            excitation: if is_noise { 0.0 } else { power },
-        }
+            radius: disc_radius(deviation, independent),
+            excitation: power,
+        };
+        (point, scatter)
     }
 }

@@ -44,11 +44,16 @@ const OUTSIDE: f64 = 0.05;
 /// assert!(disc_radius(1.0, 1.0).is_infinite());
 /// ```
 pub fn disc_radius(deviation: f64, blocks: f64) -> f64 {
-    let half = blocks - 1.0;
-    if half <= 0.0 {
-        return f64::INFINITY;
-    }
-    (half * (pow(OUTSIDE, -1.0 / half) - 1.0)).sqrt() * deviation
+    if blocks <= 1.0 { f64::INFINITY } else { fisher(blocks - 1.0, OUTSIDE).sqrt() * deviation }
+}
+
+/// What Fisher's F with two degrees of freedom above and 2 m below exceeds with this probability.
+///
+/// ```text
+/// F = m (p^(-1/m) - 1)
+/// ```
+pub(super) fn fisher(half: f64, probability: f64) -> f64 {
+    half * (pow(probability, -1.0 / half) - 1.0)
 }
 
 /// The squared coherence that two signals without any relation exceed in one case of twenty, for
