@@ -3,7 +3,9 @@
     python comparisons/compare_response.py [PHEA]        # or the variable PHEA; without either, what cargo builds
 
 A filtered noise with noise in its output, and a multisine that repeats. For the first, SciPy's csd, welch and coherence
-give H1 and the coherence; for the second, NumPy's transform of the averaged periods gives the response.
+give H1 and the coherence; for the second, NumPy's transform of the averaged periods gives the response. Then the discs of
+95 % of records that do not repeat, in the open and in the closed loop, hold the response of SciPy's discretisation as
+often as they state, and a closed loop without its reference is refused; `response_coverage.py` has more of them.
 """
 
 import json
@@ -15,6 +17,9 @@ import tempfile
 
 import numpy as np
 from scipy import signal
+
+import response_coverage
+import response_records
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PHEA = sys.argv[1] if len(sys.argv) > 1 else os.environ.get("PHEA", str(ROOT / "target/debug/phea"))
@@ -75,4 +80,26 @@ def multisine():
     return error
 
 
+def held(kind, case, count=20):
+    (case,) = [one for one in response_coverage.CASES if one[0] == case]
+    row = response_coverage.counted(PHEA, kind, case, count)
+    assert row["refused"] == 0 and row["warned"] == 0, row
+    # 99.8 % of a binomial distribution
+    least = 95 - 310 * (0.0475 / row["discs"]) ** 0.5
+    assert row["held"] > least, row
+    return f"{kind}, {case[0]}: {row['held']:.1f} % of {row['discs']}"
+
+
+def refused():
+    (case,) = [one for one in response_coverage.CASES if one[0] == "closed, none"]
+    for kind in ["noise", "logarithmic sweep", "stepped sine"]:
+        row = response_coverage.counted(PHEA, kind, case, 5)
+        assert row["refused"] == 5 and "-1/C" in row["why"], row
+
+
 print(f"H1 and coherence of noise: {noise():.1e}; multisine: {multisine():.1e} (relative difference from SciPy and NumPy)")
+for kind in response_records.KINDS[1:]:
+    print("95 % discs that hold:", held(kind, "open"))
+for kind in ["noise", "logarithmic sweep", "PRBS"]:
+    print("95 % discs that hold:", held(kind, "closed, reference"))
+refused()

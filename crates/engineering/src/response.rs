@@ -1,17 +1,23 @@
 //! Frequency responses from recorded signals: members of a measured family.
 //!
 //! ```text
-//! file -> SampledPair -> whole periods | overlapping segments -> points -> those that are known well enough
+//! file -> SampledPair -> whole periods | local polynomials | overlapping segments -> points -> those that are known well enough
 //! ```
 //!
 //! A periodic input (a multisine, a chirp that is repeated) is averaged over its periods; any other
-//! (noise, a single chirp) is cut into segments. One file is one member.
+//! (noise, a single sweep, a step) is estimated band by band, from the reference where a loop was
+//! closed. One file is one member.
 
 mod member;
 mod reading;
+mod resampled;
+mod spacing;
 
 pub use member::{Averaging, LeftOut, ResponseMember, Unusable};
-pub use reading::{RowSpacing, SampledPair, UNEVEN, sampled_pairs, time_step};
+pub use reading::{ReferenceSignal, SampledPair, sampled_pairs};
+pub use resampled::Resampled;
+pub(crate) use resampled::{EvenRows, even_rows, interpolated, is_software_timed};
+pub use spacing::{RowSpacing, UNEVEN, time_step};
 
 use phea_dynamics::watch::{Watch, tell};
 
@@ -25,7 +31,7 @@ pub struct ResponseSettings {
     /// s at the beginning that are left out; absent: one period of a periodic input, otherwise
     /// nothing.
     pub settling: Option<f64>,
-    /// s, of a segment; absent: about an eighth of the record.
+    /// s, of a segment; absent: an input that does not repeat is taken as a whole.
     pub segment: Option<f64>,
     /// Squared coherence below which a frequency is left out.
     pub coherence: f64,

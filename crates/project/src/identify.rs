@@ -136,12 +136,21 @@ pub enum ResponseSignal {
     Command,
     /// N, what follows.
     Force,
+    /// N, what a closed loop is to follow.
+    Reference,
+    /// V, what is added to the command of a closed loop.
+    Excitation,
 }
 
 impl ResponseSignal {
     /// All, in the order of columns.
-    pub const ALL: [ResponseSignal; 3] =
-        [ResponseSignal::Time, ResponseSignal::Command, ResponseSignal::Force];
+    pub const ALL: [ResponseSignal; 5] = [
+        ResponseSignal::Time,
+        ResponseSignal::Command,
+        ResponseSignal::Force,
+        ResponseSignal::Reference,
+        ResponseSignal::Excitation,
+    ];
 
     /// As columns and keys call it.
     pub const fn name(self) -> &'static str {
@@ -149,6 +158,8 @@ impl ResponseSignal {
             ResponseSignal::Time => "time",
             ResponseSignal::Command => "command",
             ResponseSignal::Force => "force",
+            ResponseSignal::Reference => "reference",
+            ResponseSignal::Excitation => "excitation",
         }
     }
 
@@ -156,8 +167,8 @@ impl ResponseSignal {
     pub const fn dimension(self) -> &'static Dimension {
         match self {
             ResponseSignal::Time => &TIME,
-            ResponseSignal::Command => &VOLTAGE,
-            ResponseSignal::Force => &FORCE,
+            ResponseSignal::Command | ResponseSignal::Excitation => &VOLTAGE,
+            ResponseSignal::Force | ResponseSignal::Reference => &FORCE,
         }
     }
 
@@ -166,6 +177,8 @@ impl ResponseSignal {
             ResponseSignal::Time => "Column of the time.",
             ResponseSignal::Command => "Column of the command that excites.",
             ResponseSignal::Force => "Column of the force that follows.",
+            ResponseSignal::Reference => "Column of the reference, of a record of a closed loop.",
+            ResponseSignal::Excitation => "Column of what is added to the command of a closed loop.",
         }
     }
 }
@@ -252,7 +265,18 @@ pub struct RecordedResponse {
     /// What separates the values of a text; absent: it is found.
     pub separator: Option<String>,
     /// What the headings do not say, in the order of [`ResponseSignal::ALL`].
-    pub columns: [Option<RecordedColumn>; 3],
+    pub columns: [Option<RecordedColumn>; 5],
+    /// The loop during the test; absent: it is tested for feedback.
+    pub recorded_loop: Option<RecordedLoop>,
+}
+
+/// The loop around the plant while a record was made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RecordedLoop {
+    /// No controller acted on the output.
+    Open,
+    /// A controller did.
+    Closed,
 }
 
 /// A column of a file.
@@ -355,6 +379,9 @@ impl RecordedResponse {
         self.file = file.unwrap_or_default();
         let k = plain("separator", "What separates the values of a text; absent: it is found.");
         v.text(k, &mut self.separator, false);
+        let words = &[("open", Some(RecordedLoop::Open)), ("closed", Some(RecordedLoop::Closed))];
+        let doc = "The loop while the record was made; absent: closed where the file has a reference, otherwise tested for feedback.";
+        v.choice(plain("loop", doc), words, &mut self.recorded_loop, false);
         for (signal, column) in ResponseSignal::ALL.into_iter().zip(&mut self.columns) {
             v.table(plain(signal.name(), signal.doc()), column, RecordedColumn::visit);
         }

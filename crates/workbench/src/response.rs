@@ -15,6 +15,7 @@ pub use files::files;
 
 use num_complex::Complex64;
 use phea_dynamics::portable::argument;
+use phea_dynamics::spectrum::Distortion;
 
 use crate::answer::significant;
 use crate::quantity::DisplayUnit;
@@ -26,6 +27,9 @@ const LOWEST: usize = 3;
 const OPPOSITE: f64 = -0.5;
 /// Degrees by which a reversed force lags the opposite of its command.
 const REVERSED_LAG: [f64; 2] = [-15.0, 105.0];
+
+/// Size of an output at lines that are not excited, over that at the excited ones, that is told.
+const DISTORTED: f64 = 0.01;
 
 /// A member, and the linear plant of a project at its frequencies.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,16 +74,34 @@ impl Compared {
 
     /// Warnings on the record, in sentences without a full stop.
     pub(crate) fn warnings(&self) -> Vec<String> {
-        let Some(lowest) = self.member.points.first().filter(|_| self.is_reversed()) else {
-            return Vec::new();
-        };
+        [self.reversal(), self.distortion(), resampling(&self.member)].into_iter().flatten().collect()
+    }
+
+    /// The output at lines that the input does not excite.
+    fn distortion(&self) -> Option<String> {
+        let Distortion { even, odd } = self.member.distortion;
         let [input, output] = self.member.signals;
-        vec![format!(
+        let percent = |level: f64| significant(100.0 * level, 2);
+        (even.max(odd) > DISTORTED).then(|| {
+            format!(
+                "{}: `{output}` does not follow `{input}` linearly, or drifts: where `{input}` has no lines, `{output}` has {} % of its size at even multiples of the lowest frequency and {} % at odd ones, in each period alike; the discs of 95 % count noise alone, and what is not linear displaces the response itself: compare records of different amplitude",
+                self.member.file,
+                percent(even),
+                percent(odd),
+            )
+        })
+    }
+
+    /// An output against its input.
+    fn reversal(&self) -> Option<String> {
+        let lowest = self.member.points.first().filter(|_| self.is_reversed())?;
+        let [input, output] = self.member.signals;
+        Some(format!(
             "{}: `{output}` goes against `{input}`: at {} Hz its phase is {} degrees, and a positive command extends the rod; state `{output} = {{ reversed = true }}` in its [[identify.response]], or `{input} = {{ reversed = true }}`",
             self.member.file,
             significant(DisplayUnit::HERTZ.of(lowest.frequency), 3),
             significant(argument(lowest.response).to_degrees(), 3),
-        )]
+        ))
     }
 
     /// Discs that hold the plant, and how far it is away at most, in dB.
@@ -92,6 +114,19 @@ impl Compared {
             .filter(|(point, plant)| (point.response - *plant).norm_sqr() <= point.radius * point.radius);
         self.plant.as_ref().map(|_| (held.count(), both().map(apart).fold(0.0, f64::max)))
     }
+}
+
+/// Rows that were moved to even ones.
+pub(crate) fn resampling(member: &ResponseMember) -> Option<String> {
+    let resampled = member.resampled?;
+    let milliseconds = |seconds: f64| DisplayUnit::MILLISECOND.number(seconds, 3);
+    Some(format!(
+        "{}: the rows are not even ({} ms between the earliest and the latest, at most {} ms apart): the signals are taken on lines between them, which follow a sine within 5 % up to {} Hz, and higher frequencies are left out",
+        member.file,
+        milliseconds(resampled.scatter),
+        milliseconds(resampled.longest),
+        significant(DisplayUnit::HERTZ.of(resampled.highest()), 3),
+    ))
 }
 
 /// Why a frequency is left out, in words.

@@ -126,6 +126,9 @@ pub(crate) fn record(run: &LineRun) -> LineRecord {
             pressures,
         }),
         LineSeries::FrequencyResponse => LineRecord::Response(SampledPair {
+            reference: None,
+            recorded_loop: None,
+            resampled: None,
             file,
             signals: ["flow", "pressure"],
             units: ["m3/s", "Pa"],

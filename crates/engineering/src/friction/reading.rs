@@ -2,7 +2,7 @@ use super::signs;
 use crate::identify::IdentifyError;
 use crate::project::{Findings, Project};
 use crate::quantity::{FORCE, LENGTH, PRESSURE, TIME, VELOCITY};
-use crate::response::{RowSpacing, time_step};
+use crate::response::{RowSpacing, interpolated, is_software_timed, time_step};
 use crate::setup::Setup;
 use crate::source::Source;
 use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES};
@@ -132,6 +132,7 @@ fn recording(
         return None;
     }
     let spacing = RowSpacing::of(&times);
+    // a run of the cylinder is slow against its rows: a line between two of them changes nothing
     let (time_step, motion, [pressures_a, pressures_b, loads]) = if is_software_timed(&spacing, &times) {
         let even = |values: &[f64]| interpolated(&times, values, spacing.usual);
         (spacing.usual, even(&motion), [&pressures_a, &pressures_b, &loads].map(|values| even(values)))
@@ -150,38 +151,6 @@ fn recording(
     let (file, has_position) = (file.to_string(), position.is_some());
     let is_right = findings.error_count() == before;
     is_right.then_some(FrictionRecording { file, time_step, positions, has_position, forces })
-}
-
-/// The longest time between two rows that a line bridges, in usual ones.
-const LONGEST_BRIDGED: f64 = 5.0;
-
-/// Whether rows come late now and then, and none is missing: a run of the cylinder is slow against
-/// its rows, and a line between two of them changes nothing.
-fn is_software_timed(spacing: &RowSpacing, times: &[f64]) -> bool {
-    let is_bridged = |pair: &[f64]| matches!(pair, [one, next] if next > one && next - one <= LONGEST_BRIDGED * spacing.usual);
-    !spacing.is_even() && times.len() > 1 && times.windows(2).all(is_bridged)
-}
-
-/// Values at equal intervals, on lines between the rows.
-fn interpolated(times: &[f64], values: &[f64], step: f64) -> Vec<f64> {
-    let (Some(first), Some(last)) = (times.first(), times.last()) else { return Vec::new() };
-    if values.is_empty() {
-        return Vec::new();
-    }
-    let mut row = 0;
-    let count = ((last - first) / step + 1e-9).floor() as usize + 1;
-    let at = |index: usize| {
-        let time = first + index as f64 * step;
-        while times.get(row + 1).is_some_and(|next| *next < time) {
-            row += 1;
-        }
-        let of = |numbers: &[f64], row: usize| numbers.get(row).copied().unwrap_or(f64::NAN);
-        let (from, to) = (of(times, row), of(times, row + 1));
-        let share = if to > from { (time - from) / (to - from) } else { 0.0 };
-        let value = of(values, row);
-        if share == 0.0 { value } else { value + share * (of(values, row + 1) - value) }
-    };
-    (0..count).map(at).collect()
 }
 
 /// By the trapezoidal rule, from zero.

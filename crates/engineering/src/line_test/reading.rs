@@ -4,9 +4,9 @@ use phea_dynamics::order;
 
 use super::{RiseRecord, VolumeSource};
 use crate::identify::IdentifyError;
-use crate::project::{Findings, RawFinding};
+use crate::project::{Findings, RawFinding, RecordedLoop};
 use crate::quantity::{FLOW, LENGTH, PRESSURE, TIME, VOLUME};
-use crate::response::{SampledPair, time_step};
+use crate::response::{EvenRows, SampledPair, even_rows};
 use crate::source::Source;
 use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES, not_increasing};
 use crate::tendency::Tendency;
@@ -96,16 +96,9 @@ fn record(file: &str, bytes: Vec<u8>, piston_area: f64, findings: &mut Findings)
         VolumeSource::Flow => integral(&times, &values),
     };
     if from == VolumeSource::Flow && goes_back_and_forth(&times, &values, &volumes) {
-        let time_step = time_step(&table, time.as_ref()?, &times, "a frequency response", findings)?;
+        let even = even_rows(&table, time.as_ref()?, &times, vec![values, pressures], findings)?;
         table.close(findings);
-        return Some(LineRecord::Response(SampledPair {
-            file: file.to_string(),
-            signals: ["flow", "pressure"],
-            units: ["m3/s", "Pa"],
-            time_step,
-            input: values,
-            output: pressures,
-        }));
+        return response(file, even);
     }
     table.check_gauge(&pressure, &pressures, |row| row, findings);
     rises_with_volume(&table, [&pressure, &displaced], [&pressures, &volumes], findings);
@@ -113,6 +106,23 @@ fn record(file: &str, bytes: Vec<u8>, piston_area: f64, findings: &mut Findings)
     let is_right = findings.error_count() == before;
     let file = file.to_string();
     is_right.then_some(LineRecord::Rise(RiseRecord { file, source: from, times, volumes, pressures }))
+}
+
+/// Flow and pressure at equal steps.
+fn response(file: &str, rows: EvenRows) -> Option<LineRecord> {
+    let mut signals = rows.signals.into_iter();
+    Some(LineRecord::Response(SampledPair {
+        file: file.to_string(),
+        signals: ["flow", "pressure"],
+        units: ["m3/s", "Pa"],
+        time_step: rows.step,
+        input: signals.next()?,
+        output: signals.next()?,
+        reference: None,
+        // the supply and the line move each other: no controller is needed for that
+        recorded_loop: Some(RecordedLoop::Open),
+        resampled: rows.resampled,
+    }))
 }
 
 /// Refuses a record whose pressure falls while its volume grows.

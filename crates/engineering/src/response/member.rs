@@ -1,6 +1,10 @@
-use phea_dynamics::spectrum::{Blocks, SpectralPoint, least_coherence, period, periods, segments};
+use phea_dynamics::spectrum::{
+    Distortion, LOCAL_BLOCKS, SpectralPoint, feedback, least_coherence, local_polynomials, period, periods,
+    segments,
+};
 
-use super::{ResponseSettings, SampledPair};
+use super::{ReferenceSignal, Resampled, ResponseSettings, SampledPair};
+use crate::project::RecordedLoop;
 
 /// How the blocks of a record were made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,6 +15,13 @@ pub enum Averaging {
         period: f64,
         /// How many are averaged.
         count: usize,
+    },
+    /// Local polynomials over bands of the whole record.
+    LocalPolynomials {
+        /// s, of the record.
+        length: f64,
+        /// How many bands there are.
+        bands: usize,
     },
     /// Segments that overlap by half, with a Hann window.
     Segments {
@@ -38,6 +49,12 @@ pub struct ResponseMember {
     pub time_step: f64,
     /// How the blocks were made.
     pub method: Averaging,
+    /// The column from which the response of a closed loop follows.
+    pub reference: Option<&'static str>,
+    /// What the output has at lines of the period that the input does not excite.
+    pub distortion: Distortion,
+    /// Where the rows were not even.
+    pub resampled: Option<Resampled>,
     /// Squared coherence that a point must have.
     pub least_coherence: f64,
     /// Points that are known well enough, the lowest frequency first.
@@ -69,9 +86,6 @@ pub enum Unusable {
 /// Share of the strongest line's power below which the input does not excite: 60 dB.
 const UNEXCITED: f64 = 1e-6;
 
-/// Segments that a record is cut into where nobody says, at least.
-const SEGMENTS: usize = 8;
-
 pub(super) fn member(record: &SampledPair, settings: &ResponseSettings) -> Result<ResponseMember, String> {
     let file = &record.file;
     let steps = |seconds: f64| (seconds / record.time_step).round() as usize;
@@ -79,36 +93,30 @@ pub(super) fn member(record: &SampledPair, settings: &ResponseSettings) -> Resul
         return Err(format!("{file}: the input never moves, so that it excites nothing"));
     }
     let settling = settings.settling.map(steps);
+    let reference = reference_of(record);
+    let moving = reference.map_or(&record.input, |reference| &reference.values);
     let found = match (settings.period, settings.segment) {
         (Some(stated), _) => Some(whole_steps(record, stated)?),
         (None, Some(_)) => None,
-        (None, None) => period(record.input.get(settling.unwrap_or(0)..).unwrap_or_default()),
+        (None, None) => period(moving.get(settling.unwrap_or(0)..).unwrap_or_default()),
     };
-    let signals = [record.input.as_slice(), record.output.as_slice()];
-    let (blocks, method) = match found {
-        Some(period) => {
-            let blocks = periods(signals, record.time_step, period, settling.unwrap_or(period));
-            let blocks = blocks.ok_or_else(|| too_short(record, period, settling.unwrap_or(period)))?;
-            let count = blocks.count();
-            (blocks, Averaging::Periods { period: period as f64 * record.time_step, count })
+    if found.is_none() && reference.is_none() {
+        loop_is_open(record)?;
+    }
+    let mut estimated = match (found, settings.segment) {
+        (Some(period), _) => of_periods(record, reference, period, settling.unwrap_or(period))?,
+        (None, Some(length)) if reference.is_none() => {
+            of_segments(record, steps(length), settling.unwrap_or(0))?
         }
-        None => {
-            let start = settling.unwrap_or(0);
-            let later = signals.map(|signal| signal.get(start..).unwrap_or_default());
-            let length = settings.segment.map_or(usual_segment(later[0].len()), steps);
-            let blocks = segments(later, record.time_step, length).ok_or_else(|| {
-                format!("{file}: {} rows are too few for segments of {length} rows", later[0].len())
-            })?;
-            let (count, independent) = (blocks.count(), blocks.independent());
-            (blocks, Averaging::Segments { length: length as f64 * record.time_step, count, independent })
-        }
+        (None, _) => of_bands(record, reference, settling.unwrap_or(0))?,
     };
-    let least = settings.coherence.max(least_coherence(blocks.independent()));
-    let (points, left_out) = sorted(&blocks, &method, least);
+    if let Some(resampled) = record.resampled {
+        estimated.points.retain(|point| point.frequency <= resampled.highest());
+    }
+    let least = settings.coherence.max(least_coherence(estimated.independent));
+    let (points, left_out) = sorted(estimated.points, least);
     if points.is_empty() {
-        return Err(format!(
-            "{file}: at no frequency does the output depend on the input with a squared coherence of {least:.2}"
-        ));
+        return Err(no_points(record, reference, &left_out, least));
     }
     Ok(ResponseMember {
         file: file.clone(),
@@ -116,22 +124,111 @@ pub(super) fn member(record: &SampledPair, settings: &ResponseSettings) -> Resul
         units: record.units,
         rows: record.input.len(),
         time_step: record.time_step,
-        method,
+        method: estimated.method,
+        reference: reference.map(|reference| reference.name),
+        distortion: estimated.distortion,
+        resampled: record.resampled,
         least_coherence: least,
         points,
         left_out,
     })
 }
 
+/// What a record shows before anything is left out.
+struct Estimated {
+    method: Averaging,
+    points: Vec<SpectralPoint>,
+    independent: f64,
+    distortion: Distortion,
+}
+
+/// What moves the loop from outside, unless the project states that it was open.
+fn reference_of(record: &SampledPair) -> Option<&ReferenceSignal> {
+    record.reference.as_ref().filter(|_| record.recorded_loop != Some(RecordedLoop::Open))
+}
+
+/// Refuses a record whose input follows the noise of its output: the quotient of both would tend to
+/// the negative inverse of the controller.
+fn loop_is_open(record: &SampledPair) -> Result<(), String> {
+    let SampledPair { file, signals: [input, output], .. } = record;
+    let cure = "record the reference in a column `reference`, `excitation` or `set_point`, or make the reference periodic";
+    let why = format!("`{output}` over `{input}` tends to the negative inverse of the controller, -1/C");
+    match record.recorded_loop {
+        Some(RecordedLoop::Open) => Ok(()),
+        Some(RecordedLoop::Closed) => {
+            Err(format!("{file}: the loop was closed, and no column says what moved it: {why}; {cure}"))
+        }
+        None => match feedback(&record.input, &record.output) {
+            share if share > 0.0 => Err(format!(
+                "{file}: the loop was closed during the test: `{input}` follows the noise of `{output}` ({:.0} % of its innovation), so that {why}; {cure}. Where no controller acted, state `loop = \"open\"` in its [[identify.response]]",
+                100.0 * share
+            )),
+            _ => Ok(()),
+        },
+    }
+}
+
+fn of_periods(
+    record: &SampledPair,
+    reference: Option<&ReferenceSignal>,
+    period: usize,
+    settling: usize,
+) -> Result<Estimated, String> {
+    let signals = [record.input.as_slice(), record.output.as_slice()];
+    let blocks = periods(signals, record.time_step, period, settling)
+        .ok_or_else(|| too_short(record, period, settling))?;
+    let mut points = blocks.points();
+    if let Some(reference) = reference {
+        // noise that the controller returns is no excitation, however large it is
+        let moved = periods([&reference.values, &record.input], record.time_step, period, settling);
+        let moved = moved.map(|blocks| blocks.points()).unwrap_or_default();
+        for (point, moved) in points.iter_mut().zip(moved) {
+            point.excitation = if moved.excitation < UNEXCITED { 0.0 } else { point.excitation };
+        }
+    }
+    let method = Averaging::Periods { period: period as f64 * record.time_step, count: blocks.count() };
+    let distortion = blocks.distortion();
+    Ok(Estimated { method, points, independent: blocks.independent(), distortion })
+}
+
+fn of_segments(record: &SampledPair, length: usize, settling: usize) -> Result<Estimated, String> {
+    let [input, output] =
+        [&record.input, &record.output].map(|signal| signal.get(settling..).unwrap_or_default());
+    let blocks = segments([input, output], record.time_step, length).ok_or_else(|| {
+        format!("{}: {} rows are too few for segments of {length} rows", record.file, input.len())
+    })?;
+    let (count, independent) = (blocks.count(), blocks.independent());
+    let method = Averaging::Segments { length: length as f64 * record.time_step, count, independent };
+    // the window spreads what is left of the mean over two lines
+    let points = blocks.points().into_iter().skip(1).collect();
+    Ok(Estimated { method, points, independent, distortion: Distortion::default() })
+}
+
+fn of_bands(
+    record: &SampledPair,
+    reference: Option<&ReferenceSignal>,
+    settling: usize,
+) -> Result<Estimated, String> {
+    let later = |signal: &'_ [f64]| signal.get(settling..).unwrap_or_default().to_vec();
+    let [input, output] = [&record.input, &record.output].map(|signal| later(signal));
+    let reference = reference.map_or_else(|| input.clone(), |one| later(&one.values));
+    let points = local_polynomials(&reference, [&input, &output], record.time_step);
+    if points.is_empty() {
+        return Err(format!("{}: {} rows are too few for a frequency response", record.file, input.len()));
+    }
+    let length = input.len() as f64 * record.time_step;
+    let method = Averaging::LocalPolynomials { length, bands: points.len() };
+    Ok(Estimated { method, points, independent: LOCAL_BLOCKS, distortion: Distortion::default() })
+}
+
 /// Points that are known well enough, and the others.
-fn sorted(blocks: &Blocks, method: &Averaging, least: f64) -> (Vec<SpectralPoint>, Vec<LeftOut>) {
-    // a window spreads what is left of the mean over two lines
-    let first = if matches!(method, Averaging::Segments { .. }) { 1 } else { 0 };
+fn sorted(estimated: Vec<SpectralPoint>, least: f64) -> (Vec<SpectralPoint>, Vec<LeftOut>) {
     let (mut points, mut left_out) = (Vec::new(), Vec::new());
-    for point in blocks.points().into_iter().skip(first) {
+    for point in estimated {
         let reason = match point {
             SpectralPoint { excitation, .. } if excitation < UNEXCITED => Unusable::NotExcited,
             SpectralPoint { coherence, .. } if coherence < least => Unusable::Incoherent,
+            SpectralPoint { radius, .. } if !radius.is_finite() => Unusable::Incoherent,
             _ => {
                 points.push(point);
                 continue;
@@ -142,10 +239,27 @@ fn sorted(blocks: &Blocks, method: &Averaging, least: f64) -> (Vec<SpectralPoint
     (points, left_out)
 }
 
-/// A power of two, so that the record has at least [`SEGMENTS`].
-fn usual_segment(rows: usize) -> usize {
-    let most = (rows / SEGMENTS).max(8);
-    if most.is_power_of_two() { most } else { most.next_power_of_two() / 2 }
+/// The reason why a record has no response at any frequency.
+fn no_points(
+    record: &SampledPair,
+    reference: Option<&ReferenceSignal>,
+    left_out: &[LeftOut],
+    least: f64,
+) -> String {
+    let file = &record.file;
+    match reference {
+        Some(reference) if left_out.iter().all(|one| one.reason == Unusable::NotExcited) => format!(
+            "{file}: the column `{}` moves the input at no frequency more than noise does",
+            reference.name
+        ),
+        Some(reference) => format!(
+            "{file}: at no frequency is noise small against what the column `{}` moves: the squared coherence is below {least:.2}; move the reference more, or longer",
+            reference.name
+        ),
+        None => format!(
+            "{file}: at no frequency does the output depend on the input with a squared coherence of {least:.2}"
+        ),
+    }
 }
 
 /// A stated period in steps of the record.

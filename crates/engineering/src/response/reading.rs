@@ -1,10 +1,9 @@
-use phea_dynamics::order::ends;
-
+use super::resampled::{EvenRows, Resampled, even_rows};
 use crate::identify::IdentifyError;
-use crate::project::{Findings, RawFinding, RecordedResponse, ResponseSignal};
-use crate::quantity::{FORCE, RATIO, TIME, VOLTAGE, display};
+use crate::project::{Findings, RecordedLoop, RecordedResponse, ResponseSignal};
+use crate::quantity::{FORCE, RATIO, TIME, VOLTAGE};
 use crate::source::Source;
-use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES, median_step};
+use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES};
 
 /// Two signals of a record, sampled at equal intervals. SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,21 +20,59 @@ pub struct SampledPair {
     pub input: Vec<f64>,
     /// The output.
     pub output: Vec<f64>,
+    /// What moves a closed loop from outside, where the file has it.
+    pub reference: Option<ReferenceSignal>,
+    /// The loop during the test, where the project states it.
+    pub recorded_loop: Option<RecordedLoop>,
+    /// Where the rows were not even.
+    pub resampled: Option<Resampled>,
 }
 
-/// Share of the time between rows by which a row may be early or late.
-pub const UNEVEN: f64 = 0.1;
+/// A reference, or an excitation that is added to the command, of a closed loop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReferenceSignal {
+    /// What the column is called.
+    pub name: &'static str,
+    /// Its samples, in SI.
+    pub values: Vec<f64>,
+}
 
-/// Fewest rows that say anything of a frequency.
-const FEWEST_ROWS: usize = 32;
+/// The first column of a reference that has values: an open loop may have it without any.
+fn reference_in(
+    table: &MeasuredTable,
+    columns: &[Option<Column>],
+    findings: &mut Findings,
+) -> Option<(&'static str, Vec<f64>)> {
+    MEASURANDS.iter().zip(columns).skip(REFERENCES).find_map(|((measurand, _), column)| {
+        let column = column.as_ref()?;
+        let numbers = table.numbers(&[column], findings);
+        let gaps = numbers.gaps.first().map_or(0, Vec::len);
+        let is_blank = numbers.columns.first().is_none_or(|values| values.len() == gaps);
+        (!is_blank)
+            .then(|| (measurand.name, table.all_numbers(&[column], findings).pop().unwrap_or_default()))
+    })
+}
 
-const MEASURANDS: [(Measurand, &str); 6] = [
+impl ReferenceSignal {
+    /// Whether it is more than a set point that is held.
+    fn moves(&self) -> bool {
+        self.values.iter().any(|value| Some(value) != self.values.first())
+    }
+}
+
+/// Where the references begin in them.
+const REFERENCES: usize = 6;
+
+const MEASURANDS: [(Measurand, &str); 9] = [
     (Measurand::of("time", &TIME).called(TIME_NAMES), "s"),
     (Measurand::of("input", &RATIO), "1"),
     (Measurand::of("command", &VOLTAGE), "V"),
     (Measurand::of("control", &VOLTAGE), "V"),
     (Measurand::of("output", &RATIO), "1"),
     (Measurand::of("force", &FORCE), "N"),
+    (Measurand::of("excitation", &VOLTAGE), "V"),
+    (Measurand::of("reference", &FORCE), "N"),
+    (Measurand::of("set_point", &RATIO), "1"),
 ];
 
 /// The records of these files, one each.
@@ -86,8 +123,16 @@ fn pair(declared: &RecordedResponse, bytes: Vec<u8>, findings: &mut Findings) ->
     if findings.error_count() > before {
         return None;
     }
-    let [times, inputs, outputs] = <[Vec<f64>; 3]>::try_from(numbers).ok()?;
-    let time_step = time_step(&table, &time, &times, "a frequency response", findings)?;
+    let reference = reference_in(&table, &columns, findings);
+    if findings.error_count() > before {
+        return None;
+    }
+    let (name, values) = reference.unzip();
+    let mut numbers = numbers.into_iter();
+    let times = numbers.next()?;
+    let EvenRows { step, signals, resampled } =
+        even_rows(&table, &time, &times, numbers.chain(values).collect(), findings)?;
+    let mut signals = signals.into_iter();
     let of = |index: usize| MEASURANDS.get(index).map_or(("", ""), |(one, unit)| (one.name, *unit));
     let named = [of(input), of(output)];
     table.close(findings);
@@ -95,112 +140,14 @@ fn pair(declared: &RecordedResponse, bytes: Vec<u8>, findings: &mut Findings) ->
         file: file.clone(),
         signals: named.map(|(name, _)| name),
         units: named.map(|(_, unit)| unit),
-        time_step,
-        input: inputs,
-        output: outputs,
+        time_step: step,
+        input: signals.next()?,
+        output: signals.next()?,
+        reference: name
+            .zip(signals.next())
+            .map(|(name, values)| ReferenceSignal { name, values })
+            .filter(ReferenceSignal::moves),
+        recorded_loop: declared.recorded_loop,
+        resampled,
     })
-}
-
-/// The time between rows, in s. Rows that are early or late by more than [`UNEVEN`] of it are
-/// refused, unless their stamps are rounded to no more than that: what is calculated takes the
-/// samples as evenly spaced. `purpose` says what that is.
-pub fn time_step(
-    table: &MeasuredTable,
-    column: &Column,
-    times: &[f64],
-    purpose: &str,
-    findings: &mut Findings,
-) -> Option<f64> {
-    let place = table.header_place();
-    if times.len() < FEWEST_ROWS {
-        let message = format!("{} rows are too few for {purpose}", times.len());
-        findings.push(RawFinding::error(place, message).expected(format!("at least {FEWEST_ROWS} rows")));
-        return None;
-    }
-    let spacing = RowSpacing::of(times);
-    if spacing.is_even() {
-        return Some(spacing.step);
-    }
-    let usual = spacing.usual;
-    // the row where the usual step is left, rather than the one where the sum of all is
-    let off = |pair: &[f64]| match pair {
-        [one, next] => ((next - one) - usual).abs(),
-        _ => 0.0,
-    };
-    let most = times.windows(2).map(off).fold(0.0, f64::max);
-    let rounded = ((1.0 + ROUNDING) * spacing.digit).max(UNEVEN * usual);
-    // a row that is late is early for the row after it, by the same but for rounding errors
-    let beyond = rounded.min((1.0 - 1e-6) * most);
-    let row = times.windows(2).position(|pair| off(pair) > beyond).map_or(0, |row| row + 1);
-    let since =
-        times.get(row).zip(times.get(row.saturating_sub(1))).map_or(0.0, |(one, before)| one - before);
-    let message = format!("{} after the row before", display(since, &TIME, 4));
-    let found = table.error(row, column, message, findings);
-    let expected = format!("evenly sampled rows: {} apart, as most are", display(usual, &TIME, 4));
-    findings.push(
-        found
-            .expected(expected)
-            .help("interpolating would filter the signals: export the record with the clock of its sampling"),
-    );
-    None
-}
-
-/// How the rows of a record follow each other in time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RowSpacing {
-    /// s, of the line through all stamps.
-    pub step: f64,
-    /// s, the usual difference from one row to the next.
-    pub usual: f64,
-    /// s, the last digit of the stamps.
-    pub digit: f64,
-    /// s, between the earliest and the latest row, each against that line.
-    pub scatter: f64,
-    /// Share of the rows that are not the usual difference after the row before.
-    pub jumps: f64,
-}
-
-/// Share of the last digit by which even rows may scatter more than by their rounding.
-const ROUNDING: f64 = 0.05;
-/// Share of rows below which a difference that is not the usual one is a row that is missing.
-const FEW_JUMPS: f64 = 0.02;
-
-impl RowSpacing {
-    /// Of these stamps in s.
-    pub fn of(times: &[f64]) -> RowSpacing {
-        let first = times.first().copied().unwrap_or(0.0);
-        let middle = times.len().saturating_sub(1) as f64 / 2.0;
-        let since: Vec<f64> = times.iter().map(|time| time - first).collect();
-        let mean = since.iter().sum::<f64>() / times.len().max(1) as f64;
-        let [mut along, mut squares] = [0.0; 2];
-        for (row, time) in since.iter().enumerate() {
-            let from_middle = row as f64 - middle;
-            along += from_middle * (time - mean);
-            squares += from_middle * from_middle;
-        }
-        let step = if squares > 0.0 { along / squares } else { 0.0 };
-        let off = since.iter().enumerate().map(|(row, time)| time - row as f64 * step);
-        let [least, most] = ends(off);
-        let usual = median_step(times);
-        let is_jump = |pair: &&[f64]| matches!(pair, [one, next] if ((next - one) - usual).abs() > UNEVEN * usual.abs());
-        let jumps = times.windows(2).filter(is_jump).count() as f64 / times.len().max(1) as f64;
-        RowSpacing { step, usual, digit: last_digit(times), scatter: most - least, jumps }
-    }
-
-    /// Whether the rows are as even as their stamps can say. Rounding moves many rows; where few
-    /// are moved, rows are missing.
-    pub fn is_even(&self) -> bool {
-        let is_rounded = self.jumps > FEW_JUMPS;
-        let rounded = if is_rounded { (1.0 + ROUNDING) * self.digit } else { 0.0 };
-        self.step > 0.0 && self.scatter <= rounded.max(2.0 * UNEVEN * self.step)
-    }
-}
-
-/// The decimal that all these times are multiples of, at most 1 s.
-fn last_digit(times: &[f64]) -> f64 {
-    let is_multiple = |digit: &f64| {
-        let off = |time: &f64| (time / digit - (time / digit).round()).abs();
-        times.iter().all(|time| off(time) < 1e-4 * (1.0 + 1e-9 * (time / digit).abs()))
-    };
-    [1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7].into_iter().find(is_multiple).unwrap_or(0.0)
 }

@@ -3,6 +3,7 @@ use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::LineSide;
 use crate::quantity::{DisplayUnit, FLOW, PRESSURE, VOLUME, display};
+use crate::response::resampling;
 
 /// The numbers of the line, what the recordings do not determine, and how they were explained.
 pub(crate) fn document(found: &LineIdentification) -> Document {
@@ -86,5 +87,6 @@ fn response(fit: &ResponseFit) -> Vec<String> {
                 .to_string(),
         );
     }
+    sentences.extend(resampling(&fit.member).map(|warning| format!("{warning}.")));
     sentences
 }

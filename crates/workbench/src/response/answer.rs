@@ -1,4 +1,5 @@
 use phea_dynamics::portable::{argument, log10, magnitude};
+use phea_dynamics::spectrum::LOCAL_BLOCKS;
 use serde::Serialize;
 
 use super::{Averaging, Compared, LeftOut, Unusable, because};
@@ -28,6 +29,8 @@ struct AnsweredResponse<'a> {
     rows: usize,
     time_step_s: f64,
     method: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reference: Option<&'static str>,
     block_s: f64,
     blocks: usize,
     independent_blocks: Number,
@@ -35,6 +38,10 @@ struct AnsweredResponse<'a> {
     frequencies: Vec<ResponseAt>,
     rows_left_out: Vec<LeftOutAt>,
     lines_not_excited: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    distortion: Option<DistortionOf>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    resampled: Option<ResampledRows>,
     #[serde(skip_serializing_if = "Option::is_none")]
     linear_plant: Option<BesidePlant>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -56,6 +63,19 @@ struct LeftOutAt {
     frequency_rad_per_s: f64,
     coherence: Number,
     reason: &'static str,
+}
+
+#[derive(Serialize)]
+struct DistortionOf {
+    even: Number,
+    odd: Number,
+}
+
+#[derive(Serialize)]
+struct ResampledRows {
+    scatter_s: f64,
+    longest_gap_s: f64,
+    highest_frequency_rad_per_s: f64,
 }
 
 #[derive(Serialize)]
@@ -81,6 +101,7 @@ fn member(compared: &Compared) -> AnsweredResponse<'_> {
     let found = &compared.member;
     let (method, block_s, blocks, independent) = match found.method {
         Averaging::Periods { period, count } => ("periods", period, count, count as f64),
+        Averaging::LocalPolynomials { length, .. } => ("local_polynomials", length, 1, LOCAL_BLOCKS),
         Averaging::Segments { length, count, independent } => ("segments", length, count, independent),
     };
     let incoherent = found.left_out.iter().filter(|one| one.reason == Unusable::Incoherent);
@@ -106,6 +127,7 @@ fn member(compared: &Compared) -> AnsweredResponse<'_> {
         rows: found.rows,
         time_step_s: found.time_step,
         method,
+        reference: found.reference,
         block_s,
         blocks,
         independent_blocks: Number(independent),
@@ -113,6 +135,13 @@ fn member(compared: &Compared) -> AnsweredResponse<'_> {
         frequencies: found.points.iter().map(point).collect(),
         lines_not_excited: found.left_out.len() - rows_left_out.len(),
         rows_left_out,
+        distortion: matches!(found.method, Averaging::Periods { .. })
+            .then(|| DistortionOf { even: Number(found.distortion.even), odd: Number(found.distortion.odd) }),
+        resampled: found.resampled.map(|resampled| ResampledRows {
+            scatter_s: resampled.scatter,
+            longest_gap_s: resampled.longest,
+            highest_frequency_rad_per_s: resampled.highest(),
+        }),
         linear_plant: compared.agreement().map(|(held, apart)| BesidePlant {
             within_confidence_95: held,
             largest_difference_db: Number(apart),

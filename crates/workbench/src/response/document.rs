@@ -44,19 +44,27 @@ pub(crate) fn document(found: &[Compared]) -> Document {
 fn blocks(member: &ResponseMember) -> Vec<String> {
     let seconds = |value: f64| significant(value, 4);
     let rows = format!("{} rows, {} s apart", member.rows, seconds(member.time_step));
-    vec![match member.method {
+    let how = match member.method {
         Averaging::Periods { period, count } => {
             format!(
                 "{rows}: the input repeats every {} s; the last {count} periods are averaged.",
                 seconds(period)
             )
         }
+        Averaging::LocalPolynomials { bands, .. } => format!(
+            "{rows}: the {} does not repeat; {bands} bands of the whole record have a response, a transient and noise of their own.",
+            member.reference.map_or("input", |name| name)
+        ),
         Averaging::Segments { length, count, independent } => format!(
             "{rows}: the input does not repeat; {count} segments of {} s with a Hann window overlap by half and count as {} without overlap.",
             seconds(length),
             significant(independent, 3)
         ),
-    }]
+    };
+    let of_loop = member.reference.map(|name| {
+        format!("The loop is taken as closed: the response follows from `{name}`, in which noise that returns through the controller has no part.")
+    });
+    [Some(how), of_loop].into_iter().flatten().collect()
 }
 
 /// What was left out, and why.

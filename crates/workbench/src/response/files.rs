@@ -39,6 +39,10 @@ fn table(compared: &Compared) -> Csv {
     let [below, above] = member.units;
     let method = match member.method {
         Averaging::Periods { period, count } => format!("{count} periods of {} s", significant(period, 6)),
+        Averaging::LocalPolynomials { length, bands } => {
+            let from = member.reference.map_or(String::new(), |name| format!(", from the {name}"));
+            format!("local polynomials over {bands} bands of {} s{from}", significant(length, 6))
+        }
         Averaging::Segments { length, count, .. } => {
             format!("{count} segments of {} s, Hann window, overlapping by half", significant(length, 6))
         }

@@ -1,0 +1,84 @@
+use super::spacing::{FEW_JUMPS, RowSpacing, time_step};
+use crate::project::Findings;
+use crate::table::{Column, MeasuredTable};
+
+/// The longest time between two rows that a line bridges, in usual ones.
+const LONGEST_BRIDGED: f64 = 5.0;
+/// Part of a turn between two rows, up to which a line between them follows a sine within 5 %:
+/// (2 pi/10)^2/8.
+const TURN: f64 = 0.1;
+
+/// What signals lose because their rows come early or late.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resampled {
+    /// s between the earliest and the latest row, each against even ones.
+    pub scatter: f64,
+    /// s, the longest time from one row to the next.
+    pub longest: f64,
+}
+
+impl Resampled {
+    /// rad/s, the highest frequency that lines between the rows follow within 5 %.
+    pub fn highest(&self) -> f64 {
+        2.0 * std::f64::consts::PI * TURN / self.longest
+    }
+}
+
+/// Signals at equal steps.
+pub(crate) struct EvenRows {
+    /// s.
+    pub(crate) step: f64,
+    pub(crate) signals: Vec<Vec<f64>>,
+    /// Where they were not recorded so.
+    pub(crate) resampled: Option<Resampled>,
+}
+
+/// Signals at equal steps: as recorded where the rows are even, and on lines between them where
+/// many are early or late and none is missing. All signals of a row are moved alike, so that what
+/// a line takes from a sine it takes from input and output.
+pub(crate) fn even_rows(
+    table: &MeasuredTable,
+    column: &Column,
+    times: &[f64],
+    signals: Vec<Vec<f64>>,
+    findings: &mut Findings,
+) -> Option<EvenRows> {
+    let spacing = RowSpacing::of(times);
+    if !is_software_timed(&spacing, times) || spacing.jumps <= FEW_JUMPS {
+        let step = time_step(table, column, times, "a frequency response", findings)?;
+        return Some(EvenRows { step, signals, resampled: None });
+    }
+    let between = |pair: &[f64]| if let [one, next] = pair { next - one } else { 0.0 };
+    let longest = times.windows(2).map(between).fold(0.0, f64::max);
+    let signals = signals.iter().map(|values| interpolated(times, values, spacing.step)).collect();
+    let resampled = Some(Resampled { scatter: spacing.scatter, longest });
+    Some(EvenRows { step: spacing.step, signals, resampled })
+}
+
+/// Whether rows come late now and then, and none is missing.
+pub(crate) fn is_software_timed(spacing: &RowSpacing, times: &[f64]) -> bool {
+    let is_bridged = |pair: &[f64]| matches!(pair, [one, next] if next > one && next - one <= LONGEST_BRIDGED * spacing.usual);
+    !spacing.is_even() && times.len() > 1 && times.windows(2).all(is_bridged)
+}
+
+/// Values at equal intervals, on lines between the rows.
+pub(crate) fn interpolated(times: &[f64], values: &[f64], step: f64) -> Vec<f64> {
+    let (Some(first), Some(last)) = (times.first(), times.last()) else { return Vec::new() };
+    if values.is_empty() {
+        return Vec::new();
+    }
+    let mut row = 0;
+    let count = ((last - first) / step + 1e-9).floor() as usize + 1;
+    let at = |index: usize| {
+        let time = first + index as f64 * step;
+        while times.get(row + 1).is_some_and(|next| *next < time) {
+            row += 1;
+        }
+        let of = |numbers: &[f64], row: usize| numbers.get(row).copied().unwrap_or(f64::NAN);
+        let (from, to) = (of(times, row), of(times, row + 1));
+        let share = if to > from { (time - from) / (to - from) } else { 0.0 };
+        let value = of(values, row);
+        if share == 0.0 { value } else { value + share * (of(values, row + 1) - value) }
+    };
+    (0..count).map(at).collect()
+}
