@@ -12,21 +12,26 @@
 //! explains all.
 
 mod guess;
+mod misfit;
 mod motion;
 mod pressing;
 mod problem;
+mod profile;
 mod reading;
 mod shaking;
 mod shown;
 mod signs;
 mod told;
+mod varying;
 
+pub use misfit::{FrictionMisfit, FrictionSignal};
 pub use motion::ConstantVelocity;
 pub use pressing::PressedRows;
 pub use reading::{FrictionRecording, KnownCylinder, friction_recordings, recorded_runs};
 pub use shaking::ShakenRows;
 pub use shown::{PressedCurve, SteadyPoint};
 pub use told::{FrictionEstimate, ROWS_OF_RINGING, UntoldFriction};
+pub use varying::VaryingVelocity;
 
 use phea_dynamics::least_squares::Ending;
 use phea_dynamics::watch::Watch;
@@ -34,6 +39,7 @@ use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, LuGre};
 
 use self::problem::{FrictionProblem, KeptShapes};
 use crate::identify::IdentifyError;
+use crate::quantity::{VELOCITY, display};
 
 /// Names of the coefficients as `[cylinder.friction]` has them, and their units.
 pub const FRICTION_NAMES: [(&str, &str); FRICTION_COEFFICIENTS] = [
@@ -53,6 +59,8 @@ pub struct FrictionIdentification {
     pub recordings: Vec<FrictionRecording>,
     /// Where it slides at a constant velocity, in the order of the recordings.
     pub slides: Vec<ConstantVelocity>,
+    /// Where it slides at a velocity that is constant on average alone: left out.
+    pub varying: Vec<VaryingVelocity>,
     /// Where it is pressed and does not slide.
     pub presses: Vec<PressedRows>,
     /// Where it is shaken.
@@ -66,6 +74,8 @@ pub struct FrictionIdentification {
     /// N, root mean square of what is left of the force, each block as one row; and m of the
     /// position of what was pressed.
     pub residual_rms: [Option<f64>; 2],
+    /// What is left that is not noise, the greatest first.
+    pub misfits: Vec<FrictionMisfit>,
     /// Share of the residuals that are independent, the least of all signals.
     pub independent: f64,
     /// kg.
@@ -107,16 +117,19 @@ pub fn identify_friction(
     known: &KnownCylinder,
     watch: Watch<'_>,
 ) -> Result<FrictionIdentification, IdentifyError> {
-    let all = recordings.iter().enumerate();
-    let slides: Vec<ConstantVelocity> =
-        all.flat_map(|(index, recording)| motion::constant_velocities(recording, index)).collect();
+    let (mut slides, mut varying) = (Vec::new(), Vec::new());
+    for (index, recording) in recordings.iter().enumerate() {
+        let motion::SlidingRuns { constant, varying: other } = motion::sliding_runs(recording, index);
+        slides.extend(constant);
+        varying.extend(other);
+    }
     let guess::Guess { around, presses, shakes } = guess::guess(&recordings, &slides, known.moving_mass)
-        .ok_or_else(|| IdentifyError::Data(NOTHING.to_string()))?;
+        .ok_or_else(|| IdentifyError::Data(nothing(&recordings, &varying)))?;
     let finds_zero = goes_both_ways(&slides, &presses);
     let setting = (known.moving_mass, around);
     let mut problem = FrictionProblem::new(&recordings, &slides, (&presses, &shakes), setting, finds_zero);
     let mut kept = KeptShapes::default();
-    let mut minimum = problem.searched(&problem.start(), ROUGH, &mut kept, watch)?;
+    let mut minimum = problem.first_minimum(ROUGH, &mut kept, watch)?;
     for _ in 0..ROUNDS {
         let change = problem.rescale(&minimum.linearised.residuals);
         minimum = problem.searched(&minimum.variables, ROUGH, &mut kept, watch)?;
@@ -125,12 +138,16 @@ pub fn identify_friction(
         }
     }
     minimum = problem.searched(&minimum.variables, FINE, &mut kept, watch)?;
-    if minimum.ending == Ending::NoStart || minimum.linearised.residuals.len() <= problem.count() {
+    if minimum.ending == Ending::NoStart {
+        return Err(IdentifyError::Data(NO_START.to_string()));
+    }
+    if minimum.linearised.residuals.len() <= problem.count() {
         return Err(IdentifyError::Data("the recordings have too few rows to fit a friction".to_string()));
     }
     let (lugre, _) = problem.friction(&minimum.variables);
     let (estimates, zero) = told::estimates(&problem, &minimum);
     let residual_rms = shown::residual_rms(&problem, &minimum);
+    let misfits = misfit::misfits(&problem, &minimum.linearised.residuals);
     let independent = problem.channels.iter().map(|channel| channel.independent).fold(1.0, f64::min);
     let pressed = shown::pressed(&problem, &minimum);
     let shaken = shown::shaken(&problem, &minimum, &mut kept);
@@ -140,25 +157,41 @@ pub fn identify_friction(
         lugre,
         zero,
         residual_rms,
+        misfits,
         independent,
         moving_mass: known.moving_mass,
         ending,
         pressed,
         shaken,
         slides,
+        varying,
         presses,
         shakes,
         recordings,
     })
 }
 
+const NO_START: &str = "no friction near the recorded forces lets the piston stay where it is recorded: look for a position or a pressure that is wrong by a factor, or for rows of two tests in one file";
+
+/// Why nothing can be found, with what was left out.
+fn nothing(recordings: &[FrictionRecording], varying: &[VaryingVelocity]) -> String {
+    let of = |one: &VaryingVelocity| {
+        let file = recordings.get(one.recording).map_or("", |recording| recording.file.as_str());
+        let [mean, least, greatest] =
+            [one.velocity, one.range[0], one.range[1]].map(|velocity| display(velocity, &VELOCITY, 3));
+        format!("{file} goes from {least} to {greatest} where it moves by {mean} on average")
+    };
+    match varying {
+        [] => NOTHING.to_string(),
+        varying => format!("{NOTHING} ({})", varying.iter().map(of).collect::<Vec<_>>().join("; ")),
+    }
+}
+
 const NOTHING: &str = "no recording determines the friction: there is neither a constant velocity for 20 rows or more, nor a force that presses the piston from rest or shakes it while its position is recorded";
 
 /// Whether friction acts both ways, so that it differs from a force that is always there.
 fn goes_both_ways(slides: &[ConstantVelocity], presses: &[PressedRows]) -> bool {
-    let ways: Vec<f64> = match slides {
-        [] => presses.iter().filter(|press| press.breaks_away).map(PressedRows::way).collect(),
-        slides => slides.iter().map(|slide| slide.velocity).collect(),
-    };
+    let broken = presses.iter().filter(|press| press.breaks_away).map(PressedRows::way);
+    let ways: Vec<f64> = slides.iter().map(|slide| slide.velocity).chain(broken).collect();
     ways.iter().any(|way| *way > 0.0) && ways.iter().any(|way| *way < 0.0)
 }

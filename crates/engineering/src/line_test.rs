@@ -12,15 +12,18 @@
 
 mod found;
 mod known;
+mod misfit;
 mod reading;
 mod response_noise;
 mod rise;
+mod rise_air;
 mod rise_noise;
 mod shaken;
 mod stand;
 
 pub use found::{LineIdentification, LineNumber, Undetermined, identify_line};
 pub use known::KnownLine;
+pub use misfit::LineMisfit;
 pub use reading::{LineRecord, line_records};
 pub use rise::{RiseFit, RiseRecord, VolumeSource};
 pub use shaken::{CompliancePoint, LineParameters, ResponseFit};

@@ -15,7 +15,7 @@ pub(crate) use figures::pictures;
 pub use files::files;
 
 use crate::answer::significant;
-use crate::quantity::{DisplayUnit, TIME, display};
+use crate::quantity::{DisplayUnit, TIME, VELOCITY, display};
 
 /// Why a coefficient is not determined, in words.
 pub(crate) fn because(estimate: &FrictionEstimate) -> Option<String> {
@@ -23,6 +23,14 @@ pub(crate) fn because(estimate: &FrictionEstimate) -> Option<String> {
         UntoldFriction::NothingSlides => "nothing slides at a constant velocity".to_string(),
         UntoldFriction::NoFall => {
             "no fall of the friction from static to sliding is seen: record slower runs".to_string()
+        }
+        UntoldFriction::FewOnFall { below } => format!(
+            "too few runs slide on the fall from static to Coulomb friction: record more constant velocities up to {}",
+            display(below, &VELOCITY, 2)
+        ),
+        UntoldFriction::NotApproached => {
+            "no run is slow enough for it and no piston breaks away: press the piston from rest until it moves"
+                .to_string()
         }
         UntoldFriction::NothingPressed => {
             "nothing is pressed from rest while its position is recorded".to_string()
@@ -47,6 +55,22 @@ pub(crate) fn because(estimate: &FrictionEstimate) -> Option<String> {
         UntoldFriction::Hidden => "noise hides its effect in these recordings".to_string(),
     };
     Some(reason)
+}
+
+/// What the friction does not explain.
+pub(crate) fn misfit_in_words(found: &FrictionIdentification, misfit: &FrictionMisfit) -> String {
+    let file = found.recordings.get(misfit.recording).map_or("", |one| one.file.as_str());
+    let at = misfit.place.map_or_else(String::new, |[velocity, more]| {
+        let than = if more > 0.0 { "more" } else { "less" };
+        let (velocity, force) = (display(velocity, &VELOCITY, 3), significant(more.abs(), 2));
+        format!(", most at {velocity}, where the model shows {force} N {than} than was recorded")
+    });
+    format!(
+        "the model leaves {} % of the range unexplained of the {} of {file}{at}: neighbouring residuals are alike (correlation {})",
+        significant(100.0 * misfit.share, 3),
+        misfit.signal.name(),
+        significant(misfit.correlation, 2)
+    )
 }
 
 /// What would show the damping of the bristles.

@@ -6,7 +6,7 @@ use phea_hydraulics::friction::{LuGre, Stribeck};
 
 use super::FrictionRecording;
 use super::motion::{ConstantVelocity, noise};
-use super::pressing::{PressedRows, compliance, pressed_rows};
+use super::pressing::{Breakaway, PressedRows, breakaway, compliance, pressed_rows};
 use super::problem::Around;
 use super::shaking::{ShakenRows, shaken_rows};
 
@@ -25,26 +25,34 @@ const DAMPING_RATIO: f64 = 0.5;
 /// is known.
 const SETTLED: f64 = 0.05;
 
+/// Distance over which what a reversal leaves decays, over the shortest way at a constant velocity,
+/// at most: a run whose force still changes is none.
+const LEFT_BY_REVERSAL: f64 = 0.2;
+
 pub(super) fn guess(
     recordings: &[FrictionRecording],
     slides: &[ConstantVelocity],
     mass: f64,
 ) -> Option<Guess> {
-    let is_pressed =
-        |index: usize| recordings.get(index).is_some_and(|one| one.has_position) && !slides_in(slides, index);
-    let pressed: Vec<usize> = (0..recordings.len()).filter(|index| is_pressed(*index)).collect();
-    let forces = pressed.iter().filter_map(|index| recordings.get(*index));
-    let greatest = forces.map(|one| greatest_force(&one.forces)).fold(0.0, f64::max);
-    let curve = steady_guess(slides).or_else(|| (greatest > 0.0).then(|| without_sliding(greatest)))?;
+    let mut shakes = Vec::new();
+    let mut pressed = Vec::new();
+    for (index, recording) in recordings.iter().enumerate() {
+        if recording.has_position && !slides_in(slides, index) {
+            match shaken_rows(recording, index) {
+                Some(shake) => shakes.push(shake),
+                None => pressed.push((index, recording)),
+            }
+        }
+    }
+    let breakaways: Vec<Breakaway> =
+        pressed.iter().filter_map(|(_, recording)| breakaway(recording)).collect();
+    let forces = recordings.iter().enumerate().filter(|(index, _)| !slides_in(slides, *index));
+    let greatest = forces.map(|(_, one)| greatest_force(&one.forces)).fold(0.0, f64::max);
+    let steady = steady_guess(slides, &breakaways);
+    let (curve, zero) = steady.or_else(|| (greatest > 0.0).then(|| (without_sliding(greatest), 0.0)))?;
     let mut compliances = Vec::new();
     let mut presses = Vec::new();
-    let mut shakes = Vec::new();
-    for index in pressed {
-        let Some(recording) = recordings.get(index) else { continue };
-        if let Some(shake) = shaken_rows(recording, index) {
-            shakes.push(shake);
-            continue;
-        }
+    for (index, recording) in pressed {
         let compliance = compliance(recording, curve.static_friction);
         let press = pressed_rows(recording, index, compliance * curve.static_friction);
         compliances.extend(press.is_some().then_some(compliance));
@@ -74,6 +82,8 @@ pub(super) fn guess(
         force: curve.static_friction,
         damping: [curve.static_friction / if fastest > 0.0 { fastest } else { usual }, damping],
         length: curve.static_friction / bristle_stiffness,
+        zero,
+        softest: curve.static_friction / (LEFT_BY_REVERSAL * shortest_way(slides, recordings)),
     };
     Some(Guess { around, presses, shakes })
 }
@@ -108,24 +118,37 @@ fn shortest_way(slides: &[ConstantVelocity], recordings: &[FrictionRecording]) -
     slides.iter().map(way).fold(f64::INFINITY, f64::min)
 }
 
-/// The steady curve through the forces in the second half of each constant velocity: linear least
-/// squares for each of some Stribeck velocities and exponents, and the best of them.
-fn steady_guess(slides: &[ConstantVelocity]) -> Option<Stribeck> {
-    const VELOCITIES: usize = 12;
+/// Velocity at which a piston breaks away, over the slowest at which it slides.
+const AT_REST: f64 = 1e-6;
+
+/// Slowest Stribeck velocity that is tried, over the slowest at which the piston slides.
+const BELOW_SLOWEST: f64 = 0.1;
+
+/// Static friction over the greatest recorded force at most: few speeds are explained by any fall
+/// that is over before the slowest.
+const PLAUSIBLE: f64 = 1.5;
+
+/// The steady curve, and the zero of the force in N, through the forces in the second half of each
+/// constant velocity and those at which the piston breaks away: linear least squares for each of
+/// some Stribeck velocities and exponents, and the best of them.
+fn steady_guess(slides: &[ConstantVelocity], breakaways: &[Breakaway]) -> Option<(Stribeck, f64)> {
+    const VELOCITIES: usize = 16;
     if slides.is_empty() {
-        return None;
+        return without_slides(breakaways);
     }
-    let points: Vec<(f64, f64)> =
-        slides.iter().map(|slide| (slide.velocity, slide.settled_force())).collect();
-    let speeds = || points.iter().map(|(velocity, _)| velocity.abs());
+    let speeds = || slides.iter().map(|slide| slide.velocity.abs());
     let [slowest, fastest] = [speeds().fold(f64::INFINITY, f64::min), speeds().fold(0.0, f64::max)];
+    let slid = slides.iter().map(|slide| (slide.velocity, slide.settled_force()));
+    let broken = breakaways.iter().map(|one| (one.way * AT_REST * slowest, one.force));
+    let points: Vec<(f64, f64)> = slid.chain(broken).collect();
     let typical = points.iter().map(|(_, force)| force.abs()).fold(0.0, f64::max);
-    let mut best: Option<(f64, Stribeck)> = None;
+    let mut best: Option<(f64, Stribeck, f64)> = None;
     for index in 0..VELOCITIES {
         let share = index as f64 / (VELOCITIES - 1) as f64;
-        let stribeck_velocity = slowest * portable::pow(fastest / slowest, share);
+        let first = BELOW_SLOWEST * slowest;
+        let stribeck_velocity = first * portable::pow(fastest / first, share);
         for stribeck_exponent in [2.0, 1.0] {
-            let Some((cost, [coulomb, fall, viscous])) =
+            let Some((cost, [coulomb, fall, viscous, zero])) =
                 linear_part(&points, stribeck_velocity, stribeck_exponent)
             else {
                 continue;
@@ -133,24 +156,37 @@ fn steady_guess(slides: &[ConstantVelocity]) -> Option<Stribeck> {
             let coulomb = coulomb.max(0.01 * typical);
             let curve = Stribeck {
                 coulomb,
-                static_friction: coulomb + fall.max(0.01 * typical),
+                static_friction: coulomb + fall.clamp(0.01 * typical, PLAUSIBLE * typical),
                 stribeck_velocity,
                 stribeck_exponent,
                 viscous: viscous.max(0.0),
             };
             // what a friction cannot be is worse than anything it can be
-            let cost = if fall < 0.0 || viscous < 0.0 { 1e6 * (1.0 + cost) } else { cost };
-            if best.is_none_or(|(least, _)| cost < least) {
-                best = Some((cost, curve));
+            let is_friction = fall >= 0.0 && viscous >= 0.0 && coulomb + fall <= PLAUSIBLE * typical;
+            let cost = if is_friction { cost } else { 1e6 * (1.0 + cost) };
+            if best.is_none_or(|(least, ..)| cost < least) {
+                best = Some((cost, curve, zero));
             }
         }
     }
-    best.filter(|_| typical > 0.0).map(|(_, curve)| curve)
+    best.filter(|_| typical > 0.0).map(|(_, curve, zero)| (curve, zero))
 }
 
-/// Sum of squares, and F_C, F_S - F_C and sigma_2; with a zero of the force where it goes both
-/// ways.
-fn linear_part(points: &[(f64, f64)], velocity: f64, exponent: f64) -> Option<(f64, [f64; 3])> {
+/// From the forces alone at which the piston breaks away: those of both ways separate the zero.
+fn without_slides(breakaways: &[Breakaway]) -> Option<(Stribeck, f64)> {
+    let mean = |way: f64| {
+        let own = breakaways.iter().filter(|one| one.way == way).map(|one| one.force);
+        let count = own.clone().count();
+        (count > 0).then(|| own.sum::<f64>() / count as f64)
+    };
+    let zero = mean(1.0).zip(mean(-1.0)).map_or(0.0, |(out, back)| f64::midpoint(out, back));
+    let static_friction = breakaways.iter().map(|one| (one.force - zero).abs()).fold(0.0, f64::max);
+    (static_friction > 0.0).then(|| (without_sliding(static_friction), zero))
+}
+
+/// Sum of squares, and F_C, F_S - F_C, sigma_2 and the zero of the force, which is 0 where it goes
+/// one way.
+fn linear_part(points: &[(f64, f64)], velocity: f64, exponent: f64) -> Option<(f64, [f64; 4])> {
     let both = points.iter().any(|(v, _)| *v > 0.0) && points.iter().any(|(v, _)| *v < 0.0);
     let row = |v: f64| {
         let falling = portable::exp(-portable::pow(v.abs() / velocity, exponent));
@@ -161,5 +197,5 @@ fn linear_part(points: &[(f64, f64)], velocity: f64, exponent: f64) -> Option<(f
     let forces = DVector::from_iterator(points.len(), points.iter().map(|(_, force)| *force));
     let solved = matrix.clone().svd(true, true).solve(&forces, 1e-9).ok()?;
     let left = &matrix * &solved - forces;
-    Some((left.norm_squared(), [solved[0], solved[1], solved[2]]))
+    Some((left.norm_squared(), [solved[0], solved[1], solved[2], solved[3]]))
 }

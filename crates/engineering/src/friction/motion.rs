@@ -5,6 +5,7 @@ use std::ops::Range;
 use phea_hydraulics::friction::SlidBlock;
 
 use super::FrictionRecording;
+use super::varying::{VaryingVelocity, sticks_and_slips, varying};
 use phea_dynamics::order::median;
 
 /// Rows over which the piston slides at a constant velocity.
@@ -158,20 +159,55 @@ fn bend(values: &[f64], rows: &Range<usize>, noise: f64, share: f64) -> Option<u
     (most > allowed).then(|| rows.start + at.clamp(SHORTEST, count - SHORTEST))
 }
 
-/// The constant velocities of a recording.
-pub(super) fn constant_velocities(recording: &FrictionRecording, index: usize) -> Vec<ConstantVelocity> {
+/// Where a recording slides along a line.
+#[derive(Clone, Debug, Default)]
+pub(super) struct SlidingRuns {
+    pub(super) constant: Vec<ConstantVelocity>,
+    /// Runs whose velocity is constant on average alone.
+    pub(super) varying: Vec<VaryingVelocity>,
+}
+
+/// The runs of a recording at a velocity that is constant, on average at least.
+pub(super) fn sliding_runs(recording: &FrictionRecording, index: usize) -> SlidingRuns {
     let positions = &recording.positions;
     let [position_noise, force_noise] = [positions, &recording.forces].map(|values| noise(values));
-    let pieces = straight_pieces(positions, position_noise, CHANGE);
-    let kept = pieces.into_iter().filter_map(|piece| {
+    let mut found = SlidingRuns::default();
+    for piece in straight_pieces(positions, position_noise, CHANGE) {
         let margin = ((piece.len() as f64 * ENDS).ceil() as usize).max(1);
         let rows = piece.start + margin..piece.end.saturating_sub(margin);
-        let is_one = rows.len() >= FEWEST_ROWS
-            && is_constant(positions, &rows, position_noise)
-            && is_settled(&recording.forces, &rows, force_noise);
-        is_one.then(|| taken(recording, index, rows))
-    });
-    kept.collect()
+        if rows.len() < FEWEST_ROWS || !is_constant(positions, &rows, position_noise) {
+            continue;
+        }
+        let slope = RowLine::through(positions, &rows).slope;
+        let own = positions.get(rows.clone()).unwrap_or_default();
+        if let Some(range) = varying(own, slope, position_noise) {
+            let [velocity, least, greatest] =
+                [slope, range[0], range[1]].map(|slope| slope / recording.time_step);
+            let range = [least, greatest];
+            found.varying.push(VaryingVelocity { recording: index, rows, velocity, range });
+        } else if is_settled(&recording.forces, &rows, force_noise) {
+            found.constant.push(taken(recording, index, rows));
+        }
+    }
+    let lines = found.constant.iter().map(|run| run.rows.clone());
+    let lines: Vec<Range<usize>> = lines.chain(found.varying.iter().map(|run| run.rows.clone())).collect();
+    for rows in between(lines, positions.len()) {
+        let own = positions.get(rows.clone()).unwrap_or_default();
+        let Some([velocity, least, greatest]) = sticks_and_slips(own, position_noise) else { continue };
+        let [velocity, least, greatest] =
+            [velocity, least, greatest].map(|slope| slope / recording.time_step);
+        found.varying.push(VaryingVelocity { recording: index, rows, velocity, range: [least, greatest] });
+    }
+    found.varying.sort_by_key(|run| run.rows.start);
+    found
+}
+
+/// The rows between these.
+fn between(mut taken: Vec<Range<usize>>, count: usize) -> Vec<Range<usize>> {
+    taken.sort_by_key(|rows| rows.start);
+    let starts = std::iter::once(0).chain(taken.iter().map(|rows| rows.end));
+    let ends = taken.iter().map(|rows| rows.start).chain([count]);
+    starts.zip(ends).map(|(start, end)| start..end.max(start)).collect()
 }
 
 /// Whether the piston certainly moves, and certainly at one velocity.

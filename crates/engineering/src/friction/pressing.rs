@@ -89,6 +89,33 @@ pub(super) fn compliance(recording: &FrictionRecording, static_friction: f64) ->
     if square > 0.0 { (product / square).max(seen) } else { seen }
 }
 
+/// A piston that breaks away from rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Breakaway {
+    /// 1 or -1: the sign of the displacement.
+    pub(super) way: f64,
+    /// N, greatest force until then, with the zero of the instruments in it.
+    pub(super) force: f64,
+}
+
+/// Where the piston breaks away; `None` where it does not.
+pub(super) fn breakaway(recording: &FrictionRecording) -> Option<Breakaway> {
+    let position_noise = noise(&recording.positions);
+    let smooth = knotted(&recording.forces, noise(&recording.forces));
+    let first = *smooth.forces.first()?;
+    let change = smooth.forces.iter().map(|force| (force - first).abs()).fold(0.0, f64::max);
+    let limit = BROKEN_AWAY * compliance(recording, change) * change + 6.0 * position_noise;
+    let [start, _] = beginning(recording);
+    let moved = recording.positions.iter().map(|position| position - start);
+    let (row, moved) = moved.enumerate().find(|(_, moved)| moved.abs() > limit)?;
+    let shares = smooth.shares().into_iter().take(row + 1);
+    let knot = |index: usize| smooth.forces.get(index).copied().unwrap_or(0.0);
+    let forces = shares.map(|(before, share)| knot(before) * (1.0 - share) + knot(before + 1) * share);
+    let way = moved.signum();
+    let force = forces.max_by(|one, other| (way * one).total_cmp(&(way * other)))?;
+    Some(Breakaway { way, force })
+}
+
 /// What was recorded until the piston breaks away; `None` of too few rows.
 pub(super) fn pressed_rows(
     recording: &FrictionRecording,

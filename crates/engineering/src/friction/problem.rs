@@ -4,7 +4,7 @@ mod shake;
 
 pub(super) use shake::KeptShapes;
 
-use phea_dynamics::least_squares::{Linearised, Minimum, Settings, minimise};
+use phea_dynamics::least_squares::{Ending, Linearised, Minimum, Settings, minimise};
 use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch, tell};
 use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, KnottedForce, LuGre, PressedMass};
@@ -45,6 +45,9 @@ const FINEST: f64 = 1e-5;
 /// more than the noise, a search that is robust against outliers takes all rows for such.
 const FIRST_SCALE: f64 = 0.1;
 
+/// Static friction over its guess from which a search is tried again where it does not start.
+const RAISED: [f64; 5] = [1.05, 1.1, 1.2, 1.5, 2.0];
+
 /// The friction around which is searched, and the sizes of the variables.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Around {
@@ -56,6 +59,11 @@ pub(super) struct Around {
     pub(super) damping: [f64; 2],
     /// m.
     pub(super) length: f64,
+    /// N, that the instruments show without friction.
+    pub(super) zero: f64,
+    /// N/m, least stiffness of the bristles: softer ones would not have settled in the runs that
+    /// slide.
+    pub(super) softest: f64,
 }
 
 /// A signal of one recording, and the scale of its residuals.
@@ -142,6 +150,12 @@ impl<'a> FrictionProblem<'a> {
         self.channels.len() - 2 * (self.presses.len() + self.shakes.len())
     }
 
+    /// Index of the first residual of what does not slide.
+    pub(super) fn first_row_of_others(&self) -> usize {
+        let mut sliding = self.channels.iter().take(self.sliding_channels());
+        sliding.next_back().map_or(0, |channel| channel.residuals[1])
+    }
+
     /// The friction, and the zero of the force in N.
     pub(super) fn friction(&self, variables: &[f64]) -> (LuGre, f64) {
         let at = |index: usize| variables.get(index).copied().unwrap_or(0.0);
@@ -187,7 +201,7 @@ impl<'a> FrictionProblem<'a> {
             curve.viscous / damping[0],
             0.0,
             lugre.bristle_damping / damping[1],
-            0.0,
+            self.around.zero / force,
         ];
         start.extend(self.slides.iter().map(|_| 0.0));
         for press in self.presses {
@@ -208,8 +222,10 @@ impl<'a> FrictionProblem<'a> {
         };
         let exponent = self.around.lugre.curve.stribeck_exponent;
         let exponents = [0.2, 10.0].map(|end| portable::ln(end / exponent));
+        let softest = portable::ln(self.around.softest / self.around.lugre.bristle_stiffness);
+        let stiffness = [softest.clamp(-9.0, 0.0), 9.0];
         let mut bounds =
-            vec![[1e-4, 1e3], [0.0, 1e3], [-7.0, 7.0], exponents, [0.0, 1e4], [-9.0, 9.0], damping, zero];
+            vec![[1e-4, 1e3], [0.0, 1e3], [-7.0, 7.0], exponents, [0.0, 1e4], stiffness, damping, zero];
         // what bristles can hold is between -F_S and F_S
         bounds.extend(self.slides.iter().map(|_| [-4.0, 4.0]));
         for press in self.presses {
@@ -229,17 +245,8 @@ impl<'a> FrictionProblem<'a> {
         }
         let all = self.channels.last().map_or(0, |channel| channel.residuals[1]);
         let mut rows = ResidualRows::with_room_for(all, self.count());
-        let mut channels = self.channels.iter();
-        let mut recording = None;
-        let mut scale = 1.0;
-        for (index, slide) in self.slides.iter().enumerate() {
-            if recording != Some(slide.recording) {
-                recording = Some(slide.recording);
-                scale = channels.next()?.effective_scale();
-            }
-            let place = SHARED + index;
-            self.slide(slide, (&lugre, zero), (place, *variables.get(place)?), scale, &mut rows);
-        }
+        self.slid_rows(variables, (&lugre, zero), &mut rows)?;
+        let mut channels = self.channels.iter().skip(self.sliding_channels());
         let mut first = SHARED + self.slides.len();
         for press in self.presses {
             let scales = [channels.next()?, channels.next()?].map(FrictionChannel::effective_scale);
@@ -256,6 +263,32 @@ impl<'a> FrictionProblem<'a> {
             first += count;
         }
         Some(rows.found)
+    }
+
+    /// The same of what slides alone, over the shared variables and those of the slides.
+    pub(super) fn slides_linearised(&self, variables: &[f64]) -> Option<Linearised> {
+        let friction = self.friction(variables);
+        if friction.0.curve.coulomb <= 0.0 {
+            return None;
+        }
+        let mut rows = ResidualRows::with_room_for(self.first_row_of_others(), variables.len());
+        self.slid_rows(variables, (&friction.0, friction.1), &mut rows)?;
+        Some(rows.found)
+    }
+
+    fn slid_rows(&self, variables: &[f64], friction: (&LuGre, f64), rows: &mut ResidualRows) -> Option<()> {
+        let mut channels = self.channels.iter();
+        let mut recording = None;
+        let mut scale = 1.0;
+        for (index, slide) in self.slides.iter().enumerate() {
+            if recording != Some(slide.recording) {
+                recording = Some(slide.recording);
+                scale = channels.next()?.effective_scale();
+            }
+            let place = SHARED + index;
+            self.slide(slide, friction, (place, *variables.get(place)?), scale, rows);
+        }
+        Some(())
     }
 
     fn slide(
@@ -351,6 +384,28 @@ impl<'a> FrictionProblem<'a> {
             tell(watch, "fitting", done, EVALUATIONS)?;
             Ok(self.linearised(variables, kept))
         })
+    }
+
+    /// Minimum from the guess; static friction is raised where the piston would run away under the
+    /// recorded forces.
+    pub(super) fn first_minimum(
+        &self,
+        tolerance: f64,
+        kept: &mut KeptShapes,
+        watch: Watch<'_>,
+    ) -> Result<Minimum, Stopped> {
+        let start = self.start();
+        let mut minimum = self.searched(&start, tolerance, kept, watch)?;
+        for factor in RAISED {
+            if minimum.ending != Ending::NoStart {
+                break;
+            }
+            let mut raised = start.clone();
+            // F_S is the first variable, the fall from it to F_C the second
+            raised.iter_mut().take(2).for_each(|value| *value += factor - 1.0);
+            minimum = self.searched(&raised, tolerance, kept, watch)?;
+        }
+        Ok(minimum)
     }
 
     /// Takes the scale of each signal from its residuals: 1.4826 times their median magnitude; and

@@ -45,9 +45,11 @@ impl ConstantVelocity {
 }
 
 impl PressedRows {
-    /// The sign of the greatest force, which is the last if the piston breaks away.
+    /// A number with the sign of the change of the force, which is that of the way in which the
+    /// piston breaks away.
     pub(super) fn way(&self) -> f64 {
-        self.force.forces.last().copied().unwrap_or(0.0)
+        let ends = self.force.forces.last().zip(self.force.forces.first());
+        ends.map_or(0.0, |(last, first)| last - first)
     }
 }
 

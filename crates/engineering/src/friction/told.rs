@@ -4,9 +4,10 @@ use std::f64::consts::PI;
 
 use phea_dynamics::least_squares::{Linearised, Minimum, Uncertainty, uncertainty_by_scale};
 use phea_dynamics::portable;
-use phea_hydraulics::friction::FRICTION_COEFFICIENTS;
+use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, LuGre};
 
 use super::problem::{DAMPING, FrictionProblem, ZERO};
+use super::profile::{HeldCoefficient, SlidingProfile};
 
 /// A coefficient as determined by the recordings. SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +27,13 @@ pub enum UntoldFriction {
     NothingSlides,
     /// The force is the same at all slow velocities: no fall from static friction is seen.
     NoFall,
+    /// Friction falls from static to Coulomb friction, and too few runs slide in between.
+    FewOnFall {
+        /// m/s, up to which further runs would show it.
+        below: f64,
+    },
+    /// Neither is a run slow enough for static friction, nor does the piston break away from rest.
+    NotApproached,
     /// Nothing is pressed from rest while its position is recorded.
     NothingPressed,
     /// Nothing shakes the piston on its bristles while its position is recorded.
@@ -69,8 +77,17 @@ const SLOW: f64 = 250.0;
 /// Fewest rows in a period of the ringing.
 pub const ROWS_OF_RINGING: f64 = 8.0;
 
+/// Part of the friction of the slowest run that static friction has at least.
+const UP_TO_NOISE: f64 = 0.98;
+
 /// Residual over noise beyond which recordings are not explained.
 const EXPLAINED: f64 = 1.5;
+
+/// Standard deviation over the value beyond which an interval is taken from the profile of the sum.
+const NOT_A_PARABOLA: f64 = 0.1;
+
+/// First step along a profile, in the variables: logarithms, or parts of a typical value.
+const FIRST_STEPS: [f64; 2] = [0.02, 0.3];
 
 /// How a coefficient follows from the variables.
 #[derive(Clone, Copy)]
@@ -101,6 +118,7 @@ pub(super) fn estimates(
         VariableForm::Linear(around.damping[1]),
     ];
     let alone = |index: usize| told.deviations.get(index).copied().unwrap_or(f64::INFINITY);
+    let profile = SlidingProfile::around(problem, minimum);
     let mut index = 0;
     let found = values.map(|value| {
         // F_C is F_S, the first variable, less the fall, the second
@@ -111,11 +129,21 @@ pub(super) fn estimates(
         };
         index += 1;
         let form = forms.get(index - 1).copied().unwrap_or(VariableForm::Logarithmic);
-        let interval = interval(value, form, deviation);
-        let relative = match form {
+        let mut interval = interval(value, form, deviation);
+        let mut relative = match form {
             VariableForm::Linear(unit) => unit * deviation / value,
             VariableForm::Logarithmic => deviation,
         };
+        let is_parabola = relative <= NOT_A_PARABOLA;
+        let profile = profile.as_ref().filter(|_| !is_parabola && index - 1 < DAMPING);
+        if let Some(profile) = profile {
+            let [low, high] = profiled(profile, problem, index - 1, deviation);
+            interval = [low.min(value), high.max(value)];
+            relative = match form {
+                VariableForm::Linear(_) => (interval[1] - interval[0]) / (2.0 * NORMAL_95 * value),
+                VariableForm::Logarithmic => portable::ln(interval[1] / interval[0]) / (2.0 * NORMAL_95),
+            };
+        }
         let untold = match relative {
             relative if relative <= UNTOLD => None,
             relative if index == DAMPING + 1 && relative.is_finite() => {
@@ -130,7 +158,7 @@ pub(super) fn estimates(
         let half = NORMAL_95 * force * alone(ZERO);
         FrictionEstimate { value: zero, interval: [zero - half, zero + half], untold: None }
     });
-    (reasons(problem, found, fall), zero)
+    (reasons((problem, &lugre), found, fall), zero)
 }
 
 /// The minimum without what was not searched for.
@@ -164,14 +192,48 @@ fn interval(value: f64, form: VariableForm, deviation: f64) -> [f64; 2] {
     }
 }
 
+/// The interval of a coefficient by the profile; 0 and infinity where nothing limits it.
+fn profiled(
+    profile: &SlidingProfile<'_>,
+    problem: &FrictionProblem<'_>,
+    coefficient: usize,
+    deviation: f64,
+) -> [f64; 2] {
+    let held = match coefficient {
+        0 => HeldCoefficient::Coulomb,
+        1 => HeldCoefficient::Variable(0),
+        other => HeldCoefficient::Variable(other),
+    };
+    let [shortest, longest] = FIRST_STEPS;
+    let step = if deviation.is_finite() { deviation.clamp(shortest, longest) } else { longest };
+    let lugre = problem.around.lugre;
+    let value = |variable: f64| match coefficient {
+        0 | 1 => variable * problem.around.force,
+        2 => lugre.curve.stribeck_velocity * portable::exp(variable),
+        EXPONENT => lugre.curve.stribeck_exponent * portable::exp(variable),
+        4 => variable * problem.around.damping[0],
+        _ => lugre.bristle_stiffness * portable::exp(variable),
+    };
+    // no exponent is beyond its bounds; all else is from nothing to anything
+    let limits = match coefficient {
+        EXPONENT => profile.bound(held).map(value),
+        _ => [0.0, f64::INFINITY],
+    };
+    let [low, high] = profile.ends(held, step);
+    [low.map_or(limits[0], value), high.map_or(limits[1], value)]
+}
+
+/// Index of the exponent of the curve among the coefficients.
+const EXPONENT: usize = 3;
+
 /// Why each is open, as far as it is known.
 fn reasons(
-    problem: &FrictionProblem<'_>,
+    (problem, lugre): (&FrictionProblem<'_>, &LuGre),
     mut found: [FrictionEstimate; FRICTION_COEFFICIENTS],
     [fall, fall_deviation]: [f64; 2],
 ) -> [FrictionEstimate; FRICTION_COEFFICIENTS] {
     let [coulomb, static_friction, velocity, exponent, viscous, stiffness, damping] = &mut found;
-    let falls = fall > 2.0 * fall_deviation;
+    let falls = fall > 2.0 * fall_deviation || static_friction.interval[0] > coulomb.interval[1];
     if problem.slides.is_empty() {
         for one in [&mut *coulomb, velocity, exponent, viscous] {
             one.untold = Some(UntoldFriction::NothingSlides);
@@ -180,6 +242,19 @@ fn reasons(
         for one in [velocity, exponent] {
             one.untold = Some(UntoldFriction::NoFall);
         }
+    } else {
+        let fastest = problem.slides.iter().map(|slide| slide.velocity.abs()).fold(0.0, f64::max);
+        let below = (2.0 * velocity.interval[1]).min(fastest);
+        for one in [velocity, exponent].into_iter().filter(|one| one.untold.is_some()) {
+            one.untold = Some(UntoldFriction::FewOnFall { below });
+        }
+    }
+    if !problem.slides.is_empty() && problem.presses.is_empty() && static_friction.untold.is_some() {
+        static_friction.untold = Some(UntoldFriction::NotApproached);
+        // it is no less than what the slowest run shows, up to noise
+        let slowest = problem.slides.iter().map(|slide| slide.velocity.abs()).fold(f64::INFINITY, f64::min);
+        let shown = UP_TO_NOISE * lugre.curve.sliding_force(slowest);
+        static_friction.interval[0] = static_friction.interval[0].min(shown);
     }
     if problem.presses.is_empty() {
         if stiffness.untold.is_some() && problem.shakes.is_empty() {
@@ -209,7 +284,9 @@ fn reasons(
     }
     if presses_quickly(problem, stiffness, damping) {
         for one in [stiffness, damping] {
-            one.untold = one.untold.or(Some(UntoldFriction::QuickForce));
+            if matches!(one.untold, None | Some(UntoldFriction::Hidden)) {
+                one.untold = Some(UntoldFriction::QuickForce);
+            }
         }
     }
     found

@@ -46,6 +46,8 @@ pub struct LineIdentification {
     pub relaxation_time: Result<LineNumber, Undetermined>,
     /// m/s, of a fast wave.
     pub wave_speed: Result<LineNumber, Undetermined>,
+    /// 1, volume of free air at atmospheric pressure over that of the mixture.
+    pub entrained_air: Result<LineNumber, Undetermined>,
     /// kg/m3, of the oil, as its inertance shows it with the declared length and bore.
     pub density: Result<LineNumber, Undetermined>,
 }
@@ -139,7 +141,12 @@ pub fn identify_line(
     };
     several(rises.len(), "pressure rises")?;
     several(responses.len(), "frequency responses")?;
-    let rise = rises.pop().map(rise_fit).transpose().map_err(IdentifyError::Data)?;
+    let oil = known.aerated_oil();
+    let rise = rises.pop().map(|record| rise_fit(record, oil)).transpose().map_err(IdentifyError::Data)?;
+    let known = match rise.as_ref().and_then(RiseFit::air) {
+        Some(air) => known.with_air(air),
+        None => known,
+    };
     let response = match responses.pop() {
         None => None,
         Some(record) => Some(shaken(&record, rise.as_ref(), (&known, settings), watch)?),
@@ -202,6 +209,7 @@ fn combined(known: KnownLine, rise: Option<RiseFit>, response: Option<ResponseFi
             .clone()
             .and_then(|compliance| told(compliance.under(volume), "the modulus at rest")),
         secant_bulk_modulus: secant,
+        entrained_air: rise.as_ref().ok_or_else(no_rise).and_then(air),
         modulus_slope: rise.as_ref().ok_or_else(no_rise).and_then(|rise| slope(rise, volume, pressure)),
         dynamic_bulk_modulus: fast_compliance
             .clone()
@@ -269,9 +277,18 @@ fn mean(one: LineNumber, other: LineNumber) -> LineNumber {
     LineNumber::of_logarithm(logarithm, pow(first + second, -0.5))
 }
 
+/// The fraction of free air.
+fn air(rise: &RiseFit) -> Result<LineNumber, Undetermined> {
+    let [value, deviation] = rise
+        .air_fraction()
+        .ok_or("the pressure rise is explained as well without free air in the declared oil")?;
+    let edge = QUANTILE * deviation;
+    Ok(LineNumber { value, interval: [(value - edge).max(0.0), value + edge] })
+}
+
 /// d beta/dp at a pressure, where the compliance changes.
 fn slope(rise: &RiseFit, volume: f64, pressure: f64) -> Result<LineNumber, Undetermined> {
-    if rise.terms() < 2 {
+    if rise.terms() < 2 && rise.air_fraction().is_none() {
         return Err("the compliance does not change with the pressure beyond its noise".to_string());
     }
     let [compliance, _] = rise.compliance(pressure);

@@ -1,8 +1,9 @@
 use std::f64::consts::FRAC_PI_4;
 
-use phea_hydraulics::fluid::Fluid;
-use phea_hydraulics::line::{Conduit, END_SHARE, LaminarFriction, Line, LineModel};
+use phea_hydraulics::fluid::{EntrainedAir, Fluid};
+use phea_hydraulics::line::{Conduit, LaminarFriction, Line, LineModel};
 
+use super::rise_air::AeratedOil;
 use crate::project::{LineMotion, LineSegments, LineSide};
 use crate::rig::line_model;
 use crate::setup::Setup;
@@ -28,6 +29,16 @@ pub struct KnownLine {
     pub leaves_accumulator: bool,
 }
 
+/// `end_share` of the exact line, to which lines with end volumes tend: at the antinodes of the
+/// pressure a volume counts twice as much as the same compliance along the line, so that end
+/// volumes of 1 % make a resonance 1 % slower.
+pub(super) const EXACT: f64 = 0.0;
+/// `end_share` of the line on the virtual stand where none is stated: it shifts a resonance by less
+/// than 1e-4.
+const ON_THE_STAND: f64 = 1e-4;
+/// Polytropic index of bubbles that are compressed slowly: the oil around them keeps its
+/// temperature.
+const ISOTHERMAL: f64 = 1.0;
 /// No liquid has a greater modulus, in Pa.
 const MOST_MODULUS: f64 = 1e11;
 /// Halvings of an interval, down to the last digit.
@@ -103,20 +114,50 @@ impl KnownLine {
         line_model(&self.motion, &self.line)
     }
 
+    /// The same, but with waves that are all but exact where no volume at the ends is stated: those
+    /// of a machine keep its valve apart from the waves, and a line has none.
+    pub(crate) fn stand_model(&self) -> LineModel {
+        match (&self.motion, self.declared_model()) {
+            (LineMotion::TransmissionLine { end_share: None }, _) => {
+                LineModel::TransmissionLine { end_share: ON_THE_STAND }
+            }
+            (_, declared) => declared,
+        }
+    }
+
     /// The model in which its response is sought: as declared, and where that has no waves, with
-    /// them, so that they are found if they are there.
+    /// them, so that they are found if they are there. Waves are exact unless a volume at the ends
+    /// is stated.
     pub(crate) fn sought_model(&self) -> LineModel {
-        let waves = LineModel::TransmissionLine { end_share: END_SHARE };
+        let exact = LineModel::TransmissionLine { end_share: EXACT };
         match (self.dimensions(), self.declared_model()) {
             (None, _) => LineModel::Lumped,
-            (Some(_), LineModel::Lumped | LineModel::TwoWave { .. }) => waves,
+            (Some(_), LineModel::Lumped | LineModel::TwoWave { .. }) => exact,
             (Some(_), LineModel::Creeping { relaxation_time }) => LineModel::Segments {
                 count: LineSegments::COUNT as usize,
                 friction: LaminarFriction::FrequencyDependent,
                 relaxation_time: Some(relaxation_time),
             },
+            (Some(_), LineModel::TransmissionLine { .. })
+                if self.motion == (LineMotion::TransmissionLine { end_share: None }) =>
+            {
+                exact
+            }
             (Some(_), declared) => declared,
         }
+    }
+
+    /// The oil in which a slow pressure rise may show air: compressed at constant temperature where
+    /// the project states no index. None for a plain volume, whose modulus has oil and wall.
+    pub(super) fn aerated_oil(&self) -> Option<AeratedOil> {
+        let exponent = self.fluid.entrained_air.map_or(ISOTHERMAL, |air| air.polytropic_exponent);
+        let fluid = Fluid { entrained_air: None, ..self.fluid };
+        self.dimensions().map(|_| AeratedOil { volume: self.volume(), fluid, exponent })
+    }
+
+    /// The same line with this air in its oil.
+    pub(super) fn with_air(self, air: EntrainedAir) -> KnownLine {
+        KnownLine { fluid: Fluid { entrained_air: Some(air), ..self.fluid }, ..self }
     }
 
     /// The modulus in Pa of the oil without its air that has a modulus with it, at a pressure; none

@@ -3,7 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 use phea_dynamics::order::ends;
 use phea_dynamics::portable::{exp, ln};
+use phea_hydraulics::fluid::EntrainedAir;
 
+use super::rise_air::AeratedOil;
 use super::rise_noise::{Whitened, whitened};
 
 /// Where a displaced volume is from.
@@ -39,8 +41,10 @@ pub struct RiseFit {
     pub record: RiseRecord,
     /// Pa, lowest and highest pressure.
     pub pressures: [f64; 2],
-    /// m3, coefficients b_j.
+    /// m3, coefficients b_j; then the fraction of air, where there is some.
     coefficients: DVector<f64>,
+    /// The oil, where the record shows air in it.
+    oil: Option<AeratedOil>,
     /// Their covariance.
     covariance: DMatrix<f64>,
     /// m3/s that the meter shows or the line loses at standstill; none where the record does not
@@ -68,6 +72,10 @@ const RATIOS: [f64; 2] = [-23.0, 9.0];
 /// Steps of the search over them, coarse and fine.
 const STEPS: [usize; 2] = [16, 24];
 
+/// Fraction of air at which its search begins, and its steps.
+const FIRST_AIR: f64 = 0.01;
+const AIR_STEPS: usize = 8;
+
 /// Fits volume over pressure.
 ///
 /// ```text
@@ -80,52 +88,114 @@ const STEPS: [usize; 2] = [16, 24];
 /// counts, and there the noise of the pressure is as large as its change: smoothed pressures are
 /// instruments for the recorded ones, whose noise they hardly share. Harvey (1989), section 2.3,
 /// for the local level; Patterson and Thompson (1971) for the likelihood.
-pub(super) fn rise_fit(record: RiseRecord) -> Result<RiseFit, String> {
+///
+/// Air in `oil` competes with the terms: of both, that with the lower criterion of Schwarz (1978)
+/// is taken.
+///
+/// ```text
+/// V_k = ... + V (-ln((1 - a) V_liquid(p_k) + a V_gas(p_k)) - p_k/beta_0)          a the fraction of free air
+/// ```
+pub(super) fn rise_fit(record: RiseRecord, oil: Option<AeratedOil>) -> Result<RiseFit, String> {
     let pressures = ends(record.pressures.iter().copied());
     let [low, high] = pressures;
     if low >= high {
         return Err(format!("{}: the pressure never moves", record.file));
     }
     let with_drift = !record.times.is_empty();
-    let first = fitted(&record, pressures, 1, with_drift);
+    let of = |terms: usize, drift: bool| fitted(&record, pressures, RiseModel { terms, drift, air: None });
+    let first = of(1, with_drift);
     let told = |fit: &TermsFit| {
         let deviation = fit.covariance.get((0, 0)).copied().unwrap_or(f64::INFINITY).max(0.0).sqrt();
         deviation < TOLD * fit.values.get(0).copied().unwrap_or(0.0).abs()
     };
-    let keeps_drift = with_drift && first.as_ref().is_some_and(told);
-    let mut best = if keeps_drift { first } else { fitted(&record, pressures, 1, false) };
+    let drift = with_drift && first.as_ref().is_some_and(told);
+    let mut best = if drift { first } else { of(1, false) };
     for terms in 2..=MOST_TERMS {
-        let Some(next) = fitted(&record, pressures, terms, keeps_drift) else { break };
-        let last = next.values.get(terms - 1).copied().unwrap_or(0.0);
-        let variance = next.covariance.get((terms - 1, terms - 1)).copied().unwrap_or(f64::INFINITY);
-        if last.abs() < DECISIVE * variance.max(0.0).sqrt() {
-            break;
+        match of(terms, drift).filter(|fit| fit.is_decisive(terms - 1)) {
+            Some(next) => best = Some(next),
+            None => break,
         }
-        best = Some(next);
+    }
+    let aerated = oil.and_then(|oil| with_air(&record, pressures, oil, drift));
+    let criterion = |fit: &Option<TermsFit>| fit.as_ref().map_or(f64::INFINITY, |fit| fit.criterion);
+    if criterion(&aerated) < criterion(&best) {
+        best = aerated;
     }
     let fit = best.ok_or_else(|| format!("{}: volume and pressure do not move together", record.file))?;
-    Ok(fit.into_rise(record, pressures, keeps_drift))
+    Ok(fit.into_rise(record, pressures))
+}
+
+/// The fit with air in the oil; `None` where none shows.
+fn with_air(record: &RiseRecord, pressures: [f64; 2], oil: AeratedOil, drift: bool) -> Option<TermsFit> {
+    let of = |terms: usize| {
+        let mut fraction = FIRST_AIR;
+        let mut found = None;
+        for _ in 0..AIR_STEPS {
+            let model = RiseModel { terms, drift, air: Some((oil, fraction)) };
+            let fit = fitted(record, pressures, model)?;
+            let next = AeratedOil::possible(fit.values.get(terms).copied().unwrap_or(0.0));
+            let is_there = (next - fraction).abs() <= 1e-6;
+            fraction = next;
+            found = Some(fit);
+            if is_there {
+                break;
+            }
+        }
+        found.filter(|fit| fit.is_decisive(terms) && fraction > 0.0)
+    };
+    let constant = of(1)?;
+    match of(2).filter(|fit| fit.is_decisive(1) && fit.criterion < constant.criterion) {
+        Some(changing) => Some(changing),
+        None => Some(constant),
+    }
+}
+
+/// How volumes follow from pressures.
+#[derive(Clone, Copy)]
+struct RiseModel {
+    terms: usize,
+    /// Whether a constant flow is sought.
+    drift: bool,
+    /// Air, and the fraction around which it is sought.
+    air: Option<(AeratedOil, f64)>,
+}
+
+impl RiseModel {
+    /// Coefficients without the drift.
+    fn count(&self) -> usize {
+        self.terms + usize::from(self.air.is_some())
+    }
 }
 
 /// A fit with a fixed number of terms.
 struct TermsFit {
-    terms: usize,
+    model: RiseModel,
     values: DVector<f64>,
     covariance: DMatrix<f64>,
     offset: f64,
     white_variance: f64,
     ratio: f64,
+    /// Information criterion: the lower the better.
+    criterion: f64,
 }
 
 impl TermsFit {
-    fn into_rise(self, record: RiseRecord, pressures: [f64; 2], keeps_drift: bool) -> RiseFit {
-        let terms = self.terms;
+    /// Whether a coefficient is more than chance makes it.
+    fn is_decisive(&self, index: usize) -> bool {
+        let value = self.values.get(index).copied().unwrap_or(0.0);
+        let variance = self.covariance.get((index, index)).copied().unwrap_or(f64::INFINITY);
+        value.abs() >= DECISIVE * variance.max(0.0).sqrt()
+    }
+
+    fn into_rise(self, record: RiseRecord, pressures: [f64; 2]) -> RiseFit {
+        let terms = self.model.count();
         RiseFit {
+            oil: self.model.air.map(|(oil, _)| oil),
             record,
             pressures,
             coefficients: self.values.rows(0, terms).into_owned(),
             covariance: self.covariance.view((0, 0), (terms, terms)).into_owned(),
-            drift: self.values.get(terms).copied().filter(|_| keeps_drift),
+            drift: self.values.get(terms).copied().filter(|_| self.model.drift),
             offset: self.offset,
             white_noise: self.white_variance.sqrt(),
             walk: (self.ratio * self.white_variance).sqrt(),
@@ -134,7 +204,7 @@ impl TermsFit {
 }
 
 /// Columns of the regression: instruments, what they stand for, and the volume.
-fn columns(record: &RiseRecord, [low, high]: [f64; 2], terms: usize, drift: bool) -> Vec<Vec<f64>> {
+fn columns(record: &RiseRecord, [low, high]: [f64; 2], model: RiseModel) -> Vec<Vec<f64>> {
     let (middle, half) = (f64::midpoint(low, high), (high - low) / 2.0);
     let smooth = smoothed(&record.pressures);
     let mut columns = Vec::new();
@@ -143,10 +213,17 @@ fn columns(record: &RiseRecord, [low, high]: [f64; 2], terms: usize, drift: bool
             let power = |p: &f64| powered((p - middle) / half, term) / term as f64;
             pressures.iter().map(power).collect::<Vec<f64>>()
         };
-        columns.extend((1..=terms).map(of));
-        columns.extend(drift.then(|| record.times.clone()));
+        columns.extend((1..=model.terms).map(of));
+        columns.extend(
+            model.air.map(|(oil, air)| pressures.iter().map(|p| oil.taken_up_slope(air, *p)).collect()),
+        );
+        columns.extend(model.drift.then(|| record.times.clone()));
     }
-    columns.push(record.volumes.clone());
+    // what the air takes up is straight in its fraction around the one that is given
+    let beyond =
+        |p: f64| model.air.map_or(0.0, |(oil, air)| oil.taken_up(air, p) - air * oil.taken_up_slope(air, p));
+    let rows = record.volumes.iter().zip(&record.pressures);
+    columns.push(rows.map(|(volume, pressure)| volume - beyond(*pressure)).collect());
     columns
 }
 
@@ -167,9 +244,10 @@ fn powered(value: f64, power: usize) -> f64 {
 }
 
 /// The coefficients at the best ratio of walk to white noise.
-fn fitted(record: &RiseRecord, pressures: [f64; 2], terms: usize, drift: bool) -> Option<TermsFit> {
-    let columns = columns(record, pressures, terms, drift);
-    let at = |ratio: f64| WhitenedSolution::of(&whitened(&columns, exp(ratio)));
+fn fitted(record: &RiseRecord, pressures: [f64; 2], model: RiseModel) -> Option<TermsFit> {
+    let columns = columns(record, pressures, model);
+    let spread = if model.air.is_some() { NoiseSpread::DiffersByRow } else { NoiseSpread::Even };
+    let at = |ratio: f64| WhitenedSolution::of(&whitened(&columns, exp(ratio)), spread);
     let cost = |ratio: f64| at(ratio).map_or(f64::INFINITY, |solved| solved.cost);
     let [least, most] = RATIOS;
     let [coarse, fine] = STEPS;
@@ -193,8 +271,14 @@ fn fitted(record: &RiseRecord, pressures: [f64; 2], terms: usize, drift: bool) -
     let (volume, others) = columns.split_last()?;
     let shown = others.iter().skip(others.len() / 2);
     let explained: f64 = shown.zip(solved.values.iter()).map(|(x, b)| of_first(x) * b).sum();
+    // what wanders in a volume that was not summed up from a flow is no noise
+    let compared = if record.source == VolumeSource::Flow { ratio } else { least };
+    let likelihood = at(compared)?.likelihood;
+    let rows = record.volumes.len() as f64;
+    let numbers = solved.values.len() as f64;
     Some(TermsFit {
-        terms,
+        model,
+        criterion: likelihood + numbers * ln(rows),
         offset: of_first(volume) - explained,
         covariance: solved.covariance,
         values: solved.values,
@@ -210,13 +294,23 @@ struct WhitenedSolution {
     variance: f64,
     /// Minus twice the restricted log-likelihood.
     cost: f64,
+    /// Minus twice the log-likelihood.
+    likelihood: f64,
+}
+
+/// Whether the noise of a volume is as large in all rows.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum NoiseSpread {
+    Even,
+    /// The noise of the pressure counts for more where air makes the line soft.
+    DiffersByRow,
 }
 
 impl WhitenedSolution {
     /// ```text
-    /// b = (Z'X)^-1 Z'y        cov = s^2 (Z'X)^-1 Z'Z (X'Z)^-1
+    /// b = (Z'X)^-1 Z'y        cov = s^2 (Z'X)^-1 Z'Z (X'Z)^-1        or with sum e^2 z z' for s^2 Z'Z (White 1980)
     /// ```
-    fn of(found: &Whitened) -> Option<WhitenedSolution> {
+    fn of(found: &Whitened, noise: NoiseSpread) -> Option<WhitenedSolution> {
         let (volume, others) = found.columns.split_last()?;
         let count = others.len() / 2;
         let (instruments, shown) = others.split_at(count);
@@ -241,22 +335,48 @@ impl WhitenedSolution {
             let at = |x: &Vec<f64>| x.get(row).copied().unwrap_or(0.0);
             volume - shown.iter().zip(values.iter()).map(|(x, b)| at(x) * b).sum::<f64>()
         });
-        let squares: f64 = left.map(|value| value * value).sum();
-        let variance = squares.max(f64::MIN_POSITIVE) / freedom;
-        let spread = &inverse * own * inverse.transpose() * variance;
+        let left: Vec<f64> = left.collect();
+        let squares: f64 = left.iter().map(|value| value * value).sum::<f64>().max(f64::MIN_POSITIVE);
+        let variance = squares / freedom;
+        let scatter = match noise {
+            NoiseSpread::Even => own * variance,
+            NoiseSpread::DiffersByRow => DMatrix::from_fn(count, count, |i, j| {
+                let both = instruments.get(i).zip(instruments.get(j));
+                let rows = both.into_iter().flat_map(|(x, y)| x.iter().zip(y)).zip(&left);
+                let sum: f64 = rows.map(|((x, y), left)| x * y * left * left).sum();
+                sum / (scale(i) * scale(j)) * volume.len() as f64 / freedom
+            }),
+        };
+        let spread = &inverse * scatter * inverse.transpose();
+        let rows = volume.len() as f64;
         Some(WhitenedSolution {
             values,
             covariance: DMatrix::from_fn(count, count, |i, j| spread[(i, j)] / (scale(i) * scale(j))),
             variance,
             cost: freedom * ln(variance) + found.determinant + determinant,
+            likelihood: rows * ln(squares / rows) + found.determinant,
         })
     }
 }
 
 impl RiseFit {
-    /// Number of terms of the volume over the pressure: 1 for a compliance that does not change.
+    /// Number of terms of the volume over the pressure: 1 for a compliance that does not change,
+    /// but for that of air.
     pub fn terms(&self) -> usize {
-        self.coefficients.len()
+        self.coefficients.len() - usize::from(self.oil.is_some())
+    }
+
+    /// Fraction of free air at atmospheric pressure, and its standard deviation; none where the
+    /// record shows none.
+    pub fn air_fraction(&self) -> Option<[f64; 2]> {
+        let last = self.terms();
+        let variance = self.covariance.get((last, last)).copied().unwrap_or(f64::INFINITY);
+        self.oil.map(|_| [self.coefficients[last], variance.max(0.0).sqrt()])
+    }
+
+    /// The air that the record shows.
+    pub(super) fn air(&self) -> Option<EntrainedAir> {
+        self.oil.zip(self.air_fraction()).map(|(oil, [fraction, _])| oil.air(fraction))
     }
 
     fn half(&self) -> f64 {
@@ -269,37 +389,69 @@ impl RiseFit {
         (pressure - f64::midpoint(low, high)) / self.half()
     }
 
+    /// Of the air at a pressure in Pa: its compliance in m3/Pa, with the derivatives over its
+    /// fraction and over the pressure.
+    fn of_air(&self, pressure: f64) -> [f64; 3] {
+        let both = self.oil.zip(self.air_fraction());
+        both.map_or([0.0; 3], |(oil, [fraction, _])| oil.compliance(fraction, pressure))
+    }
+
+    /// m3 that the air takes up at a gauge pressure in Pa, and the derivative over its fraction.
+    fn taken_by_air(&self, pressure: f64) -> [f64; 2] {
+        let both = self.oil.zip(self.air_fraction());
+        both.map_or([0.0; 2], |(oil, [fraction, _])| {
+            [oil.taken_up(fraction, pressure), oil.taken_up_slope(fraction, pressure)]
+        })
+    }
+
     /// dV/dp in m3/Pa at a pressure in Pa, and its standard deviation.
     pub fn compliance(&self, pressure: f64) -> [f64; 2] {
         let u = self.scaled(pressure);
-        self.combined(|term| powered(u, term) / self.half())
+        let [air, by_fraction, _] = self.of_air(pressure);
+        self.combined(|term| powered(u, term) / self.half(), [air, by_fraction])
     }
 
     /// Change of volume over change of pressure between the ends, in m3/Pa, and its standard
     /// deviation.
     pub fn secant(&self) -> [f64; 2] {
         let odd = |term: usize| if term.is_multiple_of(2) { 1.0 / (term + 1) as f64 } else { 0.0 };
-        self.combined(|term| odd(term) / self.half())
+        let [low, high] = self.pressures.map(|pressure| self.taken_by_air(pressure));
+        let between = |index: usize| (high[index] - low[index]) / (2.0 * self.half());
+        self.combined(|term| odd(term) / self.half(), [between(0), between(1)])
     }
 
     /// Slope of the compliance over the pressure at a pressure in Pa, in m3/Pa2, and its standard
     /// deviation.
     pub(crate) fn compliance_slope(&self, pressure: f64) -> [f64; 2] {
         let (u, half) = (self.scaled(pressure), self.half());
-        self.combined(|term| term as f64 * powered(u, term.saturating_sub(1)) / (half * half))
+        let [_, _, by_pressure] = self.of_air(pressure);
+        // the slope of what air takes up is as good as straight in its fraction
+        let by_fraction = self.air_fraction().map_or(0.0, |[fraction, _]| by_pressure / fraction);
+        self.combined(
+            |term| term as f64 * powered(u, term.saturating_sub(1)) / (half * half),
+            [by_pressure, by_fraction],
+        )
     }
 
-    fn combined(&self, weight: impl Fn(usize) -> f64) -> [f64; 2] {
-        let weights = DVector::from_fn(self.coefficients.len(), |term, _| weight(term));
+    /// A sum over the terms with these weights, with what air adds, and its derivative over the
+    /// fraction of air.
+    fn combined(&self, weight: impl Fn(usize) -> f64, [air, by_fraction]: [f64; 2]) -> [f64; 2] {
+        let terms = self.terms();
+        let of = |term: usize| if term < terms { weight(term) } else { by_fraction };
+        let weights = DVector::from_fn(self.coefficients.len(), |term, _| of(term));
         let variance = (weights.transpose() * &self.covariance * &weights).x;
-        [weights.dot(&self.coefficients), variance.max(0.0).sqrt()]
+        let all = self.coefficients.iter().take(terms).enumerate();
+        let sum: f64 = all.map(|(term, coefficient)| weight(term) * coefficient).sum();
+        [sum + air, variance.max(0.0).sqrt()]
     }
 
     /// m3 that were displaced at a pressure in Pa, without drift.
     pub fn volume(&self, pressure: f64) -> f64 {
         let u = self.scaled(pressure);
-        let terms = self.coefficients.iter().enumerate();
-        self.offset + terms.map(|(index, b)| b * powered(u, index + 1) / (index + 1) as f64).sum::<f64>()
+        let [air, _] = self.taken_by_air(pressure);
+        let terms = self.coefficients.iter().take(self.terms()).enumerate();
+        let sum: f64 = terms.map(|(index, b)| b * powered(u, index + 1) / (index + 1) as f64).sum();
+        self.offset + air + sum
     }
 
     /// Pa and m3 of each row, the drift taken off.

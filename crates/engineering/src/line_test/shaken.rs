@@ -7,10 +7,12 @@ use phea_dynamics::portable::{exp, ln};
 use phea_dynamics::spectrum::SpectralPoint;
 use phea_dynamics::watch::{Stopped, Watch, tell};
 use phea_hydraulics::line::{
-    BlockedLine, DynamicLine, LineModel, Segments, StandardLinearSolid, TransmissionLine,
+    BlockedLine, Conduit, DynamicLine, LineModel, Segments, StandardLinearSolid, TransmissionLine,
+    friction_factor,
 };
 
 use super::found::QUANTILE;
+use super::known::EXACT;
 use super::response_noise::smoothed_deviations;
 use super::{KnownLine, LineNumber};
 use crate::response::ResponseMember;
@@ -212,10 +214,10 @@ impl SoughtLine<'_> {
     /// compliance over that of the pressure rise.
     fn residuals(&self, variables: &[f64]) -> Option<Vec<f64>> {
         let parameters = self.parameters(variables);
-        let line = blocked(self.known, self.model, &parameters)?;
+        let line = SoughtImpedance::of(self.known, self.model, &parameters)?;
         let mut residuals = Vec::with_capacity(2 * self.points.len() + 1);
         for (point, deviation) in self.points.iter().zip(self.deviations) {
-            let model = line.impedance(Complex64::new(0.0, point.frequency));
+            let model = line.at(point.frequency);
             let wrong = (model - point.response) * (std::f64::consts::SQRT_2 / deviation);
             residuals.extend([wrong.re, wrong.im]);
         }
@@ -223,6 +225,45 @@ impl SoughtLine<'_> {
             residuals.push((ln(parameters.compliance + creep) - expected) / deviation);
         }
         residuals.iter().all(|value| value.is_finite()).then_some(residuals)
+    }
+}
+
+/// Pressure over flow at the open end of a blocked line.
+enum SoughtImpedance {
+    /// Of a model that a machine computes.
+    Model(BlockedLine),
+    /// Of the exact line.
+    Exact(Conduit),
+}
+
+impl SoughtImpedance {
+    /// Of these parameters; none where their model does not exist.
+    fn of(known: &KnownLine, model: LineModel, parameters: &LineParameters) -> Option<SoughtImpedance> {
+        let LineParameters { compliance, inertance, .. } = *parameters;
+        let conduit = inertance.and_then(|inertance| known.conduit(compliance, inertance));
+        match (model, conduit) {
+            (LineModel::TransmissionLine { end_share: EXACT }, Some(conduit)) => {
+                Some(SoughtImpedance::Exact(conduit))
+            }
+            _ => blocked(known, model, parameters).map(SoughtImpedance::Model),
+        }
+    }
+
+    /// At a frequency in rad/s, in Pa s/m3.
+    ///
+    /// ```text
+    /// Z_c coth(Gamma) of the exact line with laminar friction
+    /// ```
+    fn at(&self, frequency: f64) -> Complex64 {
+        let s = Complex64::new(0.0, frequency);
+        match self {
+            SoughtImpedance::Model(line) => line.impedance(s),
+            SoughtImpedance::Exact(conduit) => {
+                let factor = friction_factor(s / conduit.viscous_rate());
+                let [[straight, _], [admittance, _]] = conduit.response(s, factor).transfer_matrix();
+                straight / admittance
+            }
+        }
     }
 }
 
@@ -288,8 +329,7 @@ impl ResponseFit {
 
     /// The model's response at a frequency in rad/s, pressure over flow.
     pub fn model_response(&self, known: &KnownLine, frequency: f64) -> Option<Complex64> {
-        let line = blocked(known, self.model, &self.parameters)?;
-        Some(line.impedance(Complex64::new(0.0, frequency)))
+        Some(SoughtImpedance::of(known, self.model, &self.parameters)?.at(frequency))
     }
 
     /// The compliance over the frequency.

@@ -78,7 +78,7 @@ pub fn clean_line_runs(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<LineRu
     let Some(bench) = setup.project.bench.line else { return Ok(Vec::new()) };
     let known = KnownLine::of(setup, bench.side).map_err(BenchError::Line)?;
     let line = |pressure: f64| {
-        let model = known.declared_model();
+        let model = known.stand_model();
         BlockedLine::new(&known.line, &known.fluid, pressure, StiffeningMember::Nominal, &model)
             .map_err(|error| BenchError::Line(error.to_string()))
     };

@@ -1,4 +1,7 @@
-use super::{FRICTION_NAMES, FrictionEstimate, FrictionIdentification, ShakenRows, because};
+use super::{
+    FRICTION_NAMES, FrictionEstimate, FrictionIdentification, FrictionMisfit, ShakenRows, because,
+    misfit_in_words,
+};
 use crate::answer::{Json, Object, envelope};
 use crate::project::Loaded;
 use crate::quantity::DisplayUnit;
@@ -24,6 +27,12 @@ pub fn json(loaded: &Loaded, found: &FrictionIdentification) -> String {
         .each("recordings", 0..found.recordings.len(), |index| recording(found, index))
         .with("force_residual_rms_n", found.residual_rms[0])
         .with("position_residual_rms_m", found.residual_rms[1])
+        .each("misfits", &found.misfits, |one| misfit(found, one))
+        .each("warnings", &found.misfits, |one| {
+            Object::new()
+                .with("message", misfit_in_words(found, one))
+                .with("file", file(found, one.recording))
+        })
         .with("independent_share", found.independent)
         .with("converged", found.has_converged());
     envelope("identify", loaded).and(body).print()
@@ -36,8 +45,23 @@ fn estimate(one: &FrictionEstimate) -> Object {
     Object::new().with("value", value).with("confidence_95", Json::List(ends)).with("reason", reason)
 }
 
+fn file(found: &FrictionIdentification, recording: usize) -> String {
+    found.recordings.get(recording).map_or(String::new(), |one| one.file.clone())
+}
+
+fn misfit(found: &FrictionIdentification, one: &FrictionMisfit) -> Object {
+    Object::new()
+        .with("file", file(found, one.recording))
+        .with("signal", one.signal.name())
+        .with("share", one.share)
+        .with("neighbour_correlation", one.correlation)
+        .with("velocity_m_per_s", one.place.map(|[velocity, _]| velocity))
+        .with("mean_residual_n", one.place.map(|[_, residual]| residual))
+}
+
 fn recording(found: &FrictionIdentification, index: usize) -> Object {
     let slides = found.slides.iter().filter(|slide| slide.recording == index);
+    let varying = found.varying.iter().filter(|one| one.recording == index);
     let press = found.presses.iter().find(|press| press.recording == index);
     let shake = found.shakes.iter().find(|shake| shake.recording == index);
     let own = found.recordings.get(index);
@@ -50,6 +74,12 @@ fn recording(found: &FrictionIdentification, index: usize) -> Object {
                 .with("velocity_m_per_s", slide.velocity)
                 .with("force_n", slide.settled_force() - found.zero.map_or(0.0, |zero| zero.value))
                 .with("rows", slide.rows.len() as u64)
+        })
+        .each("varying_velocities", varying, |one| {
+            Object::new()
+                .with("velocity_m_per_s", one.velocity)
+                .with("velocity_range_m_per_s", Json::List(one.range.map(Json::Number).to_vec()))
+                .with("rows", one.rows.len() as u64)
         })
         .maybe("pressed_rows", press.map(|press| press.rows as u64))
         .maybe("breaks_away", press.map(|press| press.breaks_away))

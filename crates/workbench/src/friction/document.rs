@@ -1,6 +1,6 @@
 //! The friction of a cylinder for people.
 
-use super::{FRICTION_NAMES, FrictionIdentification, ShakenRows, because};
+use super::{FRICTION_NAMES, FrictionIdentification, ShakenRows, VaryingVelocity, because, misfit_in_words};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
@@ -31,6 +31,10 @@ pub(crate) fn tell(found: &FrictionIdentification, out: &mut Document) {
         });
         out.section("Friction at constant velocities", Table::new(headings).with(rows));
     }
+    if !found.varying.is_empty() {
+        out.heading("Left out: velocities that are not constant");
+        out.sentences(found.varying.iter().map(|one| varying(found, one)));
+    }
     if !found.presses.is_empty() {
         out.heading("Before the piston breaks away");
         out.sentences(found.presses.iter().map(|press| {
@@ -45,6 +49,20 @@ pub(crate) fn tell(found: &FrictionIdentification, out: &mut Document) {
     }
     out.heading("How well the recordings are explained");
     out.sentences(explained(found));
+}
+
+/// A run that sticks and slips, or changes its velocity otherwise.
+fn varying(found: &FrictionIdentification, one: &VaryingVelocity) -> String {
+    let [mean, least, greatest] =
+        [one.velocity, one.range[0], one.range[1]].map(|velocity| DisplayUnit::MILLIMETRE.of(velocity));
+    format!(
+        "{}: {} rows move by {} mm/s on average and go from {} to {} mm/s; steady friction is not what drives them, and they determine nothing here.",
+        file(found, one.recording),
+        one.rows.len(),
+        significant(mean, 3),
+        significant(least, 2),
+        significant(greatest, 2)
+    )
 }
 
 fn shaken(found: &FrictionIdentification, shake: &ShakenRows) -> String {
@@ -91,7 +109,12 @@ fn remarks(found: &FrictionIdentification) -> Vec<String> {
         Some(zero) => {
             let [value, low, high] =
                 [zero.value, zero.interval[0], zero.interval[1]].map(|value| significant(value, 3));
-            format!("Without friction the instruments show {value} N (95 %: {low} to {high} N).")
+            let directions = if zero.interval[0] <= 0.0 && 0.0 <= zero.interval[1] {
+                ""
+            } else {
+                " An error of their zero looks like a friction that differs by twice as much between both directions, as that of a rod seal may: the coefficients are the mean of both, and reading the pressures with both ports open to the tank tells which it is."
+            };
+            format!("Without friction the instruments show {value} N (95 %: {low} to {high} N).{directions}")
         }
         None => {
             "The recordings go one way: that the instruments show no force without friction is taken for granted."
@@ -116,6 +139,13 @@ fn explained(found: &FrictionIdentification) -> Vec<String> {
             "Neighbouring residuals are alike: as few as {} % of them count as independent, and the intervals are wider for it.",
             significant(100.0 * found.independent, 2)
         ));
+    }
+    sentences.extend(found.misfits.iter().map(|one| format!("Misfit: {}.", misfit_in_words(found, one))));
+    if !found.misfits.is_empty() {
+        sentences.push(
+            "The intervals cover noise, not a misfit: friction that differs by direction, with the position or the temperature, or runs that are not steady, may be the cause."
+                .to_string(),
+        );
     }
     if !found.has_converged() {
         sentences.push("The search has not converged.".to_string());

@@ -1,4 +1,4 @@
-use super::{FRICTION_NAMES, FrictionIdentification, because};
+use super::{FRICTION_NAMES, FrictionIdentification, because, misfit_in_words};
 use crate::answer::{OutputFile, in_toml};
 
 /// The table `[cylinder.friction]` of a project with what was identified: what the data do not
@@ -15,8 +15,10 @@ pub fn files(found: &FrictionIdentification) -> Vec<OutputFile> {
     };
     let lines: String = FRICTION_NAMES.iter().zip(&found.estimates).map(line).collect();
     let files: Vec<&str> = found.recordings.iter().map(|one| one.file.as_str()).collect();
+    let misfit = |one| format!("# {}: the intervals below do not cover it.\n", misfit_in_words(found, one));
+    let misfits: String = found.misfits.iter().map(misfit).collect();
     let text = format!(
-        "# Identified by phea from {}.\n[cylinder.friction]\nmodel = \"lugre\"\n{lines}",
+        "# Identified by phea from {}.\n{misfits}[cylinder.friction]\nmodel = \"lugre\"\n{lines}",
         files.join(", ")
     );
     vec![OutputFile::new("friction.toml", text)]

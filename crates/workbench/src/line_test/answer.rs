@@ -1,4 +1,7 @@
-use super::{LineIdentification, LineNumber, ResponseFit, RiseFit, Undetermined, VolumeSource, numbers};
+use super::{
+    LineIdentification, LineNumber, ResponseFit, RiseFit, Undetermined, VolumeSource, misfit_in_words,
+    numbers,
+};
 use crate::answer::{self, Object};
 use crate::project::{LineSide, Loaded};
 
@@ -16,6 +19,16 @@ pub fn json(loaded: &Loaded, found: &LineIdentification) -> String {
         .with("chamber", chamber)
         .with("pressure_pa", found.pressure)
         .with("volume_m3", found.known.volume())
+        .each("misfits", found.misfits(), |one| {
+            Object::new()
+                .with("file", one.file.as_str())
+                .with("signal", one.signal)
+                .with("share", one.share)
+                .with("neighbour_correlation", one.correlation)
+        })
+        .each("warnings", found.misfits(), |one| {
+            Object::new().with("message", misfit_in_words(&one)).with("file", one.file.as_str())
+        })
         .maybe("remark", found.known.remark())
         .with("pressure_rise", found.rise.as_ref().map(rise))
         .with("frequency_response", found.response.as_ref().map(|fit| response(found, fit)));

@@ -1,4 +1,4 @@
-use super::{LineIdentification, LineNumber, ResponseFit, RiseFit, numbers};
+use super::{LineIdentification, LineNumber, ResponseFit, RiseFit, misfit_in_words, numbers};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::LineSide;
@@ -25,6 +25,7 @@ pub(crate) fn document(found: &LineIdentification) -> Document {
     out.sentences(found.known.remark().map(str::to_string));
     out.sentences(found.rise.iter().flat_map(rise));
     out.sentences(found.response.iter().flat_map(response));
+    out.sentences(found.misfits().iter().map(|one| format!("Misfit: {}.", misfit_in_words(one))));
     out
 }
 
@@ -42,6 +43,7 @@ fn unit(key: &str) -> DisplayUnit {
         "wave_speed_m_per_s" => DisplayUnit::METRE_PER_SECOND,
         "relaxation_time_s" => DisplayUnit::SECOND,
         "dynamic_stiffening" | "modulus_slope" => DisplayUnit::ONE,
+        "entrained_air" => DisplayUnit { symbol: "%", in_si: 0.01 },
         "density_kg_per_m3" => DisplayUnit { symbol: "kg/m3", in_si: 1.0 },
         _ => DisplayUnit::BAR,
     }
@@ -50,6 +52,13 @@ fn unit(key: &str) -> DisplayUnit {
 fn rise(fit: &RiseFit) -> Vec<String> {
     let [low, high] = fit.pressures.map(|pressure| display(pressure, &PRESSURE, 4));
     let terms = match fit.terms() {
+        1 if fit.air_fraction().is_some() => {
+            "free air in the oil and a compliance of oil and wall that does not change with the pressure"
+                .to_string()
+        }
+        terms if fit.air_fraction().is_some() => {
+            format!("free air in the oil and a compliance of oil and wall of {terms} terms in the pressure")
+        }
         1 => "a compliance that does not change with the pressure".to_string(),
         terms => format!("a compliance of {terms} terms in the pressure"),
     };

@@ -1,3 +1,4 @@
+use phea_hydraulics::fluid::EntrainedAir;
 use phea_hydraulics::line::Line;
 
 use super::{KnownLine, LineIdentification};
@@ -65,9 +66,22 @@ fn keys(found: &LineIdentification) -> Option<String> {
                     keys + &time
                 };
             }
-            Some(keys)
+            Some(keys + &air(found))
         }
     }
+}
+
+/// The free air in the oil, where the pressure rise shows it.
+fn air(found: &LineIdentification) -> String {
+    let of = |air: EntrainedAir| {
+        let [fraction, exponent] =
+            [air.volume_fraction, air.polytropic_exponent].map(|value| significant(value, DIGITS));
+        format!(
+            "\n[fluid]\nentrained_air = {fraction}\npolytropic_exponent = {exponent}    # of the slow rise; in fast motion up to 1.4\n"
+        )
+    };
+    let shown = found.entrained_air.as_ref().ok().and(found.known.fluid.entrained_air);
+    shown.map_or_else(String::new, of)
 }
 
 /// The table of the keys: that of both lines where the project declares them alike.

@@ -1,0 +1,275 @@
+//! Intervals of coefficients that the recordings determine badly: there the sum of squares is no
+//! parabola, and standard deviations mean little.
+//!
+//! ```text
+//! S(theta) = min over all other variables of sum rho(r)        S(end) - S(least) = 1.96^2/2
+//! ```
+//!
+//! the profile of the likelihood (Venzon and Moolgavkar 1988). What is pressed and shaken counts by
+//! the information that it has on the coefficients, as a normal distribution; what slides counts in
+//! full, because the steady curve is what bends the sum.
+
+use nalgebra::{DMatrix, DVector};
+use phea_dynamics::least_squares::{Ending, Linearised, Minimum, Settings, minimise};
+
+use super::problem::{FrictionProblem, SHARED};
+
+/// Increase of the sum at the ends of a 95 % interval, over the efficiency of the loss.
+const AT_THE_END: f64 = 1.96 * 1.96 / 2.0 / 0.95;
+
+/// Evaluations of a search with one coefficient held.
+const EVALUATIONS: usize = 30;
+
+/// Relative decrease of the sum at which such a search ends.
+const TOLERANCE: f64 = 1e-4;
+
+/// Steps outwards, each longer than the one before by a factor, and halvings then.
+const STEPS: usize = 14;
+const LONGER: f64 = 2.5;
+const HALVINGS: usize = 9;
+
+/// Index of the logarithm of the Stribeck velocity; that of the exponent follows.
+const STRIBECK_VELOCITY: usize = 2;
+
+/// Changes of both in further starts.
+const OTHER_CURVES: [(f64, f64); 5] = [(-1.0, 0.0), (1.0, 0.0), (1.0, 0.7), (0.0, 0.7), (0.0, -0.7)];
+
+/// Weight of a residual of the robust loss: all of those that are more than this are outliers.
+const ROBUST_BEYOND: f64 = 1.345;
+
+/// Eigenvalue of the information over the largest below which nothing is known.
+const UNKNOWN: f64 = 1e-12;
+
+/// A coefficient that is held: by one of the variables, or F_C, which is F_S less the fall.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum HeldCoefficient {
+    Coulomb,
+    Variable(usize),
+}
+
+/// What slides, and what all else says of the shared variables.
+pub(super) struct SlidingProfile<'a> {
+    problem: &'a FrictionProblem<'a>,
+    /// Shared variables of the minimum.
+    centre: Vec<f64>,
+    /// Slopes of residuals over the shared variables, and the residuals at the centre.
+    others: Vec<(Vec<f64>, f64)>,
+    least: Minimum,
+}
+
+impl<'a> SlidingProfile<'a> {
+    /// Around a minimum of all; `None` where nothing slides.
+    pub(super) fn around(problem: &'a FrictionProblem<'a>, minimum: &Minimum) -> Option<SlidingProfile<'a>> {
+        let centre: Vec<f64> = minimum.variables.iter().take(SHARED).copied().collect();
+        let others = information_of_others(problem, &minimum.linearised);
+        let variables = minimum.variables.iter().take(SHARED + problem.slides.len()).copied().collect();
+        let linearised = Linearised { residuals: vec![], jacobian: vec![] };
+        let ending = Ending::NoStart;
+        let least = Minimum { variables, cost: f64::INFINITY, linearised, evaluations: 0, ending };
+        let mut found = SlidingProfile { problem, centre, others, least };
+        found.least = found.searched(&found.least.variables, &found.bounds(), |x| x.to_vec())?;
+        (!problem.slides.is_empty()).then_some(found)
+    }
+
+    fn bounds(&self) -> Vec<[f64; 2]> {
+        self.problem.bounds().into_iter().take(SHARED + self.problem.slides.len()).collect()
+    }
+
+    /// The value of what is held at these variables.
+    pub(super) fn value(held: HeldCoefficient, variables: &[f64]) -> f64 {
+        let at = |index: usize| variables.get(index).copied().unwrap_or(0.0);
+        match held {
+            HeldCoefficient::Coulomb => at(0) - at(1),
+            HeldCoefficient::Variable(index) => at(index),
+        }
+    }
+
+    /// Ends of the 95 % interval of what is held, as the variables have it; `None` where its bound
+    /// is as good.
+    pub(super) fn ends(&self, held: HeldCoefficient, step: f64) -> [Option<f64>; 2] {
+        [-1.0, 1.0].map(|way| self.end(held, way * step))
+    }
+
+    /// The bounds of what is held.
+    pub(super) fn bound(&self, held: HeldCoefficient) -> [f64; 2] {
+        let bounds = self.problem.bounds();
+        let of = |index: usize| bounds.get(index).copied().unwrap_or([0.0, 0.0]);
+        match held {
+            HeldCoefficient::Coulomb => of(0),
+            HeldCoefficient::Variable(index) => of(index),
+        }
+    }
+
+    fn end(&self, held: HeldCoefficient, step: f64) -> Option<f64> {
+        let [lower, upper] = self.bound(held);
+        let bound = if step < 0.0 { lower } else { upper };
+        let is_inside = |found: &Minimum| self.is_inside(found);
+        let mut inside = Self::value(held, &self.least.variables);
+        let mut variables = self.least.variables.clone();
+        let mut step = step;
+        let mut outside = None;
+        for _ in 0..STEPS {
+            let next = (inside + step).clamp(lower, upper);
+            let Some(found) = self.held(held, next, &variables).filter(is_inside) else {
+                outside = Some(next);
+                break;
+            };
+            (inside, variables) = (next, found.variables);
+            if next == bound {
+                return None;
+            }
+            step *= LONGER;
+        }
+        let mut outside = outside?;
+        for _ in 0..HALVINGS {
+            let middle = f64::midpoint(inside, outside);
+            match self.held(held, middle, &variables).filter(is_inside) {
+                Some(found) => (inside, variables) = (middle, found.variables),
+                None => outside = middle,
+            }
+        }
+        Some(outside)
+    }
+
+    /// The least sum with a coefficient held: from a start, and where that is outside the interval,
+    /// from others with curves that fall elsewhere and otherwise.
+    fn held(&self, held: HeldCoefficient, value: f64, start: &[f64]) -> Option<Minimum> {
+        let mut best = self.held_from(held, value, start);
+        for (velocity, exponent) in OTHER_CURVES {
+            if best.as_ref().is_some_and(|best| self.is_inside(best)) {
+                break;
+            }
+            let mut other = start.to_vec();
+            let changes = [(STRIBECK_VELOCITY, velocity), (STRIBECK_VELOCITY + 1, exponent)];
+            for (index, change) in changes {
+                other.iter_mut().skip(index).take(1).for_each(|variable| *variable += change);
+            }
+            let found = self.held_from(held, value, &other);
+            best = [best, found].into_iter().flatten().min_by(|one, other| one.cost.total_cmp(&other.cost));
+        }
+        best
+    }
+
+    /// Whether a sum is that of the interval.
+    fn is_inside(&self, found: &Minimum) -> bool {
+        found.cost - self.least.cost <= AT_THE_END
+    }
+
+    fn held_from(&self, held: HeldCoefficient, value: f64, start: &[f64]) -> Option<Minimum> {
+        let mut bounds = self.bounds();
+        let mut set = |index: usize, bound: [f64; 2]| {
+            bounds.iter_mut().skip(index).take(1).for_each(|to| *to = bound);
+        };
+        match held {
+            HeldCoefficient::Variable(index) => {
+                set(index, [value; 2]);
+                self.searched(start, &bounds, |x| x.to_vec())
+            }
+            HeldCoefficient::Coulomb => {
+                // the second variable is F_C here, and F_S is at least that
+                set(1, [value; 2]);
+                set(0, [value, 1e3]);
+                let with_fall = |x: &[f64]| {
+                    let mut variables = x.to_vec();
+                    if let [first, second, ..] = variables.as_mut_slice() {
+                        *second = *first - *second;
+                    }
+                    variables
+                };
+                let mut found = self.searched(&with_fall(start), &bounds, with_fall)?;
+                found.variables = with_fall(&found.variables);
+                Some(found)
+            }
+        }
+    }
+
+    /// Where a search ends whose variables are changed before use: the second one by the first less
+    /// it, or not at all.
+    fn searched(
+        &self,
+        start: &[f64],
+        bounds: &[[f64; 2]],
+        changed: impl Fn(&[f64]) -> Vec<f64>,
+    ) -> Option<Minimum> {
+        let settings =
+            Settings { maximum_evaluations: EVALUATIONS, tolerance: TOLERANCE, ..Settings::default() };
+        let count = start.len();
+        let mut evaluate = |x: &[f64]| {
+            let variables = changed(x);
+            let is_changed = variables != x;
+            Ok(self.linearised(&variables).map(|mut found| {
+                if is_changed {
+                    for row in found.jacobian.chunks_exact_mut(count) {
+                        if let [first, second, ..] = row {
+                            *first += *second;
+                            *second = -*second;
+                        }
+                    }
+                }
+                found
+            }))
+        };
+        minimise(start, bounds, settings, &mut evaluate).ok().filter(|found| found.ending != Ending::NoStart)
+    }
+
+    fn linearised(&self, variables: &[f64]) -> Option<Linearised> {
+        let mut found = self.problem.slides_linearised(variables)?;
+        for (slopes, residual) in &self.others {
+            let away = variables.iter().zip(&self.centre).map(|(at, centre)| at - centre);
+            found.residuals.push(residual + away.zip(slopes).map(|(away, slope)| away * slope).sum::<f64>());
+            let from = found.jacobian.len();
+            found.jacobian.extend(slopes);
+            found.jacobian.resize(from + variables.len(), 0.0);
+        }
+        Some(found)
+    }
+}
+
+/// What is pressed and shaken says of the shared variables: residuals that are as well explained
+/// with all variables of their own free.
+///
+/// ```text
+/// I = J_s'J_s - J_s'J_o (J_o'J_o)^-1 J_o'J_s        g likewise        R'R = I,  R'b = g
+/// ```
+fn information_of_others(problem: &FrictionProblem<'_>, at: &Linearised) -> Vec<(Vec<f64>, f64)> {
+    let count = problem.count();
+    let first_own = SHARED + problem.slides.len();
+    let own = count - first_own;
+    let first_row = problem.first_row_of_others();
+    let size = SHARED + own;
+    let mut information = DMatrix::<f64>::zeros(size, size);
+    let mut gradient = DVector::<f64>::zeros(size);
+    let rows = at.jacobian.chunks_exact(count).zip(&at.residuals).skip(first_row);
+    for (row, residual) in rows {
+        let weight = (ROBUST_BEYOND / residual.abs()).min(1.0);
+        let slopes = row.iter().take(SHARED).chain(row.iter().skip(first_own));
+        let entries: Vec<(usize, f64)> =
+            slopes.copied().enumerate().filter(|(_, slope)| *slope != 0.0).collect();
+        for (i, first) in &entries {
+            gradient[*i] += weight * first * residual;
+            for (j, second) in &entries {
+                information[(*i, *j)] += weight * first * second;
+            }
+        }
+    }
+    let mut shared = information.view((0, 0), (SHARED, SHARED)).into_owned();
+    let mut slope = gradient.rows(0, SHARED).into_owned();
+    if own > 0 {
+        let across = information.view((0, SHARED), (SHARED, own)).into_owned();
+        let Some(factor) = information.view((SHARED, SHARED), (own, own)).into_owned().cholesky() else {
+            return Vec::new();
+        };
+        shared -= &across * factor.solve(&across.transpose());
+        slope -= &across * factor.solve(&gradient.rows(SHARED, own).into_owned());
+    }
+    let eigen = shared.symmetric_eigen();
+    let largest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
+    let known = eigen.eigenvalues.iter().enumerate().filter(|(_, value)| **value > UNKNOWN * largest);
+    known
+        .map(|(index, value)| {
+            let direction = eigen.eigenvectors.column(index);
+            let size = value.sqrt();
+            (direction.iter().map(|one| size * one).collect(), direction.dot(&slope) / size)
+        })
+        .collect()
+}
