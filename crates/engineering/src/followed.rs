@@ -22,7 +22,8 @@ const TURNED: f64 = 10.0;
 /// Rows from which it is told where a command turns.
 const FEWEST_TO_TURN: usize = 12;
 
-/// Deviation of what differs from row to row in a record of a slow command, V: noise, and rounding.
+/// Deviation of what differs from row to row in a record of a slow signal, in its unit: noise, and
+/// rounding.
 ///
 /// ```text
 /// sigma = 1.4826 median |U_i - 4 U_(i+1) + 6 U_(i+2) - 4 U_(i+3) + U_(i+4)| / sqrt(70)
@@ -54,7 +55,9 @@ pub(crate) fn followed(command: &[f64], roughness: f64) -> Vec<f64> {
         let rising: Vec<f64> = rows.iter().map(|value| way * value).collect();
         found.extend(nearest_rising(&rising, TURNED * roughness).into_iter().map(|value| way * value));
     }
-    for pair in pieces.windows(2) {
+    // what never goes back is no noise, but rounding at most
+    let goes_back = found.as_slice() != command;
+    for pair in pieces.windows(2).filter(|_| goes_back) {
         let [before, after] = pair else { continue };
         let rows = before.rows.start..after.rows.end;
         turn(&mut found, command, (before.rows.end - 1, before.way()), rows, roughness);

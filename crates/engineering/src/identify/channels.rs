@@ -35,6 +35,38 @@ const FEWEST_STEEP: usize = 10;
 /// A row is steep where the noise of the command shows in a signal by this many of its scales.
 const STEEP: f64 = 2.0;
 
+/// Median magnitude of normal numbers over their deviation, and the same that counts as no more.
+const OF_NORMAL: [f64; 2] = [0.6745, 0.75];
+
+/// Halvings in which the noise of a command is found.
+const HALVINGS: usize = 30;
+
+/// A row in which a signal is steep over the command.
+struct SteepRow {
+    residual: f64,
+    slope: f64,
+    scale: f64,
+}
+
+/// The noise of the command with which half of the residuals of steep rows lie within what is
+/// normal; at most as much as its record has.
+fn told_noise(steep: &[SteepRow], most: f64) -> f64 {
+    let middle = |noise: f64| {
+        let of = |row: &SteepRow| row.residual.abs() / portable::hypot(row.scale, noise * row.slope);
+        median(steep.iter().map(of).collect())
+    };
+    let [normal, no_more] = OF_NORMAL;
+    if middle(0.0) <= no_more {
+        return 0.0;
+    }
+    let [mut low, mut high] = [0.0, most];
+    for _ in 0..HALVINGS {
+        let noise = f64::midpoint(low, high);
+        if middle(noise) > normal { low = noise } else { high = noise }
+    }
+    high
+}
+
 /// A signal and the scale of its residuals.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Channel {
@@ -255,8 +287,9 @@ impl<'a> Together<'a> {
     /// What the noise of the command makes of the signals of a recording.
     ///
     /// The record of the command shows how rough it is; that the valve did not follow this is told
-    /// by the residuals where a signal is steep. The noise is that of the record, or less where
-    /// they are smaller: a command that was sent as it is recorded is rounded, and without noise.
+    /// by the residuals where a signal is steep. The noise is that with which half of them lie
+    /// within what is normal, at most that of the record; none where they do so without it: a
+    /// command that was sent as it is recorded is rounded, and without noise.
     fn takes_command_noise(
         &mut self,
         index: usize,
@@ -265,19 +298,23 @@ impl<'a> Together<'a> {
         unscaled: &[Vec<f64>],
     ) {
         let slopes = self.command_slopes(recording, variables);
-        let mut noises = Vec::new();
+        let mut steep = Vec::new();
         let own = self.channels.iter().zip(unscaled).filter(|(channel, _)| channel.recording == index);
         for (channel, residuals) in own {
             let Some(signal) = recording.signals.get(channel.signal) else { continue };
             let read = signal.values.iter().zip(&slopes).filter(|(value, _)| value.is_some());
             let slopes = read.map(|(_, slopes)| slopes.get(channel.signal).copied().unwrap_or(0.0));
-            let steep = slopes.zip(residuals);
             let least = STEEP * channel.scale / recording.command_roughness;
-            noises.extend(steep.filter(|(slope, _)| *slope > least).map(|(slope, own)| own.abs() / slope));
+            let rows = slopes.zip(residuals).filter(|(slope, _)| *slope > least);
+            steep.extend(rows.map(|(slope, residual)| SteepRow {
+                residual: *residual,
+                slope,
+                scale: channel.scale,
+            }));
         }
-        let told = noises.len() >= FEWEST_STEEP;
-        let noise = if told { 1.4826 * median(noises) } else { f64::INFINITY };
-        let noise = noise.min(recording.command_roughness);
+        let told = steep.len() >= FEWEST_STEEP;
+        let noise =
+            if told { told_noise(&steep, recording.command_roughness) } else { recording.command_roughness };
         for channel in self.channels.iter_mut().filter(|channel| channel.recording == index) {
             let signal = channel.signal;
             let of = |slopes: &Vec<f64>| noise * slopes.get(signal).copied().unwrap_or(0.0);

@@ -18,7 +18,7 @@ pub struct Recording {
     pub file: String,
     /// How the ports were piped.
     pub circuit: PortCircuit,
-    /// V, deviation of what differs from row to row in the command: noise and rounding.
+    /// V, deviation of what differs from row to row in a command with noise; zero without.
     pub command_roughness: f64,
     /// s, of each row.
     pub times: Vec<f64>,

@@ -1,6 +1,5 @@
 //! The figures of chapter 5 of the thesis, from recordings and the valve that explains them.
 
-use phea_dynamics::order::sort_by_number;
 use phea_hydraulics::servovalve::{PortCircuit, TestOutput};
 
 use super::{Identification, Recording, SignalFit, SignalKind};
@@ -159,31 +158,42 @@ fn series(found: &Identification, index: usize, recording: &Recording) -> Figure
     chart.draw(&Words::new(format!("series_{}_{name}", index + 1), title, caption))
 }
 
-/// Rows of one way of the command; those before its first reversal only where there are no others.
-fn rows_of(recording: &Recording, rising: bool) -> Vec<usize> {
-    let commands = || recording.inputs.iter().map(|input| input.followed_command);
-    let steps: Vec<f64> = commands().zip(commands().skip(1)).map(|(before, now)| now - before).collect();
-    let way = |row: &usize| row.checked_sub(1).and_then(|before| steps.get(before)).copied().unwrap_or(0.0);
-    let first = (0..recording.inputs.len()).map(|row| way(&row)).find(|step| *step != 0.0).unwrap_or(0.0);
-    let turned = (0..recording.inputs.len()).find(|row| way(row) * first < 0.0).unwrap_or(0);
-    let all = |from: usize| -> Vec<usize> {
-        (from..recording.inputs.len()).filter(|row| way(row) != 0.0 && (way(row) > 0.0) == rising).collect()
-    };
-    let later = all(turned);
-    if later.is_empty() { all(0) } else { later }
+/// The branches of one way of the command, from one reversal to the next, as their rows.
+fn branches(recording: &Recording, rising: bool) -> Vec<Vec<usize>> {
+    let mut branches: Vec<Vec<usize>> = Vec::new();
+    let mut way = None;
+    let mut before = None;
+    for (row, input) in recording.inputs.iter().enumerate() {
+        let now = input.followed_command;
+        let turned = before.filter(|before| *before != now).map(|before| now > before);
+        // a row of rest belongs to the way before it
+        if turned.is_some() && turned != way {
+            way = turned;
+            branches.extend((way == Some(rising)).then(Vec::new));
+        }
+        if let Some(branch) = branches.last_mut().filter(|_| way == Some(rising)) {
+            branch.push(row);
+        }
+        before = Some(now);
+    }
+    branches
 }
 
-/// Command in percent, and what `of` says of a row.
+/// Command in percent, and what `of` says of a row, of each branch one way.
 fn over_command(
     found: &Identification,
     recording: &Recording,
     rising: bool,
     of: impl Fn(usize) -> Option<f64>,
-) -> Vec<(f64, f64)> {
-    let point = |row: usize| Some((percent(found, recording.inputs.get(row)?.command), of(row)?));
-    let mut points: Vec<(f64, f64)> = rows_of(recording, rising).into_iter().filter_map(point).collect();
-    sort_by_number(&mut points, |point| point.0);
-    points
+) -> Vec<Vec<(f64, f64)>> {
+    let point = |row: usize| Some((percent(found, recording.inputs.get(row)?.followed_command), of(row)?));
+    let branch = |rows: Vec<usize>| rows.into_iter().filter_map(point).collect::<Vec<_>>();
+    branches(recording, rising).into_iter().map(branch).filter(|points| !points.is_empty()).collect()
+}
+
+/// A line for each branch.
+fn lines(branches: Vec<Vec<(f64, f64)>>, series: usize) -> impl Iterator<Item = Curve> {
+    branches.into_iter().map(move |points| Curve::line(points, series))
 }
 
 /// A chart over the command, to this far on either side of zero, percent.
@@ -217,11 +227,11 @@ fn leakage(found: &Identification, recording: &Recording) -> Figure {
     };
     let shown = WAYS.into_iter().enumerate();
     let lines =
-        shown.map(|(index, (_, rising))| Curve::line(over_command(found, recording, rising, value), index));
+        shown.flat_map(|(index, (_, rising))| lines(over_command(found, recording, rising, value), index));
     let mut only = CurvePanel::new("Leakage with tare flow (L/min)", 250.0, lines.collect());
     only.marked = null_marks(found);
     let chart = over_commands(AROUND_NULL, vec![only], ways_legend(CurveStyle::Line));
-    let caption = "Internal leakage around null with rising and with falling command; the base is the tare flow, and the centres of both curves lie a hysteresis apart (Ledezma 2019, Figure 5.5).";
+    let caption = "Internal leakage around null with rising and with falling command; the base is the tare flow, and the centres of both curves lie a hysteresis apart (Ledezma 2019, Figure 5.5). Every branch is drawn; the first begins without the memory of a reversal.";
     chart.draw(&Words::new("leakage_both_ways", "Internal leakage both ways", caption))
 }
 
@@ -249,7 +259,8 @@ fn flow_gain(found: &Identification) -> Vec<Figure> {
         let outputs = found.shown(*index, &found.coefficients);
         let both = WAYS
             .into_iter()
-            .flat_map(|(_, rising)| over_command(found, one, rising, |row| signed_flow(one, &outputs, row)));
+            .flat_map(|(_, rising)| over_command(found, one, rising, |row| signed_flow(one, &outputs, row)))
+            .flatten();
         Curve::dots(both, series)
     });
     let names = metered.iter().enumerate();
@@ -271,13 +282,13 @@ fn flow_gain_at_null(found: &Identification, metered: &[(usize, &Recording)]) ->
     for (series, (_, rising)) in WAYS.into_iter().enumerate() {
         let read = metered.iter().flat_map(|(index, one)| {
             let outputs = found.shown(*index, &found.coefficients);
-            over_command(found, one, rising, |row| signed_flow(one, &outputs, row))
+            over_command(found, one, rising, |row| signed_flow(one, &outputs, row)).into_iter().flatten()
         });
         shown.push(Curve::dots(read, series));
         if let Some((index, one)) = finest {
             let outputs = found.shown(*index, &found.coefficients);
             let flow = |row: usize| outputs.get(row).map(|output| litre.of(output.port_flow));
-            shown.push(Curve::line(over_command(found, one, rising, flow), series));
+            shown.extend(lines(over_command(found, one, rising, flow), series));
         }
     }
     let mut legend = ways_legend(CurveStyle::Dots);
@@ -301,10 +312,10 @@ fn pressure_sensitivity(found: &Identification) -> Option<Figure> {
     let load = |row: usize| port_pressures(recording, row).map(|[a, b]| bar.of(a - b));
     let shown = WAYS.into_iter().enumerate();
     let lines =
-        shown.map(|(index, (_, rising))| Curve::line(over_command(found, recording, rising, load), index));
+        shown.flat_map(|(index, (_, rising))| lines(over_command(found, recording, rising, load), index));
     let only = CurvePanel::new("p_A - p_B (bar)", 250.0, lines.collect()).with_zero_line();
     let chart = over_commands(CLOSE_TO_NULL, vec![only], ways_legend(CurveStyle::Line));
-    let caption = "Load pressure over the command with blocked ports: its slope at zero is the pressure sensitivity (Ledezma 2019, section 5.3).";
+    let caption = "Load pressure over the command with blocked ports: its slope at zero is the pressure sensitivity (Ledezma 2019, section 5.3). Every branch is drawn; the first begins without the memory of a reversal.";
     Some(chart.draw(&Words::new("pressure_sensitivity", "Pressure sensitivity", caption)))
 }
 
@@ -332,10 +343,12 @@ fn against_model(found: &Identification, index: usize, (way, rising): (&str, boo
             let Some(signal) = recording.signal(*kind) else { continue };
             let measured = |row: usize| signal.values.get(row).copied().flatten().map(|value| unit.of(value));
             let model = |row: usize| outputs.get(row).map(|output| unit.of(of(output)));
-            both.push(Curve::dots(over_command(found, recording, rising, measured), series));
-            both.push(Curve::line(over_command(found, recording, rising, model), series));
+            let read = over_command(found, recording, rising, measured);
+            both.push(Curve::dots(read.into_iter().flatten(), series));
+            both.extend(lines(over_command(found, recording, rising, model), series));
             let rest = |row: usize| Some(model(row)? - measured(row)?);
-            left.push(Curve::dots(over_command(found, recording, rising, rest), series));
+            let remains = over_command(found, recording, rising, rest);
+            left.push(Curve::dots(remains.into_iter().flatten(), series));
         }
         panels.push(CurvePanel::new(title, 130.0, both));
         panels.push(CurvePanel::new(residual, 76.0, left).with_zero_line());

@@ -18,8 +18,10 @@ pub(super) fn assembled(
     let flow = taken.of(TestSignal::Flow);
     let [command, supply, tank] =
         [TestSignal::Command, TestSignal::SupplyPressure, TestSignal::TankPressure].map(|one| taken.of(one));
-    let command_roughness = command.map_or(0.0, roughness);
-    let followed = command.map(|command| followed(command, command_roughness));
+    let rough = command.map_or(0.0, roughness);
+    let followed = command.map(|command| followed(command, rough));
+    // a record that never goes back by little is rounded at most: the valve followed it
+    let command_roughness = if followed.as_deref() == command { 0.0 } else { rough };
     let input = |row: usize| {
         let at = |values: Option<&[f64]>| values.and_then(|values| values.get(row).copied());
         TestInput {
