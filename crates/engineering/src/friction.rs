@@ -123,13 +123,14 @@ pub fn identify_friction(
         slides.extend(constant);
         varying.extend(other);
     }
-    let guess::Guess { around, presses, shakes } = guess::guess(&recordings, &slides, known.moving_mass)
-        .ok_or_else(|| IdentifyError::Data(nothing(&recordings, &varying)))?;
+    let guess::Guess { around, others, presses, shakes } =
+        guess::guess(&recordings, &slides, known.moving_mass)
+            .ok_or_else(|| IdentifyError::Data(nothing(&recordings, &varying)))?;
     let finds_zero = goes_both_ways(&slides, &presses);
     let setting = (known.moving_mass, around);
     let mut problem = FrictionProblem::new(&recordings, &slides, (&presses, &shakes), setting, finds_zero);
     let mut kept = KeptShapes::default();
-    let mut minimum = problem.first_minimum(ROUGH, &mut kept, watch)?;
+    let mut minimum = problem.first_minimum(&others, ROUGH, &mut kept, watch)?;
     for _ in 0..ROUNDS {
         let change = problem.rescale(&minimum.linearised.residuals);
         minimum = problem.searched(&minimum.variables, ROUGH, &mut kept, watch)?;

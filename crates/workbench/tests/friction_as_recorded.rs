@@ -74,6 +74,21 @@ fn fast_runs_and_breakaways_leave_the_shape_of_the_fall_open() {
     is_open(&found, "stribeck_velocity_m_per_s", "too few runs slide on the fall");
 }
 
+/// Three speeds are three numbers, and the curve has five: what they do not determine has no value,
+/// and an interval that holds the truth.
+#[test]
+fn three_speeds_determine_what_three_speeds_can() {
+    for slowest in ["2 mm/s", "5 mm/s", "20 mm/s"] {
+        let bench =
+            format!("bench.friction={{ velocities = 3, slowest = \"{slowest}\", fastest = \"200 mm/s\" }}");
+        let found = found(&recorded(&[&bench]), &[SLIDING]);
+        holds(&found, 0..5);
+        assert_eq!(found["converged"], true, "{slowest}");
+        let open = &found["friction"]["stribeck_velocity_m_per_s"];
+        assert!(open["value"].is_null(), "{slowest}: {open}");
+    }
+}
+
 /// A piston on a spring whose other end moves at 4 mm/s, below the Stribeck velocity: it sticks and
 /// slips. Rows of 1 ms of position in mm and pressures in bar, with noise of 1 um and 5 kPa.
 ///

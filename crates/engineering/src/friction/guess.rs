@@ -13,6 +13,8 @@ use super::shaking::{ShakenRows, shaken_rows};
 /// A friction near that of the recordings, and what is pressed and shaken in them.
 pub(super) struct Guess {
     pub(super) around: Around,
+    /// Further curves and zeros of the force from which a search begins.
+    pub(super) others: Vec<(Stribeck, f64)>,
     pub(super) presses: Vec<PressedRows>,
     pub(super) shakes: Vec<ShakenRows>,
 }
@@ -48,8 +50,9 @@ pub(super) fn guess(
         pressed.iter().filter_map(|(_, recording)| breakaway(recording)).collect();
     let forces = recordings.iter().enumerate().filter(|(index, _)| !slides_in(slides, *index));
     let greatest = forces.map(|(_, one)| greatest_force(&one.forces)).fold(0.0, f64::max);
-    let steady = steady_guess(slides, &breakaways);
-    let (curve, zero) = steady.or_else(|| (greatest > 0.0).then(|| (without_sliding(greatest), 0.0)))?;
+    let mut steady = steady_guesses(slides, &breakaways).into_iter();
+    let first = steady.next();
+    let (curve, zero) = first.or_else(|| (greatest > 0.0).then(|| (without_sliding(greatest), 0.0)))?;
     let mut compliances = Vec::new();
     let mut presses = Vec::new();
     for (index, recording) in pressed {
@@ -85,7 +88,7 @@ pub(super) fn guess(
         zero,
         softest: curve.static_friction / (LEFT_BY_REVERSAL * shortest_way(slides, recordings)),
     };
-    Some(Guess { around, presses, shakes })
+    Some(Guess { around, others: steady.collect(), presses, shakes })
 }
 
 fn slides_in(slides: &[ConstantVelocity], recording: usize) -> bool {
@@ -128,48 +131,49 @@ const BELOW_SLOWEST: f64 = 0.1;
 /// that is over before the slowest.
 const PLAUSIBLE: f64 = 1.5;
 
-/// The steady curve, and the zero of the force in N, through the forces in the second half of each
+/// Most curves from which a search begins.
+const STARTS: usize = 8;
+
+/// Steady curves, and zeros of the force in N, through the forces in the second half of each
 /// constant velocity and those at which the piston breaks away: linear least squares for each of
-/// some Stribeck velocities and exponents, and the best of them.
-fn steady_guess(slides: &[ConstantVelocity], breakaways: &[Breakaway]) -> Option<(Stribeck, f64)> {
+/// some Stribeck velocities and exponents, the best first. Few speeds are explained by many.
+fn steady_guesses(slides: &[ConstantVelocity], breakaways: &[Breakaway]) -> Vec<(Stribeck, f64)> {
     const VELOCITIES: usize = 16;
     if slides.is_empty() {
-        return without_slides(breakaways);
+        return without_slides(breakaways).into_iter().collect();
     }
     let speeds = || slides.iter().map(|slide| slide.velocity.abs());
     let [slowest, fastest] = [speeds().fold(f64::INFINITY, f64::min), speeds().fold(0.0, f64::max)];
     let slid = slides.iter().map(|slide| (slide.velocity, slide.settled_force()));
     let broken = breakaways.iter().map(|one| (one.way * AT_REST * slowest, one.force));
     let points: Vec<(f64, f64)> = slid.chain(broken).collect();
+    let first = BELOW_SLOWEST * slowest;
+    let ratio = portable::pow(fastest / first, 1.0 / (VELOCITIES - 1) as f64);
+    let velocities = (0..VELOCITIES).map(|index| first * portable::pow(ratio, index as f64));
+    let shapes = velocities.flat_map(|velocity| [2.0, 1.0].map(|exponent| (velocity, exponent)));
+    let mut found: Vec<(f64, Stribeck, f64)> =
+        shapes.filter_map(|(velocity, exponent)| steady_curve(&points, velocity, exponent)).collect();
+    found.sort_by(|one, other| one.0.total_cmp(&other.0));
+    found.into_iter().take(STARTS).map(|(_, curve, zero)| (curve, zero)).collect()
+}
+
+/// The curve with this Stribeck velocity and exponent, the zero, and how badly both explain the
+/// points.
+fn steady_curve(points: &[(f64, f64)], velocity: f64, exponent: f64) -> Option<(f64, Stribeck, f64)> {
     let typical = points.iter().map(|(_, force)| force.abs()).fold(0.0, f64::max);
-    let mut best: Option<(f64, Stribeck, f64)> = None;
-    for index in 0..VELOCITIES {
-        let share = index as f64 / (VELOCITIES - 1) as f64;
-        let first = BELOW_SLOWEST * slowest;
-        let stribeck_velocity = first * portable::pow(fastest / first, share);
-        for stribeck_exponent in [2.0, 1.0] {
-            let Some((cost, [coulomb, fall, viscous, zero])) =
-                linear_part(&points, stribeck_velocity, stribeck_exponent)
-            else {
-                continue;
-            };
-            let coulomb = coulomb.max(0.01 * typical);
-            let curve = Stribeck {
-                coulomb,
-                static_friction: coulomb + fall.clamp(0.01 * typical, PLAUSIBLE * typical),
-                stribeck_velocity,
-                stribeck_exponent,
-                viscous: viscous.max(0.0),
-            };
-            // what a friction cannot be is worse than anything it can be
-            let is_friction = fall >= 0.0 && viscous >= 0.0 && coulomb + fall <= PLAUSIBLE * typical;
-            let cost = if is_friction { cost } else { 1e6 * (1.0 + cost) };
-            if best.is_none_or(|(least, ..)| cost < least) {
-                best = Some((cost, curve, zero));
-            }
-        }
-    }
-    best.filter(|_| typical > 0.0).map(|(_, curve, zero)| (curve, zero))
+    let (cost, [coulomb, fall, viscous, zero]) = linear_part(points, velocity, exponent)?;
+    // what a friction cannot be is worse than anything it can be
+    let is_friction = coulomb > 0.0 && fall >= 0.0 && viscous >= 0.0 && coulomb + fall <= PLAUSIBLE * typical;
+    let cost = if is_friction { cost } else { 1e6 * (1.0 + cost) };
+    let coulomb = coulomb.max(0.01 * typical);
+    let curve = Stribeck {
+        coulomb,
+        static_friction: coulomb + fall.clamp(0.01 * typical, PLAUSIBLE * typical),
+        stribeck_velocity: velocity,
+        stribeck_exponent: exponent,
+        viscous: viscous.max(0.0),
+    };
+    (typical > 0.0).then_some((cost, curve, zero))
 }
 
 /// From the forces alone at which the piston breaks away: those of both ways separate the zero.

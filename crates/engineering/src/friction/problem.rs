@@ -7,7 +7,7 @@ pub(super) use shake::KeptShapes;
 use phea_dynamics::least_squares::{Ending, Linearised, Minimum, Settings, minimise};
 use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch, tell};
-use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, KnottedForce, LuGre, PressedMass};
+use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, KnottedForce, LuGre, PressedMass, Stribeck};
 
 use super::FrictionRecording;
 use super::motion::ConstantVelocity;
@@ -189,19 +189,19 @@ impl<'a> FrictionProblem<'a> {
         ]
     }
 
-    /// Where the search begins.
-    pub(super) fn start(&self) -> Vec<f64> {
+    /// Where a search begins with a curve and a zero of the force.
+    fn start(&self, (curve, zero): &(Stribeck, f64)) -> Vec<f64> {
         let Around { lugre, force, damping, .. } = self.around;
-        let curve = lugre.curve;
+        let over = |value: f64, usual: f64| portable::ln(value / usual);
         let mut start = vec![
             curve.static_friction / force,
             (curve.static_friction - curve.coulomb) / force,
-            0.0,
-            0.0,
+            over(curve.stribeck_velocity, lugre.curve.stribeck_velocity),
+            over(curve.stribeck_exponent, lugre.curve.stribeck_exponent),
             curve.viscous / damping[0],
             0.0,
             lugre.bristle_damping / damping[1],
-            self.around.zero / force,
+            zero / force,
         ];
         start.extend(self.slides.iter().map(|_| 0.0));
         for press in self.presses {
@@ -387,14 +387,16 @@ impl<'a> FrictionProblem<'a> {
     }
 
     /// Minimum from the guess; static friction is raised where the piston would run away under the
-    /// recorded forces.
+    /// recorded forces. Where all slides, the best from other curves too: few speeds leave several
+    /// minima.
     pub(super) fn first_minimum(
         &self,
+        others: &[(Stribeck, f64)],
         tolerance: f64,
         kept: &mut KeptShapes,
         watch: Watch<'_>,
     ) -> Result<Minimum, Stopped> {
-        let start = self.start();
+        let start = self.start(&(self.around.lugre.curve, self.around.zero));
         let mut minimum = self.searched(&start, tolerance, kept, watch)?;
         for factor in RAISED {
             if minimum.ending != Ending::NoStart {
@@ -404,6 +406,13 @@ impl<'a> FrictionProblem<'a> {
             // F_S is the first variable, the fall from it to F_C the second
             raised.iter_mut().take(2).for_each(|value| *value += factor - 1.0);
             minimum = self.searched(&raised, tolerance, kept, watch)?;
+        }
+        let all_slides = self.presses.is_empty() && self.shakes.is_empty();
+        for other in others.iter().filter(|_| all_slides) {
+            let found = self.searched(&self.start(other), tolerance, kept, watch)?;
+            if found.cost < minimum.cost {
+                minimum = found;
+            }
         }
         Ok(minimum)
     }

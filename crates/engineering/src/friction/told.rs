@@ -283,10 +283,12 @@ fn reasons(
         damping.untold = Some(UntoldFriction::TooFewRows { time_step: longest });
     }
     if presses_quickly(problem, stiffness, damping) {
+        // what to record says more than that noise hides it
         for one in [stiffness, damping] {
-            if matches!(one.untold, None | Some(UntoldFriction::Hidden)) {
-                one.untold = Some(UntoldFriction::QuickForce);
-            }
+            one.untold = match one.untold {
+                None | Some(UntoldFriction::Hidden) => Some(UntoldFriction::QuickForce),
+                other => other,
+            };
         }
     }
     found
