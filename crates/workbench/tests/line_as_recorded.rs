@@ -186,8 +186,11 @@ fn the_speed_of_an_exact_wave_is_within_its_interval() {
 fn a_compliance_that_jumps_is_a_misfit() {
     let loaded = project(&WAVES);
     let known = known(&loaded);
-    let smooth = found(rise(&known, 0.02, 1), &known);
-    assert!(smooth.misfits().is_empty(), "{:?}", smooth.misfits());
+    // nor does the noise of the first row, from which the volumes count, look like a misfit
+    for seed in 1..=20 {
+        let smooth = found(rise(&known, 0.02, seed), &known);
+        assert!(smooth.misfits().is_empty(), "{seed}: {:?}", smooth.misfits());
+    }
     let LineRecord::Rise(mut record) = rise(&known, 0.0, 1) else { panic!("no rise") };
     for (volume, pressure) in record.volumes.iter_mut().zip(&record.pressures) {
         *volume += 2e-13 * (pressure - 20e5).max(0.0);

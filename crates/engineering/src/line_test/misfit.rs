@@ -35,6 +35,7 @@ impl RiseFit {
     /// misfit^2 = r rms^2              r the correlation of neighbouring residuals
     /// ```
     ///
+    /// around the mean of the residuals: the volume at the first row has the noise of that row.
     /// None of a volume that is the integral of a flow: there the noise of the meter is alike in
     /// neighbouring rows.
     fn misfit(&self) -> Option<LineMisfit> {
@@ -42,13 +43,15 @@ impl RiseFit {
             return None;
         }
         let points = self.points();
-        let residuals: Vec<f64> =
+        let differences: Vec<f64> =
             points.iter().map(|(pressure, volume)| self.volume(*pressure) - volume).collect();
+        let rows = differences.len().max(1) as f64;
+        let mean = differences.iter().sum::<f64>() / rows;
+        let residuals: Vec<f64> = differences.iter().map(|one| one - mean).collect();
         let squares: f64 = residuals.iter().map(|one| one * one).sum();
         let products: f64 = residuals.windows(2).map(|pair| pair.iter().product::<f64>()).sum();
         let correlation = if squares > 0.0 { products / squares } else { 0.0 };
         let [least, greatest] = phea_dynamics::order::ends(points.iter().map(|(_, volume)| *volume));
-        let rows = residuals.len().max(1) as f64;
         let share = (squares / rows * correlation.max(0.0)).sqrt() / (greatest - least);
         let is_chance = correlation * rows.sqrt() <= CHANCE;
         (correlation > OF_NOISE && !is_chance && share >= SMALLEST_SHARE).then(|| LineMisfit {
