@@ -6,8 +6,8 @@
 //! ```
 //!
 //! the profile of the likelihood (Venzon and Moolgavkar 1988). What is pressed and shaken counts by
-//! the information that it has on the coefficients, as a normal distribution; what slides counts in
-//! full, because the steady curve is what bends the sum.
+//! the information that it has on the coefficients, as a normal distribution, except on the shape
+//! of the curve; what slides counts in full, because the steady curve is what bends the sum.
 
 use nalgebra::{DMatrix, DVector};
 use phea_dynamics::least_squares::{Ending, Linearised, Minimum, Settings, minimise};
@@ -262,6 +262,7 @@ fn information_of_others(problem: &FrictionProblem<'_>, at: &Linearised) -> Vec<
         shared -= &across * factor.solve(&across.transpose());
         slope -= &across * factor.solve(&gradient.rows(SHARED, own).into_owned());
     }
+    let (shared, slope) = without_the_shape(&shared, &slope);
     let eigen = shared.symmetric_eigen();
     let largest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
     let known = eigen.eigenvalues.iter().enumerate().filter(|(_, value)| **value > UNKNOWN * largest);
@@ -272,4 +273,22 @@ fn information_of_others(problem: &FrictionProblem<'_>, at: &Linearised) -> Vec<
             (direction.iter().map(|one| size * one).collect(), direction.dot(&slope) / size)
         })
         .collect()
+}
+
+/// The same with Stribeck velocity and exponent free: a piston that breaks away depends on them by
+/// a straight line only over changes much smaller than those of a profile.
+fn without_the_shape(shared: &DMatrix<f64>, slope: &DVector<f64>) -> (DMatrix<f64>, DVector<f64>) {
+    let across = shared.columns(STRIBECK_VELOCITY, 2).into_owned();
+    let own = across.rows(STRIBECK_VELOCITY, 2).into_owned();
+    let least = UNKNOWN * own.trace();
+    let Ok(inverse) = own.pseudo_inverse(least) else { return (shared.clone(), slope.clone()) };
+    let taken = &across * inverse;
+    let mut left = shared - &taken * across.transpose();
+    let mut slope = slope - &taken * slope.rows(STRIBECK_VELOCITY, 2);
+    for index in STRIBECK_VELOCITY..STRIBECK_VELOCITY + 2 {
+        left.row_mut(index).fill(0.0);
+        left.column_mut(index).fill(0.0);
+        slope[index] = 0.0;
+    }
+    (left, slope)
 }
