@@ -18,15 +18,12 @@ pub(super) fn assembled(
     let flow = taken.of(TestSignal::Flow);
     let [command, supply, tank] =
         [TestSignal::Command, TestSignal::SupplyPressure, TestSignal::TankPressure].map(|one| taken.of(one));
-    let rough = command.map_or(0.0, roughness);
-    let followed = command.map(|command| followed(command, rough));
-    // a record that never goes back by little is rounded at most: the valve followed it
-    let command_roughness = if followed.as_deref() == command { 0.0 } else { rough };
+    let (command_roughness, followed) = command.map_or((0.0, Vec::new()), without_noise);
     let input = |row: usize| {
         let at = |values: Option<&[f64]>| values.and_then(|values| values.get(row).copied());
         TestInput {
             command: at(command).unwrap_or(0.0),
-            followed_command: at(followed.as_deref()).unwrap_or(0.0),
+            followed_command: at(Some(&followed)).unwrap_or(0.0),
             supply: Supply {
                 pressure: at(supply).or(known.supply_pressure).unwrap_or(0.0),
                 tank_pressure: at(tank).unwrap_or(known.tank_pressure),
@@ -75,6 +72,14 @@ pub(super) fn assembled(
         accuracies: accuracies(declared, taken),
         signals,
     }
+}
+
+/// The deviation of a command's noise, and the command without it. A record that never goes back by
+/// little is rounded at most: the valve followed it.
+fn without_noise(command: &[f64]) -> (f64, Vec<f64>) {
+    let rough = roughness(command);
+    let followed = followed(command, rough);
+    (if followed == command { 0.0 } else { rough }, followed)
 }
 
 /// What is stated of the instruments of the columns that are there.
