@@ -301,7 +301,7 @@ fn a_reference_shows_the_plant_in_a_closed_loop() {
     assert!(2 * fooled > points.len(), "{fooled} of {}", points.len());
 }
 
-/// Where the reference does not move the input there is no response, rather than that of the noise.
+/// There is no response where the reference does not move the input: it would be that of the noise.
 #[test]
 fn a_reference_that_moves_nothing_excites_nothing() {
     let [reference, input, output] = [41, 42, 43].map(|seed| noise(seed, 20_000));

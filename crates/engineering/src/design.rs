@@ -123,7 +123,7 @@ pub struct ProjectDesign {
     /// The largest command that the steps of the scenarios take; absent where nothing limits it,
     /// or where it is not known.
     pub command_of_steps: Option<CommandOfSteps>,
-    /// What its last search was led by.
+    /// The reason of its last search beyond its limits over frequency.
     pub led_by: LedBy,
     /// The gain from relaxing each limit that binds.
     pub relaxations: Relaxations,

@@ -74,7 +74,7 @@ pub struct FrictionIdentification {
     /// N, root mean square of what is left of the force, each block as one row; and m of the
     /// position of what was pressed.
     pub residual_rms: [Option<f64>; 2],
-    /// What is left that is not noise, the greatest first.
+    /// Misfits that are not noise, the greatest first.
     pub misfits: Vec<FrictionMisfit>,
     /// Share of the residuals that are independent, the least of all signals.
     pub independent: f64,

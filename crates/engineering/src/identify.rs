@@ -80,7 +80,7 @@ pub struct Known {
     pub tare_pressure: Option<f64>,
     /// Model of the leakage where the recordings do not decide.
     pub leakage_model: LeakageModel,
-    /// How the oil changes with its temperature.
+    /// The change of the oil with its temperature.
     pub oil: OilLaw,
     /// degC, that the coefficients are to be stated at; absent: the mean of the files.
     pub oil_reference: Option<f64>,

@@ -142,7 +142,7 @@ impl Blocks {
     /// The first counts noise of the input as well (Pintelon and Schoukens 2012, section 2.4). In
     /// the second a segment counts as it is excited (White 1980), m times together: a sweep passes
     /// a frequency in one segment or two, however many there are, and what leaks there is in these.
-    /// Where all are excited alike it is that of Bendat and Piersol (2010), section 9.2: (1 -
+    /// It is that of Bendat and Piersol (2010), section 9.2, where all are excited alike: (1 -
     /// gamma^2) S_yy/((n - 1) S_uu).
     pub fn points(&self) -> Vec<SpectralPoint> {
         let lines = self.lines.first().map_or(0, |[input, _]| input.len());

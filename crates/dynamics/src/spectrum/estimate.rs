@@ -47,7 +47,8 @@ pub fn disc_radius(deviation: f64, blocks: f64) -> f64 {
     if blocks <= 1.0 { f64::INFINITY } else { fisher(blocks - 1.0, OUTSIDE).sqrt() * deviation }
 }
 
-/// What Fisher's F with two degrees of freedom above and 2 m below exceeds with this probability.
+/// The value that Fisher's F with two degrees of freedom above and 2 m below exceeds with this
+/// probability.
 ///
 /// ```text
 /// F = m (p^(-1/m) - 1)

@@ -35,7 +35,7 @@ impl Instruments {
         self.command.as_ref().map_or(wanted, |converter| converter.rounded(wanted))
     }
 
-    /// What is recorded of a command, in V.
+    /// The recorded value of a command, in V.
     pub(super) fn recorded_command(&self, command: f64, noise: &mut u64) -> f64 {
         if self.command_noise == 0.0 {
             return command;

@@ -10,7 +10,7 @@ use super::{DesignLimit, DesignLimitKind, ProjectDesign};
 /// poles within which it binds.
 const NEAR: f64 = 0.01;
 
-/// What a design was led by in its last search.
+/// The reason that led the last search of a design.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LedBy {
     /// Limits over frequency.
@@ -28,7 +28,7 @@ impl ProjectDesign {
         self.limit_findings.iter().find(|(known, _)| *known == kind).map(|(_, found)| found)
     }
 
-    /// Whether a limit of what may be built leaves the search no room; `None` where that is not
+    /// True where a limit of what may be built leaves the search no room; `None` where that is not
     /// known. A specification binds within [`BINDING_DB`] of its limit.
     pub fn binds(&self, limit: &DesignLimit) -> Option<bool> {
         match limit.kind {

@@ -53,7 +53,7 @@ pub struct CommandOfSteps {
     /// The largest single step of that sign, from rest where this one begins, that keeps the limit
     /// and that supply and sensor allow, N.
     pub largest_step_n: f64,
-    /// What keeps a step from being larger.
+    /// The limit that keeps a step from being larger.
     pub step_limit: StepLimit,
     /// How many plants were visited.
     pub plants: usize,
@@ -63,7 +63,7 @@ pub struct CommandOfSteps {
     pub moved_by: Vec<usize>,
 }
 
-/// What keeps a step from being larger.
+/// The limit that keeps a step from being larger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepLimit {
     /// The command of the valve.

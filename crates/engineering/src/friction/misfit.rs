@@ -1,4 +1,4 @@
-//! What the friction leaves of the recordings that is not noise.
+//! Misfit of the friction: residuals of the recordings that are not noise.
 //!
 //! ```text
 //! m_k = mean residual of a constant velocity, s_k its standard deviation by the noise of the rows

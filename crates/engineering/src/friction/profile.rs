@@ -150,7 +150,7 @@ impl<'a> SlidingProfile<'a> {
         best
     }
 
-    /// Whether a sum is that of the interval.
+    /// True where a sum is that of the interval.
     fn is_inside(&self, found: &Minimum) -> bool {
         found.cost - self.least.cost <= AT_THE_END
     }

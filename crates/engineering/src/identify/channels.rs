@@ -73,7 +73,7 @@ pub(super) struct Channel {
     pub(super) recording: usize,
     pub(super) signal: usize,
     pub(super) scale: f64,
-    /// What the noise of the command makes of the signal, row by row, as a standard deviation;
+    /// The deviation of the signal by the noise of the command, row by row;
     /// empty where it has none.
     pub(super) by_command: Vec<f64>,
     /// Largest less smallest value.
@@ -284,7 +284,7 @@ impl<'a> Together<'a> {
         .collect()
     }
 
-    /// What the noise of the command makes of the signals of a recording.
+    /// Finds the deviation of the signals of a recording by the noise of the command.
     ///
     /// The record of the command shows how rough it is; that the valve did not follow this is told
     /// by the residuals where a signal is steep. The noise is that with which half of them lie

@@ -40,7 +40,7 @@ pub struct ColumnContents {
     pub signal: TestSignal,
     /// The unit that it was read in.
     pub unit: String,
-    /// Whether it was read with the opposite sign, as the project says.
+    /// True where it was read with the opposite sign, as the project says.
     pub is_reversed: bool,
     /// Least and greatest value of the rows that are used, in SI.
     pub range: [f64; 2],

@@ -1,4 +1,4 @@
-//! What instruments are wrong by throughout the tests, and what that does to the residuals.
+//! Errors that instruments have throughout the tests, and the residuals that follow from them.
 
 use super::channels::Together;
 use super::recording::{Recording, SignalKind};

@@ -26,7 +26,7 @@ pub struct Recording {
     pub inputs: Vec<TestInput>,
     /// degC, of the oil in each row, where it was recorded.
     pub oil_temperature: Option<Vec<f64>>,
-    /// What the instruments of its columns may be wrong by, where it is stated.
+    /// The stated accuracies of its instruments.
     pub accuracies: Vec<(TestSignal, Accuracy)>,
     /// What was recorded of it.
     pub signals: Vec<RecordedSignal>,

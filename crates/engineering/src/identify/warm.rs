@@ -8,7 +8,7 @@ use super::recording::Recording;
 /// The oil of the tests, against which the coefficients are stated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TestOil {
-    /// How it changes with its temperature.
+    /// Its change with the temperature.
     pub law: OilLaw,
     /// degC, that the coefficients are stated at.
     pub reference: f64,

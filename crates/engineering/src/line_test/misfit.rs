@@ -1,4 +1,4 @@
-//! What the model of a line leaves of the recordings that is not noise.
+//! Misfit of a line: residuals of the recordings that are not noise.
 
 use super::{LineIdentification, ResponseFit, RiseFit, VolumeSource};
 
@@ -64,7 +64,7 @@ impl RiseFit {
 }
 
 impl ResponseFit {
-    /// What is left beyond noise, over the response.
+    /// Misfit beyond noise, over the response.
     fn misfit_of_response(&self) -> Option<LineMisfit> {
         if self.is_explained() {
             return None;

@@ -150,11 +150,11 @@ fn with_air(record: &RiseRecord, pressures: [f64; 2], oil: AeratedOil, drift: bo
     }
 }
 
-/// How volumes follow from pressures.
+/// The law by which volumes follow from pressures.
 #[derive(Clone, Copy)]
 struct RiseModel {
     terms: usize,
-    /// Whether a constant flow is sought.
+    /// True where a constant flow is sought.
     drift: bool,
     /// Air, and the fraction around which it is sought.
     air: Option<(AeratedOil, f64)>,
@@ -180,7 +180,7 @@ struct TermsFit {
 }
 
 impl TermsFit {
-    /// Whether a coefficient is more than chance makes it.
+    /// True where a coefficient is larger than by chance.
     fn is_decisive(&self, index: usize) -> bool {
         let value = self.values.get(index).copied().unwrap_or(0.0);
         let variance = self.covariance.get((index, index)).copied().unwrap_or(f64::INFINITY);
@@ -298,7 +298,7 @@ struct WhitenedSolution {
     likelihood: f64,
 }
 
-/// Whether the noise of a volume is as large in all rows.
+/// True where the noise of a volume is as large in all rows.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum NoiseSpread {
     Even,

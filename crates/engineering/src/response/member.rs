@@ -20,7 +20,7 @@ pub enum Averaging {
     LocalPolynomials {
         /// s, of the record.
         length: f64,
-        /// How many bands there are.
+        /// Number of bands.
         bands: usize,
     },
     /// Segments that overlap by half, with a Hann window.

@@ -25,7 +25,7 @@ pub(crate) fn document(
     read.tell(&mut out);
     tell_signals(found, &mut out);
     if let Some(region) = region {
-        region::chapter(&mut out, region);
+        region::chapter(&mut out, found, region);
     }
     out
 }

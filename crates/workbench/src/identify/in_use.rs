@@ -46,6 +46,10 @@ fn family(family: &IdentifiedFamily) -> String {
     let all = family.effects.len() + family.left_out;
     let kept = match family.effects.as_slice() {
         [] => "none of them matters, so that the valve is as identified".to_string(),
+        [only] => format!(
+            "one of them is in the family and moves K_qU and K_c by up to {} %",
+            significant(100.0 * only, 2)
+        ),
         [first, ..] => format!(
             "{} of them are in the family, the first of which moves K_qU and K_c by up to {} %",
             family.effects.len(),
@@ -57,6 +61,6 @@ fn family(family: &IdentifiedFamily) -> String {
         _ => format!("; those left out move K_qU and K_c by at most {left_out} % together"),
     };
     format!(
-        "What the noise of the recordings leaves uncertain ({share} %) has {all} independent directions of {half_width} standard deviations to either side: {kept}{others}."
+        "What the recordings leave uncertain ({share} %) has {all} independent directions of {half_width} standard deviations to either side: {kept}{others}."
     )
 }

@@ -13,13 +13,13 @@ use crate::quantity::print_bare;
 pub type FoundRegion = Result<JointRegion, JointRegionError>;
 
 /// The chapter on the plant.
-pub(crate) fn chapter(out: &mut Document, region: &FoundRegion) {
+pub(crate) fn chapter(out: &mut Document, found: &Identification, region: &FoundRegion) {
     out.heading("What the recordings leave uncertain of the plant");
     let region = match region {
         Err(error) => return out.sentences([format!("No family is written: {error}.")]),
         Ok(region) => region,
     };
-    out.sentences(sentences(region));
+    out.sentences(sentences(found, region));
     if !region.directions.is_empty() {
         let rows =
             region.directions.iter().zip(&region.effects).map(|(direction, effect)| row(direction, *effect));
@@ -28,7 +28,7 @@ pub(crate) fn chapter(out: &mut Document, region: &FoundRegion) {
 }
 
 /// The sentences of the chapter.
-fn sentences(region: &JointRegion) -> Vec<String> {
+fn sentences(found: &Identification, region: &JointRegion) -> Vec<String> {
     let half_width = significant(region.deviations, 3);
     let mut all = vec![format!(
         "The nine coefficients that the plant depends on lie together in the family with {} %: each of their independent directions within {half_width} standard deviations.",
@@ -44,7 +44,16 @@ fn sentences(region: &JointRegion) -> Vec<String> {
             "{count} of the 9 directions are left out: at their ends they move K_qU and K_c by at most {effect} % together at any operating point."
         ),
     });
-    all.push("This is the noise of the recordings. What instruments measure wrongly all the time, and what the valve's model leaves out, is not in it.".to_string());
+    let states_accuracy = found.recordings.iter().any(|one| !one.accuracies.is_empty());
+    let contents = match states_accuracy {
+        true => {
+            "This is the noise of the recordings and the stated `accuracy` of their columns. Errors of the other instruments, and what the valve's model leaves out, are not in it."
+        }
+        false => {
+            "This is the noise of the recordings. What instruments measure wrongly all the time, and what the valve's model leaves out, is not in it."
+        }
+    };
+    all.push(contents.to_string());
     all
 }
 
@@ -101,7 +110,7 @@ pub(crate) fn file(found: &Identification, region: &JointRegion) -> OutputFile {
         "# What {} leave uncertain of the valve, for the table [valve] of valve.toml.\n",
         files.join(", ")
     );
-    for sentence in sentences(region) {
+    for sentence in sentences(found, region) {
         text.push_str(&format!("# {sentence}\n"));
     }
     for (direction, effect) in region.directions.iter().zip(&region.effects) {

@@ -25,7 +25,7 @@ pub(in crate::design) struct ScenarioSteps {
     scenarios: Vec<CommandedSteps>,
     /// Most that a command may be, V.
     pub(in crate::design) limit_v: f64,
-    /// How long a step is followed, s.
+    /// Duration for which a step is followed, s.
     pub(in crate::design) duration_s: f64,
 }
 

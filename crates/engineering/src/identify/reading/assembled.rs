@@ -82,7 +82,7 @@ fn without_noise(command: &[f64]) -> (f64, Vec<f64>) {
     (if followed == command { 0.0 } else { rough }, followed)
 }
 
-/// What is stated of the instruments of the columns that are there.
+/// The stated accuracies of the instruments whose columns are there.
 fn accuracies(declared: &RecordedTest, taken: &Taken) -> Vec<(TestSignal, Accuracy)> {
     let of = |signal: TestSignal| {
         taken.of(signal)?;

@@ -222,7 +222,7 @@ fn turning(flow: &[f64]) -> Vec<f64> {
     flow.iter().map(|value| if *value == 0.0 { f64::NAN } else { *value }).collect()
 }
 
-/// Whether a meter indicates the direction: some of the flow is negative, beyond its noise.
+/// True of a meter that indicates the direction: some of the flow is negative, beyond its noise.
 fn is_signed(flow: &[f64]) -> bool {
     let least = flow.iter().copied().fold(0.0, f64::min);
     let most = flow.iter().copied().fold(0.0, f64::max);
