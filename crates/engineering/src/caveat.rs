@@ -8,6 +8,7 @@ mod leakage_humps;
 mod misfit;
 mod moved_roots;
 mod null_sides;
+mod overlap;
 
 use phea_hydraulics::cross_port::Restrictor;
 use phea_hydraulics::operating_point::{Condition, OperatingPoint};
@@ -17,6 +18,7 @@ use fed::{fed_in_loop, feed_forward, impedance, measured_without_pressures, pres
 use leakage_humps::leakage_humps;
 use misfit::misfit;
 use moved_roots::moved_roots;
+use overlap::overlap;
 
 use crate::family::{ShutGas, shut_gas};
 use crate::project::{CrossPortKind, DeclaredSeries, Load, Project, Pump, SupplyModel};
@@ -39,9 +41,11 @@ pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
         supply(setup).into_iter().chain(accumulator(setup)).chain(cross_port(setup)).chain(neck(setup));
     let of_rig = of_rig.chain(adjustment(setup)).chain(gas_valve(setup));
     let of_rig = apart_from_lines(setup).chain(of_rig).chain(progression(setup)).chain(segments(setup));
-    let of_valve = leakage_humps(setup).map(|sentence| Caveat { sentence, unproven: false });
-    of_valve
+    let of_valve = leakage_humps(setup)
         .into_iter()
+        .chain(overlap(setup))
+        .map(|sentence| Caveat { sentence, unproven: false });
+    of_valve
         .chain(misfit(setup))
         .chain(of_rig)
         .chain(moved_roots(setup))
@@ -88,6 +92,7 @@ pub fn of_models(setup: &Setup<'_>) -> Vec<String> {
         .chain(standing(project))
         .chain(null_sides::null_sides(setup))
         .chain(leakage_humps(setup))
+        .chain(overlap(setup))
         .chain(misfit(setup).map(|caveat| caveat.sentence))
         .collect()
 }

@@ -23,6 +23,7 @@ mod reading;
 mod recording;
 mod residuals;
 mod simple;
+mod terms;
 mod told;
 mod variables;
 mod warm;
@@ -36,13 +37,14 @@ pub use misfit::{Misfit, MisfitPlace};
 pub use reading::recordings;
 pub use recording::{RecordedSignal, Recording, SignalKind};
 pub use simple::{CurveReading, NullMethod, NullReading, SimpleCalculations};
+pub use terms::{TermEvidence, ValveTerm};
 pub use told::Untold;
 pub use warm::TestOil;
 
 use phea_dynamics::least_squares::Ending;
 use phea_dynamics::watch::{Stopped, Watch};
 use phea_hydraulics::servovalve::{
-    LeakageModel, OilLaw, STATIC_COEFFICIENTS, StaticCoefficients, TestedValve,
+    LeakageModel, OilLaw, STATIC_COEFFICIENTS, StaticCoefficients, TestedValve, ValveTerms,
 };
 
 use self::fit::Fit;
@@ -63,6 +65,12 @@ pub const COEFFICIENT_NAMES: [(&str, &str); STATIC_COEFFICIENTS] = [
     ("tare_flow", "m3/s"),
     ("null_bias", "V"),
     ("hysteresis", "V"),
+    ("lap.positive", "1"),
+    ("lap.negative", "1"),
+    ("saturation", "1"),
+    ("leakage_shapes.a_to_tank", "1"),
+    ("leakage_shapes.supply_to_b", "1"),
+    ("leakage_shapes.b_to_tank", "1"),
 ];
 
 /// What is known in addition to the files.
@@ -191,6 +199,8 @@ pub struct Identification {
     pub first_guess: StaticCoefficients,
     /// Both models of the leakage compared.
     pub evidence: ModelEvidence,
+    /// What each term of the valve explains.
+    pub terms: Vec<TermEvidence>,
     /// How well each signal is explained.
     pub signals: Vec<SignalFit>,
     /// Root mean square of all residuals, each over the range of its signal.
@@ -213,6 +223,28 @@ impl Identification {
     /// Pa, drop from supply to tank of most rows.
     pub fn usual_drop(&self) -> f64 {
         recording::usual_drop(&self.recordings)
+    }
+
+    /// The indices of the coefficients of its model, in their order.
+    pub fn in_model(&self) -> impl Iterator<Item = usize> {
+        let terms = self.tested.terms;
+        (0..STATIC_COEFFICIENTS).filter(move |index| variables::has(terms, *index))
+    }
+
+    /// The path of a coefficient in the project: the shape of edge 3 is that of all where the edges
+    /// have no shapes of their own.
+    pub fn path(&self, name: &str) -> String {
+        match name {
+            "leakage_shape" if self.tested.terms.leakage_by_edge => {
+                "valve.leakage_shapes.supply_to_a".to_string()
+            }
+            name => format!("valve.{name}"),
+        }
+    }
+
+    /// The indices of those of them that the linear plant depends on.
+    pub fn of_plant(&self) -> impl Iterator<Item = usize> {
+        self.in_model().filter(|index| !variables::OF_TEST_ALONE.contains(index))
     }
 
     /// Whether no further step explains more.
@@ -277,13 +309,15 @@ pub fn identify(
         transition_pressure: known.transition_pressure,
         tare_reference_drop: known.tare_pressure.unwrap_or_else(|| recording::usual_drop(&recordings)),
         leakage_model: known.leakage_model,
+        terms: ValveTerms::default(),
     };
     let simple = simple::simple_calculations(&recordings, &tested, known.rated_flow);
     let first_guess = guess::first_guess(&recordings, &tested, &simple);
     let variables = Variables::around(&first_guess, tested.nominal_voltage);
     let first = fit::fitted(&recordings, tested, &variables, search, watch)?;
     let starts = first.starts;
-    let (evidence, found) = best_model(first, (search.leakage_model, known.leakage_model), watch)?;
+    let (evidence, found, terms) = best_model(first, (search.leakage_model, known.leakage_model), watch)?;
+    let variables = found.together.variables.clone();
     let coefficients = found.coefficients();
     let groups = found.together.groups(found.block_rows());
     let shared = instruments::shared_changes(&found.together, &found.minimum.variables, oil.as_ref());
@@ -293,7 +327,7 @@ pub fn identify(
     intervals::lowered_tare_flow(&mut intervals, &recordings, &signals);
     let mut deviations = variables.scales(&coefficients);
     for (scale, deviation) in deviations.iter_mut().zip(&told.deviations) {
-        *scale *= deviation;
+        *scale = if deviation.is_finite() { *scale * deviation } else { f64::INFINITY };
     }
     // a coefficient that is not determined may have ended anywhere: a further test is judged at its
     // usual value
@@ -317,6 +351,7 @@ pub fn identify(
         simple,
         first_guess,
         evidence,
+        terms,
         residual_rms: residual_rms(&signals),
         cost: found.minimum.cost,
         signals,
@@ -329,16 +364,48 @@ pub fn identify(
     })
 }
 
+/// Both models of the leakage compared, with what the valve has beyond edges that open in
+/// proportion; and the fit of the wanted model, or else the preferred one, or else the usual one.
+///
+/// What a valve has beyond may make one model of the leakage look like the other: where it has
+/// something, both are compared again with it.
+fn best_model<'a>(
+    first: Fit<'a>,
+    models: (Option<LeakageModel>, LeakageModel),
+    watch: Watch<'_>,
+) -> Result<(ModelEvidence, Fit<'a>, Vec<TermEvidence>), IdentifyError> {
+    let (evidence, found) = better_leakage(first, models, watch)?;
+    let (found, told) = terms::with_terms(found, watch)?;
+    if found.together.tested.terms == ValveTerms::default() || found.together.tested.terms.leakage_by_edge {
+        return Ok((evidence, found, told));
+    }
+    let model = found.together.tested.leakage_model;
+    let (evidence, found) = better_leakage(found, models, watch)?;
+    match found.together.tested.leakage_model == model {
+        true => Ok((evidence, found, told)),
+        false => {
+            let (found, again) = terms::with_terms(found, watch)?;
+            let before = told.into_iter().filter(|one| one.taken);
+            Ok((evidence, found, before.chain(again).collect()))
+        }
+    }
+}
+
 /// Both models of the leakage compared, and the fit of the wanted one, or else the preferred one,
 /// or else the usual one.
-fn best_model<'a>(
+fn better_leakage<'a>(
     first: Fit<'a>,
     (wanted, usual): (Option<LeakageModel>, LeakageModel),
     watch: Watch<'_>,
 ) -> Result<(ModelEvidence, Fit<'a>), IdentifyError> {
     let model = first.together.tested.leakage_model;
     let is_first = |evidence: &ModelEvidence| wanted.or(evidence.preferred()).unwrap_or(usual) == model;
-    let second = fit::with_the_other_model(&first, watch)?;
+    let leakage_model = match model {
+        LeakageModel::EachEdge => LeakageModel::OneCurve,
+        LeakageModel::OneCurve => LeakageModel::EachEdge,
+    };
+    let other = TestedValve { leakage_model, ..first.together.tested };
+    let second = fit::with_another_model(&first, other, watch)?;
     let rough = ModelEvidence::of([&first, &second]);
     let is_settled = rough.difference() > FAR && is_first(&rough);
     let second = if is_settled { second } else { second.searched_to_the_end(watch)? };

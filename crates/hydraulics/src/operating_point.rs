@@ -160,8 +160,9 @@ impl OperatingPoint {
 /// #     supply: Supply { pressure: 70e5, tank_pressure: 0.0 },
 /// #     valve: Servovalve {
 /// #         flow_coefficients: Edges::from_array([3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7]),
+/// #         opening: OpeningLaw::Proportional,
 /// #         leakage_coefficients: Edges::from_array([2.35e-9, 2.2e-9, 1.7e-9, 2.35e-9]),
-/// #         leakage_shape: 100.0, leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
+/// #         leakage_shape: LeakageShape::Common(100.0), leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
 /// #         natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
 /// #     },
 /// #     line_a: line, line_b: line, accumulators: [None; 2], necks: [None; 2], thermal_time_constants: [None; 2], adjustments: [None; 2], cross_port: None, series: None, linkage: None,

@@ -13,7 +13,9 @@ use crate::force_sensor::ForceSensor;
 use crate::friction::{Friction, LuGre, Stribeck};
 use crate::line::{Hose, Line, Pipe, PipeWall, Stiffening};
 use crate::linear::LinearParameters;
-use crate::servovalve::{Edges, LeakageModel, Servovalve, SpoolImperfection, Supply};
+use crate::servovalve::{
+    Edges, LeakageModel, LeakageShape, OpeningLaw, Servovalve, SpoolImperfection, Supply,
+};
 use crate::stiffness::StiffnessModel;
 use crate::stroke::ActuatorStroke;
 
@@ -73,8 +75,9 @@ pub fn cylinder() -> Cylinder {
 pub fn valve() -> Servovalve {
     Servovalve {
         flow_coefficients: Edges::from_array([3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7]),
+        opening: OpeningLaw::Proportional,
         leakage_coefficients: Edges::from_array([2.35e-9, 2.2e-9, 1.7e-9, 2.35e-9]),
-        leakage_shape: 100.0,
+        leakage_shape: LeakageShape::Common(100.0),
         leakage_model: LeakageModel::EachEdge,
         tare_flow: 7.55e-6,
         nominal_voltage: 10.0,
@@ -95,6 +98,7 @@ pub fn measured_spool() -> SpoolImperfection {
 pub fn valve_with_equal_edges() -> Servovalve {
     Servovalve {
         flow_coefficients: Edges::equal(3.0e-7),
+        opening: OpeningLaw::Proportional,
         leakage_coefficients: Edges::equal(2.40e-9),
         ..valve()
     }

@@ -5,6 +5,7 @@ mod coefficients;
 mod flow;
 mod identification;
 mod oil_temperature;
+mod opening;
 mod ports;
 mod slow_motion;
 mod spool;
@@ -17,13 +18,15 @@ pub use coefficients::{
     control_coefficients, velocity_gain,
 };
 pub use flow::{
-    ChamberFlows, EdgeFlows, LeakageModel, Openings, chamber_flows, control_flow, edge_conductances,
-    edge_flows, hyperbolic_secant,
+    ChamberFlows, EdgeFlows, LeakageModel, chamber_flows, control_flow, edge_conductances, edge_flows,
+    hyperbolic_secant,
 };
 pub use identification::{
     PortCircuit, STATIC_COEFFICIENTS, Sensitive, StaticCoefficients, TestInput, TestOutput, TestedValve,
+    ValveTerms,
 };
 pub use oil_temperature::{OilLaw, WarmOil};
+pub use opening::{LeakageShape, OpeningLaw, OpeningShape, Openings};
 pub use ports::{PortState, blocked_ports, connected_ports};
 pub use slow_motion::SlowSpool;
 pub use spool::{SpoolImperfection, SpoolState};
@@ -96,11 +99,12 @@ impl<S: Scalar> Edges<S> {
 pub struct Servovalve<S = f64> {
     /// Flow coefficients K_v3 to K_v6 in m3/(s Pa^0.5).
     pub flow_coefficients: Edges<S>,
+    /// What the spool opens of the edges.
+    pub opening: OpeningLaw<S>,
     /// Leakage coefficients K_vin3 to K_vin6 at null in m3/(s Pa^0.5).
     pub leakage_coefficients: Edges<S>,
-    /// Shape lambda of the leakage over the spool position; the larger the narrower, 0 keeps the
-    /// leakage constant.
-    pub leakage_shape: S,
+    /// Shape lambda of the leakage over the spool position.
+    pub leakage_shape: LeakageShape<S>,
     /// What lambda and the leakage coefficients mean away from null.
     pub leakage_model: LeakageModel,
     /// Flow of the hydraulic amplifier q_tare in m3/s; takes no part in the motion.
@@ -139,7 +143,17 @@ impl Servovalve {
         for (name, value) in NAMES.into_iter().zip(self.leakage_coefficients.to_array()) {
             problems.positive(&format!("leakage_coefficients.{name}"), value);
         }
-        problems.not_negative("leakage_shape", self.leakage_shape);
+        if let OpeningLaw::Shaped(shape) = &self.opening {
+            shape.check(&mut problems);
+        }
+        match self.leakage_shape {
+            LeakageShape::Common(shape) => problems.not_negative("leakage_shape", shape),
+            LeakageShape::ByEdge(shapes) => {
+                for (name, value) in NAMES.into_iter().zip(shapes.to_array()) {
+                    problems.not_negative(&format!("leakage_shapes.{name}"), value);
+                }
+            }
+        }
         problems.not_negative("tare_flow", self.tare_flow);
         problems.positive("nominal_voltage", self.nominal_voltage);
         problems.positive("natural_frequency", self.natural_frequency);
@@ -151,7 +165,7 @@ impl Servovalve {
 
 phea_dynamics::parameters! {
     Servovalve {
-        flow_coefficients, leakage_coefficients, leakage_shape, leakage_model: kept, tare_flow,
+        flow_coefficients, opening, leakage_coefficients, leakage_shape, leakage_model: kept, tare_flow,
         nominal_voltage, natural_frequency, damping_ratio, transition_pressure,
     }
 }

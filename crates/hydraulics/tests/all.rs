@@ -20,6 +20,7 @@ mod machine_slopes;
 mod measured_velocity;
 mod motor;
 mod neck;
+mod opening;
 mod operating_point;
 mod passive_parts;
 mod plant;

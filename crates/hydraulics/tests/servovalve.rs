@@ -8,7 +8,7 @@ use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::operating_point::{Condition, operating_point};
 use phea_hydraulics::reference_rig::{USEFUL_AREA, components, hose_line, valve, valve_with_equal_edges};
 use phea_hydraulics::servovalve::{
-    ChamberFlows, Edges, LeakageModel, Servovalve, SpoolDirection, Supply, blocked_ports,
+    ChamberFlows, Edges, LeakageModel, LeakageShape, Servovalve, SpoolDirection, Supply, blocked_ports,
     chamber_coefficients, chamber_flows, control_coefficients, control_flow, edge_conductances, edge_flows,
     flow_coefficient_from_rating, leakage_coefficient_from_rating, velocity_gain,
 };
@@ -70,7 +70,7 @@ fn control_coefficients_are_the_closed_forms_for_equal_edges() {
 
 #[test]
 fn ranges_of_table_6_3() {
-    let valve = Servovalve { leakage_shape: 0.0, ..valve_with_equal_edges() };
+    let valve = Servovalve { leakage_shape: LeakageShape::Common(0.0), ..valve_with_equal_edges() };
     let at = |spool, load| control_coefficients(&valve, &SUPPLY, spool, load, SpoolDirection::Extending);
     // ORIGIN: thesis Table 6.3 (one unit of the last digit)
     check("K_qU, no load", at(0.0, 0.0).flow_gain, 5.61e-5, 2.0 * 1e-7);
@@ -107,7 +107,8 @@ fn leakage_adds_to_the_flow_gain_under_load() {
             let spool = 0.005 * f64::from(step);
             let with =
                 control_coefficients(&valve_with_equal_edges(), &SUPPLY, spool, 25e5, SpoolDirection::Mean);
-            let constant = Servovalve { leakage_shape: 0.0, ..valve_with_equal_edges() };
+            let constant =
+                Servovalve { leakage_shape: LeakageShape::Common(0.0), ..valve_with_equal_edges() };
             let without = control_coefficients(&constant, &SUPPLY, spool, 25e5, SpoolDirection::Mean);
             with.flow_gain / without.flow_gain - 1.0
         })
@@ -295,7 +296,7 @@ fn control_flow_of_equal_edges() {
 
 #[test]
 fn impossible_valves_are_refused_by_name() {
-    let broken = Servovalve { damping_ratio: 0.0, leakage_shape: f64::NAN, ..valve() };
+    let broken = Servovalve { damping_ratio: 0.0, leakage_shape: LeakageShape::Common(f64::NAN), ..valve() };
     let names: Vec<String> = broken.problems().into_iter().map(|problem| problem.quantity).collect();
     assert_eq!(names, ["leakage_shape", "damping_ratio"]);
     let inverted = Supply { pressure: 1e5, tank_pressure: 2e5 };

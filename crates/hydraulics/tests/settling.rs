@@ -14,7 +14,7 @@ use phea_hydraulics::operating_point::{
     Balance, OperatingPoint, Settled, Steady, SteadyLoad, operating_point,
 };
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, leaking, valve};
-use phea_hydraulics::servovalve::{Edges, LeakageModel, Servovalve, Supply};
+use phea_hydraulics::servovalve::{Edges, LeakageModel, LeakageShape, OpeningLaw, Servovalve, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 
 /// Over a box of supply pressures, loads and commands the pressures at standstill are enclosed
@@ -80,8 +80,9 @@ impl Draw {
         let supply = Supply { pressure: tank_pressure + self.factor(30e5, 300e5), tank_pressure };
         let valve = Servovalve {
             flow_coefficients: self.edges(1e-7, 3e-7),
+            opening: OpeningLaw::Proportional,
             leakage_coefficients: self.edges(1e-9, 3e-9),
-            leakage_shape: self.even(0.0, 200.0),
+            leakage_shape: LeakageShape::Common(self.even(0.0, 200.0)),
             leakage_model: self.leakage_model(),
             transition_pressure: self.factor(1e2, 1e4),
             ..valve()

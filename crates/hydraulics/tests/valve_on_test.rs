@@ -3,9 +3,9 @@
 
 use phea_hydraulics::reference_rig::valve;
 use phea_hydraulics::servovalve::{
-    Edges, LeakageModel, PortCircuit, Servovalve, SlowSpool, SpoolImperfection, SpoolState,
-    StaticCoefficients, Supply, TestInput, TestedValve, blocked_ports, connected_ports, edge_conductances,
-    edge_flows,
+    Edges, LeakageModel, LeakageShape, OpeningShape, PortCircuit, STATIC_COEFFICIENTS, Servovalve, SlowSpool,
+    SpoolImperfection, SpoolState, StaticCoefficients, Supply, TestInput, TestedValve, ValveTerms,
+    blocked_ports, connected_ports, edge_conductances, edge_flows,
 };
 
 const SUPPLY: Supply = Supply { pressure: 70e5, tank_pressure: 2e5 };
@@ -23,7 +23,7 @@ fn blocked_ports_pass_on_what_they_take() {
     for (shape, leakage_model) in
         MODELS.into_iter().flat_map(|model| [0.0, 100.0, 4000.0].map(|shape| (shape, model)))
     {
-        let valve = Servovalve { leakage_shape: shape, leakage_model, ..valve() };
+        let valve = Servovalve { leakage_shape: LeakageShape::Common(shape), leakage_model, ..valve() };
         for opening in openings() {
             let found = blocked_ports(&valve, &SUPPLY, opening);
             let conductances = edge_conductances(&valve, opening);
@@ -63,7 +63,8 @@ fn connected_ports_give_to_each_other() {
 #[test]
 fn the_metered_flow_is_that_of_two_edges_in_series() {
     let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };
-    let valve = Servovalve { transition_pressure: 1e-2, leakage_shape: 1000.0, ..valve() };
+    let valve =
+        Servovalve { transition_pressure: 1e-2, leakage_shape: LeakageShape::Common(1000.0), ..valve() };
     let of = |first: f64, second: f64| first * second / (first * first + second * second).sqrt();
     let flow = &valve.flow_coefficients;
     for opening in [1.0, 5.0] {
@@ -113,6 +114,8 @@ fn sensitivities_are_derivatives() {
     for leakage_model in MODELS {
         check_sensitivities(&TestedValve { leakage_model, ..TESTED });
     }
+    let terms = ValveTerms { lap: true, saturation: true, leakage_by_edge: true };
+    check_sensitivities(&TestedValve { terms, ..TESTED });
 }
 
 const TESTED: TestedValve = TestedValve {
@@ -120,23 +123,25 @@ const TESTED: TestedValve = TestedValve {
     transition_pressure: 1e3,
     tare_reference_drop: 60e5,
     leakage_model: LeakageModel::EachEdge,
+    terms: ValveTerms { lap: false, saturation: false, leakage_by_edge: false },
 };
 
 fn check_sensitivities(tested: &TestedValve) {
     let coefficients = StaticCoefficients {
         flow_coefficients: valve().flow_coefficients,
         leakage_coefficients: valve().leakage_coefficients,
-        leakage_shape: 90.0,
+        leakage_shapes: Edges::from_array([90.0, 70.0, 110.0, 95.0]),
         tare_flow: 7.55e-6,
         null_bias: 0.02,
         hysteresis_width: 0.11,
+        opening: OpeningShape { lap_positive: 0.004, lap_negative: -0.003, saturation: 0.3 },
     };
     let commands = [-3.0, -0.2, -0.02, 0.04, 0.1, 2.0, 0.3, 0.05, -0.03, -1.0];
     for circuit in [PortCircuit::Blocked, PortCircuit::Connected] {
         let load = |command: f64| if circuit == PortCircuit::Connected { 1e5 * command } else { 0.0 };
         let inputs = commands.map(|command| TestInput::new(command, SUPPLY, load(command)));
         let found = tested.sensitive_outputs(&coefficients, circuit, &inputs);
-        for index in 0..12 {
+        for index in 0..STATIC_COEFFICIENTS {
             let at = |share: f64| {
                 let mut numbers = coefficients.to_array();
                 numbers[index] *= 1.0 + share;
@@ -166,10 +171,11 @@ fn a_shut_edge_has_finite_derivatives() {
     let coefficients = StaticCoefficients {
         flow_coefficients: Edges::equal(3e-7),
         leakage_coefficients: Edges::equal(2e-9),
-        leakage_shape: 5000.0,
+        leakage_shapes: Edges::equal(5000.0),
         tare_flow: 0.0,
         null_bias: 0.0,
         hysteresis_width: 1e-6,
+        opening: OpeningShape::default(),
     };
     let inputs = [TestInput::new(10.0, SUPPLY, 0.0)];
     let circuits = [PortCircuit::Blocked, PortCircuit::Connected];

@@ -26,6 +26,8 @@ pub struct Valve {
     pub damping_ratio: f64,
     /// λ of sech(λ U/U_n) in the leakage; zero keeps the leakage constant.
     pub leakage_shape: f64,
+    /// λ of each edge, in place of the one of all.
+    pub leakage_shapes: Option<EdgeCoefficients>,
     /// The meaning of λ and the leakage coefficients away from null.
     pub leakage_model: LeakageModel,
     /// m³/s, pilot stage flow from supply to tank.
@@ -46,12 +48,26 @@ pub struct Valve {
     pub flow: ValveCoefficients<RatedFlow>,
     /// K_vin3 to K_vin6, or what they follow from.
     pub leakage: ValveCoefficients<NullLeakage>,
+    /// Travel by which the edges overlap, or, negative, underlap.
+    pub lap: Option<ValveLap>,
+    /// How much less than in proportion the edges open, c of u/(1 + c u).
+    pub saturation: f64,
     /// s, step response time of the data sheet; for information.
     pub response_time: Option<f64>,
     /// What its coefficients leave unexplained of the recordings that they were identified from.
     pub misfit: Option<ValveMisfit>,
     /// What it costs and weighs.
     pub cost: PartCost,
+}
+
+/// The lap of the edges over the travel of full opening: positive for an overlap, negative for an
+/// underlap.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ValveLap {
+    /// Of edges 3 and 6, which a positive command opens.
+    pub positive: f64,
+    /// Of edges 4 and 5, which a negative command opens.
+    pub negative: f64,
 }
 
 /// The greatest misfit of identified coefficients.
@@ -141,6 +157,15 @@ impl RatedFlow {
     }
 }
 
+impl ValveLap {
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("positive", &RATIO, "Of edges 3 and 6, over full travel; negative: underlap.");
+        v.quantity(k, &mut self.positive);
+        let k = key("negative", &RATIO, "Of edges 4 and 5, over full travel; negative: underlap.");
+        v.quantity(k, &mut self.negative);
+    }
+}
+
 impl ValveMisfit {
     fn visit<V: Visitor>(&mut self, v: &mut V) {
         let k = key("share", &RATIO, "Root mean square of the misfit, over the range of the signal.");
@@ -175,6 +200,17 @@ pub struct EdgeCoefficients {
 }
 
 impl EdgeCoefficients {
+    fn visit_shapes<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("supply_to_a", &RATIO, "λ of edge 3, from supply to chamber A.").not_negative();
+        v.quantity(k, &mut self.supply_to_a);
+        let k = key("a_to_tank", &RATIO, "λ of edge 4, from chamber A to tank.").not_negative();
+        v.quantity(k, &mut self.a_to_tank);
+        let k = key("supply_to_b", &RATIO, "λ of edge 5, from supply to chamber B.").not_negative();
+        v.quantity(k, &mut self.supply_to_b);
+        let k = key("b_to_tank", &RATIO, "λ of edge 6, from chamber B to tank.").not_negative();
+        v.quantity(k, &mut self.b_to_tank);
+    }
+
     /// All four, to be changed.
     pub fn each_mut(&mut self) -> [&mut f64; 4] {
         [&mut self.supply_to_a, &mut self.a_to_tank, &mut self.supply_to_b, &mut self.b_to_tank]
@@ -217,6 +253,8 @@ impl Valve {
         v.quantity(k, &mut self.damping_ratio);
         let k = key("leakage_shape", &RATIO, "λ of sech(λ U/U_n) in the leakage; 0 keeps it constant.");
         v.quantity(k.not_negative().or(0.0), &mut self.leakage_shape);
+        let k = plain("leakage_shapes", "λ of each edge, in place of `leakage_shape`: a table, or an array.");
+        v.record(k, &mut self.leakage_shapes, EdgeCoefficients::visit_shapes);
         let k = plain("leakage_model", "What follows sech(λ U/U_n): each edge's leakage, or the valve's.");
         v.choice(k, &LEAKAGE_MODELS, &mut self.leakage_model, false);
         let k = key("tare_flow", &FLOW, "Pilot stage flow from supply to tank.").not_negative().or(0.0);
@@ -238,6 +276,10 @@ impl Valve {
         v.record(flows, &mut edges, EdgeCoefficients::visit);
         let leaks = plain("leakage_coefficients", "K_vin3 to K_vin6: a table, or an array in this order.");
         v.record(leaks, &mut leaking_edges, EdgeCoefficients::visit);
+        let k = plain("lap", "Overlap of the edges, positive and negative command; below zero: underlap.");
+        v.record(k, &mut self.lap, ValveLap::visit);
+        let k = key("saturation", &RATIO, "c of the opening u/(1 + c u), beyond the lap; 0: in proportion.");
+        v.quantity(k.not_negative().or(0.0), &mut self.saturation);
         self.visit_imperfections(v);
         v.way(&["nominal_flow"], &mut rating, RatedFlow::visit);
         v.way(&["null_leakage"], &mut leakage, NullLeakage::visit);

@@ -116,6 +116,7 @@ mod valve_in_use;
 mod valve_instruments;
 mod valve_numbers;
 mod valve_reversals;
+mod valve_terms;
 mod valve_tests;
 mod velocity_sensor;
 mod verify_contract;

@@ -10,6 +10,7 @@ use crate::ask::HOSE;
 use crate::valve_identification::recorded;
 use nalgebra::{DMatrix, DVector};
 use phea_dynamics::random::{normal, stream};
+use phea_hydraulics::servovalve::STATIC_COEFFICIENTS;
 use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::template::{TemplateOptions, template};
 use phea_workbench::family::{family, visited_box};
@@ -171,7 +172,7 @@ fn directions_that_are_left_out_matter_little() {
 #[test]
 fn what_is_known_exactly_has_no_directions() {
     let mut found = identification().clone();
-    found.deviations = [0.0; 12];
+    found.deviations = [0.0; STATIC_COEFFICIENTS];
     let region = joint_region(&found, &rig(), 0.0).unwrap();
     assert_eq!((region.directions.len(), region.effect_left_out), (0, 0.0));
     let names: Vec<String> =
@@ -193,7 +194,7 @@ fn no_family_is_written_of_what_the_recordings_do_not_tell() {
     );
     let mut found = identification().clone();
     found.deviations[4] = found.coefficients.to_array()[4];
-    let below = JointRegionError::BelowZero("valve.leakage_coefficients.supply_to_a");
+    let below = JointRegionError::BelowZero("valve.leakage_coefficients.supply_to_a".to_string());
     assert_eq!(joint_region(&found, &rig(), 0.0), Err(below));
     let alone = Project { actuator: None, ..rig() };
     assert_eq!(joint_region(identification(), &alone, 0.0), Err(JointRegionError::NoRig));

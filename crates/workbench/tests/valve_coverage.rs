@@ -8,7 +8,8 @@ use crate::ask::{HOSE, answer, load};
 use crate::valve_identification::{TRUTH, VALVE, interval};
 use nalgebra::{DMatrix, DVector};
 use phea_hydraulics::servovalve::{
-    LeakageModel, PortCircuit, StaticCoefficients, Supply, TestInput, TestOutput, TestedValve,
+    LeakageModel, PortCircuit, STATIC_COEFFICIENTS, StaticCoefficients, Supply, TestInput, TestOutput,
+    TestedValve, ValveTerms,
 };
 use phea_workbench::bench::StaticTest;
 use phea_workbench::command::{IdentifyRequest, Request, identify_watched};
@@ -179,8 +180,11 @@ fn rows(bench: &Bench, test: StaticTest) -> Vec<(Vec<f64>, Vec<f64>, Vec<f64>)> 
         transition_pressure: 1e3,
         tare_reference_drop: 70e5,
         leakage_model: LeakageModel::EachEdge,
+        terms: ValveTerms::default(),
     };
-    let truth = StaticCoefficients::from_array(TRUTH.map(|(_, truth)| truth));
+    let mut numbers = [0.0; STATIC_COEFFICIENTS];
+    numbers.iter_mut().zip(TRUTH).for_each(|(number, (_, truth))| *number = truth);
+    let truth = StaticCoefficients::from_array(numbers);
     let inputs = true_inputs(bench, test, &truth, &tested);
     let outputs = tested.sensitive_outputs(&truth, test.circuit(), &inputs);
     let step = 1e2;
@@ -205,7 +209,7 @@ fn rows(bench: &Bench, test: StaticTest) -> Vec<(Vec<f64>, Vec<f64>, Vec<f64>)> 
                 all.iter().zip(weights).map(|(one, weight)| one * weight).sum::<f64>()
             };
             noises.push(noise);
-            gradients.extend(output.combined(weights).gradient());
+            gradients.extend(output.combined(weights).gradient().iter().take(COUNT));
             for (more, less) in [(&more_supply, &less_supply), (&more_load, &less_load)] {
                 by_pressure.push((shown(more) - shown(less)) / (2.0 * step));
             }

@@ -35,10 +35,10 @@ const ROUNDING: f64 = 1e-15;
 /// cov = H^-1 S H^-1 n/(n - m)      H = sum psi' j j',  S = sum over groups of g g',  g = sum psi j within a group
 /// ```
 ///
-/// with j the derivatives of one residual, n residuals and m variables. Residuals of one group may
-/// depend on each other, as readings of one instant do (Liang and Zeger 1986); `groups` has the
-/// index of each residual's group. Along each eigenvector of H the standard deviation is that of
-/// the covariance.
+/// with j the derivatives of one residual, n residuals and m variables on which one depends.
+/// Residuals of one group may depend on each other, as readings of one instant do (Liang and Zeger
+/// 1986); `groups` has the index of each residual's group. Along each eigenvector of H the standard
+/// deviation is that of the covariance.
 ///
 /// # Example
 /// The mean of n numbers is known to their deviation over the root of n.
@@ -116,7 +116,9 @@ pub fn uncertainty_with_shared(
     information.fill_upper_triangle_with_lower_triangle();
     scatter.fill_upper_triangle_with_lower_triangle();
     of_errors.fill_upper_triangle_with_lower_triangle();
-    let (rows, variables) = (at.residuals.len() as f64, count as f64);
+    // a variable on which nothing depends takes no freedom from the residuals
+    let varied = (0..count).filter(|index| information[(*index, *index)] > 0.0).count();
+    let (rows, variables) = (at.residuals.len() as f64, varied as f64);
     let freedom = if rows > variables { rows / (rows - variables) } else { f64::INFINITY };
     sandwich(information, &(scatter * freedom + of_errors))
 }

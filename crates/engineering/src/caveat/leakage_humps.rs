@@ -29,7 +29,7 @@ pub(super) fn leakage_humps(setup: &Setup<'_>) -> Option<String> {
 /// The command of the lower of two maxima of a valve's leakage, the leakage there, and the least
 /// between both.
 fn humps(valve: &Servovalve, supply: &Supply) -> Option<[f64; 3]> {
-    let widest = (WIDTHS * valve.nominal_voltage / valve.leakage_shape).min(valve.nominal_voltage);
+    let widest = (WIDTHS * valve.nominal_voltage / valve.leakage_shape.widest()).min(valve.nominal_voltage);
     let openings: Vec<f64> =
         (0..=2 * OPENINGS).map(|place| widest * (place as f64 / OPENINGS as f64 - 1.0)).collect();
     let leaks: Vec<f64> =

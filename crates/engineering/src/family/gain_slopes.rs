@@ -4,11 +4,15 @@ use phea_dynamics::expression::Expression;
 use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::scalar::Dual;
 use phea_dynamics::uncertain_plant::UncertainParameter;
+use phea_hydraulics::servovalve::STATIC_COEFFICIENTS;
 
 use super::visited::Visited;
 use super::{ProjectFamilyError, uncertain};
 use crate::rig::RigError;
 use crate::setup::Setup;
+
+/// The most numbers: as many as static tests determine of a valve.
+const MOST: usize = STATIC_COEFFICIENTS;
 
 /// Beginning of the paths that a region of operating points ranges over.
 const OPERATING_POINT: &str = "operating_point.";
@@ -23,20 +27,18 @@ const OPERATING_POINT: &str = "operating_point.";
 ///
 /// # Errors
 /// Those of a rig that cannot be computed with or does not rest at such a point.
-pub(crate) fn gain_slopes<const N: usize>(
-    setup: &Setup<'_>,
-    numbers: [&str; N],
-) -> Result<Vec<[f64; N]>, ProjectFamilyError> {
+pub(crate) fn gain_slopes(setup: &Setup<'_>, numbers: &[&str]) -> Result<Vec<Vec<f64>>, ProjectFamilyError> {
     let project = setup.project;
     let Some(declared) = &project.actuator else { return Err(RigError::NoActuator.into()) };
     let points = uncertain::parameters(project)?;
     let points: Vec<UncertainParameter> =
         points.into_iter().filter(|one| one.name.starts_with(OPERATING_POINT)).collect();
-    let stated = |name: &str| {
+    let stated = |name: &&str| {
         let nominal = project.number(name).unwrap_or(0.0);
         UncertainParameter { name: name.to_string(), nominal, minimum: nominal, maximum: nominal }
     };
-    let parameters: Vec<UncertainParameter> = points.iter().cloned().chain(numbers.map(stated)).collect();
+    let parameters: Vec<UncertainParameter> =
+        points.iter().cloned().chain(numbers.iter().map(stated)).collect();
     let visited = Visited::new(setup, &parameters)?;
     let open = visited.open(project, declared);
     let names: Vec<&str> = parameters.iter().map(|one| one.name.as_str()).collect();
@@ -46,8 +48,8 @@ pub(crate) fn gain_slopes<const N: usize>(
     });
     let mut rows = Vec::new();
     for values in combinations(&points) {
-        let numbers = parameters.iter().skip(points.len()).map(|one| one.nominal);
-        let values: Vec<f64> = values.into_iter().chain(numbers).collect();
+        let stated = parameters.iter().skip(points.len()).map(|one| one.nominal);
+        let values: Vec<f64> = values.into_iter().chain(stated).collect();
         if let Some(reason) = visited.problem(&open, &values) {
             return Err(ProjectFamilyError::OperatingPoint {
                 member: visited.member(project, &values),
@@ -56,12 +58,15 @@ pub(crate) fn gain_slopes<const N: usize>(
             });
         }
         let dual = |(index, value): (usize, &f64)| match index.checked_sub(points.len()) {
-            Some(number) => Dual::<N>::variable(*value, number),
+            Some(number) => Dual::<MOST>::variable(*value, number),
             None => Dual::constant(*value),
         };
-        let values: Vec<Dual<N>> = values.iter().enumerate().map(dual).collect();
+        let values: Vec<Dual<MOST>> = values.iter().enumerate().map(dual).collect();
         let gains = gains.evaluate(&values);
-        rows.extend(gains.iter().map(|gain| gain.gradient().map(|slope| slope / gain.value())));
+        let relative = |gain: &Dual<MOST>| {
+            gain.gradient().iter().take(numbers.len()).map(|slope| slope / gain.value()).collect()
+        };
+        rows.extend(gains.iter().map(relative));
     }
     Ok(rows)
 }

@@ -161,7 +161,7 @@ impl Fitted<'_> {
     ) -> Option<StartPieces> {
         let &[parameter] = movers else { return self.pieces(movers, whole, 0, left) };
         let [low, high] = whole[0];
-        let width = balance.valve.nominal_voltage / balance.valve.leakage_shape.max(1.0);
+        let width = balance.valve.nominal_voltage / balance.valve.leakage_shape.widest().max(1.0);
         let command = |value: f64| self.visited.command(&self.values(movers, &[value]));
         let rises = command(high) > command(low);
         let mut cuts = [-AROUND_NULL, AROUND_NULL].map(|share| {

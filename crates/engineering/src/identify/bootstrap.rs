@@ -49,7 +49,7 @@ pub(super) fn bootstrap(
     let together = &fit.together;
     let block_rows = fit.block_rows();
     let residuals = fit.minimum.linearised.residuals.len() as f64;
-    let widening = (residuals / (residuals - COUNT as f64)).sqrt();
+    let widening = (residuals / (residuals - together.variables.count() as f64)).sqrt();
     let mut estimates: [Vec<f64>; COUNT] = std::array::from_fn(|_| Vec::with_capacity(repetitions));
     let mut failed = 0;
     for repetition in 0..repetitions {

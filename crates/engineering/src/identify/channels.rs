@@ -18,6 +18,9 @@ const RESOLUTION: f64 = 1e-6;
 /// Evaluations of a search whose end is the start of another.
 const FEW_EVALUATIONS: usize = 60;
 
+/// Evaluations that tell whether a search is worth its time.
+const FIRST_STEPS: usize = 6;
+
 /// Evaluations of the last search. Where the recordings hardly distinguish coefficients, the sum
 /// has a long curved valley.
 pub(super) const EVALUATIONS: usize = 1000;
@@ -105,14 +108,14 @@ pub(super) struct Together<'a> {
     pub(super) recordings: &'a [Recording],
     pub(super) channels: Vec<Channel>,
     pub(super) tested: TestedValve,
-    pub(super) variables: &'a Variables,
+    pub(super) variables: Variables,
 }
 
 impl<'a> Together<'a> {
     pub(super) fn new(
         recordings: &'a [Recording],
         tested: TestedValve,
-        variables: &'a Variables,
+        variables: &Variables,
     ) -> Together<'a> {
         let all = recordings.iter().enumerate();
         let channels = all.flat_map(|(recording, one)| {
@@ -131,6 +134,7 @@ impl<'a> Together<'a> {
                 })
             })
         });
+        let variables = variables.with_terms(tested.terms);
         Together { recordings, channels: channels.collect(), tested, variables }
     }
 
@@ -205,6 +209,12 @@ impl<'a> Together<'a> {
     ) -> Result<Minimum, Stopped> {
         let few = Settings { maximum_evaluations: FEW_EVALUATIONS, tolerance, ..Settings::default() };
         self.searched_with(start, few, watch)
+    }
+
+    /// Where the first steps of a search from here lead.
+    pub(super) fn searched_briefly(&self, start: &[f64], watch: Watch<'_>) -> Result<Minimum, Stopped> {
+        let brief = Settings { maximum_evaluations: FIRST_STEPS, ..Settings::default() };
+        self.searched_with(start, brief, watch)
     }
 
     /// The minimum that a search from here leads to.

@@ -5,7 +5,6 @@ use phea_dynamics::portable;
 use phea_hydraulics::servovalve::{LeakageModel, StaticCoefficients};
 
 use super::fit::Fit;
-use super::variables::COUNT;
 
 /// Difference of the criterion beyond which the evidence is decisive: odds of 150 to 1 (Kass and
 /// Raftery 1995, "very strong").
@@ -49,48 +48,55 @@ impl ModelEvidence {
         (self.difference() >= DECISIVE).then_some(self.models[0].model)
     }
 
-    /// The information criterion of Schwarz (1978) for both fits of the same recordings.
-    ///
-    /// ```text
-    /// BIC = m ln n - 2 ln L        ln L = -sum over signals of f (n_c ln s_c + sum rho(r/s_c)),   n = sum f n_c
-    /// ```
-    ///
-    /// with s_c the likeliest scale of each signal, m the number of coefficients and scales, and
-    /// f = (1 - c)/(1 + c), c the correlation of neighbouring residuals of the better model: the
-    /// share of rows that are independent (Bayley and Hammersley 1946). A constant that both models
-    /// share is left out.
+    /// Both fits compared by the [`criteria`].
     pub(super) fn of(fits: [&Fit<'_>; 2]) -> ModelEvidence {
-        let signals = fits.map(Fit::signals);
-        let losses = fits.map(losses);
-        let sum = |losses: &[f64], shares: &[f64]| -> f64 {
-            losses.iter().zip(shares).map(|(loss, share)| loss * share).sum()
-        };
-        let all = vec![1.0; losses[0].len()];
-        let second_is_better = sum(&losses[1], &all) < sum(&losses[0], &all);
-        let [first, second] = &signals;
-        let better = if second_is_better { second } else { first };
-        let share = |correlation: f64| {
-            let correlation = correlation.clamp(0.0, MOST_CORRELATED);
-            (1.0 - correlation) / (1.0 + correlation)
-        };
-        let shares: Vec<f64> = better.iter().map(|signal| share(signal.correlation)).collect();
-        let independent_rows: f64 =
-            better.iter().zip(&shares).map(|(signal, share)| share * signal.rows as f64).sum();
-        let numbers = (COUNT + shares.len()) as f64;
-        let explained = |fit: &Fit<'_>, signals: &[super::SignalFit], losses: &[f64]| ExplainedBy {
+        let criteria = criteria(fits);
+        let explained = |fit: &Fit<'_>, criterion: f64| ExplainedBy {
             model: fit.together.tested.leakage_model,
             coefficients: fit.coefficients(),
-            criterion: numbers * portable::ln(independent_rows) + 2.0 * sum(losses, &shares),
-            residual_rms: super::residual_rms(signals),
+            criterion,
+            residual_rms: super::residual_rms(&fit.signals()),
         };
-        let of = |index: usize| explained(fits[index], &signals[index], &losses[index]);
-        let mut models = [of(0), of(1)];
-        // the order may differ for the rows that count
+        let mut models = [explained(fits[0], criteria[0]), explained(fits[1], criteria[1])];
         if models[1].criterion < models[0].criterion {
             models.reverse();
         }
         ModelEvidence { models }
     }
+}
+
+/// The information criterion of Schwarz (1978) for both fits of the same recordings.
+///
+/// ```text
+/// BIC = m ln n - 2 ln L        ln L = -sum over signals of f (n_c ln s_c + sum rho(r/s_c)),   n = sum f n_c
+/// ```
+///
+/// with s_c the likeliest scale of each signal, m the number of coefficients and scales, and f the
+/// share of rows that are independent, (1 - c)/(1 + c) with c the correlation of neighbouring
+/// residuals of the better model (Bayley and Hammersley 1946). A constant that both models share is
+/// left out.
+pub(super) fn criteria(fits: [&Fit<'_>; 2]) -> [f64; 2] {
+    let signals = fits.map(Fit::signals);
+    let losses = fits.map(losses);
+    let sum = |losses: &[f64], shares: &[f64]| -> f64 {
+        losses.iter().zip(shares).map(|(loss, share)| loss * share).sum()
+    };
+    let all = vec![1.0; losses[0].len()];
+    let second_is_better = sum(&losses[1], &all) < sum(&losses[0], &all);
+    let [first, second] = &signals;
+    let better = if second_is_better { second } else { first };
+    let share = |correlation: f64| {
+        let correlation = correlation.clamp(0.0, MOST_CORRELATED);
+        (1.0 - correlation) / (1.0 + correlation)
+    };
+    let shares: Vec<f64> = better.iter().map(|signal| share(signal.correlation)).collect();
+    let independent_rows: f64 =
+        better.iter().zip(&shares).map(|(signal, share)| share * signal.rows as f64).sum();
+    let of = |index: usize| {
+        let numbers = fits[index].together.variables.count() + shares.len();
+        numbers as f64 * portable::ln(independent_rows) + 2.0 * sum(&losses[index], &shares)
+    };
+    [of(0), of(1)]
 }
 
 /// The contribution of each signal to -ln L at its likeliest scale.

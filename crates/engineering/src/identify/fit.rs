@@ -3,12 +3,12 @@
 use phea_dynamics::least_squares::{Ending, Minimum, Settings};
 use phea_dynamics::random::stream;
 use phea_dynamics::watch::{Stopped, Watch};
-use phea_hydraulics::servovalve::{LeakageModel, StaticCoefficients, TestedValve};
+use phea_hydraulics::servovalve::{StaticCoefficients, TestedValve};
 
 use super::averaged::averaged;
 use super::channels::{Channel, EVALUATIONS, Together};
 use super::recording::Recording;
-use super::variables::{COUNT, Kind, Variables};
+use super::variables::{COUNT, Kind, Variables, over};
 use super::{COEFFICIENT_NAMES, IdentifyError, Search, SignalFit};
 
 /// Number of rounds in which the scale of each signal is computed from its residuals.
@@ -102,7 +102,7 @@ impl Fit<'_> {
 pub(super) fn fitted<'a>(
     recordings: &'a [Recording],
     tested: TestedValve,
-    variables: &'a Variables,
+    variables: &Variables,
     search: Search,
     watch: Watch<'_>,
 ) -> Result<Fit<'a>, IdentifyError> {
@@ -113,16 +113,31 @@ pub(super) fn fitted<'a>(
     fitted_from(&starts.collect::<Vec<_>>(), Together::new(recordings, tested, variables), EVALUATIONS, watch)
 }
 
-/// The same recordings explained with the other model of the leakage, from where this one ended.
-pub(super) fn with_the_other_model<'a>(first: &Fit<'a>, watch: Watch<'_>) -> Result<Fit<'a>, IdentifyError> {
-    let before = &first.together;
-    let leakage_model = match before.tested.leakage_model {
-        LeakageModel::EachEdge => LeakageModel::OneCurve,
-        LeakageModel::OneCurve => LeakageModel::EachEdge,
-    };
-    let tested = TestedValve { leakage_model, ..before.tested };
-    let together = Together::new(before.recordings, tested, before.variables);
-    fitted_from(std::slice::from_ref(&first.minimum.variables), together, ROUGH_EVALUATIONS, watch)
+/// The same recordings explained by another model of the valve, from where this one ended or from
+/// a first guess, whichever leads further.
+pub(super) fn with_another_model<'a>(
+    first: &Fit<'a>,
+    tested: TestedValve,
+    watch: Watch<'_>,
+) -> Result<Fit<'a>, IdentifyError> {
+    let together = Together::new(first.together.recordings, tested, &first.together.variables);
+    let mut starts = together.variables.starts();
+    starts.insert(0, together.variables.of(&first.coefficients()));
+    fitted_from(&starts, together, ROUGH_EVALUATIONS, watch)
+}
+
+/// A few steps towards the minimum that a model of the valve with another term has beside this one,
+/// with the same scales: enough to tell whether the term is worth a fit.
+pub(super) fn a_few_steps_with<'a>(
+    first: &Fit<'a>,
+    tested: TestedValve,
+    watch: Watch<'_>,
+) -> Result<Fit<'a>, IdentifyError> {
+    let variables = first.together.variables.with_terms(tested.terms);
+    let together = Together { tested, variables, ..first.together.clone() };
+    let start = together.variables.of(&first.coefficients());
+    let minimum = together.searched_briefly(&start, watch)?;
+    Ok(Fit { together, minimum, starts: [1, 1] })
 }
 
 fn fitted_from<'a>(
@@ -137,14 +152,14 @@ fn fitted_from<'a>(
     let (start, agreeing) = best_start(starts, &together, watch)?;
     let minimum = if has_many_rows(together.recordings) {
         let fewer: Vec<Recording> = together.recordings.iter().map(averaged).collect();
-        let mut few = Together::new(&fewer, together.tested, together.variables);
+        let mut few = Together::new(&fewer, together.tested, &together.variables);
         let near = settled(&mut few, &start, watch)?.variables;
         together.rescale(&near, &together.residuals(&near));
         near_minimum(&together, &near, most, watch)?
     } else {
         settled(&mut together, &start, watch)?
     };
-    if minimum.ending == Ending::NoStart || minimum.linearised.residuals.len() <= COUNT {
+    if minimum.ending == Ending::NoStart || minimum.linearised.residuals.len() <= together.variables.count() {
         return Err(IdentifyError::Data("the recordings have too few rows to fit a valve".to_string()));
     }
     Ok(Fit { together, minimum, starts: [starts.len(), agreeing] })
@@ -173,16 +188,17 @@ fn near_minimum(
     most: usize,
     watch: Watch<'_>,
 ) -> Result<Minimum, Stopped> {
-    let usual = together.variables;
+    let usual = &together.variables;
     let begun = usual.coefficients(near);
     let variables = usual.in_series(&begun);
-    let in_series = Together { variables: &variables, channels: together.channels.clone(), ..*together };
     let start = variables.of(&begun);
+    let in_series =
+        Together { variables: variables.clone(), channels: together.channels.clone(), ..*together };
     let mut minimum = in_series.searched_from_near(&start, most, watch)?;
     let coefficients = variables.coefficients(&minimum.variables);
     let mut factors = usual.slopes(&coefficients);
     for (factor, slope) in factors.iter_mut().zip(variables.slopes(&coefficients)) {
-        *factor /= slope;
+        *factor = over(*factor, slope);
     }
     for row in minimum.linearised.jacobian.chunks_exact_mut(COUNT) {
         row.iter_mut().zip(factors).for_each(|(slope, factor)| *slope *= factor);
@@ -210,7 +226,7 @@ fn best_start(
     watch: Watch<'_>,
 ) -> Result<(Vec<f64>, usize), Stopped> {
     let fewer: Vec<Recording> = together.recordings.iter().map(|one| thinned(one, OTHERS, NEAR)).collect();
-    let together = Together::new(&fewer, together.tested, together.variables);
+    let together = Together::new(&fewer, together.tested, &together.variables);
     let mut found: Vec<Minimum> = Vec::with_capacity(starts.len());
     for start in starts {
         found.push(together.searched(start, ROUGH, watch)?);

@@ -1,6 +1,6 @@
 //! First guesses, from what is read off the curves by hand.
 
-use phea_hydraulics::servovalve::{Edges, StaticCoefficients, TestedValve};
+use phea_hydraulics::servovalve::{Edges, OpeningShape, StaticCoefficients, TestedValve};
 
 use super::recording::Recording;
 use super::simple::{SimpleCalculations, largest_command};
@@ -24,7 +24,8 @@ pub(super) fn first_guess(
     StaticCoefficients {
         flow_coefficients: Edges::from_array([forward, backward, backward, forward]),
         leakage_coefficients: Edges::equal(leak),
-        leakage_shape: simple.leakage_shape.unwrap_or(100.0),
+        leakage_shapes: Edges::equal(simple.leakage_shape.unwrap_or(100.0)),
+        opening: OpeningShape::default(),
         tare_flow: simple
             .tare_flow
             .map(|one| one.value)

@@ -9,7 +9,6 @@
 
 use phea_dynamics::watch::Watch;
 
-use super::joint::COUNT;
 use super::{
     COEFFICIENT_NAMES, Identification, IdentifyError, JointRegion, Known, RecordedFiles, SMALLEST_EFFECT,
     Search, identify, joint_region, recordings,
@@ -57,6 +56,7 @@ pub fn in_use(
     };
     let (numbers, kept) = numbers(&found, &loaded.project);
     let mut settings = settings(&found, &numbers, region.as_ref());
+    settings.extend(without(&found, &loaded.project));
     let stated = loaded.project.design.as_ref().and_then(|design| design.reserve);
     settings.extend(region.as_ref().filter(|_| stated.is_none()).map(reserve));
     let family = region.map(|region| IdentifiedFamily {
@@ -98,10 +98,12 @@ fn determined(found: &Identification) -> Result<(), IdentifyError> {
     if !found.has_converged() {
         return refused("the recordings lead to no valve: the search did not converge".to_string());
     }
-    let plant = COEFFICIENT_NAMES.iter().zip(found.intervals).take(COUNT);
+    let plant = found.of_plant().filter_map(|index| {
+        Some((COEFFICIENT_NAMES.get(index)?.0, found.intervals.get(index).copied().flatten()))
+    });
     let open: Vec<String> = plant
-        .filter(|((name, _), interval)| interval.is_none() || found.at_bounds.contains(name))
-        .map(|((name, _), _)| format!("`{name}`"))
+        .filter(|(name, interval)| interval.is_none() || found.at_bounds.contains(name))
+        .map(|(name, _)| format!("`{name}`"))
         .collect();
     match open.as_slice() {
         [] => Ok(()),
@@ -120,9 +122,14 @@ fn region(found: &Identification, project: &Project) -> Result<JointRegion, Iden
 /// What takes the place of declared numbers, and what stays.
 fn numbers(found: &Identification, project: &Project) -> (Vec<IdentifiedNumber>, Vec<KeptNumber>) {
     let (mut numbers, mut kept) = (Vec::new(), Vec::new());
-    let all = COEFFICIENT_NAMES.iter().zip(found.coefficients.to_array()).zip(found.intervals);
-    for (((name, unit), value), interval) in all {
-        let path = format!("valve.{name}");
+    let all: Vec<_> =
+        COEFFICIENT_NAMES.iter().zip(found.coefficients.to_array()).zip(found.intervals).collect();
+    for ((name, unit), value, interval) in found
+        .in_model()
+        .filter_map(|index| all.get(index))
+        .map(|((named, value), interval)| (*named, *value, *interval))
+    {
+        let path = found.path(name);
         match interval {
             None => kept.push(KeptNumber { path, reason: "the recordings do not determine it" }),
             Some([low, _]) if *name == "hysteresis" && low == 0.0 => {
@@ -145,16 +152,17 @@ fn settings(
 ) -> Vec<String> {
     let model = word_of(&LEAKAGE_MODELS, &found.tested.leakage_model);
     // edges may be declared as a list of four, inside which no name can be set
-    let tables = ["valve.flow_coefficients", "valve.leakage_coefficients"];
+    let tables =
+        ["valve.flow_coefficients", "valve.leakage_coefficients", "valve.leakage_shapes", "valve.lap"];
     let edge = |one: &IdentifiedNumber, table: &str| {
         let edge = one.path.strip_prefix(table)?.strip_prefix('.')?;
         Some(format!("{edge} = {:e}", one.value))
     };
     let mut settings: Vec<String> = tables
         .iter()
-        .map(|table| {
+        .filter_map(|table| {
             let edges: Vec<String> = numbers.iter().filter_map(|one| edge(one, table)).collect();
-            format!("{table}={{ {} }}", edges.join(", "))
+            (!edges.is_empty()).then(|| format!("{table}={{ {} }}", edges.join(", ")))
         })
         .collect();
     let others = numbers.iter().filter(|one| tables.iter().all(|table| edge(one, table).is_none()));
@@ -167,6 +175,25 @@ fn settings(
         region.iter().flat_map(|region| &region.directions).map(direction).collect();
     if !directions.is_empty() {
         settings.push(format!("uncertainty_direction=[{}]", directions.join(", ")));
+    }
+    settings
+}
+
+/// What the project declares of the valve and the recordings tell nothing of, taken away: an
+/// identified valve has what it was identified with.
+fn without(found: &Identification, project: &Project) -> Vec<String> {
+    let terms = found.tested.terms;
+    let declares = |path: &str| project.number(path).is_some_and(|number| number != 0.0);
+    let mut settings = Vec::new();
+    if !terms.lap && (declares("valve.lap.positive") || declares("valve.lap.negative")) {
+        settings.push("valve.lap={ positive = 0, negative = 0 }".to_string());
+    }
+    if !terms.saturation && declares("valve.saturation") {
+        settings.push("valve.saturation=0".to_string());
+    }
+    if !terms.leakage_by_edge && project.number("valve.leakage_shapes.supply_to_a").is_some() {
+        let shape = found.coefficients.leakage_shapes.supply_to_a;
+        settings.push(format!("valve.leakage_shapes=[{shape:e}, {shape:e}, {shape:e}, {shape:e}]"));
     }
     settings
 }

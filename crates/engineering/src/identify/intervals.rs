@@ -6,7 +6,7 @@ use phea_hydraulics::servovalve::StaticCoefficients;
 
 use super::SignalFit;
 use super::recording::{Recording, SignalKind};
-use super::variables::{COUNT, Kind, TARE_FLOW, Variables};
+use super::variables::{COUNT, Kind, TARE_FLOW, Variables, over};
 
 /// Half width of a 95 % interval of a normal distribution, in standard deviations.
 const NORMAL_95: f64 = 1.96;
@@ -27,7 +27,7 @@ pub(super) fn told(
     let slopes = variables.slopes(coefficients);
     let mut factors = scales;
     for (factor, slope) in factors.iter_mut().zip(slopes) {
-        *factor /= slope;
+        *factor = over(*factor, slope);
     }
     let mut at = at.clone();
     for row in at.jacobian.chunks_exact_mut(COUNT) {

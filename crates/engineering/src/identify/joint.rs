@@ -3,28 +3,15 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable::{erfc, pow};
-use phea_hydraulics::servovalve::{Edges, StaticCoefficients};
+use phea_hydraulics::servovalve::{Edges, OpeningShape};
 
+use super::variables::{HYSTERESIS, Kind};
 use super::{COEFFICIENT_NAMES, Identification};
 use crate::family::{ProjectFamilyError, gain_slopes};
-use crate::project::{EdgeCoefficients, NumberChanges, Project, UncertaintyDirection, ValveCoefficients};
+use crate::project::{
+    EdgeCoefficients, NumberChanges, Project, UncertaintyDirection, ValveCoefficients, ValveLap,
+};
 use crate::setup::Setup;
-
-/// Coefficients that the linear plant depends on: the first of all.
-pub(super) const COUNT: usize = 9;
-
-/// Their paths.
-const PATHS: [&str; COUNT] = [
-    "valve.flow_coefficients.supply_to_a",
-    "valve.flow_coefficients.a_to_tank",
-    "valve.flow_coefficients.supply_to_b",
-    "valve.flow_coefficients.b_to_tank",
-    "valve.leakage_coefficients.supply_to_a",
-    "valve.leakage_coefficients.a_to_tank",
-    "valve.leakage_coefficients.supply_to_b",
-    "valve.leakage_coefficients.b_to_tank",
-    "valve.leakage_shape",
-];
 
 /// Probability that the true coefficients lie in the region.
 pub const COVERAGE: f64 = 0.95;
@@ -65,7 +52,7 @@ pub enum JointRegionError {
     NotTold(&'static str),
     /// A coefficient whose region is not positive.
     #[error("the region of `{0}` begins below zero: the recordings cannot distinguish it from zero")]
-    BelowZero(&'static str),
+    BelowZero(String),
     /// The rig with the identified valve has no operating point, or is not a rig.
     #[error(transparent)]
     Family(#[from] ProjectFamilyError),
@@ -103,38 +90,41 @@ pub fn joint_region(
     project
         .uncertainty
         .retain(|one| !["flow_gain", "flow_pressure_coefficient"].contains(&one.name.as_str()));
-    for ((path, _), (interval, deviation)) in
-        COEFFICIENT_NAMES.iter().zip(found.intervals.iter().zip(found.deviations)).take(COUNT)
-    {
-        if interval.is_none() || !deviation.is_finite() {
-            return Err(JointRegionError::NotTold(path));
+    let plant: Vec<usize> = found.of_plant().collect();
+    let name = |index: usize| COEFFICIENT_NAMES.get(index).map_or("", |(name, _)| *name);
+    for index in &plant {
+        let interval = found.intervals.get(*index).copied().flatten();
+        if interval.is_none() || !found.deviations.get(*index).is_some_and(|one| one.is_finite()) {
+            return Err(JointRegionError::NotTold(name(*index)));
         }
     }
+    let paths: Vec<String> = plant.iter().map(|index| found.path(name(*index))).collect();
     let setup = Setup::new(&project).map_err(|_| JointRegionError::NoRig)?;
-    let rows = gain_slopes(&setup, PATHS)?;
-    let slopes = DMatrix::from_fn(rows.len(), COUNT, |row, column| {
-        rows.get(row).map_or(0.0, |row: &[f64; COUNT]| row.get(column).copied().unwrap_or(0.0))
+    let rows = gain_slopes(&setup, &paths.iter().map(String::as_str).collect::<Vec<_>>())?;
+    let count = plant.len();
+    let slopes = DMatrix::from_fn(rows.len(), count, |row, column| {
+        rows.get(row).and_then(|row| row.get(column)).copied().unwrap_or(0.0)
     });
-    let spread = spread(found);
+    let spread = spread(found, &plant);
     let effects = &slopes * &spread;
     let turned = turned(&effects);
     let (effects, changes) = (effects * &turned, spread * turned);
-    let deviations = deviations(COUNT);
+    let deviations = deviations(count);
     let kept = kept(&effects, smallest_effect / deviations);
     let scatter = |row: usize| {
-        (kept..COUNT).map(|column| effects[(row, column)] * effects[(row, column)]).sum::<f64>().sqrt()
+        (kept..count).map(|column| effects[(row, column)] * effects[(row, column)]).sum::<f64>().sqrt()
     };
-    let left_out = |row: usize| (kept..COUNT).map(|column| effects[(row, column)].abs()).sum::<f64>();
+    let left_out = |row: usize| (kept..count).map(|column| effects[(row, column)].abs()).sum::<f64>();
     let effect = |column: usize| effects.column(column).iter().map(|one| one.abs()).fold(0.0, f64::max);
     let region = JointRegion {
-        directions: (0..kept).map(|column| direction(&changes, column, deviations)).collect(),
+        directions: (0..kept).map(|column| direction(&paths, &changes, column, deviations)).collect(),
         effects: (0..kept).map(|column| deviations * effect(column)).collect(),
-        left_out: COUNT - kept,
+        left_out: count - kept,
         change_left_out: BETWEEN_TWO * (0..effects.nrows()).map(scatter).fold(0.0, f64::max),
         effect_left_out: deviations * (0..effects.nrows()).map(left_out).fold(0.0, f64::max),
         deviations,
     };
-    match below_zero(&region, &found.coefficients) {
+    match below_zero(&region, found, &plant) {
         Some(name) => Err(JointRegionError::BelowZero(name)),
         None => Ok(region),
     }
@@ -148,13 +138,19 @@ pub fn with_valve(project: &Project, found: &Identification) -> Option<Project> 
     let (flow, leakage) = (edges(all.flow_coefficients), edges(all.leakage_coefficients));
     valve.flow = ValveCoefficients::Edges { edges: flow, rating: valve.flow.rating().copied() };
     valve.leakage = ValveCoefficients::Edges { edges: leakage, rating: valve.leakage.rating().copied() };
-    valve.leakage_shape = all.leakage_shape;
+    let shapes = edges(all.leakage_shapes);
+    valve.leakage_shape = shapes.supply_to_a;
+    valve.leakage_shapes = found.tested.terms.leakage_by_edge.then_some(shapes);
+    let OpeningShape { lap_positive: positive, lap_negative: negative, saturation } = all.opening;
+    valve.lap = found.tested.terms.lap.then_some(ValveLap { positive, negative });
+    valve.saturation = if found.tested.terms.saturation { saturation } else { 0.0 };
     valve.leakage_model = found.tested.leakage_model;
     valve.transition_pressure = found.tested.transition_pressure;
     valve.nominal_voltage = found.tested.nominal_voltage;
     (valve.tare_flow, valve.tare_pressure) = (all.tare_flow, Some(found.tested.tare_reference_drop));
     valve.null_bias = all.null_bias;
-    let may_vanish = found.intervals.last().copied().flatten().is_none_or(|[least, _]| least == 0.0);
+    let width = found.intervals.get(HYSTERESIS).copied().flatten();
+    let may_vanish = width.is_none_or(|[least, _]| least == 0.0);
     valve.hysteresis = (!may_vanish).then_some(all.hysteresis_width);
     Some(project)
 }
@@ -164,17 +160,19 @@ fn edges(edges: Edges) -> EdgeCoefficients {
     EdgeCoefficients { supply_to_a, a_to_tank, supply_to_b, b_to_tank }
 }
 
-/// D L: the change of each coefficient with independent standard normal numbers.
-fn spread(found: &Identification) -> DMatrix<f64> {
+/// D L: the change of each coefficient of the plant with independent standard normal numbers.
+fn spread(found: &Identification, plant: &[usize]) -> DMatrix<f64> {
     let all = COEFFICIENT_NAMES.len();
+    let count = plant.len();
+    let of = |place: usize| plant.get(place).copied().unwrap_or(0);
     let correlation = |i: usize, j: usize| {
         // a coefficient that is known exactly has no correlation
-        let stated = found.correlations.get(i * all + j).copied().filter(|one| one.is_finite());
+        let stated = found.correlations.get(of(i) * all + of(j)).copied().filter(|one| one.is_finite());
         stated.unwrap_or(f64::from(u8::from(i == j)))
     };
-    let eigen = SymmetricEigen::new(DMatrix::from_fn(COUNT, COUNT, correlation));
-    DMatrix::from_fn(COUNT, COUNT, |i, j| {
-        let deviation = found.deviations.get(i).copied().unwrap_or(0.0);
+    let eigen = SymmetricEigen::new(DMatrix::from_fn(count, count, correlation));
+    DMatrix::from_fn(count, count, |i, j| {
+        let deviation = found.deviations.get(of(i)).copied().unwrap_or(0.0);
         deviation * eigen.eigenvectors[(i, j)] * eigen.eigenvalues[j].max(0.0).sqrt()
     })
 }
@@ -182,9 +180,10 @@ fn spread(found: &Identification) -> DMatrix<f64> {
 /// The turn after which each column of the effects has as much of them as the earlier ones left.
 fn turned(effects: &DMatrix<f64>) -> DMatrix<f64> {
     let eigen = SymmetricEigen::new(effects.transpose() * effects);
-    let mut order: Vec<usize> = (0..COUNT).collect();
+    let count = eigen.eigenvalues.len();
+    let mut order: Vec<usize> = (0..count).collect();
     sort_by_number(&mut order, |index| -eigen.eigenvalues[*index]);
-    DMatrix::from_fn(COUNT, COUNT, |row, column| {
+    DMatrix::from_fn(count, count, |row, column| {
         order.get(column).map_or(0.0, |index| eigen.eigenvectors[(row, *index)])
     })
 }
@@ -192,16 +191,22 @@ fn turned(effects: &DMatrix<f64>) -> DMatrix<f64> {
 /// How many of the first columns it takes so that the others together have less effect than this on
 /// every row.
 fn kept(effects: &DMatrix<f64>, smallest: f64) -> usize {
+    let count = effects.ncols();
     let others = |from: usize| {
-        let of_row = |row: usize| (from..COUNT).map(|column| effects[(row, column)].abs()).sum::<f64>();
+        let of_row = |row: usize| (from..count).map(|column| effects[(row, column)].abs()).sum::<f64>();
         (0..effects.nrows()).map(of_row).fold(0.0, f64::max)
     };
-    (0..COUNT).find(|from| others(*from) <= smallest).unwrap_or(COUNT)
+    (0..count).find(|from| others(*from) <= smallest).unwrap_or(count)
 }
 
-fn direction(changes: &DMatrix<f64>, column: usize, deviations: f64) -> UncertaintyDirection {
+fn direction(
+    paths: &[String],
+    changes: &DMatrix<f64>,
+    column: usize,
+    deviations: f64,
+) -> UncertaintyDirection {
     let changes = changes.column(column);
-    let numbers = PATHS.iter().zip(changes.iter()).map(|(path, change)| ((*path).to_string(), *change));
+    let numbers = paths.iter().cloned().zip(changes.iter().copied());
     UncertaintyDirection {
         name: format!("valve_{}", column + 1),
         deviations,
@@ -210,14 +215,17 @@ fn direction(changes: &DMatrix<f64>, column: usize, deviations: f64) -> Uncertai
     }
 }
 
-/// A coefficient that is negative at the ends of the directions.
-fn below_zero(region: &JointRegion, coefficients: &StaticCoefficients) -> Option<&'static str> {
+/// A coefficient that is negative at the ends of the directions, and may not be.
+fn below_zero(region: &JointRegion, found: &Identification, plant: &[usize]) -> Option<String> {
     let reach = |path: &str| {
         let changes = region.directions.iter().flat_map(|direction| &direction.changes.numbers);
         changes.filter(|(name, _)| name == path).map(|(_, change)| change.abs()).sum::<f64>()
     };
-    let mut all = PATHS.iter().zip(coefficients.to_array());
-    all.find(|(path, number)| *number < region.deviations * reach(path)).map(|(path, _)| *path)
+    let numbers = found.coefficients.to_array();
+    plant.iter().filter(|index| !Kind::of(**index).may_be_negative()).find_map(|index| {
+        let path = found.path(COEFFICIENT_NAMES.get(*index)?.0);
+        (*numbers.get(*index)? < region.deviations * reach(&path)).then_some(path)
+    })
 }
 
 /// Half width r of the box in which this many independent standard normal numbers lie together with

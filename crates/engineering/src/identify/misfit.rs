@@ -48,14 +48,22 @@ pub struct MisfitPlace {
     pub share: f64,
 }
 
+impl SignalFit {
+    /// Root mean square of what the model does not explain, over the range of the signal; `None`
+    /// where that is noise.
+    pub(super) fn misfit(&self) -> Option<f64> {
+        let share = self.rms * self.correlation.max(0.0).sqrt() / self.range;
+        let is_chance = self.correlation * (self.rows as f64).sqrt() <= CHANCE;
+        (self.correlation > OF_NOISE && !is_chance && share >= SMALLEST_SHARE).then_some(share)
+    }
+}
+
 impl Identification {
     /// The signals that the model does not explain, the greatest misfit first.
     pub fn misfits(&self) -> Vec<Misfit> {
         let of = |signal: &SignalFit| {
-            let share = signal.rms * signal.correlation.max(0.0).sqrt() / signal.range;
-            let is_chance = signal.correlation * (signal.rows as f64).sqrt() <= CHANCE;
-            let is_told = signal.correlation > OF_NOISE && !is_chance && share >= SMALLEST_SHARE;
-            is_told.then(|| Misfit {
+            let share = signal.misfit()?;
+            Some(Misfit {
                 recording: signal.recording,
                 kind: signal.kind,
                 correlation: signal.correlation,

@@ -1,11 +1,12 @@
 //! What the data do not determine, and which further test would.
 
-use phea_dynamics::least_squares::Uncertainty;
+use phea_dynamics::least_squares::{Direction, Uncertainty};
 use phea_dynamics::order::sort_by_number;
 use phea_hydraulics::servovalve::{STATIC_COEFFICIENTS, StaticCoefficients, Supply, TestInput, TestedValve};
 
 use super::COEFFICIENT_NAMES;
 use super::recording::{Recording, SignalKind, usual_drop};
+use super::variables::has;
 use crate::bench::StaticTest;
 
 /// Standard deviation in the logarithm of a coefficient beyond which it is not determined: a factor
@@ -39,7 +40,12 @@ pub(super) fn untold(
     slopes: &[f64; STATIC_COEFFICIENTS],
     (recordings, tested): (&[Recording], &TestedValve),
 ) -> Vec<Untold> {
+    let varied = |direction: &&Direction| {
+        let shares = direction.shares.iter().enumerate();
+        shares.filter(|(index, _)| has(tested.terms, *index)).any(|(_, share)| share.abs() > PART)
+    };
     let unknown = told.directions.iter().rev().filter(|direction| direction.deviation > UNTOLD);
+    let unknown = unknown.filter(varied);
     let tests =
         StaticTest::ALL.map(|test| (test, sensitivities(test, coefficients, slopes, (recordings, tested))));
     unknown

@@ -2,7 +2,7 @@
 
 use phea_dynamics::portable;
 use phea_dynamics::random::normal;
-use phea_hydraulics::servovalve::{STATIC_COEFFICIENTS, StaticCoefficients};
+use phea_hydraulics::servovalve::{STATIC_COEFFICIENTS, StaticCoefficients, ValveTerms};
 
 pub(super) const COUNT: usize = STATIC_COEFFICIENTS;
 
@@ -10,7 +10,15 @@ pub(super) const COUNT: usize = STATIC_COEFFICIENTS;
 const SHAPE: usize = 8;
 pub(super) const TARE_FLOW: usize = 9;
 pub(super) const NULL_BIAS: usize = 10;
-const HYSTERESIS: usize = 11;
+pub(super) const HYSTERESIS: usize = 11;
+/// Those of the terms that a valve may have: both laps, the saturation, and the shapes of the other
+/// edges.
+const LAPS: std::ops::Range<usize> = 12..14;
+const SATURATION: usize = 14;
+const OTHER_SHAPES: std::ops::Range<usize> = 15..18;
+
+/// Coefficients that a static test shows and the linear plant does not depend on.
+pub(super) const OF_TEST_ALONE: [usize; 3] = [TARE_FLOW, NULL_BIAS, HYSTERESIS];
 
 /// Flow coefficients, the first ones.
 const EDGES: usize = 4;
@@ -22,8 +30,34 @@ const LEAST_IN_SERIES: f64 = 0.05;
 /// nominal voltage.
 const BIAS_SCALE: f64 = 0.01;
 
+/// Step of a lap, over full travel, and saturation, that count as much.
+const LAP_SCALE: f64 = 1e-3;
+const SATURATION_SCALE: f64 = 0.1;
+
+/// Lap of a first guess.
+const FIRST_LAP: f64 = 5e-3;
+
+/// Greatest lap and saturation.
+const MOST_LAP: f64 = 0.2;
+const MOST_SATURATION: f64 = 10.0;
+
 /// Least leakage of an edge over the first guess: without any leakage, pressures have no limit.
 const LEAST_LEAKAGE: f64 = 1e-6;
+
+/// Whether a valve with these terms has the coefficient of this index.
+pub(super) fn has(terms: ValveTerms, index: usize) -> bool {
+    match index {
+        12..14 => terms.lap,
+        SATURATION => terms.saturation,
+        15.. => terms.leakage_by_edge,
+        _ => true,
+    }
+}
+
+/// The quotient of two derivatives; zero of a coefficient that is not varied, which has none.
+pub(super) fn over(derivative: f64, other: f64) -> f64 {
+    if other == 0.0 { 0.0 } else { derivative / other }
+}
 
 /// How a coefficient is varied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,10 +75,15 @@ pub(super) enum Kind {
 impl Kind {
     pub(super) fn of(index: usize) -> Kind {
         match index {
-            0..4 | SHAPE => Kind::Positive,
-            NULL_BIAS => Kind::EitherSign,
+            0..4 | SHAPE | 15.. => Kind::Positive,
+            NULL_BIAS | 12 | 13 => Kind::EitherSign,
             _ => Kind::MayVanish,
         }
+    }
+
+    /// Whether a coefficient of this kind may have either sign.
+    pub(super) fn may_be_negative(self) -> bool {
+        self == Kind::EitherSign
     }
 
     /// The scale of a coefficient that may end at zero.
@@ -59,15 +98,39 @@ pub(super) struct Variables {
     reference: [f64; COUNT],
     bias_step: f64,
     nominal_voltage: f64,
+    terms: ValveTerms,
     /// Which flow coefficients are varied as [`Kind::InSeries`].
     in_series: [bool; EDGES],
 }
 
 impl Variables {
     pub(super) fn around(reference: &StaticCoefficients, nominal_voltage: f64) -> Variables {
-        let reference = reference.to_array();
+        let mut reference = reference.to_array();
+        reference[LAPS].fill(0.0);
+        reference[SATURATION] = SATURATION_SCALE;
         let bias_step = BIAS_SCALE * nominal_voltage;
-        Variables { reference, bias_step, nominal_voltage, in_series: [false; EDGES] }
+        let terms = ValveTerms::default();
+        Variables { reference, bias_step, nominal_voltage, terms, in_series: [false; EDGES] }
+    }
+
+    /// The same for a valve with these terms.
+    pub(super) fn with_terms(&self, terms: ValveTerms) -> Variables {
+        Variables { terms, ..self.clone() }
+    }
+
+    /// Whether a valve with these terms has this coefficient.
+    fn varies(&self, index: usize) -> bool {
+        has(self.terms, index)
+    }
+
+    /// How many coefficients are varied.
+    pub(super) fn count(&self) -> usize {
+        (0..COUNT).filter(|index| self.varies(*index)).count()
+    }
+
+    /// The step of a coefficient of either sign.
+    fn step(&self, index: usize) -> f64 {
+        if index == NULL_BIAS { self.bias_step } else { LAP_SCALE }
     }
 
     /// The same with the flow coefficients as in series, but for those that nearly vanish here:
@@ -92,7 +155,7 @@ impl Variables {
         let of = |(index, (number, reference)): (usize, (f64, f64))| match self.kind(index) {
             Kind::Positive => portable::ln(number / reference),
             Kind::MayVanish => number / reference,
-            Kind::EitherSign => (number - reference) / self.bias_step,
+            Kind::EitherSign => (number - reference) / self.step(index),
             Kind::InSeries => (reference / number) * (reference / number),
         };
         all.map(of).collect()
@@ -100,12 +163,27 @@ impl Variables {
 
     /// Those of the reference.
     pub(super) fn start(&self) -> Vec<f64> {
-        (0..COUNT).map(|index| if Kind::vanishes(index) { 1.0 } else { 0.0 }).collect()
+        let of = |index| if Kind::vanishes(index) && index != SATURATION { 1.0 } else { 0.0 };
+        (0..COUNT).map(of).collect()
+    }
+
+    /// Those of the reference; of a valve with lap also with an overlap and with an underlap.
+    pub(super) fn starts(&self) -> Vec<Vec<f64>> {
+        let laps: &[f64] = if self.terms.lap { &[0.0, FIRST_LAP, -FIRST_LAP] } else { &[0.0] };
+        let with = |lap: &f64| {
+            let mut start = self.start();
+            start[LAPS].fill(lap / LAP_SCALE);
+            start
+        };
+        laps.iter().map(with).collect()
     }
 
     /// Those of a point around the reference, by a factor of two for most.
     pub(super) fn scattered(&self, state: &mut u64) -> Vec<f64> {
         let of = |index| {
+            if !has(ValveTerms::default(), index) {
+                return 0.0;
+            }
             let by = 0.7 * normal(state);
             if Kind::vanishes(index) { portable::exp(by) } else { by }
         };
@@ -120,13 +198,17 @@ impl Variables {
                 Kind::Positive => *number * portable::exp(*x),
                 Kind::InSeries => *number / x.sqrt(),
                 Kind::MayVanish => *number * x,
-                Kind::EitherSign => *number + x * self.bias_step,
+                Kind::EitherSign => *number + x * self.step(index),
             };
+        }
+        if !self.terms.leakage_by_edge {
+            let shape = numbers[SHAPE];
+            numbers[OTHER_SHAPES].fill(shape);
         }
         StaticCoefficients::from_array(numbers)
     }
 
-    /// Derivative of each coefficient with respect to its variable.
+    /// Derivative of each coefficient with respect to its variable; zero where it is not varied.
     pub(super) fn slopes(&self, coefficients: &StaticCoefficients) -> [f64; COUNT] {
         self.of_each(coefficients, |_, reference| reference)
     }
@@ -148,8 +230,11 @@ impl Variables {
                 Kind::Positive => *number,
                 Kind::InSeries => -0.5 * *number * (*number / reference) * (*number / reference),
                 Kind::MayVanish => vanishing(*number, reference),
-                Kind::EitherSign => self.bias_step,
+                Kind::EitherSign => self.step(index),
             };
+            if !self.varies(index) {
+                *number = 0.0;
+            }
         }
         found
     }
@@ -159,7 +244,8 @@ impl Variables {
     /// nominal voltage.
     pub(super) fn bounds(&self) -> [[f64; 2]; COUNT] {
         let mut bounds = [[-4.6, 4.6]; COUNT];
-        let [.., shape, tare, bias, width] = &self.reference;
+        let [shape, tare, bias, width] =
+            [SHAPE, TARE_FLOW, NULL_BIAS, HYSTERESIS].map(|at| self.reference[at]);
         for bounds in bounds.iter_mut().skip(4).take(4) {
             *bounds = [LEAST_LEAKAGE, 100.0];
         }
@@ -171,6 +257,11 @@ impl Variables {
         let end = 0.1 * self.nominal_voltage;
         bounds[NULL_BIAS] = [-end, end].map(|end| (end - bias) / self.bias_step);
         bounds[HYSTERESIS] = [1e-7, 0.2].map(|share| share * self.nominal_voltage / width);
+        bounds[LAPS].fill([-MOST_LAP, MOST_LAP].map(|lap| lap / LAP_SCALE));
+        bounds[SATURATION] = [0.0, MOST_SATURATION / SATURATION_SCALE];
+        for index in OTHER_SHAPES {
+            bounds[index] = [1.0, 5000.0].map(|end| portable::ln(end / self.reference[index]));
+        }
         bounds
     }
 }

@@ -10,7 +10,8 @@ use phea_hydraulics::line::{Anchoring, Hose, Line, Pipe, PipeWall, Stiffening};
 use phea_hydraulics::linkage::{Linkage, STANDARD_GRAVITY};
 use phea_hydraulics::series::{SeriesElement, SeriesSpring, SeriesTravel, Transmission};
 use phea_hydraulics::servovalve::{
-    Edges, Servovalve, Supply, flow_coefficient_from_rating, leakage_coefficient_from_rating,
+    Edges, LeakageShape, OpeningLaw, OpeningShape, Servovalve, Supply, flow_coefficient_from_rating,
+    leakage_coefficient_from_rating,
 };
 use phea_hydraulics::stroke::{ActuatorStroke, FURTHER_STAGES, PistonStage, Telescope};
 
@@ -177,6 +178,7 @@ fn valve<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>, supply_
             b_to_tank: at("b_to_tank", b_to_tank),
         }
     };
+    let opening = opening(declared, &numbers);
     let tare_flow = at("tare_flow", declared.tare_flow);
     let tare_drop = declared.tare_pressure.map_or(supply_drop, |drop| at("tare_pressure", drop));
     Servovalve {
@@ -184,9 +186,13 @@ fn valve<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>, supply_
             ValveCoefficients::Edges { edges: flow, .. } => edges("flow_coefficients", flow),
             ValveCoefficients::Rated(RatedFlow { flow, pressure_drop }) => {
                 let drop = at("nominal_pressure_drop", pressure_drop);
-                Edges::equal(flow_coefficient_from_rating(at("nominal_flow", flow), drop))
+                let rated = flow_coefficient_from_rating(at("nominal_flow", flow), drop);
+                // the data sheet's flow is that of full travel
+                let [positive, negative] = opening.full().map(|full| rated / full);
+                Edges::from_array([positive, negative, negative, positive])
             }
         },
+        opening,
         leakage_coefficients: match declared.leakage {
             ValveCoefficients::Edges { edges: leakage, .. } if is_shut(leakage) => Edges::vanishing(),
             ValveCoefficients::Edges { edges: leakage, .. } => edges("leakage_coefficients", leakage),
@@ -195,7 +201,10 @@ fn valve<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>, supply_
                 Edges::equal(leakage_coefficient_from_rating(leakage, tare_flow, tare_drop, pressure))
             }
         },
-        leakage_shape: at("leakage_shape", declared.leakage_shape),
+        leakage_shape: match declared.leakage_shapes {
+            Some(shapes) => LeakageShape::ByEdge(edges("leakage_shapes", shapes)),
+            None => LeakageShape::Common(at("leakage_shape", declared.leakage_shape)),
+        },
         leakage_model: declared.leakage_model,
         tare_flow,
         nominal_voltage: at("nominal_voltage", declared.nominal_voltage),
@@ -203,6 +212,20 @@ fn valve<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>, supply_
         damping_ratio: at("damping_ratio", declared.damping_ratio),
         transition_pressure: at("transition_pressure", declared.transition_pressure),
     }
+}
+
+/// How the declared edges open: in proportion where neither lap nor saturation is stated.
+fn opening<S: Scalar>(declared: &project::Valve, numbers: &Numbers<'_, S>) -> OpeningLaw<S> {
+    let saturates = declared.saturation != 0.0 || numbers.is_open("saturation");
+    if declared.lap.is_none() && !saturates {
+        return OpeningLaw::Proportional;
+    }
+    let lap = declared.lap.unwrap_or_default();
+    OpeningLaw::Shaped(OpeningShape {
+        lap_positive: numbers.at("lap.positive", lap.positive),
+        lap_negative: numbers.at("lap.negative", lap.negative),
+        saturation: numbers.at("saturation", declared.saturation),
+    })
 }
 
 /// Whether no edge leaks: an ideal valve.

@@ -11,7 +11,7 @@ use phea_hydraulics::actuator::Components;
 use phea_hydraulics::linear::LinearParameters;
 use phea_hydraulics::operating_point::OperatingPoint;
 use phea_hydraulics::plant::YieldingSupply;
-use phea_hydraulics::servovalve::{ChamberCoefficients, Edges, Servovalve, SpoolDirection};
+use phea_hydraulics::servovalve::{ChamberCoefficients, Edges, Openings, Servovalve, SpoolDirection};
 use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, reduce, two_pressure_linear_parameters,
 };
@@ -28,7 +28,8 @@ pub fn is_ideal(valve: &Servovalve) -> bool {
 /// Whether the valve is an ideal one that is shut at this point.
 pub(crate) fn is_shut_at(valve: &Servovalve, point: &OperatingPoint) -> bool {
     let most = valve.flow_coefficients.to_array().into_iter().fold(0.0, f64::max);
-    let opened = most * (point.command / valve.nominal_voltage).abs();
+    let openings = Openings::at(valve, point.command);
+    let opened = most * openings.forward.max(openings.backward);
     is_ideal(valve) && opened <= SHUT * Edges::<f64>::vanishing().supply_to_a
 }
 

@@ -12,7 +12,7 @@ use crate::quantity::DisplayUnit;
 /// ```text
 /// extending:   q_S = min(A_A v, q_pump),   q_A = q_S,            q_B = q_S A_B/A_A
 /// retracting:  q_S = min(A_B v, q_pump),   q_A = q_S A_A/A_B,    q_B = q_S
-/// v = U_Cn times the velocity gain;  equal areas: A v = q_vn sqrt((p_S - p_T)/dp_tn)
+/// v = U_Cn times the velocity gain and the relative opening at full travel;  equal areas: A v = q_vn sqrt((p_S - p_T)/dp_tn)
 /// ```
 ///
 /// The rating dp_tn is the drop over both edges, each of which has half of it. An accumulator on
@@ -74,7 +74,8 @@ pub fn largest_flow(components: &Components, supply: &DeclaredSupply) -> Largest
 fn flows(components: &Components, areas: [f64; 2], direction: SpoolDirection, bound: f64) -> DirectionFlows {
     let (valve, supply) = (&components.valve, &components.supply);
     let driven = usize::from(direction == SpoolDirection::Retracting);
-    let speed = velocity_gain(valve, supply, areas, 0.0, direction).unwrap_or(0.0) * valve.nominal_voltage;
+    let full = valve.opening.full()[driven] * valve.nominal_voltage;
+    let speed = velocity_gain(valve, supply, areas, 0.0, direction).unwrap_or(0.0) * full;
     let taken = (areas[driven] * speed).min(bound);
     DirectionFlows { taken, lines: areas.map(|area| taken * area / areas[driven]) }
 }

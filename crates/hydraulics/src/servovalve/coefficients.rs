@@ -24,7 +24,7 @@ pub enum SpoolDirection<S = f64> {
 
 impl<S: Scalar> SpoolDirection<S> {
     /// n of [`SpoolDirection::Between`].
-    fn side(self) -> S {
+    pub(super) fn side(self) -> S {
         match self {
             SpoolDirection::Extending => S::from(1.0),
             SpoolDirection::Retracting => S::from(-1.0),
@@ -148,18 +148,19 @@ pub(crate) fn supply_coefficients<S: Scalar>(
 fn conductance_slopes<S: Scalar>(valve: &Servovalve<S>, spool: S, direction: SpoolDirection<S>) -> Edges<S> {
     let (flow, leak) = (&valve.flow_coefficients, &valve.leakage_coefficients);
     let Openings { forward, backward, leakage } = Openings::at(valve, spool);
-    let (forward_slope, backward_slope, leakage_slope) = opening_slopes(valve, spool, leakage, direction);
+    let Openings { forward: forward_slope, backward: backward_slope, leakage: leakage_slope } =
+        Openings::slopes(valve, spool, direction);
     match valve.leakage_model {
         LeakageModel::EachEdge => Edges {
-            supply_to_a: flow.supply_to_a * forward_slope + leak.supply_to_a * leakage_slope,
-            a_to_tank: flow.a_to_tank * backward_slope + leak.a_to_tank * leakage_slope,
-            supply_to_b: flow.supply_to_b * backward_slope + leak.supply_to_b * leakage_slope,
-            b_to_tank: flow.b_to_tank * forward_slope + leak.b_to_tank * leakage_slope,
+            supply_to_a: flow.supply_to_a * forward_slope + leak.supply_to_a * leakage_slope.supply_to_a,
+            a_to_tank: flow.a_to_tank * backward_slope + leak.a_to_tank * leakage_slope.a_to_tank,
+            supply_to_b: flow.supply_to_b * backward_slope + leak.supply_to_b * leakage_slope.supply_to_b,
+            b_to_tank: flow.b_to_tank * forward_slope + leak.b_to_tank * leakage_slope.b_to_tank,
         },
         LeakageModel::OneCurve => {
             let forward = [forward, forward_slope];
             let backward = [backward, backward_slope];
-            let leakage = [left(leakage), leakage_slope];
+            let leakage = [left(leakage.supply_to_a), leakage_slope.supply_to_a];
             let opened = |coefficient: S, by: [S; 2]| by.map(|share| coefficient * share);
             let [open_a, shut_a] = [opened(flow.supply_to_a, forward), opened(flow.a_to_tank, backward)];
             let [open_b, shut_b] = [opened(flow.supply_to_b, backward), opened(flow.b_to_tank, forward)];
@@ -192,28 +193,6 @@ fn closing_slope<S: Scalar>(
     series * closing / (rest * rest.sqrt())
 }
 
-/// d/dU of the openings u+ and u- and of sech(lambda u).
-fn opening_slopes<S: Scalar>(
-    valve: &Servovalve<S>,
-    spool: S,
-    leakage: S,
-    direction: SpoolDirection<S>,
-) -> (S, S, S) {
-    let (one, half) = (S::from(1.0), S::from(0.5));
-    let zero = S::from(0.0);
-    let backward_or_null = S::select(spool.less_than(zero), -one, direction.side());
-    let sign = S::select(zero.less_than(spool), one, backward_or_null);
-    let argument = valve.leakage_shape * spool / valve.nominal_voltage;
-    let decay = (S::from(-2.0) * argument.abs()).exp();
-    let side = S::select(argument.less_than(zero), -one, one);
-    let tangent = side * (one - decay) / (one + decay);
-    (
-        half * (one + sign) / valve.nominal_voltage,
-        -half * (one - sign) / valve.nominal_voltage,
-        -valve.leakage_shape / valve.nominal_voltage * leakage * tangent,
-    )
-}
-
 /// Flow gain K_qU and flow-pressure coefficient K_c of the control flow. Units: m3/(s V), m3/(s
 /// Pa).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -244,7 +223,8 @@ pub struct ControlCoefficients<S = f64> {
 /// # use phea_hydraulics::servovalve::*;
 /// # let valve = Servovalve {
 /// #     flow_coefficients: Edges::equal(2.97e-7), leakage_coefficients: Edges::equal(2.40e-9),
-/// #     leakage_shape: 100.0, leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
+/// #     opening: OpeningLaw::Proportional,
+/// #     leakage_shape: LeakageShape::Common(100.0), leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
 /// #     natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
 /// # };
 /// let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };
@@ -288,8 +268,9 @@ pub fn control_coefficients<S: Scalar>(
 /// # use phea_hydraulics::servovalve::*;
 /// # let valve = Servovalve {
 /// #     flow_coefficients: Edges::from_array([3.2e-7, 2.5e-7, 2.0e-7, 3.85e-7]),
+/// #     opening: OpeningLaw::Proportional,
 /// #     leakage_coefficients: Edges::equal(2.40e-9),
-/// #     leakage_shape: 100.0, leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
+/// #     leakage_shape: LeakageShape::Common(100.0), leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
 /// #     natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
 /// # };
 /// let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };

@@ -1,36 +1,7 @@
 use phea_dynamics::scalar::Scalar;
 
-use super::{Edges, Servovalve, Supply};
+use super::{Edges, Openings, Servovalve, Supply};
 use crate::orifice;
-
-/// Relative openings of the edges that the spool moves, both 0 to 1, and the relative leakage it
-/// leaves.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Openings<S> {
-    /// Of edges 3 and 6, supply to A and B to tank: U/U_n where U > 0.
-    pub forward: S,
-    /// Of edges 4 and 5, A to tank and supply to B: -U/U_n where U < 0.
-    pub backward: S,
-    /// Leakage over leakage at null: sech(lambda U/U_n).
-    pub leakage: S,
-}
-
-impl<S: Scalar> Openings<S> {
-    /// At spool position U_Csp in V.
-    ///
-    /// The positive part is (U + |U|)/2 and the negative (|U| - U)/2, so that a derivative taken
-    /// exactly at U = 0 is the mean of the two one-sided ones.
-    #[inline(always)]
-    pub fn at(valve: &Servovalve<S>, spool: S) -> Openings<S> {
-        let relative = spool / valve.nominal_voltage;
-        let half = S::from(0.5);
-        Openings {
-            forward: half * (relative.abs() + relative),
-            backward: half * (relative.abs() - relative),
-            leakage: hyperbolic_secant(valve.leakage_shape * relative),
-        }
-    }
-}
 
 /// Flows through the four edges in m3/s, each positive from its first named port to its second.
 pub type EdgeFlows<S> = Edges<S>;
@@ -83,7 +54,8 @@ pub enum LeakageModel {
 /// q_vin = K_vinp sech(lambda u) sqrt(2 (p_S - p_T))                         shut ports, one curve; thesis (4.14)
 /// ```
 ///
-/// plus for edges 3 and 6, minus for 4 and 5. With one curve two edges in series pass k sech
+/// with u+ for edges 3 and 6 and u- for 4 and 5, see [`super::OpeningLaw`], and each edge's own
+/// lambda where they differ. With one curve two edges in series pass k sech
 /// sqrt(p_S - p_T) when their port is shut, wherever the spool is, so that the whole leakage is
 /// that of thesis (4.14) with K_vinp sqrt(2) the sum of both k. At null both are K_vini.
 ///
@@ -106,13 +78,13 @@ pub fn edge_conductances<S: Scalar>(valve: &Servovalve<S>, spool: S) -> Edges<S>
     let (shut_a, shut_b) = (flow.a_to_tank * backward, flow.b_to_tank * forward);
     match valve.leakage_model {
         LeakageModel::EachEdge => Edges {
-            supply_to_a: open_a + leak.supply_to_a * leakage,
-            a_to_tank: shut_a + leak.a_to_tank * leakage,
-            supply_to_b: open_b + leak.supply_to_b * leakage,
-            b_to_tank: shut_b + leak.b_to_tank * leakage,
+            supply_to_a: open_a + leak.supply_to_a * leakage.supply_to_a,
+            a_to_tank: shut_a + leak.a_to_tank * leakage.a_to_tank,
+            supply_to_b: open_b + leak.supply_to_b * leakage.supply_to_b,
+            b_to_tank: shut_b + leak.b_to_tank * leakage.b_to_tank,
         },
         LeakageModel::OneCurve => {
-            let leakage = left(leakage);
+            let leakage = left(leakage.supply_to_a);
             let of_a = [leak.supply_to_a, leak.a_to_tank];
             let of_b = [leak.supply_to_b, leak.b_to_tank];
             let [supply_to_a, a_to_tank] = in_series([open_a, shut_a], of_a, leakage);
@@ -185,10 +157,11 @@ pub fn edge_flows<S: Scalar>(
 /// # Example
 /// Equal edges at null and half the supply pressure: what leaks in leaks out.
 /// ```
-/// use phea_hydraulics::servovalve::{Edges, LeakageModel, Servovalve, Supply, chamber_flows};
+/// use phea_hydraulics::servovalve::{Edges, LeakageModel, LeakageShape, OpeningLaw, Servovalve, Supply, chamber_flows};
 /// let valve = Servovalve {
 ///     flow_coefficients: Edges::equal(2.97e-7), leakage_coefficients: Edges::equal(2.48e-9),
-///     leakage_shape: 100.0, leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
+///     opening: OpeningLaw::Proportional,
+///     leakage_shape: LeakageShape::Common(100.0), leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
 ///     natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
 /// };
 /// let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };

@@ -4,12 +4,12 @@ use phea_dynamics::scalar::{Dual, Parameters, Scalar};
 
 use super::ports::KnownPorts;
 use super::{
-    Edges, LeakageModel, PortState, Servovalve, SlowSpool, SpoolImperfection, Supply, WarmOil, blocked_ports,
-    connected_ports, edge_conductances, tare_flow,
+    Edges, LeakageModel, LeakageShape, OpeningLaw, OpeningShape, PortState, Servovalve, SlowSpool,
+    SpoolImperfection, Supply, WarmOil, blocked_ports, connected_ports, edge_conductances, tare_flow,
 };
 
 /// How many numbers static tests determine of a valve.
-pub const STATIC_COEFFICIENTS: usize = 12;
+pub const STATIC_COEFFICIENTS: usize = 18;
 
 /// A number with its derivatives with respect to all static coefficients.
 pub type Sensitive = Dual<STATIC_COEFFICIENTS>;
@@ -21,36 +21,73 @@ pub struct StaticCoefficients<S = f64> {
     pub flow_coefficients: Edges<S>,
     /// K_vin3 to K_vin6.
     pub leakage_coefficients: Edges<S>,
-    /// Shape lambda of the leakage.
-    pub leakage_shape: S,
+    /// Shape lambda of the leakage of each edge; that of edge 3 counts for all where
+    /// [`ValveTerms::leakage_by_edge`] is not set.
+    pub leakage_shapes: Edges<S>,
     /// Tare flow q_tare at the reference drop.
     pub tare_flow: S,
     /// Spool position U_0 at which the valve is at null.
     pub null_bias: S,
     /// Width of the hysteresis, positive.
     pub hysteresis_width: S,
+    /// Lap and saturation of the edges.
+    pub opening: OpeningShape<S>,
+}
+
+/// What a valve under test has beyond edges that open in proportion and leak in one shape.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ValveTerms {
+    /// The edges have a lap.
+    pub lap: bool,
+    /// The openings saturate.
+    pub saturation: bool,
+    /// The leakage of each edge has a shape of its own.
+    pub leakage_by_edge: bool,
 }
 
 impl<S: Copy> StaticCoefficients<S> {
-    /// In the order of the fields, edges 3, 4, 5, 6.
+    /// Flow and leakage coefficients of edges 3, 4, 5, 6, the shape of edge 3, tare flow, null
+    /// bias, hysteresis, both laps, saturation, and the shapes of edges 4, 5, 6.
     pub fn to_array(&self) -> [S; STATIC_COEFFICIENTS] {
         let [f3, f4, f5, f6] = self.flow_coefficients.to_array();
         let [l3, l4, l5, l6] = self.leakage_coefficients.to_array();
-        let rest = [self.leakage_shape, self.tare_flow, self.null_bias, self.hysteresis_width];
-        let [shape, tare, bias, width] = rest;
-        [f3, f4, f5, f6, l3, l4, l5, l6, shape, tare, bias, width]
+        let [s3, s4, s5, s6] = self.leakage_shapes.to_array();
+        let [tare, bias, width] = [self.tare_flow, self.null_bias, self.hysteresis_width];
+        let OpeningShape { lap_positive, lap_negative, saturation } = self.opening;
+        [
+            f3,
+            f4,
+            f5,
+            f6,
+            l3,
+            l4,
+            l5,
+            l6,
+            s3,
+            tare,
+            bias,
+            width,
+            lap_positive,
+            lap_negative,
+            saturation,
+            s4,
+            s5,
+            s6,
+        ]
     }
 
-    /// In the same order.
+    /// From the same order.
     pub fn from_array(numbers: [S; STATIC_COEFFICIENTS]) -> StaticCoefficients<S> {
-        let [f3, f4, f5, f6, l3, l4, l5, l6, leakage_shape, tare_flow, null_bias, hysteresis_width] = numbers;
+        let [f3, f4, f5, f6, l3, l4, l5, l6, s3, tare, bias, width, positive, negative, c, s4, s5, s6] =
+            numbers;
         StaticCoefficients {
             flow_coefficients: Edges::from_array([f3, f4, f5, f6]),
             leakage_coefficients: Edges::from_array([l3, l4, l5, l6]),
-            leakage_shape,
-            tare_flow,
-            null_bias,
-            hysteresis_width,
+            leakage_shapes: Edges::from_array([s3, s4, s5, s6]),
+            tare_flow: tare,
+            null_bias: bias,
+            hysteresis_width: width,
+            opening: OpeningShape { lap_positive: positive, lap_negative: negative, saturation: c },
         }
     }
 }
@@ -129,6 +166,8 @@ pub struct TestedValve {
     pub tare_reference_drop: f64,
     /// What lambda and the leakage coefficients mean away from null.
     pub leakage_model: LeakageModel,
+    /// What it has beyond edges that open in proportion.
+    pub terms: ValveTerms,
 }
 
 impl TestedValve {
@@ -168,15 +207,16 @@ impl TestedValve {
     /// The whole tare flow is in the leakage, whatever the spool does.
     /// ```
     /// use phea_hydraulics::servovalve::{
-    ///     Edges, LeakageModel, PortCircuit, StaticCoefficients, Supply, TestInput, TestedValve,
+    ///     Edges, LeakageModel, OpeningShape, PortCircuit, StaticCoefficients, Supply, TestInput, TestedValve, ValveTerms,
     /// };
     /// let tested = TestedValve {
     ///     nominal_voltage: 10.0, transition_pressure: 1e3, tare_reference_drop: 70e5,
-    ///     leakage_model: LeakageModel::EachEdge,
+    ///     leakage_model: LeakageModel::EachEdge, terms: ValveTerms::default(),
     /// };
     /// let coefficients = StaticCoefficients {
-    ///     flow_coefficients: Edges::equal(3e-7), leakage_coefficients: Edges::equal(2e-9), leakage_shape: 100.0,
-    ///     tare_flow: 7.55e-6, null_bias: 0.0, hysteresis_width: 0.1,
+    ///     flow_coefficients: Edges::equal(3e-7), leakage_coefficients: Edges::equal(2e-9),
+    ///     leakage_shapes: Edges::equal(100.0),
+    ///     tare_flow: 7.55e-6, null_bias: 0.0, hysteresis_width: 0.1, opening: OpeningShape::default(),
     /// };
     /// let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };
     /// let inputs = [TestInput::new(0.3, supply, 0.0)];
@@ -215,10 +255,18 @@ impl TestedValve {
     }
 
     fn servovalve<S: Scalar>(&self, coefficients: &StaticCoefficients<S>) -> Servovalve<S> {
+        let shapes = coefficients.leakage_shapes;
         Servovalve {
             flow_coefficients: coefficients.flow_coefficients,
+            opening: match self.terms {
+                ValveTerms { lap: false, saturation: false, .. } => OpeningLaw::Proportional,
+                _ => OpeningLaw::Shaped(coefficients.opening),
+            },
             leakage_coefficients: coefficients.leakage_coefficients,
-            leakage_shape: coefficients.leakage_shape,
+            leakage_shape: match self.terms.leakage_by_edge {
+                true => LeakageShape::ByEdge(shapes),
+                false => LeakageShape::Common(shapes.supply_to_a),
+            },
             leakage_model: self.leakage_model,
             tare_flow: coefficients.tare_flow,
             nominal_voltage: S::from(self.nominal_voltage),

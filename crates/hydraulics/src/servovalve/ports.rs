@@ -40,10 +40,11 @@ const LOADED_STEPS: usize = 6;
 /// # Example
 /// Equal edges at null hold half the supply pressure in both ports.
 /// ```
-/// use phea_hydraulics::servovalve::{Edges, LeakageModel, Servovalve, Supply, blocked_ports};
+/// use phea_hydraulics::servovalve::{Edges, LeakageModel, LeakageShape, OpeningLaw, Servovalve, Supply, blocked_ports};
 /// let valve = Servovalve {
 ///     flow_coefficients: Edges::equal(2.97e-7), leakage_coefficients: Edges::equal(2.48e-9),
-///     leakage_shape: 100.0, leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
+///     opening: OpeningLaw::Proportional,
+///     leakage_shape: LeakageShape::Common(100.0), leakage_model: LeakageModel::EachEdge, tare_flow: 7.55e-6, nominal_voltage: 10.0,
 ///     natural_frequency: 1099.0, damping_ratio: 0.9, transition_pressure: 1e3,
 /// };
 /// let supply = Supply { pressure: 70e5, tank_pressure: 0.0 };

@@ -7,6 +7,7 @@ use crate::{
     SupplyModel, Valve,
 };
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE as ATMOSPHERE;
+use phea_hydraulics::servovalve::LeakageModel;
 use phea_hydraulics::stroke::FURTHER_STAGES;
 use phea_quantity::{self as quantity, DAMPING, LENGTH, PRESSURE, display};
 
@@ -169,6 +170,17 @@ fn imperfections(valve: &Valve, check: &mut Check<'_, '_>) {
 
 fn valve(valve: &Valve, supply: &DeclaredSupply, check: &mut Check<'_, '_>) {
     imperfections(valve, check);
+    if valve.leakage_shapes.is_some() && valve.leakage_model == LeakageModel::OneCurve {
+        check.error(
+            "valve.leakage_shapes",
+            "`leakage_model = \"one_curve\"` has one shape for the leakage of the whole valve: state `leakage_shape`, or the shapes of the edges \
+             with `leakage_model = \"each_edge\"`",
+        );
+    }
+    let laps = valve.lap.iter().flat_map(|lap| [("positive", lap.positive), ("negative", lap.negative)]);
+    for (side, _) in laps.filter(|(_, lap)| lap.abs() >= 1.0) {
+        check.error(&format!("valve.lap.{side}"), "a lap is less than the full travel of the spool, 100 %");
+    }
     if valve.flow.edges().is_some_and(|edges| edges.in_order().iter().all(|edge| *edge == 0.0)) {
         check.error("valve.flow_coefficients", "all flow coefficients are zero: the valve never opens");
     }

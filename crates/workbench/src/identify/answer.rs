@@ -8,7 +8,8 @@ use super::files::{TestBody, WarningBody};
 use super::numbers;
 use super::region::{FoundRegion, RegionBody, body};
 use super::{
-    Bootstrap, COEFFICIENT_NAMES, ExplainedBy, Identification, Misfit, MisfitPlace, Read, TestOil, Untold,
+    Bootstrap, COEFFICIENT_NAMES, ExplainedBy, Identification, Misfit, MisfitPlace, Read, TermEvidence,
+    TestOil, Untold,
 };
 use crate::answer::{self, Number, OutputFile, in_toml};
 use crate::project::{LEAKAGE_MODELS, Loaded, word_of};
@@ -33,6 +34,10 @@ struct IdentifyAnswer<'a> {
     leakage_models: Vec<ModelBody>,
     leakage_models_difference: Number,
     leakage_model_preferred: Option<&'static str>,
+    lap: Option<LapBody>,
+    saturation: Option<Estimate>,
+    leakage_shapes: Option<EdgesBody>,
+    terms: Vec<TermBody>,
     bootstrap: Option<BootstrapBody>,
     first_guess: BTreeMap<&'static str, f64>,
     cost: Number,
@@ -56,6 +61,20 @@ struct OilBody {
     recorded_degc: [Number; 2],
     viscosity_slope_per_degc: f64,
     density_slope_per_degc: f64,
+}
+
+/// What a term of the valve explains.
+#[derive(Serialize)]
+struct TermBody {
+    term: &'static str,
+    criterion_gain: Number,
+    taken: bool,
+}
+
+#[derive(Serialize)]
+struct LapBody {
+    positive: Estimate,
+    negative: Estimate,
 }
 
 #[derive(Serialize)]
@@ -137,8 +156,8 @@ struct UntoldBody {
 /// The coefficient that a project leaves out where it may be zero.
 const HYSTERESIS: &str = "hysteresis";
 
-/// The coefficient of which zero is a value like any other.
-const NULL_BIAS: &str = "null_bias";
+/// The coefficients of which zero is a value like any other.
+pub(super) const EITHER_SIGN: [&str; 3] = ["null_bias", "lap.positive", "lap.negative"];
 
 /// Correlations below this magnitude are not listed.
 const REMARKABLE: f64 = 0.9;
@@ -150,22 +169,9 @@ pub fn json(
     read: &Read,
     region: Option<&FoundRegion>,
 ) -> String {
-    let numbers = found.coefficients.to_array();
-    let bootstrap = |index: usize| found.bootstrap.as_ref()?.intervals.get(index).copied();
-    let all = numbers.into_iter().zip(found.intervals).enumerate();
-    let mut estimates = all.map(|(index, (value, confidence_95))| Estimate {
-        value,
-        confidence_95,
-        bootstrap_95: confidence_95.and(bootstrap(index)).map(|ends| ends.map(Number)),
-        reason: confidence_95.is_none().then_some("the data do not determine it"),
-    });
-    let mut next = || {
-        let none = Estimate { value: f64::NAN, confidence_95: None, bootstrap_95: None, reason: None };
-        estimates.next().unwrap_or(none)
-    };
-    let mut edges =
-        || EdgesBody { supply_to_a: next(), a_to_tank: next(), supply_to_b: next(), b_to_tank: next() };
-    let (flow_coefficients, leakage_coefficients) = (edges(), edges());
+    let has = found.tested.terms;
+    let EstimatesOfValve { flow, leakage, tare_flow, null_bias, hysteresis, lap, saturation, shapes } =
+        estimates(found);
     let body = IdentifyAnswer {
         schema: answer::SCHEMA,
         version: env!("CARGO_PKG_VERSION"),
@@ -173,20 +179,24 @@ pub fn json(
         project_sha256: loaded.map(|loaded| loaded.sha256.as_str()),
         tests: read.tests(found),
         warnings: read.warnings(found),
-        flow_coefficients,
-        leakage_coefficients,
-        leakage_shape: next(),
-        tare_flow_m3_per_s: next(),
+        flow_coefficients: flow,
+        leakage_coefficients: leakage,
+        leakage_shape: shapes.supply_to_a.clone(),
+        tare_flow_m3_per_s: tare_flow,
         tare_pressure_pa: found.tested.tare_reference_drop,
         oil_temperature: found.oil.as_ref().map(oil_body),
-        null_bias_v: next(),
-        hysteresis_v: next(),
+        null_bias_v: null_bias,
+        hysteresis_v: hysteresis,
         leakage_model: word(found.tested.leakage_model),
-        leakage_models: found.evidence.models.iter().map(model).collect(),
+        leakage_models: found.evidence.models.iter().map(|one| model(found, one)).collect(),
         leakage_models_difference: Number(found.evidence.difference()),
         leakage_model_preferred: found.evidence.preferred().map(word),
+        lap: has.lap.then_some(lap),
+        saturation: has.saturation.then_some(saturation),
+        leakage_shapes: has.leakage_by_edge.then_some(shapes),
+        terms: found.terms.iter().map(term).collect(),
         bootstrap: found.bootstrap.as_ref().map(bootstrap_body),
-        first_guess: by_name(&found.first_guess),
+        first_guess: by_name(found, &found.first_guess),
         cost: Number(found.cost),
         residual_rms: Number(found.residual_rms),
         signals: signals(found),
@@ -210,22 +220,66 @@ pub fn json(
     serde_json::to_string_pretty(&body).unwrap_or_default()
 }
 
+/// The coefficients with their intervals, those too that the model of the numbers has not.
+struct EstimatesOfValve {
+    flow: EdgesBody,
+    leakage: EdgesBody,
+    tare_flow: Estimate,
+    null_bias: Estimate,
+    hysteresis: Estimate,
+    lap: LapBody,
+    saturation: Estimate,
+    shapes: EdgesBody,
+}
+
+fn estimates(found: &Identification) -> EstimatesOfValve {
+    let numbers = found.coefficients.to_array();
+    let bootstrap = |index: usize| found.bootstrap.as_ref()?.intervals.get(index).copied();
+    let all = numbers.into_iter().zip(found.intervals).enumerate();
+    let mut estimates = all.map(|(index, (value, confidence_95))| Estimate {
+        value,
+        confidence_95,
+        bootstrap_95: confidence_95.and(bootstrap(index)).map(|ends| ends.map(Number)),
+        reason: confidence_95.is_none().then_some("the data do not determine it"),
+    });
+    let mut next = || {
+        let none = Estimate { value: f64::NAN, confidence_95: None, bootstrap_95: None, reason: None };
+        estimates.next().unwrap_or(none)
+    };
+    let mut edges =
+        || EdgesBody { supply_to_a: next(), a_to_tank: next(), supply_to_b: next(), b_to_tank: next() };
+    let (flow, leakage) = (edges(), edges());
+    let [supply_to_a, tare_flow, null_bias, hysteresis] = [next(), next(), next(), next()];
+    let lap = LapBody { positive: next(), negative: next() };
+    let saturation = next();
+    let shapes = EdgesBody { supply_to_a, a_to_tank: next(), supply_to_b: next(), b_to_tank: next() };
+    EstimatesOfValve { flow, leakage, tare_flow, null_bias, hysteresis, lap, saturation, shapes }
+}
+
 /// The name of a model in the project file.
 pub(super) fn word(model: LeakageModel) -> &'static str {
     word_of(&LEAKAGE_MODELS, &model)
 }
 
-fn model(explained: &ExplainedBy) -> ModelBody {
+fn term(evidence: &TermEvidence) -> TermBody {
+    let TermEvidence { term, gain, taken } = *evidence;
+    TermBody { term: term.name(), criterion_gain: Number(gain), taken }
+}
+
+fn model(found: &Identification, explained: &ExplainedBy) -> ModelBody {
     ModelBody {
         model: word(explained.model),
         criterion: Number(explained.criterion),
         residual_rms: Number(explained.residual_rms),
-        coefficients: by_name(&explained.coefficients),
+        coefficients: by_name(found, &explained.coefficients),
     }
 }
 
-fn by_name(coefficients: &StaticCoefficients) -> BTreeMap<&'static str, f64> {
-    COEFFICIENT_NAMES.iter().map(|(name, _)| *name).zip(coefficients.to_array()).collect()
+/// The coefficients of the model of the numbers.
+fn by_name(found: &Identification, coefficients: &StaticCoefficients) -> BTreeMap<&'static str, f64> {
+    let all = coefficients.to_array();
+    let one = |index: usize| Some((COEFFICIENT_NAMES.get(index)?.0, *all.get(index)?));
+    found.in_model().filter_map(one).collect()
 }
 
 fn bootstrap_body(found: &Bootstrap) -> BootstrapBody {
@@ -312,7 +366,7 @@ pub fn files(found: &Identification) -> Vec<OutputFile> {
             Some([low, high]) if low == 0.0 && name == HYSTERESIS => {
                 format!("# {key}: at most {} V\n", in_toml(high, 4))
             }
-            Some([low, high]) if low == 0.0 && name != NULL_BIAS => {
+            Some([low, high]) if low == 0.0 && !EITHER_SIGN.contains(&name) => {
                 format!("{key} = {text}    # 95 %: at most {}\n", in_toml(high, 4))
             }
             Some([low, high]) => {
@@ -323,17 +377,30 @@ pub fn files(found: &Identification) -> Vec<OutputFile> {
         }
     };
     let lines = |range: std::ops::Range<usize>| range.map(line).collect::<String>();
+    let has = found.tested.terms;
+    let whole = [
+        if has.leakage_by_edge { lines(9..12) } else { lines(8..12) },
+        if has.saturation { line(14) } else { String::new() },
+    ];
+    let mut more = String::new();
+    if has.lap {
+        more.push_str(&format!("\n[valve.lap]    # over full travel\n{}", lines(12..14)));
+    }
+    if has.leakage_by_edge {
+        let shapes = format!("supply_to_a{}{}", line(8).trim_start_matches("leakage_shape"), lines(15..18));
+        more.push_str(&format!("\n[valve.leakage_shapes]\n{shapes}"));
+    }
     let files: Vec<&str> = found.recordings.iter().map(|one| one.file.as_str()).collect();
     let misfit = found.misfits().first().map(|one| format!("misfit = {}\n", found.misfit_in_toml(one)));
     let misfit = misfit.unwrap_or_default();
     let text = format!(
-        "# Identified by phea from {}.\n[valve]\nnominal_voltage = \"{} V\"\ntransition_pressure = \"{} Pa\"\ntare_pressure = \"{} Pa\"\nleakage_model = \"{}\"\n{}{misfit}\n[valve.flow_coefficients]    # m3/(s.Pa^0.5)\n{}\n[valve.leakage_coefficients]\n{}",
+        "# Identified by phea from {}.\n[valve]\nnominal_voltage = \"{} V\"\ntransition_pressure = \"{} Pa\"\ntare_pressure = \"{} Pa\"\nleakage_model = \"{}\"\n{}{misfit}\n[valve.flow_coefficients]    # m3/(s.Pa^0.5)\n{}\n[valve.leakage_coefficients]\n{}{more}",
         files.join(", "),
         in_toml(found.tested.nominal_voltage, 6),
         in_toml(found.tested.transition_pressure, 6),
         in_toml(found.tested.tare_reference_drop, 6),
         word(found.tested.leakage_model),
-        lines(8..12),
+        whole.concat(),
         lines(0..4),
         lines(4..8),
     );

@@ -1,12 +1,14 @@
 //! An identified valve for people.
 
-use phea_hydraulics::servovalve::LeakageModel;
+use phea_hydraulics::servovalve::{LeakageModel, STATIC_COEFFICIENTS};
 
-use super::answer::{correlations, word};
+use super::answer::{EITHER_SIGN, correlations, word};
 use super::files::misfit_in_words;
 use super::numbers;
 use super::region::{self, FoundRegion};
-use super::{Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, Read, SignalFit, TestOil};
+use super::{
+    Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, Read, SignalFit, TermEvidence, TestOil, ValveTerm,
+};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
@@ -34,6 +36,7 @@ pub(crate) fn document(
 pub(crate) fn tell_coefficients(found: &Identification, out: &mut Document) {
     out.heading("Model of the leakage");
     out.sentences(leakage(found));
+    out.sentences(terms(found));
     let mut headings = vec!["coefficient", "identified", "95 % from", "to"];
     if found.bootstrap.is_some() {
         headings.extend(["bootstrap from", "to"]);
@@ -115,6 +118,35 @@ fn leakage(found: &Identification) -> Vec<String> {
     ]
 }
 
+/// What the valve has beyond edges that open in proportion, and what it could have.
+fn terms(found: &Identification) -> Vec<String> {
+    let named = |one: &TermEvidence| match one.term {
+        ValveTerm::Lap => "lap of the edges (`lap`)",
+        ValveTerm::Saturation => "openings that saturate (`saturation`)",
+        ValveTerm::LeakageByEdge => "leakage with a shape of its own at each edge (`leakage_shapes`)",
+    };
+    let taken = found.terms.iter().filter(|one| one.taken).map(|one| {
+        format!(
+            "The recordings ask for {}: with it the criterion is lower by {}.",
+            named(one),
+            significant(one.gain, 3)
+        )
+    });
+    let left: Vec<String> = found
+        .terms
+        .iter()
+        .filter(|one| !one.taken)
+        .map(|one| match one.gain > 0.0 {
+            true => format!("{} (lower by {})", named(one), significant(one.gain, 2)),
+            false => format!("{} (higher by {})", named(one), significant(-one.gain, 2)),
+        })
+        .collect();
+    let left = (!left.is_empty()).then(|| {
+        format!("They do not ask for {}: less than {DECISIVE} is not decisive.", left.join(", nor for "))
+    });
+    taken.chain(left).collect()
+}
+
 fn described(model: LeakageModel) -> &'static str {
     match model {
         LeakageModel::EachEdge => "one secant for each edge",
@@ -135,21 +167,23 @@ fn coefficients(found: &Identification) -> Vec<Vec<Cell>> {
     let numbers = found.coefficients.to_array();
     let by_hand = by_hand(found);
     let all = COEFFICIENT_NAMES.iter().zip(numbers).zip(found.intervals).zip(by_hand).enumerate();
-    all.map(|(index, ((((name, unit), value), interval), by_hand))| {
-        let number = |value: Option<f64>| value.map_or(Cell::Missing, |value| Cell::number(value, 4));
-        let ends = |interval: Option<[f64; 2]>| match interval {
-            Some([low, high]) => [Some(low), Some(high)].map(number),
-            None => [Cell::Missing, Cell::Missing],
-        };
-        let mut row = vec![Cell::Code((*name).to_string()), number(interval.map(|_| value))];
-        row.extend(ends(interval));
-        if let Some(bootstrap) = &found.bootstrap {
-            row.extend(ends(interval.and(bootstrap.intervals.get(index).copied())));
-        }
-        row.extend([number(by_hand), Cell::unit(*unit)]);
-        row
-    })
-    .collect()
+    let in_model: Vec<usize> = found.in_model().collect();
+    all.filter(|(index, _)| in_model.contains(index))
+        .map(|(index, ((((name, unit), value), interval), by_hand))| {
+            let number = |value: Option<f64>| value.map_or(Cell::Missing, |value| Cell::number(value, 4));
+            let ends = |interval: Option<[f64; 2]>| match interval {
+                Some([low, high]) => [Some(low), Some(high)].map(number),
+                None => [Cell::Missing, Cell::Missing],
+            };
+            let mut row = vec![Cell::Code((*name).to_string()), number(interval.map(|_| value))];
+            row.extend(ends(interval));
+            if let Some(bootstrap) = &found.bootstrap {
+                row.extend(ends(interval.and(bootstrap.intervals.get(index).copied())));
+            }
+            row.extend([number(by_hand), Cell::unit(*unit)]);
+            row
+        })
+        .collect()
 }
 
 /// The simple calculations in the order of the coefficients.
@@ -158,7 +192,7 @@ fn coefficients(found: &Identification) -> Vec<Vec<Cell>> {
 /// ```text
 /// q_tare sqrt(dp_identified/dp_read)
 /// ```
-fn by_hand(found: &Identification) -> [Option<f64>; 12] {
+fn by_hand(found: &Identification) -> [Option<f64>; STATIC_COEFFICIENTS] {
     let simple = &found.simple;
     let [extending, retracting] = simple.flow_coefficients.map(|one| one.map(|one| one.value));
     let leak = simple.leakage_coefficient().map(|one| one.value);
@@ -167,7 +201,11 @@ fn by_hand(found: &Identification) -> [Option<f64>; 12] {
         [simple.tare_flow, simple.null_bias(), simple.hysteresis()].map(|one| one.map(|one| one.value));
     let read_at = simple.leakage_pressure.unwrap_or(found.tested.tare_reference_drop);
     let tare = tare.map(|tare| tare * (found.tested.tare_reference_drop / read_at).sqrt());
-    [extending, retracting, retracting, extending, leak, leak, leak, leak, shape, tare, bias, width]
+    let read =
+        [extending, retracting, retracting, extending, leak, leak, leak, leak, shape, tare, bias, width];
+    let mut all = [None; STATIC_COEFFICIENTS];
+    all.iter_mut().zip(read).for_each(|(one, read)| *one = read);
+    all
 }
 
 fn signal(found: &Identification, signal: &SignalFit) -> [Cell; 8] {
@@ -198,10 +236,9 @@ fn remarks(found: &Identification) -> Vec<String> {
     if !found.at_bounds.is_empty() {
         remarks.push(format!("At a bound of the search: {}.", found.at_bounds.join(", ")));
     }
-    let zero = COEFFICIENT_NAMES
-        .iter()
-        .zip(found.intervals)
-        .filter(|((name, _), interval)| *name != "null_bias" && interval.is_some_and(|[low, _]| low == 0.0));
+    let zero = COEFFICIENT_NAMES.iter().zip(found.intervals).filter(|((name, _), interval)| {
+        !EITHER_SIGN.contains(name) && interval.is_some_and(|[low, _]| low == 0.0)
+    });
     let zero = zero.filter_map(|((name, unit), interval)| {
         let [_, most] = interval?;
         Some(format!("{name}, at most {} {unit}", significant(most, 3)))

@@ -38,6 +38,13 @@ const SHOWN: &str = "velocity_sensor={ gain_error = \"2 %\", delay = \"1 ms\", f
 /// A virtual impedance.
 const IMPEDANCE: &str = "controller.impedance={ stiffness = \"100 kN/m\", damping = \"2 kN.s/m\", mass = \"20 kg\", filter_time = \"2 ms\" }";
 
+/// Leakage with a shape of its own at each edge.
+const LEAKING_BY_EDGE: &str =
+    "valve.leakage_shapes={ supply_to_a = 100, a_to_tank = 90, supply_to_b = 110, b_to_tank = 100 }";
+
+/// Edges that underlap.
+const LAPPED: &str = "valve.lap={ positive = -0.002, negative = -0.001 }";
+
 /// A cylinder of unequal areas.
 const UNEQUAL: &str = "cylinder={ piston_diameter = \"50 mm\", rod_diameters = [\"0 mm\", \"36 mm\"], stroke = \"500 mm\", moving_mass = \"13.1 kg\" }";
 
@@ -86,6 +93,7 @@ pub(super) fn rigs() -> Vec<(String, Vec<&'static str>)> {
         (hose(), [&sampled[..], &[SHOWN]].concat()),
         (hose(), [&SPRUNG[..], &["controller.load_velocity_feed_forward={ gain = 20 }", SHOWN]].concat()),
         (hose(), vec![IMPEDANCE]),
+        (hose(), vec![LEAKING_BY_EDGE, LAPPED, "operating_point.load_force=500"]),
         (hose(), vec![FED_BACK]),
         (hose(), vec![FED_BACK, "controller.sample_time=1 ms", "controller.pressure_feedback.noise=0.1 bar"]),
         (hose(), CONVERTERS.to_vec()),

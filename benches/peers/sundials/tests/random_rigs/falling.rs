@@ -16,7 +16,7 @@ use phea_hydraulics::force_sensor::ForceSensor;
 use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
 use phea_hydraulics::line::Line;
 use phea_hydraulics::machine::{Machine, MachineOptions, StartValues};
-use phea_hydraulics::servovalve::{LeakageModel, Servovalve, Supply};
+use phea_hydraulics::servovalve::{LeakageModel, LeakageShape, OpeningLaw, Servovalve, Supply};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::stroke::ActuatorStroke;
 
@@ -91,8 +91,9 @@ fn components(chance: &mut Chance) -> Components {
         supply: Supply { pressure, tank_pressure: 0.0 },
         valve: Servovalve {
             flow_coefficients: chance.edges(flow_coefficient),
+            opening: OpeningLaw::Proportional,
             leakage_coefficients: chance.edges(leakage),
-            leakage_shape: 100.0,
+            leakage_shape: LeakageShape::Common(100.0),
             leakage_model: LeakageModel::EachEdge,
             tare_flow: 0.0,
             nominal_voltage: 10.0,

@@ -14,7 +14,9 @@ use phea_hydraulics::line::{DynamicLine, Line, LineError};
 use phea_hydraulics::machine::{
     LoadModel, Machine, MachineError, MachineOptions, PowerUnit, PumpLimited, StartValues,
 };
-use phea_hydraulics::servovalve::{Edges, LeakageModel, Servovalve, SpoolImperfection, Supply};
+use phea_hydraulics::servovalve::{
+    Edges, LeakageModel, LeakageShape, OpeningLaw, Servovalve, SpoolImperfection, Supply,
+};
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::stroke::ActuatorStroke;
 
@@ -207,8 +209,9 @@ fn components(chance: &mut Chance, like_benchmark: bool) -> Components {
         supply: Supply { pressure, tank_pressure: chance.between(0.0, 0.05) * pressure },
         valve: Servovalve {
             flow_coefficients: chance.edges(flow_coefficient),
+            opening: OpeningLaw::Proportional,
             leakage_coefficients: chance.edges(leakage),
-            leakage_shape: chance.decades(10.0, 300.0),
+            leakage_shape: LeakageShape::Common(chance.decades(10.0, 300.0)),
             leakage_model: LeakageModel::EachEdge,
             tare_flow: 0.0,
             nominal_voltage: 10.0,
@@ -392,7 +395,7 @@ fn of_valve(components: &Components) -> Vec<(&'static str, f64)> {
         ("valve_frequency", valve.natural_frequency),
         ("valve_damping", valve.damping_ratio),
         ("nominal_voltage", valve.nominal_voltage),
-        ("leakage_shape", valve.leakage_shape),
+        ("leakage_shape", valve.leakage_shape.widest()),
         ("flow_supply_to_a", flow.supply_to_a),
         ("flow_a_to_tank", flow.a_to_tank),
         ("flow_supply_to_b", flow.supply_to_b),

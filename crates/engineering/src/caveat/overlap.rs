@@ -1,0 +1,40 @@
+//! A valve whose edges overlap.
+
+use phea_hydraulics::servovalve::{OpeningLaw, Servovalve, SpoolDirection, Supply, chamber_coefficients};
+
+use crate::quantity::{VOLTAGE, display, significant};
+use crate::setup::Setup;
+
+/// Travel beyond the lap at which an edge is open, in laps.
+const BEYOND: f64 = 2.0;
+
+/// Within its overlap a valve passes leakage alone, and no linear plant has both this and what it
+/// passes beyond.
+pub(super) fn overlap(setup: &Setup<'_>) -> Option<String> {
+    let components = setup.rig().ok()?.actuator.components();
+    let [from, to, share] = dead_band(&components.valve, &components.supply)?;
+    let [from, to] = [from, to].map(|spool| display(spool, &VOLTAGE, 3));
+    Some(format!(
+        "the edges of the valve overlap from {from} to {to}: between them its flow gain is {} % of that beyond (valve.lap). Each plant is that \
+         of small motions about its operating point; only a simulation shows a loop that crosses the lap, and hunts there where it has an \
+         integrator",
+        significant(100.0 * share, 2)
+    ))
+}
+
+/// Spool positions between which no edge is open, and the flow gain in the middle over that beyond.
+fn dead_band(valve: &Servovalve, supply: &Supply) -> Option<[f64; 3]> {
+    let OpeningLaw::Shaped(shape) = valve.opening else { return None };
+    let [from, to] = [-shape.lap_negative, shape.lap_positive].map(|lap| lap * valve.nominal_voltage);
+    if from >= to {
+        return None;
+    }
+    let middle = 0.5 * (supply.pressure + supply.tank_pressure);
+    let gain = |spool: f64| {
+        let found = chamber_coefficients(valve, supply, spool, middle, middle, SpoolDirection::Mean);
+        found.flow_gain_a + found.flow_gain_b
+    };
+    let width = to - from;
+    let beyond = f64::midpoint(gain(to + BEYOND * width), gain(from - BEYOND * width));
+    Some([from, to, gain(f64::midpoint(from, to)) / beyond])
+}
