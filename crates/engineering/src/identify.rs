@@ -35,7 +35,7 @@ pub use in_use::{in_use, recorded_files};
 pub use joint::{COVERAGE, JointRegion, JointRegionError, SMALLEST_EFFECT, joint_region, with_valve};
 pub use misfit::{Misfit, MisfitPlace};
 pub use reading::recordings;
-pub use recording::{RecordedSignal, Recording, SignalKind};
+pub use recording::{RecordedSignal, Recording, SignalKind, TestBranch};
 pub use simple::{CurveReading, NullMethod, NullReading, SimpleCalculations};
 pub use terms::{TermEvidence, ValveTerm};
 pub use told::Untold;

@@ -75,21 +75,16 @@ fn blocks(recording: &Recording) -> Vec<std::ops::Range<usize>> {
     let is_near = |row: usize| commands.get(row).is_some_and(|command| command.abs() < bound);
     let near = (0..commands.len()).filter(|row| is_near(*row)).count();
     let lengths = [commands.len() / OTHERS, near / NEAR].map(|length| length.max(1));
-    let rises = |row: usize| {
-        let pair = commands.get(row.checked_sub(1)?..=row)?;
-        pair.first().zip(pair.last()).filter(|(before, now)| before != now).map(|(before, now)| now > before)
-    };
+    let turns: Vec<usize> = recording.branches().into_iter().map(|branch| branch.rows.start).collect();
     let mut blocks = Vec::new();
-    let (mut from, mut way) = (0, None);
+    let mut from = 0;
     for row in 0..commands.len() {
-        let now = rises(row);
-        let turns = now.is_some() && way.is_some() && now != way;
         let length = lengths[usize::from(is_near(from))];
+        let turns = turns.binary_search(&row).is_ok();
         if row > from && (turns || row - from >= length || is_near(row) != is_near(from)) {
             blocks.push(from..row);
             from = row;
         }
-        way = now.or(way);
     }
     blocks.push(from..commands.len());
     blocks

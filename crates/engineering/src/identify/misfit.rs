@@ -7,7 +7,7 @@
 
 use phea_dynamics::order::ends;
 
-use super::recording::SignalKind;
+use super::recording::{SignalKind, TestBranch};
 use super::{Identification, SignalFit};
 use crate::quantity::{VOLTAGE, display, significant};
 
@@ -96,22 +96,21 @@ impl Identification {
 
     /// The part of the branches where the residuals of a signal have the greatest mean.
     fn place(&self, signal: &SignalFit) -> Option<MisfitPlace> {
-        let inputs = &self.recordings.get(signal.recording)?.inputs;
+        let recording = self.recordings.get(signal.recording)?;
+        let inputs = &recording.inputs;
         let [least, greatest] = ends(inputs.iter().map(|input| input.command));
         let width = (greatest - least) / RANGES as f64;
         let mut sums = [[(0.0, 0_usize); RANGES]; 2];
-        let mut is_rising = true;
-        let mut before = inputs.first()?.followed_command;
-        for (input, residual) in inputs.iter().zip(self.residuals(signal, &self.coefficients)) {
-            if input.followed_command != before {
-                is_rising = input.followed_command > before;
-            }
-            before = input.followed_command;
-            let range = (((input.command - least) / width) as usize).min(RANGES - 1);
-            let branch = sums.get_mut(usize::from(is_rising)).and_then(|branch| branch.get_mut(range));
-            if let (Some((sum, rows)), Some(residual)) = (branch, residual) {
-                *sum += residual;
-                *rows += 1;
+        let residuals = self.residuals(signal, &self.coefficients);
+        for TestBranch { rises, rows } in recording.branches() {
+            let own = inputs.iter().zip(&residuals).skip(rows.start).take(rows.len());
+            for (input, residual) in own {
+                let range = (((input.command - least) / width) as usize).min(RANGES - 1);
+                let sum = sums.get_mut(usize::from(rises)).and_then(|branch| branch.get_mut(range));
+                if let (Some((sum, rows)), Some(residual)) = (sum, residual) {
+                    *sum += residual;
+                    *rows += 1;
+                }
             }
         }
         let all = [false, true].into_iter().zip(sums).flat_map(|(is_rising, branch)| {

@@ -32,6 +32,15 @@ pub struct Recording {
     pub signals: Vec<RecordedSignal>,
 }
 
+/// A part of a test in which the command goes one way.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TestBranch {
+    /// Whether it rises.
+    pub rises: bool,
+    /// The rows.
+    pub rows: std::ops::Range<usize>,
+}
+
 /// A signal over the rows of a recording. SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedSignal {
@@ -98,6 +107,27 @@ impl Recording {
     /// A signal of it.
     pub fn signal(&self, kind: SignalKind) -> Option<&RecordedSignal> {
         self.signals.iter().find(|signal| signal.kind == kind)
+    }
+
+    /// The branches of the test: rows in a row whose command goes one way, rows at which it rests
+    /// among those before them.
+    pub fn branches(&self) -> Vec<TestBranch> {
+        let command = |row: usize| self.inputs.get(row).map(|input| input.followed_command);
+        let mut branches: Vec<TestBranch> = Vec::new();
+        for row in 1..self.inputs.len() {
+            let Some((before, now)) = command(row - 1).zip(command(row)) else { continue };
+            let last = branches.last_mut();
+            match last {
+                Some(last) if now == before || (now > before) == last.rises => last.rows.end = row + 1,
+                None if now == before => {}
+                _ => branches.push(TestBranch { rises: now > before, rows: row..row + 1 }),
+            }
+        }
+        // what rests before the first change belongs to it
+        if let Some(first) = branches.first_mut() {
+            first.rows.start = 0;
+        }
+        branches
     }
 
     /// The rows of these indices alone.

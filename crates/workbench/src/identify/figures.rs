@@ -158,27 +158,6 @@ fn series(found: &Identification, index: usize, recording: &Recording) -> Figure
     chart.draw(&Words::new(format!("series_{}_{name}", index + 1), title, caption))
 }
 
-/// The branches of one way of the command, from one reversal to the next, as their rows.
-fn branches(recording: &Recording, rising: bool) -> Vec<Vec<usize>> {
-    let mut branches: Vec<Vec<usize>> = Vec::new();
-    let mut way = None;
-    let mut before = None;
-    for (row, input) in recording.inputs.iter().enumerate() {
-        let now = input.followed_command;
-        let turned = before.filter(|before| *before != now).map(|before| now > before);
-        // a row of rest belongs to the way before it
-        if turned.is_some() && turned != way {
-            way = turned;
-            branches.extend((way == Some(rising)).then(Vec::new));
-        }
-        if let Some(branch) = branches.last_mut().filter(|_| way == Some(rising)) {
-            branch.push(row);
-        }
-        before = Some(now);
-    }
-    branches
-}
-
 /// Command in percent, and what `of` says of a row, of each branch one way.
 fn over_command(
     found: &Identification,
@@ -187,8 +166,9 @@ fn over_command(
     of: impl Fn(usize) -> Option<f64>,
 ) -> Vec<Vec<(f64, f64)>> {
     let point = |row: usize| Some((percent(found, recording.inputs.get(row)?.followed_command), of(row)?));
-    let branch = |rows: Vec<usize>| rows.into_iter().filter_map(point).collect::<Vec<_>>();
-    branches(recording, rising).into_iter().map(branch).filter(|points| !points.is_empty()).collect()
+    let branches = recording.branches().into_iter().filter(|branch| branch.rises == rising);
+    let points = branches.map(|branch| branch.rows.filter_map(point).collect::<Vec<_>>());
+    points.filter(|points| !points.is_empty()).collect()
 }
 
 /// A line for each branch.

@@ -30,18 +30,23 @@ pub(crate) fn chapter(out: &mut Document, found: &Identification, region: &Found
 /// The sentences of the chapter.
 fn sentences(found: &Identification, region: &JointRegion) -> Vec<String> {
     let half_width = significant(region.deviations, 3);
+    let count = region.left_out + region.directions.len();
+    let counted = match count {
+        9 => "nine".to_string(),
+        count => count.to_string(),
+    };
     let mut all = vec![format!(
-        "The nine coefficients that the plant depends on lie together in the family with {} %: each of their independent directions within {half_width} standard deviations.",
+        "The {counted} coefficients that the plant depends on lie together in the family with {} %: each of their independent directions within {half_width} standard deviations.",
         significant(100.0 * COVERAGE, 2)
     )];
     let effect = significant(100.0 * region.effect_left_out, 2);
     all.push(match region.left_out {
         0 => "Every direction matters for K_qU and K_c.".to_string(),
-        9 => format!(
+        left_out if left_out == count => format!(
             "None of them matters: at their ends all of them together move K_qU and K_c by at most {effect} % at any operating point, so that the valve stays as identified."
         ),
-        count => format!(
-            "{count} of the 9 directions are left out: at their ends they move K_qU and K_c by at most {effect} % together at any operating point."
+        left_out => format!(
+            "{left_out} of the {count} directions are left out: at their ends they move K_qU and K_c by at most {effect} % together at any operating point."
         ),
     });
     let states_accuracy = found.recordings.iter().any(|one| !one.accuracies.is_empty());

@@ -2,6 +2,7 @@
 
 use phea_dynamics::least_squares::{Linearised, Settings, minimise, uncertainty};
 use phea_dynamics::order::sort_by_number;
+use phea_dynamics::portable;
 use phea_hydraulics::servovalve::{PortCircuit, TestedValve, flow_coefficient_from_rating};
 
 use super::straight_line::straight_line;
@@ -77,18 +78,36 @@ fn branch(
     straight_line(&points).map(|line| line.slope).filter(|slope| slope.value > 0.0)
 }
 
-/// d(p_A - p_B)/dU where both are equal, by the blocked test with the most rows around it, both
-/// ways.
+/// A row near equal pressures: load pressure over the supply's, command, and the supply's drop.
+type NearNull = (f64, f64, f64);
+
+/// d(p_A - p_B)/dU where both are equal, from all rows about it of all tests with shut ports.
+///
+/// ```text
+/// U = c_b + c_1 p_L + bends(p_L)        K_pU = 1/c_1
+/// ```
+///
+/// An edge that opens bends the curve. Each branch b has its own null: the
+/// hysteresis lies between those of either way, and a branch that begins without the memory of a
+/// reversal lies elsewhere again. Such a branch is left out where others tell, as its spool may
+/// begin by standing still.
 pub(super) fn pressure_sensitivity(recordings: &[Recording]) -> Option<CurveReading> {
-    let blocked = recordings.iter().filter(|one| one.circuit == PortCircuit::Blocked);
-    let of = |recording: &Recording| [true, false].map(|rising| around_null(recording, rising));
-    let most = blocked.map(of).max_by_key(|ways| ways.iter().map(Vec::len).sum::<usize>())?;
-    let slopes: Vec<CurveReading> = most.iter().filter_map(|points| inverse_slope(points)).collect();
-    CurveReading::mean(&slopes)
+    let blocked = || recordings.iter().filter(|one| one.circuit == PortCircuit::Blocked);
+    let told = |first: usize| -> Vec<Vec<NearNull>> {
+        let all = blocked().flat_map(|one| {
+            one.branches().into_iter().skip(first).map(|branch| around_null(one, branch.rows))
+        });
+        all.filter(|points| points.len() > FEWEST_OF_BRANCH).collect()
+    };
+    let later = told(1);
+    let is_enough = later.iter().map(Vec::len).sum::<usize>() >= FEWEST;
+    inverse_slope(&if is_enough { later } else { told(0) })
 }
 
-/// Load pressure over the supply's, and command, one way.
-fn around_null(recording: &Recording, rising: bool) -> Vec<(f64, f64, f64)> {
+/// Rows of a branch that its own null takes.
+const FEWEST_OF_BRANCH: usize = 1;
+
+fn around_null(recording: &Recording, rows: std::ops::Range<usize>) -> Vec<NearNull> {
     let [Some(a), Some(b)] =
         [SignalKind::PressureA, SignalKind::PressureB].map(|kind| recording.signal(kind))
     else {
@@ -98,32 +117,93 @@ fn around_null(recording: &Recording, rising: bool) -> Vec<(f64, f64, f64)> {
         let input = recording.inputs.get(row)?;
         let whole = input.supply.pressure - input.supply.tank_pressure;
         let load = (a.values.get(row).copied()?? - b.values.get(row).copied()??) / whole;
-        let counts = load.abs() < SENSITIVITY_WINDOW && direction(recording, row) == Some(rising);
-        counts.then_some((load, input.command, whole))
+        (load.abs() < SENSITIVITY_WINDOW).then_some((load, input.command, whole))
     };
-    (0..recording.inputs.len()).filter_map(of_row).collect()
+    rows.filter_map(of_row).collect()
 }
 
-/// 1/(dU/dp_L) at p_L = 0, by U = c_0 + c_1 p_L + c_2 p_L |p_L| + c_3 p_L^3: an edge that opens
-/// bends the curve, to either side alike.
-fn inverse_slope(points: &[(f64, f64, f64)]) -> Option<CurveReading> {
-    if points.len() < FEWEST {
-        return None;
+/// What the command has over the load pressure beside its slope.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum NullBend {
+    /// p_L^2 and p_L^3.
+    Smooth,
+    /// p_L |p_L| and p_L^3, of equal edges, which open where both pressures are equal.
+    Even,
+    /// p_L^2, p_L^3 and max(p_L - p_0, 0) of unequal edges, which open elsewhere.
+    KinkAt(f64),
+}
+
+impl NullBend {
+    /// All that are tried: kinks in steps of the window.
+    fn all() -> impl Iterator<Item = NullBend> {
+        let kink = |step: i32| NullBend::KinkAt(f64::from(step) / f64::from(KINKS) * SENSITIVITY_WINDOW);
+        [NullBend::Smooth, NullBend::Even].into_iter().chain((1 - KINKS..KINKS).map(kink))
     }
-    let scale = points.iter().map(|(_, command, _)| command.abs()).fold(1e-6, f64::max);
-    let terms = |load: f64| [1.0, load, load * load.abs(), load * load * load];
-    let mut bent = |x: &[f64]| {
-        let shown = |load: f64| x.iter().zip(terms(load)).map(|(c, term)| c * term).sum::<f64>();
-        let residuals = points.iter().map(|(load, command, _)| shown(*load) - command / scale).collect();
-        let jacobian = points.iter().flat_map(|(load, _, _)| terms(*load)).collect();
-        Ok(Some(Linearised { residuals, jacobian }))
+
+    fn terms(self, load: f64) -> Vec<f64> {
+        let cube = load * load * load;
+        match self {
+            NullBend::Smooth => vec![load * load, cube],
+            NullBend::Even => vec![load * load.abs(), cube],
+            NullBend::KinkAt(place) => vec![load * load, cube, (load - place).max(0.0)],
+        }
+    }
+
+    /// How many numbers it has, the place of a kink among them.
+    fn numbers(self) -> usize {
+        if matches!(self, NullBend::KinkAt(_)) { 4 } else { 2 }
+    }
+
+    /// The slope at zero of these numbers, that of the load pressure before those of the terms.
+    fn slope(self, numbers: &[f64]) -> Option<f64> {
+        let beyond = matches!(self, NullBend::KinkAt(place) if place < 0.0);
+        let kink = if beyond { *numbers.get(3)? } else { 0.0 };
+        Some(numbers.first()? + kink)
+    }
+}
+
+/// Places of a kink to either side.
+const KINKS: i32 = 10;
+
+/// 1/(dU/dp_L) at p_L = 0 over these branches, by the bend that the information criterion favours.
+fn inverse_slope(branches: &[Vec<NearNull>]) -> Option<CurveReading> {
+    let rows = branches.iter().map(Vec::len).sum::<usize>();
+    let fits = NullBend::all().filter(|bend| rows > bend.numbers() + 1 + branches.len());
+    let found = fits.filter_map(|bend| bent(branches, bend));
+    let best = found.min_by(|one, other| one.1.total_cmp(&other.1));
+    best.map(|(reading, _)| reading).filter(|_| rows >= FEWEST)
+}
+
+/// The same with this bend, and the criterion of Schwarz.
+fn bent(branches: &[Vec<NearNull>], bend: NullBend) -> Option<(CurveReading, f64)> {
+    let all = branches.iter().enumerate();
+    let points: Vec<(usize, NearNull)> =
+        all.flat_map(|(branch, points)| points.iter().map(move |point| (branch, *point))).collect();
+    let scale = points.iter().map(|(_, (_, command, _))| command.abs()).fold(1e-6, f64::max);
+    let count = 1 + bend.terms(0.0).len() + branches.len();
+    let terms = |branch: usize, load: f64| {
+        let mut terms = vec![load];
+        terms.extend(bend.terms(load));
+        terms.extend((0..branches.len()).map(|other| f64::from(u8::from(other == branch))));
+        terms
+    };
+    let mut linear = |x: &[f64]| {
+        let of = |branch, load| terms(branch, load).iter().zip(x).map(|(term, c)| term * c).sum::<f64>();
+        let residual =
+            |(branch, (load, command, _)): &(usize, NearNull)| of(*branch, *load) - command / scale;
+        let jacobian = points.iter().flat_map(|(branch, (load, ..))| terms(*branch, *load)).collect();
+        Ok(Some(Linearised { residuals: points.iter().map(residual).collect(), jacobian }))
     };
     let settings = Settings { robust_beyond: f64::INFINITY, tolerance: 1e-14, ..Settings::default() };
-    let found = minimise(&[0.0; 4], &[[-1e3, 1e3]; 4], settings, &mut bent).ok()?;
+    let found = minimise(&vec![0.0; count], &vec![[-1e3, 1e3]; count], settings, &mut linear).ok()?;
     let groups: Vec<usize> = (0..points.len()).collect();
-    let told = uncertainty(&found.linearised, &groups, 4, f64::INFINITY);
-    let (slope, deviation) = (*found.variables.get(1)?, *told.deviations.get(1)?);
-    let whole = points.iter().map(|(_, _, whole)| whole).sum::<f64>() / points.len() as f64;
+    let told = uncertainty(&found.linearised, &groups, count, f64::INFINITY);
+    let (slope, deviation) = (bend.slope(&found.variables)?, *told.deviations.first()?);
+    let whole = points.iter().map(|(_, (.., whole))| whole).sum::<f64>() / points.len() as f64;
     let value = whole / (slope * scale);
-    (slope > 0.0).then(|| CurveReading::of(value, value * deviation / slope))
+    let rows = points.len() as f64;
+    let mean_square = (2.0 * found.cost / rows).max(f64::MIN_POSITIVE);
+    let numbers = (1 + bend.numbers() + branches.len()) as f64;
+    let criterion = rows * portable::ln(mean_square) + numbers * portable::ln(rows);
+    (slope > 0.0).then(|| (CurveReading::of(value, value * deviation / slope), criterion))
 }
