@@ -103,6 +103,8 @@ pub(super) struct FrequencyColumn {
     pub(super) demands: Vec<Demand>,
     /// Indices of the plants; the following fields are in their order.
     pub(super) plants: Vec<usize>,
+    /// True where the plants are the first of all, each once, in their order.
+    pub(super) in_order: bool,
     /// P H
     pub(super) loop_re: Vec<f64>,
     pub(super) loop_im: Vec<f64>,
@@ -354,6 +356,7 @@ impl FrequencyColumn {
             grid: false,
             demands,
             plants: vec![],
+            in_order: true,
             loop_re: vec![],
             loop_im: vec![],
             loop_squared: vec![],
@@ -365,6 +368,7 @@ impl FrequencyColumn {
     /// A response of a plant; one that is known within a disc has several.
     fn push(&mut self, plant: usize, response: &MemberResponse) {
         let with_sensor = response.plant * response.sensor;
+        self.in_order &= plant == self.plants.len();
         self.plants.push(plant);
         self.loop_re.push(with_sensor.re);
         self.loop_im.push(with_sensor.im);

@@ -14,6 +14,7 @@ use super::{Judgement, SearchProblem, Slopes};
 use crate::closed_loop::Compensation;
 use crate::specification::Specification;
 use crate::verification::{PlantPoint, TrackingJudgement};
+use least_margins::Looked;
 
 /// The measure of instability for a loop for which it is too expensive to compute.
 const UNSTABLE: f64 = 1.0;
@@ -87,6 +88,16 @@ pub struct Shaping {
     bounds: Vec<[f64; 2]>,
     stability: SampleStability,
     around: ColumnLoop,
+    /// The loop that was judged last: slopes are mostly taken there.
+    judged: Option<JudgedLoop>,
+}
+
+/// The loop at the x that was judged, with its margins.
+#[derive(Clone, Debug)]
+struct JudgedLoop {
+    x: Vec<f64>,
+    forward: Vec<[Complex64; 2]>,
+    looked: Looked,
 }
 
 /// The least margin to one specification at one frequency.
@@ -135,6 +146,7 @@ impl Shaping {
             objective,
             samples,
             around: ColumnLoop::default(),
+            judged: None,
         })
     }
 
@@ -164,6 +176,7 @@ impl Shaping {
     /// # Errors
     /// Those of [`Samples::add`].
     pub fn add(&mut self, plants: &[PlantPoint], frequency_rad_per_s: f64) -> Result<bool, SamplesError> {
+        self.judged = None;
         let known = self.samples.members().len();
         let new = self.samples.add(plants, frequency_rad_per_s)?;
         for plant in plants {
@@ -194,17 +207,19 @@ impl Shaping {
         wider.samples.judge_by(specifications, minimum_delay_margin_s);
         let of_prefilter = self.prefilter.as_ref().map_or(vec![], Structure::bounds);
         wider.bounds = [structure.bounds(), of_prefilter].concat();
-        Shaping { structure, ..wider }
+        Shaping { structure, judged: None, ..wider }
     }
 
     /// Counts margins by their share of the room between two limits; see
     /// [`Samples::count_shares_of_room`].
     pub(crate) fn count_shares_of_room(&mut self) {
+        self.judged = None;
         self.samples.count_shares_of_room(true);
     }
 
     /// Tightens every limit by this much from now on; see [`Samples::keep_in_reserve`].
     pub(crate) fn keep_in_reserve(&mut self, reserve_db: f64) {
+        self.judged = None;
         self.samples.keep_in_reserve(reserve_db);
     }
 
@@ -220,7 +235,8 @@ impl Shaping {
             return Judgement::UNUSABLE;
         }
         let (stable, instability) = self.stability_of(law.feedback());
-        self.judgement(x, &forward, stable, instability)
+        let looked = self.look(&forward);
+        self.judgement(x, (&forward, &looked), (stable, instability))
     }
 
     /// Controller and prefilter at x; without a prefilter, the gain 1.
@@ -315,15 +331,24 @@ impl Shaping {
     }
 
     fn judgement(
-        &mut self,
+        &self,
         x: &[f64],
-        forward: &[[Complex64; 2]],
-        stable: bool,
-        instability: f64,
+        (forward, looked): (&[[Complex64; 2]], &Looked),
+        (stable, instability): (bool, f64),
     ) -> Judgement {
-        let worst_margin_db = self.look(forward).worst_db;
         let (objective_db, _) = self.objective(x, forward, &[]);
-        Judgement { objective_db, worst_margin_db, stable, instability }
+        Judgement { objective_db, worst_margin_db: looked.worst_db, stable, instability }
+    }
+
+    /// The loop at x with its margins, as it was judged if that was here; `None` where it has no
+    /// response.
+    fn judged_at(&mut self, x: &[f64]) -> Option<JudgedLoop> {
+        if let Some(known) = self.judged.take().filter(|known| known.x == x) {
+            return Some(known);
+        }
+        let forward = self.forward(x)?;
+        let looked = self.look(&forward);
+        Some(JudgedLoop { x: x.to_vec(), forward, looked })
     }
 
     /// Whether every plant is stable, and how far from it the worst one is.
@@ -357,18 +382,23 @@ impl SearchProblem for Shaping {
     }
 
     fn judge(&mut self, x: &[f64]) -> Judgement {
-        let Some(forward) = self.forward(x) else { return Judgement::UNUSABLE };
-        let (stable, instability) = self.stability(x);
-        self.judgement(x, &forward, stable, instability)
+        let Some(found) = self.judged_at(x) else { return Judgement::UNUSABLE };
+        let stability = self.stability(x);
+        let judgement = self.judgement(x, (&found.forward, &found.looked), stability);
+        self.judged = Some(found);
+        judgement
     }
 
     fn slopes(&mut self, x: &[f64]) -> Slopes {
         let none =
             || Slopes { objective_db: f64::INFINITY, objective_slopes: vec![0.0; x.len()], margins: vec![] };
-        let (Some(forward), Some(slopes)) = (self.forward(x), self.forward_slopes(x)) else { return none() };
-        let looked = self.look(&forward);
-        let (objective_db, objective_slopes) = self.objective(x, &forward, &slopes[0]);
-        Slopes { objective_db, objective_slopes, margins: self.rows(&looked, &forward, &slopes) }
+        let Some(slopes) = self.forward_slopes(x) else { return none() };
+        let Some(found) = self.judged_at(x) else { return none() };
+        let JudgedLoop { forward, looked, .. } = &found;
+        let (objective_db, objective_slopes) = self.objective(x, forward, &slopes[0]);
+        let margins = self.rows(looked, forward, &slopes);
+        self.judged = Some(found);
+        Slopes { objective_db, objective_slopes, margins }
     }
 }
 

@@ -83,6 +83,40 @@ fn the_rows_together_foretell_the_worst_margin() {
     }
 }
 
+/// Slopes are those of the samples as they are now, whatever was judged before: with a further
+/// plant and frequency, and under other limits, as those of a shaping that judged nothing.
+#[test]
+fn slopes_do_not_depend_on_what_was_judged_before() {
+    let mut draw = Draw(24);
+    let problem = problem(Timing::default());
+    let frequencies: Vec<f64> = (0..20).map(|index| 0.3 * 1.4f64.powi(index)).collect();
+    let all = plants(&problem);
+    let (known, new) = all.split_at(3);
+    let samples = Samples::new(&problem, known, &frequencies).unwrap();
+    let structure = structure(&mut draw);
+    let x = draw.point(&structure.bounds());
+    let fresh =
+        || Shaping::new(structure.clone(), None, Objective::BestWorstMargin, samples.clone()).unwrap();
+    let mut shaping = fresh();
+    shaping.judge(&x);
+    assert_eq!(shaping.slopes(&x), fresh().slopes(&x));
+    let other = draw.point(&structure.bounds());
+    assert_eq!(shaping.slopes(&other), fresh().slopes(&other));
+
+    let before = shaping.judge(&x);
+    shaping.add(&new[..1], 1.7).unwrap();
+    let mut added = fresh();
+    added.add(&new[..1], 1.7).unwrap();
+    assert_eq!([shaping.judge(&x)], [added.judge(&x)]);
+    assert_eq!(shaping.slopes(&x), added.slopes(&x));
+
+    let mut shaping = fresh();
+    shaping.judge(&x);
+    let own = problem.specifications[..1].to_vec();
+    let mut fewer = shaping.with_limits(structure.clone(), (own, 0.0));
+    assert_ne!(fewer.judge(&x), before);
+}
+
 #[test]
 fn objectives_move_with_their_slopes() {
     let mut draw = Draw(23);

@@ -38,22 +38,70 @@ struct LoopValue {
     square: f64,
 }
 
-/// |L|^2 of one plant at one column, on the way through the columns.
-#[derive(Clone, Copy, Debug)]
-struct LoopSize {
-    column: usize,
-    /// Of the plant in the column.
-    place: usize,
-    square: f64,
+/// |L|^2 of each plant at the last two columns that it was evaluated at; NaN before them.
+struct Trails {
+    before: Vec<f64>,
+    last: Vec<f64>,
+    /// The last of these columns, and the place of the plant in it.
+    columns: Vec<usize>,
+    places: Vec<usize>,
 }
 
-impl LoopSize {
-    /// Before the first column of a plant.
-    const NOTHING: LoopSize = LoopSize { column: usize::MAX, place: usize::MAX, square: f64::NAN };
+/// Plants whose |L|^2 are compared together: mostly none of them passes through 1 or turns.
+const TOGETHER: usize = 16;
 
-    /// True where |L| passes through 1 from here to another column.
-    fn crosses(&self, other: &LoopSize) -> bool {
-        !self.square.is_nan() && (self.square >= 1.0) != (other.square >= 1.0)
+impl Trails {
+    fn new(plants: usize) -> Trails {
+        let none = || vec![f64::NAN; plants];
+        Trails {
+            before: none(),
+            last: none(),
+            columns: vec![usize::MAX; plants],
+            places: vec![usize::MAX; plants],
+        }
+    }
+
+    /// True where |L| passes through 1 from the last column to one with this |L|^2.
+    fn passes(last: f64, square: f64) -> bool {
+        !last.is_nan() & ((last >= 1.0) != (square >= 1.0))
+    }
+
+    /// True where it does, or turned at the last column.
+    fn is_notable(before: f64, last: f64, square: f64) -> bool {
+        let peak = (last < 1.0) & (before < last) & (square <= last);
+        let dip = (last > 1.0) & (before > last) & (square >= last);
+        Self::passes(last, square) | peak | dip
+    }
+
+    /// Notable ones of the first plants, by their |L|^2 at a column.
+    fn notable(&self, squares: &[f64]) -> Vec<usize> {
+        let mut found = Vec::new();
+        let trails = self.before.chunks(TOGETHER).zip(self.last.chunks(TOGETHER));
+        for (number, ((before, last), squares)) in trails.zip(squares.chunks(TOGETHER)).enumerate() {
+            let each = || before.iter().zip(last).zip(squares);
+            let notable = each().map(|((before, last), square)| Self::is_notable(*before, *last, *square));
+            if notable.clone().fold(false, |any, one| any | one) {
+                let places = notable.enumerate().filter(|(_, is_one)| *is_one);
+                found.extend(places.map(|(place, _)| number * TOGETHER + place));
+            }
+        }
+        found
+    }
+
+    /// Moves the first plants on to a column.
+    fn advance_all(&mut self, index: usize, squares: &[f64]) {
+        let count = squares.len().min(self.last.len());
+        self.before[..count].copy_from_slice(&self.last[..count]);
+        self.last[..count].copy_from_slice(&squares[..count]);
+        self.columns[..count].fill(index);
+        self.places[..count].iter_mut().enumerate().for_each(|(place, own)| *own = place);
+    }
+
+    /// Moves one plant on to a column.
+    fn advance(&mut self, plant: usize, (index, place): (usize, usize), square: f64) {
+        self.before[plant] = self.last[plant];
+        self.last[plant] = square;
+        (self.columns[plant], self.places[plant]) = (index, place);
     }
 }
 
@@ -116,48 +164,99 @@ pub(crate) fn delay_margins(
     if delay_s <= 0.0 {
         return DelayMargins::default();
     }
-    let mut trails: Vec<[LoopSize; 2]> = vec![[LoopSize::NOTHING; 2]; plants];
-    let mut crossovers: Vec<(usize, ColumnDependence)> = Vec::new();
-    let mut peaks: Vec<(usize, ColumnDependence)> = Vec::new();
-    let value = |passed: &LoopSize| {
-        let LoopSize { column: index, place, .. } = *passed;
-        let (column, feedback) = columns.get(index).zip(feedback.get(index))?;
-        Some(LoopValue::of(index, column, place, *feedback))
+    let mut search = DelaySearch {
+        columns,
+        feedback,
+        delay_s,
+        trails: Trails::new(plants),
+        crossovers: vec![],
+        peaks: vec![],
     };
+    let mut squares: Vec<f64> = Vec::new();
     for (index, (column, feedback)) in columns.iter().zip(feedback).enumerate() {
         let gain = feedback.norm_sqr();
-        for (place, (&plant, path)) in column.plants.iter().zip(&column.loop_squared).enumerate() {
-            let Some(trail) = trails.get_mut(plant) else { continue };
-            let [before, last] = *trail;
-            if last.column == index {
-                continue;
-            }
-            let here = LoopSize { column: index, place, square: gain * path };
-            *trail = [last, here];
-            if last.crosses(&here)
-                && let Some((lower, upper)) = value(&last).zip(value(&here))
-                && let Some(at) = crossover(&lower, &upper)
-            {
-                crossovers.push((plant, delay_at(at, [&lower, &upper], delay_s)));
-            }
-            if let Some(bend) = bend([before, last, here].map(|passed| passed.square))
-                && let Some(point) = value(&last)
-            {
-                peaks.extend(peak(bend, &point, delay_s).map(|peak| (plant, peak)));
-            }
+        squares.clear();
+        squares.extend(column.loop_squared.iter().map(|path| gain * path));
+        if column.in_order && squares.len() <= plants {
+            search.go_on_with_all(index, &squares);
+        } else {
+            search.go_on(index, column, &squares);
         }
     }
     if above == AboveColumns::Falling {
-        let ends = trails.iter().enumerate().filter(|(_, [_, last])| last.square >= 1.0);
-        let beyond =
-            ends.filter_map(|(plant, [_, last])| Some((plant, delay_beyond(&value(last)?, delay_s))));
-        crossovers.extend(beyond);
+        search.go_beyond();
     }
     let of_plants = |mut found: Vec<(usize, ColumnDependence)>| {
         found.sort_by_key(|(plant, _)| *plant);
         found.into_iter().map(|(_, margin)| margin).collect()
     };
-    DelayMargins { crossovers: of_plants(crossovers), peaks: of_plants(peaks) }
+    DelayMargins { crossovers: of_plants(search.crossovers), peaks: of_plants(search.peaks) }
+}
+
+/// The search for margins to a delay, on its way through the columns.
+struct DelaySearch<'a> {
+    columns: &'a [FrequencyColumn],
+    feedback: &'a [Complex64],
+    delay_s: f64,
+    trails: Trails,
+    /// Each with its plant.
+    crossovers: Vec<(usize, ColumnDependence)>,
+    peaks: Vec<(usize, ColumnDependence)>,
+}
+
+impl DelaySearch<'_> {
+    /// A plant at a place in a column.
+    fn value(&self, index: usize, place: usize) -> Option<LoopValue> {
+        let (column, feedback) = self.columns.get(index).zip(self.feedback.get(index))?;
+        Some(LoopValue::of(index, column, place, *feedback))
+    }
+
+    /// A plant that is notable at a place in a column.
+    fn note(&mut self, plant: usize, (index, place): (usize, usize), square: f64) {
+        let Trails { before, last, columns, places } = &self.trails;
+        let (before, last, from) = (before[plant], last[plant], (columns[plant], places[plant]));
+        let Some(lower) = self.value(from.0, from.1) else { return };
+        if Trails::passes(last, square)
+            && let Some(upper) = self.value(index, place)
+            && let Some(at) = crossover(&lower, &upper)
+        {
+            self.crossovers.push((plant, delay_at(at, [&lower, &upper], self.delay_s)));
+        }
+        let bend = bend([before, last, square]);
+        self.peaks.extend(bend.and_then(|bend| peak(bend, &lower, self.delay_s)).map(|peak| (plant, peak)));
+    }
+
+    /// On to a column of the first plants in their order.
+    fn go_on_with_all(&mut self, index: usize, squares: &[f64]) {
+        for place in self.trails.notable(squares) {
+            self.note(place, (index, place), squares[place]);
+        }
+        self.trails.advance_all(index, squares);
+    }
+
+    /// On to a column of any plants; of one within a disc the first response is the centre.
+    fn go_on(&mut self, index: usize, column: &FrequencyColumn, squares: &[f64]) {
+        for (place, (&plant, &square)) in column.plants.iter().zip(squares).enumerate() {
+            if self.trails.columns.get(plant).is_none_or(|last| *last == index) {
+                continue;
+            }
+            if Trails::is_notable(self.trails.before[plant], self.trails.last[plant], square) {
+                self.note(plant, (index, place), square);
+            }
+            self.trails.advance(plant, (index, place), square);
+        }
+    }
+
+    /// Beyond the last column, where |L| falls as 1/w.
+    fn go_beyond(&mut self) {
+        let Trails { last, columns, places, .. } = &self.trails;
+        let ends = last.iter().enumerate().filter(|(_, square)| **square >= 1.0);
+        let beyond = ends.filter_map(|(plant, _)| {
+            Some((plant, delay_beyond(&self.value(columns[plant], places[plant])?, self.delay_s)))
+        });
+        let beyond: Vec<(usize, ColumnDependence)> = beyond.collect();
+        self.crossovers.extend(beyond);
+    }
 }
 
 /// The highest gain crossover of the nominal loop, 20 log10 of its frequency in rad/s; beyond the

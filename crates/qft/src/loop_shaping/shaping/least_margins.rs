@@ -20,6 +20,7 @@ const ROUNDING: f64 = 1e-9;
 const ROUNDING_DB: f64 = 1e-6;
 
 /// The worst of the samples at one G.
+#[derive(Clone, Debug)]
 pub(super) struct Looked {
     /// Of each column and demand.
     excesses: Vec<ColumnExcess>,
