@@ -23,6 +23,7 @@ pub mod frequency;
 pub mod least_squares;
 pub mod linear;
 pub mod order;
+pub mod pieces;
 pub mod portable;
 pub mod random;
 pub mod scalar;

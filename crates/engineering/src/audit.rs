@@ -34,6 +34,7 @@ pub use words::{
 };
 
 use phea_dynamics::portable;
+use phea_qft::audit::audit_by;
 use phea_qft::family::{Extent, Family};
 use phea_qft::proof::Proof;
 use phea_qft::verification::{
@@ -46,8 +47,9 @@ use crate::plant_names::PlantNames;
 use crate::quantity::DisplayUnit;
 use crate::robust::{LINES_IN_MOTION, RobustError, RobustProblem, robust_problem};
 use crate::setup::Setup;
+use crate::side_by_side::{all_cores, both};
 use crate::source::Source;
-use phea_dynamics::watch::{Stopped, Watch, part};
+use phea_dynamics::watch::{Stopped, Watch, part, unwatched};
 
 /// Why there is nothing to audit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -115,7 +117,7 @@ pub fn problem_to_audit(source: &dyn Source, setup: &Setup<'_>) -> Result<Robust
 pub fn audit_problem(problem: &RobustProblem, watch: Watch<'_>) -> Result<ProjectAudit, Stopped> {
     let share = if problem.rig_outside.is_some() { 0.8 } else { 1.0 };
     let asked = audit_request(problem, &problem.family);
-    let audit = phea_qft::audit::audit(&asked, &mut part(watch, STAGE, [0.0, share]))?;
+    let audit = audit_by(&asked, all_cores(), &mut part(watch, STAGE, [0.0, share]))?;
     let of_rig = caveat_of_rig(problem, &mut part(watch, STAGE, [share, 1.0]))?;
     Ok(ProjectAudit::new(problem, audit, of_rig))
 }
@@ -252,10 +254,14 @@ impl ProjectAudit {
         if audit.verdict == Verdict::Met && caveats.iter().any(|caveat| caveat.unproven) {
             audit.verdict = Verdict::NotProven;
         }
-        let in_time = in_time::findings(problem, &audit);
+        let (in_time, margins) = both(
+            &mut unwatched,
+            0.5,
+            |_| in_time::findings(problem, &audit),
+            |_| AuditMargins::of(problem, &audit),
+        );
         let noise = |signal| SignalNoise::of(signal, problem, audit.stability.verdict);
         let [velocity_noise, pressure_noise] = [NoisySignal::LoadVelocity, NoisySignal::Pressures].map(noise);
-        let margins = AuditMargins::of(problem, &audit);
         let nominal = margins.nominal.as_ref().and_then(|_| nominal_margins(problem));
         ProjectAudit {
             nominal,

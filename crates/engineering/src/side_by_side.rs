@@ -1,13 +1,17 @@
 //! Independent pieces of work on all cores.
 
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use phea_dynamics::watch::{Progress, Stopped, Watch, tell};
+use phea_dynamics::pieces::{WorkPiece, Workers};
+use phea_dynamics::watch::{Progress, Stopped, Watch, tell, within};
 
 /// How often the watch is told while pieces of work go on.
 const ROUND: Duration = Duration::from_millis(20);
+/// The same while the calling thread has nothing to do but wait for another one.
+const WAITING: Duration = Duration::from_millis(2);
 
 /// The results of `count` pieces of work in their order, worked on by as many threads as there are
 /// cores; by this one alone where there is one core. The pieces take their index and a watch that
@@ -29,59 +33,126 @@ pub fn side_by_side<T: Send>(
     watch: Watch<'_>,
     piece: impl Fn(usize, Watch<'_>) -> Option<T> + Sync,
 ) -> Result<Vec<T>, Stopped> {
-    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(count);
-    if threads <= 1 {
-        let alone = |index: usize| {
-            let mut told = |progress: Progress| {
-                watch(Progress { stage, share: (index as f64 + progress.share) / count as f64 })
-            };
-            piece(index, &mut told).ok_or(Stopped)
-        };
-        return (0..count).map(alone).collect();
+    let mut results: Vec<Option<T>> = (0..count).map(|_| None).collect();
+    let pieces = results.iter_mut().enumerate().map(|(index, place)| {
+        let piece = &piece;
+        let own: WorkPiece<'_> = Box::new(move |watch: Watch<'_>| {
+            *place = Some(piece(index, watch).ok_or(Stopped)?);
+            Ok(())
+        });
+        own
+    });
+    all_cores().work(pieces.collect(), stage, watch)?;
+    results.into_iter().collect::<Option<Vec<T>>>().ok_or(Stopped)
+}
+
+/// As many threads as there are cores; the calling thread where there is one core.
+pub fn all_cores() -> Workers {
+    match std::thread::available_parallelism().map_or(1, usize::from) {
+        0 | 1 => Workers::CALLER,
+        at_once => Workers { at_once, work: on_all_cores },
     }
-    let (next, goes_on) = (AtomicUsize::new(0), AtomicBool::new(true));
+}
+
+/// Works on pieces with this thread, which reports the progress, and one more for each further
+/// core.
+fn on_all_cores(pieces: Vec<WorkPiece<'_>>, stage: &'static str, watch: Watch<'_>) -> Result<(), Stopped> {
+    let count = pieces.len();
+    let threads = all_cores().at_once.min(count);
+    if threads <= 1 {
+        return Workers::CALLER.work(pieces, stage, watch);
+    }
+    let (left, goes_on) = (Mutex::new(pieces.into_iter()), AtomicBool::new(true));
+    let next = || left.lock().unwrap_or_else(PoisonError::into_inner).next();
     let (sender, receiver) = channel();
     std::thread::scope(|scope| {
-        for _ in 0..threads {
-            let (sender, next, goes_on, piece) = (sender.clone(), &next, &goes_on, &piece);
+        for _ in 1..threads {
+            let (sender, next, goes_on) = (sender.clone(), &next, &goes_on);
             scope.spawn(move || {
                 let mut told = |_: Progress| goes_on.load(Ordering::Relaxed);
-                loop {
-                    let index = next.fetch_add(1, Ordering::Relaxed);
-                    if index >= count || !goes_on.load(Ordering::Relaxed) {
+                while goes_on.load(Ordering::Relaxed)
+                    && let Some(piece) = next()
+                {
+                    // where no one receives, the work was stopped
+                    if sender.send(piece(&mut told)).is_err() {
                         return;
                     }
-                    // where no one receives, the work was stopped
-                    drop(sender.send((index, piece(index, &mut told))));
                 }
             });
         }
         drop(sender);
-        let mut results: Vec<Option<T>> = (0..count).map(|_| None).collect();
-        let mut done = 0;
-        let told = loop {
-            match receiver.recv_timeout(ROUND) {
-                Ok((index, result)) => {
-                    done += 1;
-                    if result.is_none() {
-                        break Err(Stopped);
-                    }
-                    results[index] = result;
-                }
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => break Ok(()),
-            }
-            if let Err(stopped) = tell(&mut *watch, stage, done, count) {
-                break Err(stopped);
-            }
-        };
+        let ended = own_pieces(&next, &receiver, (stage, count), watch);
         goes_on.store(false, Ordering::Relaxed);
-        told.and_then(|()| results.into_iter().collect::<Option<Vec<T>>>().ok_or(Stopped))
+        ended
+    })
+}
+
+/// Pieces as long as there are any, then the end of those of the other threads.
+fn own_pieces<'p>(
+    next: &dyn Fn() -> Option<WorkPiece<'p>>,
+    others: &Receiver<Result<(), Stopped>>,
+    (stage, count): (&'static str, usize),
+    watch: Watch<'_>,
+) -> Result<(), Stopped> {
+    let mut done = 0;
+    while let Some(piece) = next() {
+        piece(&mut |_: Progress| tell(&mut *watch, stage, done, count).is_ok())?;
+        done += 1;
+        for other in others.try_iter() {
+            other?;
+            done += 1;
+        }
+    }
+    loop {
+        tell(&mut *watch, stage, done, count)?;
+        match others.recv_timeout(ROUND) {
+            Ok(other) => other?,
+            Err(RecvTimeoutError::Timeout) => continue,
+            Err(RecvTimeoutError::Disconnected) => return Ok(()),
+        }
+        done += 1;
+    }
+}
+
+/// The results of two pieces of work: of `first`, on a thread of its own where there is more than
+/// one core, and of `second`, whose progress is reported meanwhile. The first has this fraction of
+/// the progress where it has to be done before.
+pub(crate) fn both<A: Send, B>(
+    watch: Watch<'_>,
+    fraction: f64,
+    first: impl FnOnce(Watch<'_>) -> A + Send,
+    second: impl FnOnce(Watch<'_>) -> B,
+) -> (A, B) {
+    if all_cores().at_once == 1 {
+        let first = first(&mut within(&mut *watch, [0.0, fraction]));
+        return (first, second(&mut within(watch, [fraction, 1.0])));
+    }
+    let goes_on = AtomicBool::new(true);
+    std::thread::scope(|scope| {
+        let beside = scope.spawn(|| first(&mut |_| goes_on.load(Ordering::Relaxed)));
+        let mut last = Progress { stage: "", share: fraction };
+        let mut told = |progress: Progress| {
+            last = progress;
+            let answer = watch(progress);
+            goes_on.fetch_and(answer, Ordering::Relaxed);
+            answer
+        };
+        let second = second(&mut within(&mut told, [fraction, 1.0]));
+        while !beside.is_finished() {
+            goes_on.fetch_and(watch(last), Ordering::Relaxed);
+            std::thread::sleep(WAITING);
+        }
+        match beside.join() {
+            Ok(first) => (first, second),
+            Err(panic) => std::panic::resume_unwind(panic),
+        }
     })
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::AtomicUsize;
+
     use super::*;
 
     /// Results are in the order of the pieces, whichever ends first.
@@ -93,6 +164,35 @@ mod tests {
         };
         let found = side_by_side(8, "", &mut |_| true, slow_first);
         assert_eq!(found, Ok((0..8).collect()));
+    }
+
+    /// The first piece hears of the stop that the watch of the second one answers, and both give
+    /// what they have.
+    #[test]
+    fn a_stop_reaches_both() {
+        let begun = AtomicBool::new(false);
+        let first = |watch: Watch<'_>| {
+            begun.store(true, Ordering::Relaxed);
+            while watch(Progress { stage: "", share: 0.5 }) {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            1
+        };
+        let mut shares = vec![];
+        let mut watch = |progress: Progress| {
+            shares.push(progress.share);
+            shares.len() < 3
+        };
+        // on one core the first is stopped before the second begins
+        let second = |watch: Watch<'_>| {
+            while all_cores().at_once > 1 && !begun.load(Ordering::Relaxed) {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            if watch(Progress { stage: "", share: 0.0 }) { 2 } else { 3 }
+        };
+        let found = both(&mut watch, 0.1, first, second);
+        assert!(found == (1, 2) || found == (1, 3), "{found:?}");
+        assert!(shares.is_sorted());
     }
 
     /// Pieces that look at their watch end soon after it is stopped, those behind them do not

@@ -16,6 +16,7 @@ use std::time::Instant;
 
 use phea_dynamics::controller::Timing;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
+use phea_dynamics::pieces::Workers;
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
@@ -127,6 +128,7 @@ fn options(task: &Task, seed: u64) -> DesignOptions {
         reserve_db: 0.0,
         poles: PoleRange::default(),
         coefficients: CoefficientFormat::Double,
+        workers: Workers::CALLER,
     }
 }
 

@@ -6,6 +6,7 @@
 //!           -> specifications, at the plants nearest to instability too -> stability of the worst plants of each
 //! ```
 
+use phea_dynamics::pieces::Workers;
 use phea_dynamics::watch::{Stopped, Watch, part};
 
 use crate::kept_plants::KeptPlants;
@@ -65,7 +66,15 @@ const STAGE: &str = "auditing";
 /// # }
 /// ```
 pub fn audit(problem: &AuditProblem<'_>, watch: Watch<'_>) -> Result<Audit, Stopped> {
-    audit_with(problem, (&KeptPlants::default(), AuditEffort::Complete), watch).map(|(audit, _)| audit)
+    audit_by(problem, Workers::CALLER, watch)
+}
+
+/// The same on the threads of an owner: what is found does not depend on them.
+///
+/// # Errors
+/// [`Stopped`] by the watch.
+pub fn audit_by(problem: &AuditProblem<'_>, workers: Workers, watch: Watch<'_>) -> Result<Audit, Stopped> {
+    audit_with(problem, (&KeptPlants::of(workers), AuditEffort::Complete), watch).map(|(audit, _)| audit)
 }
 
 /// The same of the members and corners of the family alone, without a search between them: for a

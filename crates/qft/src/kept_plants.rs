@@ -3,42 +3,125 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
+use std::sync::Arc;
 
 use phea_dynamics::expression::EvaluationMemo;
 use phea_dynamics::linear::LinearError;
+use phea_dynamics::pieces::{WorkPiece, Workers};
 use phea_dynamics::uncertain_plant::UncertainPlant;
+use phea_dynamics::watch::{Stopped, Watch};
 
 use super::closed_loop::{Compensation, Member, TrialPlant};
 
 /// Plants that are kept, of less than a kilobyte each.
 const PLANTS_MAXIMUM: usize = 100_000;
 
-/// A plant within its loop, or why it has none.
-type SampledPlant = Result<Member, LinearError>;
+/// Plants within their loop, or why they have none, by the bits of their parameter values.
+type SampledPlants = BTreeMap<Vec<u64>, Result<Member, LinearError>>;
 
 /// Plants of one family within one loop. Plants that were already sampled are kept, by the bits of
 /// their parameter values: sampling costs more than a thousand responses. A clone has the same
 /// plants, and what either adds.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct KeptPlants {
-    sampled: Rc<RefCell<BTreeMap<Vec<u64>, SampledPlant>>>,
+    sampled: Rc<RefCell<PlantStore>>,
     /// Plants that a search tried, likewise.
     tried: Rc<RefCell<BTreeMap<Vec<u64>, Option<TrialPlant>>>>,
     /// The last of them that was built: the next one has nearly the same poles.
     last: RefCell<Option<TrialPlant>>,
     memo: RefCell<EvaluationMemo>,
+    workers: Workers,
+}
+
+/// Plants that were sampled: those that pieces of work share, and those that came since.
+#[derive(Debug, Default)]
+struct PlantStore {
+    shared: Arc<SampledPlants>,
+    new: SampledPlants,
+}
+
+impl PlantStore {
+    fn len(&self) -> usize {
+        self.shared.len() + self.new.len()
+    }
+
+    /// All plants, to be read by several threads.
+    fn share(&mut self) -> Arc<SampledPlants> {
+        if !self.new.is_empty() {
+            Arc::make_mut(&mut self.shared).append(&mut self.new);
+        }
+        Arc::clone(&self.shared)
+    }
+}
+
+impl Default for KeptPlants {
+    fn default() -> Self {
+        KeptPlants::of(Workers::CALLER)
+    }
 }
 
 impl KeptPlants {
-    /// How many plants were sampled with all their factors, and how many were tried.
-    pub(crate) fn work(&self) -> [usize; 2] {
+    /// No plant yet, with the owner of the threads that look for more.
+    pub(crate) fn of(workers: Workers) -> KeptPlants {
+        KeptPlants {
+            sampled: Rc::default(),
+            tried: Rc::default(),
+            last: RefCell::default(),
+            memo: RefCell::default(),
+            workers,
+        }
+    }
+
+    /// The owner of the threads.
+    pub(crate) fn workers(&self) -> Workers {
+        self.workers
+    }
+
+    /// Results of tasks, in their order. Each has the plants that are known and tried plants of its
+    /// own, so that its result does not depend on the others.
+    pub(crate) fn each<T: Send, R: Send>(
+        &self,
+        tasks: Vec<T>,
+        (stage, watch): (&'static str, Watch<'_>),
+        task: impl Fn(&KeptPlants, T, Watch<'_>) -> Result<R, Stopped> + Sync,
+    ) -> Result<Vec<R>, Stopped> {
+        let shared = self.sampled.borrow_mut().share();
+        let mut places: Vec<(SampledPlants, Option<R>)> = Vec::new();
+        places.resize_with(tasks.len(), || (SampledPlants::new(), None));
+        let pieces = places.iter_mut().zip(tasks).map(|((new, place), one)| {
+            let (task, shared) = (&task, Arc::clone(&shared));
+            let piece: WorkPiece<'_> = Box::new(move |watch: Watch<'_>| {
+                let own = KeptPlants::of(Workers::CALLER);
+                own.sampled.borrow_mut().shared = shared;
+                *place = Some(task(&own, one, watch)?);
+                new.append(&mut own.sampled.borrow_mut().new);
+                Ok(())
+            });
+            piece
+        });
+        self.workers.work(pieces.collect(), stage, watch)?;
+        drop(shared);
+        let mut results = Vec::with_capacity(places.len());
+        for (mut new, result) in places {
+            self.sampled.borrow_mut().new.append(&mut new);
+            results.extend(result);
+        }
+        Ok(results)
+    }
+
+    /// How many plants were sampled.
+    pub(crate) fn sampled(&self) -> usize {
+        self.sampled.borrow().len()
+    }
+
+    /// How many plants were tried, and of how many of them all factors were needed.
+    pub(crate) fn tried(&self) -> [usize; 2] {
         let is_whole = |one: &&TrialPlant| match one {
             TrialPlant::Whole(_) => true,
             TrialPlant::Held(held) => held.is_whole(),
         };
         let tried = self.tried.borrow();
-        let completed = tried.values().flatten().filter(is_whole).count();
-        [self.sampled.borrow().len() + completed, tried.len()]
+        [tried.len(), tried.values().flatten().filter(is_whole).count()]
     }
 
     /// The plant with these parameter values within the loop.
@@ -57,10 +140,13 @@ impl KeptPlants {
         }
         let key: Vec<u64> = values.iter().map(|value| value.to_bits()).collect();
         let mut sampled = self.sampled.borrow_mut();
-        if sampled.len() >= PLANTS_MAXIMUM && !sampled.contains_key(&key) {
+        if let Some(known) = sampled.shared.get(&key) {
+            return known.clone();
+        }
+        if sampled.len() >= PLANTS_MAXIMUM && !sampled.new.contains_key(&key) {
             return build();
         }
-        sampled.entry(key).or_insert_with(build).clone()
+        sampled.new.entry(key).or_insert_with(build).clone()
     }
 
     /// The same plant for a search, which evaluates it at a few frequencies; `None` if it cannot be
@@ -132,6 +218,6 @@ mod tests {
     fn plants_of_a_continuous_loop_are_not_kept() {
         let plants = KeptPlants::default();
         found(&plants, Timing::default(), 1.0);
-        assert!(plants.sampled.borrow().is_empty());
+        assert_eq!(plants.sampled.borrow().len(), 0);
     }
 }

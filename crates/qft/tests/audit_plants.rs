@@ -2,13 +2,15 @@
 
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::pieces::{WorkPiece, Workers};
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
-use phea_dynamics::watch::{Stopped, unwatched};
-use phea_qft::audit::audit;
+use phea_dynamics::watch::{Stopped, Watch, unwatched};
+use phea_qft::audit::{audit, audit_by};
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, grid};
+use phea_qft::proof::{ProofOptions, prove};
 use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::stability::family_stability;
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement, Verdict, audit_specifications};
@@ -67,6 +69,40 @@ fn both_audits_find_what_they_find_alone() {
         assert_eq!(audit.delay_margin, stability.delay_margin);
         assert_eq!(audit.stability.verdict, Verdict::Met, "{:?}", audit.stability);
         assert_eq!(audit.specifications, alone);
+    }
+}
+
+/// Workers that take the pieces from the last to the first.
+fn backwards(pieces: Vec<WorkPiece<'_>>, _: &'static str, watch: Watch<'_>) -> Result<(), Stopped> {
+    pieces.into_iter().rev().try_for_each(|piece| piece(&mut *watch))
+}
+
+/// Plants, searches and specifications need nothing of one another: whoever works on how many of
+/// them at once, in whatever order, finds and proves the same.
+#[test]
+fn audit_and_proof_do_not_depend_on_the_workers() {
+    for extent in [Extent::Box, Extent::Members] {
+        let (family, around) = (family(extent), sampled_loop());
+        let wider = Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(1.6));
+        let [sensitivity] = specifications();
+        let problem = AuditProblem {
+            family: &family,
+            compensation: &around,
+            specifications: &[Specification { requirement: wider, ..sensitivity.clone() }, sensitivity],
+            tracking: TrackingJudgement::Magnitude,
+            tolerance_db: TOLERANCE_DB,
+        };
+        let found = |workers: Workers| {
+            let audit = audit_by(&problem, workers, &mut unwatched).unwrap();
+            let options = ProofOptions { workers, ..ProofOptions::default() };
+            let proof = prove(&problem, &audit, options, &mut unwatched).unwrap();
+            (audit, proof)
+        };
+        let alone = found(Workers::CALLER);
+        assert_eq!(alone.0, audit(&problem, &mut unwatched).unwrap());
+        for at_once in [1, 2, 5] {
+            assert_eq!(found(Workers { at_once, work: backwards }), alone, "{at_once}");
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use phea_qft::verification::{Evidence, Verdict};
 
 use super::{ProjectAudit, audit_request, rounded};
 use crate::robust::RobustProblem;
+use crate::side_by_side::all_cores;
 
 /// Proves or refutes stability and every specification of an audit. What is neither proven nor
 /// refuted becomes `not_proven`, whatever the search found, except for a violation, which is shown
@@ -18,7 +19,8 @@ pub fn prove_audit(
     view: &mut ProjectAudit,
     watch: Watch<'_>,
 ) -> Result<(), Stopped> {
-    let proof = prove(&audit_request(problem, &problem.family), &view.audit, ProofOptions::default(), watch)?;
+    let options = ProofOptions { workers: all_cores(), ..ProofOptions::default() };
+    let proof = prove(&audit_request(problem, &problem.family), &view.audit, options, watch)?;
     rest_on(view, proof, Verdict::NotProven);
     Ok(())
 }
@@ -33,7 +35,8 @@ pub fn try_to_prove(
     view: &mut ProjectAudit,
     watch: Watch<'_>,
 ) -> Result<(), Stopped> {
-    let options = ProofOptions { leaves_maximum: TRIED_LEAVES, ..ProofOptions::default() };
+    let options =
+        ProofOptions { leaves_maximum: TRIED_LEAVES, workers: all_cores(), ..ProofOptions::default() };
     let proof = prove(&audit_request(problem, &problem.family), &view.audit, options, watch)?;
     rest_on(view, proof, Verdict::Met);
     Ok(())

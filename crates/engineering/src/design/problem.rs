@@ -13,6 +13,7 @@ use crate::project::{DeclaredDesign, StructureChoice, StructurePart};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::setup::{ControlError, element};
+use crate::side_by_side::all_cores;
 
 /// How far corner frequencies may lie below and above the design frequencies.
 const FREQUENCY_FACTORS: [f64; 2] = [0.1, 100.0];
@@ -69,6 +70,7 @@ pub fn design_options(
         reserve_db: design.reserve.map_or(0.0, |factor| 20.0 * portable::log10(factor)),
         poles: pole_range(&design_limits(setup, given)),
         coefficients: setup.quantization.coefficients,
+        workers: all_cores(),
     })
 }
 

@@ -26,8 +26,8 @@ use super::result::{DesignRound, Starts};
 use crate::closed_loop::Compensation;
 use crate::kept_plants::KeptPlants;
 use crate::loop_shaping::{
-    Aim, BestSeen, DescentOptions, DesignProblem, Judgement, Samples, SearchProblem, SearchStatus, Shaping,
-    Structure, descend, search,
+    Aim, BestSeen, DescentOptions, DesignProblem, Judgement, Samples, SearchOptions, SearchProblem,
+    SearchStatus, Shaping, Structure, descend, search_seeing,
 };
 use crate::prefilter::{FittedPrefilter, PrefilterBand, PrefilterOptions, PrefilterOutcome, fit_prefilter};
 use crate::specification::Specification;
@@ -284,8 +284,10 @@ impl Attempt {
         watch: Watch<'_>,
     ) -> Result<(), Leave> {
         let options = search_options(self.aim, seed, self.relaxes, effort);
-        let mut seen = BestSeen::new(&mut self.shaping, self.aim);
-        let found = search(&mut seen, given, &options, &mut part(watch, SHAPING, WHOLE));
+        let options = SearchOptions { workers: self.options.workers, ..options };
+        let mut seen = BestSeen::new(self.aim);
+        let found =
+            search_seeing(&mut self.shaping, given, (&options, &mut seen), &mut part(watch, SHAPING, WHOLE));
         if found.is_err() {
             self.x = seen.x().unwrap_or_default();
         }

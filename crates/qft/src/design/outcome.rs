@@ -1,5 +1,6 @@
 //! What a design ended with, and what it is continued from.
 
+use phea_dynamics::pieces::Workers;
 use phea_dynamics::watch::{Watch, unwatched};
 
 use super::attempt::{Attempt, LoopDesignError};
@@ -64,6 +65,7 @@ impl DesignOutcome {
 /// A limit that is wider allows less gain, as a design from the beginning finds:
 /// ```
 /// # use phea_dynamics::controller::Timing;
+/// # use phea_dynamics::pieces::Workers;
 /// # use phea_dynamics::linear::TransferFunction;
 /// # use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
 /// # use phea_dynamics::watch::unwatched;
@@ -95,6 +97,7 @@ impl DesignOutcome {
 /// #     controller: ControllerChoice::Given(gain_alone),
 /// #     prefilter: PrefilterChoice::None,
 /// #     seed: 1, tolerance_db: TOLERANCE_DB, reserve_db: 0.0, poles: PoleRange::default(), coefficients: CoefficientFormat::Double,
+/// #     workers: Workers::CALLER,
 /// # };
 /// let before = design(&problem, &options, &mut unwatched)?;
 /// let mut wider = problem.clone();
@@ -141,6 +144,11 @@ pub(super) struct LearntPlants {
 }
 
 impl LearntPlants {
+    /// Nothing yet, with the owner of the threads that look for plants.
+    pub(super) fn of(workers: Workers) -> LearntPlants {
+        LearntPlants { plants: KeptPlants::of(workers), ..LearntPlants::default() }
+    }
+
     /// The plants alone, for a design with other specifications.
     fn of_plants(&self) -> LearntPlants {
         LearntPlants { plants: self.plants.clone(), ..LearntPlants::default() }

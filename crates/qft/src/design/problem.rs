@@ -1,6 +1,7 @@
 //! What a design begins with.
 
 use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::pieces::Workers;
 
 use super::quantization::CoefficientFormat;
 use super::{NamedStructure, Objective};
@@ -99,4 +100,6 @@ pub struct DesignOptions {
     /// The number format of the coefficients of a sampled controller, which is judged with rounded
     /// coefficients. A continuous controller is not rounded.
     pub coefficients: CoefficientFormat,
+    /// The owner of the threads; the design does not depend on it.
+    pub workers: Workers,
 }

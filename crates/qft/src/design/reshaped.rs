@@ -22,6 +22,7 @@ use crate::loop_shaping::DesignProblem;
 /// smallest k; with |S| <= 3/5 a gain of 4/3 is enough:
 /// ```
 /// # use phea_dynamics::controller::Timing;
+/// # use phea_dynamics::pieces::Workers;
 /// # use phea_dynamics::linear::TransferFunction;
 /// # use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant};
 /// # use phea_dynamics::watch::unwatched;
@@ -53,6 +54,7 @@ use crate::loop_shaping::DesignProblem;
 /// #     controller: ControllerChoice::Given(gain_alone),
 /// #     prefilter: PrefilterChoice::None,
 /// #     seed: 1, tolerance_db: TOLERANCE_DB, reserve_db: 0.0, poles: PoleRange::default(), coefficients: CoefficientFormat::Double,
+/// #     workers: Workers::CALLER,
 /// # };
 /// let found = design(&problem, &options, &mut unwatched)?.design.ok_or("none was found")?;
 /// let mut wider = problem.clone();
@@ -68,7 +70,7 @@ pub fn reshaped(
     design: &Design,
     watch: Watch<'_>,
 ) -> Result<Option<Controller>, LoopDesignError> {
-    let kept = KeptPlants::default();
+    let kept = KeptPlants::of(options.workers);
     let controller = ControllerChoice::Given(design.structure.clone());
     let options = DesignOptions { controller, ..options.clone() };
     let mut progress = DesignProgress::new(problem, &options, &kept);

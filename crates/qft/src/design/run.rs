@@ -79,7 +79,7 @@ const RELAXATION_GAINED_DB: f64 = 0.01;
 ///     objective: Objective::LeastHighFrequencyGain,
 ///     controller: ControllerChoice::Given(gain_alone),
 ///     prefilter: PrefilterChoice::None,
-///     seed: 1, tolerance_db: TOLERANCE_DB, reserve_db: 0.0, poles: PoleRange::default(), coefficients: CoefficientFormat::Double,
+///     seed: 1, tolerance_db: TOLERANCE_DB, reserve_db: 0.0, poles: PoleRange::default(), coefficients: CoefficientFormat::Double, workers: phea_dynamics::pieces::Workers::CALLER,
 /// };
 /// let found = design(&problem, &options, &mut unwatched)?.design.ok_or("none was found")?;
 /// assert_eq!(found.status, DesignStatus::Met);
@@ -92,7 +92,7 @@ pub fn design(
     options: &DesignOptions,
     watch: Watch<'_>,
 ) -> Result<DesignOutcome, LoopDesignError> {
-    design_knowing(problem, options, None, LearntPlants::default(), watch)
+    design_knowing(problem, options, None, LearntPlants::of(options.workers), watch)
 }
 
 /// Continues a finished design with additional plants that the loop must control (the nominal one

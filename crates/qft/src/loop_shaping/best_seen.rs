@@ -4,25 +4,44 @@ use super::descent::is_usable;
 use super::search::{Aim, Judgement, SearchProblem, Slopes};
 use super::start::JudgedPoint;
 
-/// A problem that remembers the best stable point it was asked to judge.
-pub(crate) struct BestSeen<'a> {
-    problem: &'a mut dyn SearchProblem,
+/// The best stable point that was judged.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct BestSeen {
     aim: Aim,
     best: Option<JudgedPoint>,
 }
 
-impl<'a> BestSeen<'a> {
-    pub(crate) fn new(problem: &'a mut dyn SearchProblem, aim: Aim) -> BestSeen<'a> {
-        BestSeen { problem, aim, best: None }
+/// A problem whose best stable point is remembered.
+pub(super) struct SeenProblem<'a> {
+    pub(super) problem: &'a mut dyn SearchProblem,
+    pub(super) seen: &'a mut BestSeen,
+}
+
+impl BestSeen {
+    pub(crate) fn new(aim: Aim) -> BestSeen {
+        BestSeen { aim, best: None }
     }
 
     /// x of the best stable point; `None` if none was judged.
     pub(crate) fn x(self) -> Option<Vec<f64>> {
         self.best.map(|best| best.x)
     }
+
+    fn take(&mut self, point: JudgedPoint) {
+        if self.best.as_ref().is_none_or(|best| point.is_better_than(best, self.aim)) {
+            self.best = Some(point);
+        }
+    }
+
+    /// Takes what another search of the same problem has seen.
+    pub(super) fn join(&mut self, other: BestSeen) {
+        if let Some(point) = other.best {
+            self.take(point);
+        }
+    }
 }
 
-impl SearchProblem for BestSeen<'_> {
+impl SearchProblem for SeenProblem<'_> {
     fn bounds(&self) -> &[[f64; 2]] {
         self.problem.bounds()
     }
@@ -30,10 +49,7 @@ impl SearchProblem for BestSeen<'_> {
     fn judge(&mut self, x: &[f64]) -> Judgement {
         let judgement = self.problem.judge(x);
         if is_usable(&judgement) {
-            let point = JudgedPoint { x: x.to_vec(), judgement };
-            if self.best.as_ref().is_none_or(|best| point.is_better_than(best, self.aim)) {
-                self.best = Some(point);
-            }
+            self.seen.take(JudgedPoint { x: x.to_vec(), judgement });
         }
         judgement
     }

@@ -184,8 +184,9 @@ impl Descent {
         self.here.as_ref().map_or(&self.x, |here| &here.x)
     }
 
-    /// Ends where another has ended.
-    pub(super) fn end_at(&mut self, other: &Descent) {
+    /// Ends where another has ended, after this much work of its own.
+    pub(super) fn end_at(&mut self, other: &Descent, work: DescentWork) {
+        self.work = work;
         self.here.clone_from(&other.here);
         self.binding.clone_from(&other.binding);
         self.status = other.status;

@@ -1,14 +1,17 @@
 //! The global search: points spread over the bounds, evolution if none of them is stable, and
 //! descents from the best.
 
+mod descents;
 mod evolution;
 mod spread;
 
 use std::cmp::Ordering;
 
 use phea_dynamics::order::sort_by_number;
+use phea_dynamics::pieces::{WorkPiece, Workers};
 use phea_dynamics::watch::{Stopped, Watch, part, tell};
 
+use super::best_seen::{BestSeen, SeenProblem};
 use super::descent::{Binding, Descent, DescentOptions, DescentStatus, DescentWork, is_usable};
 use super::search::{Aim, Judgement, SearchProblem};
 use evolution::Evolution;
@@ -44,13 +47,25 @@ pub struct SearchOptions {
     pub generations: usize,
     /// What each descent looks for.
     pub descent: DescentOptions,
+    /// The owner of the threads; the result does not depend on it.
+    pub workers: Workers,
 }
 
 impl SearchOptions {
-    /// 300 samples, 8 starts of which 4 are completed, 60 generations.
+    /// 300 samples, 8 starts of which 4 are completed, 60 generations, one thread.
     pub fn new(aim: Aim, seed: u64) -> SearchOptions {
         let descent = DescentOptions::new(aim);
-        SearchOptions { seed, samples: 300, scanned: 0, starts: 8, finished: 4, generations: 60, descent }
+        let workers = Workers::CALLER;
+        SearchOptions {
+            seed,
+            samples: 300,
+            scanned: 0,
+            starts: 8,
+            finished: 4,
+            generations: 60,
+            descent,
+            workers,
+        }
     }
 }
 
@@ -126,6 +141,28 @@ impl JudgedPoint {
         }
     }
 
+    /// The point, or the best of it and of this number of values of its first x over its bounds.
+    fn along_first(problem: &mut dyn SearchProblem, x: &[f64], scanned: usize, aim: Aim) -> JudgedPoint {
+        let range = problem.bounds().first().copied().unwrap_or_default();
+        let values = (0..scanned).map(|step| {
+            let share = (step as f64 + 0.5) / scanned as f64;
+            range[0] + share * (range[1] - range[0])
+        });
+        let mut judged = |x: Vec<f64>| JudgedPoint { judgement: problem.judge(&x), x };
+        let mut best = judged(x.to_vec());
+        for value in values {
+            let mut x = best.x.clone();
+            if let Some(first) = x.first_mut() {
+                *first = value;
+            }
+            let candidate = judged(x);
+            if candidate.is_better_than(&best, aim) {
+                best = candidate;
+            }
+        }
+        best
+    }
+
     /// The best first, equals in their order.
     fn sort(candidates: &mut [JudgedPoint], aim: Aim) {
         candidates.sort_by(|a, b| match a.is_better_than(b, aim) {
@@ -155,6 +192,7 @@ impl JudgedPoint {
 /// use phea_qft::loop_shaping::{Aim, Judgement, MarginRow, SearchOptions, SearchProblem, Slopes, search};
 ///
 /// /// Least x with margin (x^2 - 1)^2 - 1/4: there are walls around -1 and 1 that no descent passes.
+/// #[derive(Clone)]
 /// struct Walls([[f64; 2]; 1]);
 ///
 /// impl SearchProblem for Walls {
@@ -180,13 +218,24 @@ impl JudgedPoint {
 /// assert_eq!(found.ends[1].x, [-2.0]); // the next start agrees
 /// # Ok::<(), phea_dynamics::watch::Stopped>(())
 /// ```
-pub fn search(
-    problem: &mut dyn SearchProblem,
+pub fn search<P: SearchProblem + Clone + Sync>(
+    problem: &mut P,
     given: Vec<Vec<f64>>,
     options: &SearchOptions,
     watch: Watch<'_>,
 ) -> Result<Option<SearchResult>, Stopped> {
-    let mut search = StartSearch { problem, options, work: DescentWork::default(), random: options.seed };
+    search_seeing(problem, given, (options, &mut BestSeen::new(options.descent.aim)), watch)
+}
+
+/// The same, which keeps the best point that it has seen, where it is stopped too.
+pub(crate) fn search_seeing<P: SearchProblem + Clone + Sync>(
+    problem: &mut P,
+    given: Vec<Vec<f64>>,
+    (options, seen): (&SearchOptions, &mut BestSeen),
+    watch: Watch<'_>,
+) -> Result<Option<SearchResult>, Stopped> {
+    let random = options.seed;
+    let mut search = StartSearch { problem, seen, options, work: DescentWork::default(), random };
     let samples = search.sampled(given, &mut part(watch, STAGE, [0.0, 0.2]))?;
     let points = search.evolved(samples, &mut part(watch, STAGE, [0.2, 0.4]))?;
     let mut descents = search.descents_from(&points);
@@ -199,33 +248,72 @@ pub fn search(
 /// Name of the stage in progress reports.
 const STAGE: &str = "search";
 
+/// Pieces into which the samples are divided.
+const PIECES: usize = 8;
+
 /// A search on its way.
-struct StartSearch<'a> {
-    problem: &'a mut dyn SearchProblem,
+struct StartSearch<'a, P> {
+    problem: &'a mut P,
+    seen: &'a mut BestSeen,
     options: &'a SearchOptions,
     /// Work of samples, evolution and abandoned descents.
     work: DescentWork,
     random: u64,
 }
 
-impl StartSearch<'_> {
+impl<P: SearchProblem + Clone + Sync> StartSearch<'_, P> {
     /// The points that are given and those that are spread over the bounds, the best first.
     fn sampled(&mut self, given: Vec<Vec<f64>>, watch: Watch<'_>) -> Result<Vec<JudgedPoint>, Stopped> {
-        let mut candidates = Vec::new();
-        for x in given.into_iter().rev() {
-            tell(watch, STAGE, candidates.len(), self.options.samples)?;
-            candidates.push(self.judged(x));
-        }
+        let mut points: Vec<(Vec<f64>, usize)> = given.into_iter().rev().map(|x| (x, 0)).collect();
         let bounds = self.problem.bounds().to_vec();
-        if candidates.len() < self.options.samples {
+        if points.len() < self.options.samples {
             let spread = AdditiveRecurrence::new(bounds.len(), &mut self.random);
-            for index in candidates.len()..self.options.samples {
-                tell(watch, STAGE, index, self.options.samples)?;
-                candidates.push(self.scanned(spread.point(index, &bounds)));
-            }
+            let indices = points.len()..self.options.samples;
+            points.extend(indices.map(|index| (spread.point(index, &bounds), self.options.scanned)));
         }
-        JudgedPoint::sort(&mut candidates, self.options.descent.aim);
+        self.work.judgements += points.iter().map(|(_, scanned)| scanned + 1).sum::<usize>();
+        let size = points.len().div_ceil(PIECES).max(1);
+        let aim = self.options.descent.aim;
+        let judge = |problem: &mut dyn SearchProblem, chunk: &[(Vec<f64>, usize)], watch: Watch<'_>| {
+            let mut judged = Vec::with_capacity(chunk.len());
+            for (done, (x, scanned)) in chunk.iter().enumerate() {
+                tell(watch, STAGE, done, chunk.len())?;
+                judged.push(JudgedPoint::along_first(problem, x, *scanned, aim));
+            }
+            Ok(judged)
+        };
+        let chunks: Vec<&[(Vec<f64>, usize)]> = points.chunks(size).collect();
+        let judged = self.each(chunks, watch, judge)?;
+        let mut candidates = judged.concat();
+        JudgedPoint::sort(&mut candidates, aim);
         Ok(candidates)
+    }
+
+    /// Results of pieces of work on copies of the problem, in their order.
+    fn each<T: Send, R: Send>(
+        &mut self,
+        tasks: Vec<T>,
+        watch: Watch<'_>,
+        task: impl Fn(&mut dyn SearchProblem, T, Watch<'_>) -> Result<R, Stopped> + Sync,
+    ) -> Result<Vec<R>, Stopped> {
+        let mut places: Vec<(BestSeen, Option<R>)> =
+            tasks.iter().map(|_| (BestSeen::new(self.options.descent.aim), None)).collect();
+        let (task, problem) = (&task, &*self.problem);
+        let pieces = places.iter_mut().zip(tasks).map(|((seen, place), one)| {
+            let piece: WorkPiece<'_> = Box::new(move |watch: Watch<'_>| {
+                let mut problem = problem.clone();
+                *place = Some(task(&mut SeenProblem { problem: &mut problem, seen }, one, watch)?);
+                Ok(())
+            });
+            piece
+        });
+        let ended = self.options.workers.work(pieces.collect(), STAGE, watch);
+        let mut results = Vec::with_capacity(places.len());
+        for (seen, result) in places {
+            self.seen.join(seen);
+            results.extend(result);
+        }
+        ended.map(|()| results)
     }
 
     /// The samples, where enough of them are stable; otherwise a population that has evolved from
@@ -237,40 +325,13 @@ impl StartSearch<'_> {
         }
         while evolution.generation() < self.options.generations && !self.is_enough(evolution.candidates()) {
             tell(watch, STAGE, evolution.generation(), self.options.generations)?;
-            evolution.step(self.problem, &mut self.random);
+            let problem = &mut SeenProblem { problem: &mut *self.problem, seen: &mut *self.seen };
+            evolution.step(problem, &mut self.random);
             self.work.judgements += 1;
         }
         let mut candidates = evolution.candidates().to_vec();
         JudgedPoint::sort(&mut candidates, self.options.descent.aim);
         Ok(candidates)
-    }
-
-    /// The point, or the best along its first x.
-    fn scanned(&mut self, x: Vec<f64>) -> JudgedPoint {
-        let range = self.problem.bounds().first().copied().unwrap_or_default();
-        let values = (0..self.options.scanned).map(|step| {
-            let share = (step as f64 + 0.5) / self.options.scanned as f64;
-            range[0] + share * (range[1] - range[0])
-        });
-        let values: Vec<f64> = values.collect();
-        let mut best = self.judged(x);
-        for value in values {
-            let mut x = best.x.clone();
-            if let Some(first) = x.first_mut() {
-                *first = value;
-            }
-            let candidate = self.judged(x);
-            if candidate.is_better_than(&best, self.options.descent.aim) {
-                best = candidate;
-            }
-        }
-        best
-    }
-
-    fn judged(&mut self, x: Vec<f64>) -> JudgedPoint {
-        self.work.judgements += 1;
-        let judgement = self.problem.judge(&x);
-        JudgedPoint { x, judgement }
     }
 
     fn is_enough(&self, candidates: &[JudgedPoint]) -> bool {
@@ -295,49 +356,11 @@ impl StartSearch<'_> {
         starts.iter().map(|start| Descent::new(&start.x, self.options.descent)).collect()
     }
 
-    /// A few steps of each.
-    fn descend_roughly(&mut self, descents: &mut [Descent], watch: Watch<'_>) -> Result<(), Stopped> {
-        let all = descents.len();
-        for (done, descent) in descents.iter_mut().enumerate() {
-            for _ in 0..STEPS_ROUGH {
-                tell(watch, STAGE, done, all)?;
-                if descent.advance(self.problem).is_some() {
-                    break;
-                }
-            }
-        }
-        Ok(())
-    }
-
     fn leave_all_but_the_best(&mut self, descents: &mut Vec<Descent>) {
         self.sort(descents);
         for left in descents.drain(self.options.finished.max(1).min(descents.len())..) {
             self.work = self.work + left.work();
         }
-    }
-
-    fn descend_to_the_end(&mut self, descents: &mut [Descent], watch: Watch<'_>) -> Result<(), Stopped> {
-        let all = descents.len();
-        for done in 0..all {
-            let (ended, descents) = descents.split_at_mut(done);
-            let Some(descent) = descents.first_mut() else { break };
-            while descent.advance(self.problem).is_none() {
-                tell(watch, STAGE, done, all)?;
-                if let Some(end) = ended.iter().find(|end| self.leads_to(descent, end)) {
-                    descent.end_at(end);
-                    break;
-                }
-            }
-        }
-        self.sort(descents);
-        Ok(())
-    }
-
-    /// True where a descent has come near to an end that is no worse than what it has reached.
-    fn leads_to(&self, descent: &Descent, end: &Descent) -> bool {
-        let [own, others] = [descent, end].map(|one| standing(&self.options.descent, one.judgement()));
-        !is_distinct(descent.x(), end.x(), self.problem.bounds())
-            && others.0.cmp(&own.0).then(others.1.total_cmp(&own.1)).is_le()
     }
 
     /// The best first.

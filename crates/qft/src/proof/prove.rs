@@ -1,5 +1,6 @@
 //! From an audit to its proof.
 
+use phea_dynamics::pieces::{WorkPiece, Workers};
 use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch, part};
 
@@ -34,12 +35,15 @@ pub struct ProofOptions {
     /// Largest number of control points of all boxes that one claim may take; the time is in
     /// proportion to them.
     pub points_maximum: u64,
+    /// The owner of the threads; the proof does not depend on it.
+    pub workers: Workers,
 }
 
 impl Default for ProofOptions {
-    /// 0.05 dB, and enough leaves for every known example.
+    /// 0.05 dB, enough leaves for every known example, and one thread.
     fn default() -> ProofOptions {
-        ProofOptions { width_db: 0.05, leaves_maximum: 100_000, points_maximum: 1_000_000_000 }
+        let workers = Workers::CALLER;
+        ProofOptions { width_db: 0.05, leaves_maximum: 100_000, points_maximum: 1_000_000_000, workers }
     }
 }
 
@@ -120,25 +124,36 @@ pub fn prove(
         Err(reason) => return Ok(nothing(problem, reason)),
     };
     let budget = ProofBudget::new(options.points_maximum);
-    let (leaves, budget) = (options.leaves_maximum, &budget);
-    let effort = ProofEffort { leaves, depth: DEPTH_MAXIMUM, room: ROOMS[0], budget };
+    let leaves = options.leaves_maximum;
+    let effort = ProofEffort { leaves, depth: DEPTH_MAXIMUM, room: ROOMS[0], budget: &budget };
     let Some(certificate) = with_bounds(certificate, effort, watch)? else {
         return Ok(nothing(problem, NotProven::Images));
     };
-    let mut prover = Prover { problem, certificate, options, effort };
-    let parts = problem.specifications.len() as f64 + 1.0;
     budget.renew();
-    let stability = prover.stability(audit, &mut part(watch, "proving", [0.0, 1.0 / parts]))?;
-    let mut specifications = Vec::with_capacity(problem.specifications.len());
-    for (index, (specification, finding)) in
-        problem.specifications.iter().zip(&audit.specifications).enumerate()
-    {
-        let share = [(index as f64 + 1.0) / parts, (index as f64 + 2.0) / parts];
-        let watch = &mut part(watch, "proving", share);
-        budget.renew();
-        specifications.push(prover.specification(specification, finding, &stability, watch)?);
-    }
-    Ok(Proof { certificate: Some(prover.certificate), stability, specifications })
+    let share = 1.0 / (problem.specifications.len() as f64 + 1.0);
+    let mut prover = Prover { problem, certificate: certificate.clone(), options, effort };
+    let stability = prover.stability(audit, &mut part(&mut *watch, "proving", [0.0, share]))?;
+    let mut certified = prover.certificate;
+    // each specification is shown of the same loop, and needs no claim of another
+    let mut found: Vec<Option<(SpecificationProof, Vec<Claim>)>> = vec![None; problem.specifications.len()];
+    let each = found.iter_mut().zip(problem.specifications.iter().zip(&audit.specifications));
+    let pieces = each.map(|(place, (specification, finding))| {
+        let (certificate, stability) = (&certificate, &stability);
+        let piece: WorkPiece<'_> = Box::new(move |watch: Watch<'_>| {
+            let budget = &ProofBudget::new(options.points_maximum);
+            let effort = ProofEffort { leaves, depth: DEPTH_MAXIMUM, room: ROOMS[0], budget };
+            let mut prover = Prover { problem, certificate: certificate.clone(), options, effort };
+            let proof = prover.specification(specification, finding, stability, watch)?;
+            *place = Some((proof, prover.certificate.claims));
+            Ok(())
+        });
+        piece
+    });
+    options.workers.work(pieces.collect(), "proving", &mut part(watch, "proving", [share, 1.0]))?;
+    let (specifications, claims): (Vec<SpecificationProof>, Vec<Vec<Claim>>) =
+        found.into_iter().flatten().unzip();
+    certified.claims.extend(claims.into_iter().flatten());
+    Ok(Proof { certificate: Some(certified), stability, specifications })
 }
 
 /// For a loop that cannot be stated as a certificate.

@@ -1,28 +1,26 @@
 //! Stability of a family: every member, then the worst of what lies between them.
 
 mod delayed;
+mod judged;
 mod jumps;
 
-use phea_dynamics::linear::LinearError;
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::watch::{Stopped, Watch, part, tell};
 
 use super::badness::{Badness, badness_of};
-use super::characteristic::FeedbackPath;
 use super::folding::{self, Folded};
 use super::infinity::{self, Infinity};
 use super::record::StabilityRecord;
-use super::responding::PoleCounting;
-use super::search::{LONGEST_STEP, climb_by};
-use super::{
-    DelayMargin, Irresolution, MemberStability, StabilityFinding, StabilityMethod, StabilityReason,
-    characteristic, of_member, responding,
-};
-use crate::closed_loop::{Compensation, Member};
+use super::search::LONGEST_STEP;
+use super::{DelayMargin, Irresolution, MemberStability, StabilityFinding, StabilityMethod, StabilityReason};
+use crate::closed_loop::Compensation;
 use crate::family::{Extent, Family, UncertainFamily, corners};
 use crate::kept_plants::KeptPlants;
 use crate::verdict::{Evidence, PlantPoint, Verdict};
+use judged::{JudgedFamily, StabilitySearch};
 
+/// Pieces into which the plants are divided.
+const PIECES: usize = 8;
 /// Starts of the search for each worst case.
 const STARTS: usize = 4;
 /// Relative change of 1 + L by folding below which plants between those examined are not followed
@@ -104,9 +102,7 @@ pub fn family_stability(
 
 /// The audit of stability of one family.
 pub(crate) struct StabilityAudit<'a> {
-    family: &'a Family,
-    compensation: &'a Compensation,
-    path: Result<FeedbackPath, Irresolution>,
+    around: JudgedFamily<'a>,
     /// The members, the corners of the box, and plants between them whose modes fold.
     plants: Vec<PlantPoint>,
     /// The last of them, once the others were examined.
@@ -134,7 +130,7 @@ impl<'a> StabilityAudit<'a> {
         compensation: &'a Compensation,
         kept: &'a KeptPlants,
     ) -> StabilityAudit<'a> {
-        let plants = match family {
+        let plants: Vec<PlantPoint> = match family {
             Family::Uncertain(family) => {
                 let members = family.members().iter().cloned();
                 members.chain(corners(family)).map(PlantPoint::Parameters).collect()
@@ -142,9 +138,7 @@ impl<'a> StabilityAudit<'a> {
             Family::Measured(family) => (0..family.plants().len()).map(PlantPoint::Measured).collect(),
         };
         StabilityAudit {
-            family,
-            compensation,
-            path: FeedbackPath::new(compensation),
+            around: JudgedFamily::new(family, compensation, plants.first()),
             plants,
             folded: Folded::none(0),
             folding: None,
@@ -163,30 +157,37 @@ impl<'a> StabilityAudit<'a> {
         self.folded = self.fold();
         self.plants.extend(self.folded.plants.iter().cloned().map(PlantPoint::Parameters));
         self.look_at_plants(&mut part(watch, STAGE, [0.3, 0.8]))?;
-        self.look_between(&mut part(watch, STAGE, [0.8, 1.0]))?;
-        if self.compensation.sample_time_s().is_some() {
-            self.resample();
+        self.look_between(&mut part(watch, STAGE, [0.8, 0.95]))?;
+        if self.around.compensation.sample_time_s().is_some() {
+            self.resample(&mut part(watch, STAGE, [0.95, 1.0]))?;
         }
         Ok(())
     }
 
     /// Examines members and corners that were not examined yet.
     pub(crate) fn look_at_plants(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
-        let (first, all) = (self.badness.len(), self.plants.len());
-        for index in first..all {
-            tell(watch, STAGE, index - first, all - first)?;
-            let Some(plant) = self.plants.get(index) else { break };
-            let found = self.judged(plant);
-            self.record.take(plant.clone(), &found);
-            self.badness.push(badness_of(&found));
+        let new = self.plants.get(self.badness.len()..).unwrap_or_default();
+        let chunks: Vec<&[PlantPoint]> = new.chunks(new.len().div_ceil(PIECES).max(1)).collect();
+        let around = &self.around;
+        let judge = |kept: &KeptPlants, chunk: &[PlantPoint], watch: Watch<'_>| {
+            let judged = chunk.iter().enumerate().map(|(index, plant)| {
+                tell(watch, STAGE, index, chunk.len())?;
+                Ok(around.judged(kept, plant))
+            });
+            judged.collect::<Result<Vec<MemberStability>, Stopped>>()
+        };
+        let found = self.kept.each(chunks, (STAGE, watch), judge)?.concat();
+        for (plant, found) in new.iter().zip(&found) {
+            self.record.take(plant.clone(), found);
         }
+        self.badness.extend(found.iter().map(badness_of));
         Ok(())
     }
 
     /// Over a box, searches from the worst plants, and finds whether a pole passes through infinity
     /// inside it.
     fn look_between(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
-        let Family::Uncertain(family) = self.family else { return Ok(()) };
+        let Family::Uncertain(family) = self.around.family else { return Ok(()) };
         // an unstable plant decides the verdict, and without polynomials a search is expensive
         let decided = self.record.unstable.is_some() && !family.plant().is_rational();
         if family.extent() != Extent::Box || decided {
@@ -198,57 +199,37 @@ impl<'a> StabilityAudit<'a> {
             (Badness::DelaySensitivity, &[Badness::DelaySensitivity]),
             (Badness::Closeness, &[Badness::Peak, Badness::DelaySensitivity]),
         ];
-        for (number, (ranked_by, searched)) in searches.into_iter().enumerate() {
-            for (start, shares) in self.starts(family, ranked_by).into_iter().enumerate() {
-                tell(watch, STAGE, STARTS * number + start, STARTS * searches.len() + 1)?;
-                self.search(searched, LONGEST_STEP, shares);
-            }
-            for shares in self.sides(family, ranked_by) {
-                self.search(searched, jumps::STEP, shares);
-            }
+        let mut tasks = Vec::new();
+        for (ranked_by, searched) in searches {
+            let from = |first_step: f64| move |shares| StabilitySearch { searched, first_step, shares };
+            tasks.extend(self.starts(family, ranked_by).into_iter().map(from(LONGEST_STEP)));
+            tasks.extend(self.sides(family, ranked_by).into_iter().map(from(jumps::STEP)));
         }
-        tell(watch, STAGE, STARTS * searches.len(), STARTS * searches.len() + 1)?;
+        self.search(tasks, watch)?;
         self.through_infinity();
         Ok(())
     }
 
     fn judged(&self, plant: &PlantPoint) -> MemberStability {
-        match (&self.path, self.member(plant)) {
-            (Ok(_), Ok(member @ Member::Responding { .. })) if self.plants.first() != Some(plant) => {
-                responding::stability(&member, self.compensation, PoleCounting::OnPoints)
-            }
-            (Ok(path), Ok(member)) => of_member(&member, self.compensation, path),
-            (Err(reason), _) => MemberStability::not_resolved(reason.clone()),
-            (_, Err(error)) => MemberStability::not_resolved(Irresolution::Linear(error)),
-        }
+        self.around.judged(self.kept, plant)
     }
 
-    fn member(&self, plant: &PlantPoint) -> Result<Member, LinearError> {
-        match (self.family, plant) {
-            (Family::Uncertain(family), PlantPoint::Parameters(values)) => {
-                self.kept.member(self.compensation, family.plant(), values)
+    /// Searches from these plants, and records where each search ends.
+    fn search(&mut self, tasks: Vec<StabilitySearch<'_>>, watch: Watch<'_>) -> Result<(), Stopped> {
+        let around = &self.around;
+        let search = |kept: &KeptPlants, task: StabilitySearch<'_>, watch: Watch<'_>| {
+            tell(watch, STAGE, 0, 1)?;
+            Ok(task.searched(around, kept))
+        };
+        for (values, is_of_delay, found) in
+            self.kept.each(tasks, (STAGE, watch), search)?.into_iter().flatten()
+        {
+            if is_of_delay {
+                self.estimated.push(values.clone());
             }
-            (Family::Measured(family), PlantPoint::Measured(index)) => {
-                let plant = family.plants().get(*index).ok_or(LinearError::ZeroPolynomial)?;
-                Ok(self.compensation.measured(plant))
-            }
-            _ => Err(LinearError::ZeroPolynomial),
+            self.take(PlantPoint::Parameters(values), found);
         }
-    }
-
-    fn search(&mut self, searches: &[Badness], first_step: f64, mut shares: Vec<f64>) {
-        let Family::Uncertain(family) = self.family else { return };
-        for &badness in searches {
-            let mut objective = |shares: &[f64]| self.badness_at(badness, family.values(shares));
-            (shares, _) = climb_by(first_step, &shares, &mut objective);
-        }
-        let values = family.values(&shares);
-        if searches.last() == Some(&Badness::DelaySensitivity) {
-            self.estimated.push(values.clone());
-        }
-        let plant = PlantPoint::Parameters(values);
-        let found = self.judged(&plant);
-        self.take(plant, found);
+        Ok(())
     }
 
     /// Records a plant; an estimate of its delay no longer counts once the worst plants were
@@ -288,9 +269,9 @@ impl<'a> StabilityAudit<'a> {
     /// The plants between members and corners that are needed because of modes beyond half the
     /// sampling rate, around the worst plants so far.
     fn fold(&mut self) -> Folded {
-        let Family::Uncertain(family) = self.family else { return Folded::none(0) };
+        let Family::Uncertain(family) = self.around.family else { return Folded::none(0) };
         let dimension = family.coordinates().len();
-        let Some(sample_time_s) = self.compensation.sample_time_s().filter(|_| self.searched()) else {
+        let Some(sample_time_s) = self.around.compensation.sample_time_s().filter(|_| self.searched()) else {
             return Folded::none(dimension);
         };
         if !family.plant().is_rational() {
@@ -317,7 +298,8 @@ impl<'a> StabilityAudit<'a> {
     /// where it is not known of one.
     fn most_folding(&self) -> f64 {
         let step = self.plants.len().div_ceil(FOLDING_PLANTS).max(1);
-        let folding = |plant| self.member(plant).ok().and_then(|member| member.folding(self.compensation));
+        let JudgedFamily { compensation, .. } = self.around;
+        let folding = |plant| self.around.member(self.kept, plant).ok()?.folding(compensation);
         let each = self.plants.iter().step_by(step).map(|plant| folding(plant).unwrap_or(f64::INFINITY));
         each.fold(0.0, f64::max)
     }
@@ -337,12 +319,15 @@ impl<'a> StabilityAudit<'a> {
             let worse = self.record.is_worse(&found);
             self.take(plant.clone(), found);
             if let (true, Family::Uncertain(family), PlantPoint::Parameters(values)) =
-                (worse, self.family, plant)
+                (worse, self.around.family, plant)
                 && family.extent() == Extent::Box
             {
                 let shares = family.shares(values);
-                self.search(&[Badness::Closeness], LONGEST_STEP, shares.clone());
-                self.search(&[Badness::RealPart], LONGEST_STEP, shares);
+                let of =
+                    |searched| StabilitySearch { searched, first_step: LONGEST_STEP, shares: shares.clone() };
+                let share = [done, done + 1].map(|done| done as f64 / plants.len() as f64);
+                let tasks = vec![of(&[Badness::Closeness]), of(&[Badness::RealPart])];
+                self.search(tasks, &mut part(&mut *watch, STAGE, share))?;
             }
         }
         Ok(())
@@ -350,8 +335,8 @@ impl<'a> StabilityAudit<'a> {
 
     /// Judges plants on either side of a pole at infinity.
     fn through_infinity(&mut self) {
-        let Family::Uncertain(family) = self.family else { return };
-        match infinity::search(family, self.compensation) {
+        let Family::Uncertain(family) = self.around.family else { return };
+        match infinity::search(family, self.around.compensation) {
             Infinity::Kept => {}
             Infinity::Searched(found) => self.record.infinity = Some(found),
             Infinity::Open(found) => {
@@ -368,21 +353,6 @@ impl<'a> StabilityAudit<'a> {
                 let changed = changed.unwrap_or_else(|| self.nominal());
                 self.record.doubt(Irresolution::PoleThroughInfinity, changed);
             }
-        }
-    }
-
-    fn badness_at(&self, badness: Badness, values: Vec<f64>) -> f64 {
-        let Ok(path) = &self.path else { return f64::NAN };
-        let Family::Uncertain(family) = self.family else { return f64::NAN };
-        let Ok(member) = self.kept.member(self.compensation, family.plant(), &values) else {
-            return f64::NAN;
-        };
-        match characteristic(&member, path) {
-            Some(Ok(characteristic)) => badness.of(&characteristic).unwrap_or(f64::NAN),
-            Some(Err(_)) => f64::NAN,
-            None => responding::first_look(&member, self.compensation)
-                .and_then(|open_loop| badness.of_response(&open_loop))
-                .unwrap_or(f64::NAN),
         }
     }
 
@@ -411,7 +381,7 @@ impl<'a> StabilityAudit<'a> {
         if let Some((_, reason, plant)) = &record.unstable {
             return (Verdict::Violated, plant.clone(), StabilityReason::Unstable(*reason));
         }
-        if !self.compensation.prefilter().is_stable() {
+        if !self.around.compensation.prefilter().is_stable() {
             return (Verdict::Violated, self.nominal(), StabilityReason::UnstablePrefilter);
         }
         if let Some((reason, plant)) = &record.unresolved {
@@ -428,15 +398,16 @@ impl<'a> StabilityAudit<'a> {
 
     fn all_stable(&self) -> StabilityReason {
         let between = self.folded.plants.len();
-        let members = match self.family {
+        let JudgedFamily { family, compensation, .. } = self.around;
+        let members = match family {
             Family::Uncertain(family) => family.members().len(),
             Family::Measured(family) => family.plants().len(),
         };
-        let method = match (&self.record.real_part, self.family) {
+        let method = match (&self.record.real_part, family) {
             (_, Family::Measured(_)) => StabilityMethod::MeasuredPoints,
             (Some(_), _) => StabilityMethod::Poles,
             (None, Family::Uncertain(family)) if family.plant().is_rational() => StabilityMethod::Turns,
-            (None, _) if self.compensation.sample_time_s().is_none() => StabilityMethod::Enclosed,
+            (None, _) if compensation.sample_time_s().is_none() => StabilityMethod::Enclosed,
             (None, _) => StabilityMethod::Points,
         };
         let corners = self.plants.len() - members - between;
@@ -449,7 +420,7 @@ impl<'a> StabilityAudit<'a> {
 
     /// Whether what lies between the members belongs to the family.
     pub(crate) fn searched(&self) -> bool {
-        match self.family {
+        match self.around.family {
             Family::Uncertain(family) => family.extent() == Extent::Box,
             Family::Measured(_) => false,
         }

@@ -162,7 +162,7 @@ pub(crate) fn audit_among(
     (kept, effort): (&KeptPlants, AuditEffort),
     watch: Watch<'_>,
 ) -> Result<(Vec<SpecificationFinding>, AuditWork), Stopped> {
-    let before = kept.work();
+    let before = kept.sampled();
     let mut audit = SpecificationAudit::new(problem, others, kept);
     audit.prepare(&mut part(watch, STAGE, [0.0, 0.2]))?;
     audit.look(&mut part(watch, STAGE, [0.2, 0.6]))?;
@@ -172,8 +172,8 @@ pub(crate) fn audit_among(
     let findings = audit.findings(&mut part(watch, STAGE, [0.95, 1.0]))?;
     let (plants, searches) = (audit.plants.len() as u64, audit.searches as u64);
     let skipped = audit.skipped as u64;
-    let after = kept.work();
-    let [sampled, tried] = [0, 1].map(|index: usize| (after[index] - before[index]) as u64);
+    let [tried, completed] = audit.tried.map(|count| count as u64);
+    let sampled = (kept.sampled() - before) as u64 + completed;
     let responses = audit.evaluator.responses();
     Ok((findings, AuditWork { plants, searches, responses, sampled, tried, skipped }))
 }
@@ -197,6 +197,8 @@ struct SpecificationAudit<'a> {
     undefined: Vec<Option<f64>>,
     searches: usize,
     skipped: usize,
+    /// How many plants searches tried, and of how many of them all factors were needed.
+    tried: [usize; 2],
 }
 
 impl<'a> SpecificationAudit<'a> {
@@ -236,6 +238,7 @@ impl<'a> SpecificationAudit<'a> {
             plants: Vec::new(),
             searches: 0,
             skipped: 0,
+            tried: [0; 2],
         }
     }
 

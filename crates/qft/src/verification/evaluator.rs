@@ -33,7 +33,23 @@ pub(super) struct Evaluator<'a> {
     /// have no spread there.
     steepness: [Cell<Option<i32>>; 2],
     /// Plants that were found before.
-    kept: &'a KeptPlants,
+    pub(super) kept: &'a KeptPlants,
+}
+
+/// A loop without its plant, and its specifications, that several threads read.
+pub(super) struct EvaluatorSeed<'a> {
+    compensation: &'a Compensation,
+    criteria: Vec<Criterion>,
+    with_prefilter: bool,
+    steepness: [Option<i32>; 2],
+}
+
+impl EvaluatorSeed<'_> {
+    /// An evaluator that knows these plants.
+    pub(super) fn evaluator<'k>(&'k self, kept: &'k KeptPlants) -> Evaluator<'k> {
+        let own = Evaluator::new(self.compensation, self.criteria.clone(), self.with_prefilter, kept);
+        Evaluator { steepness: self.steepness.map(Cell::new), ..own }
+    }
 }
 
 impl<'a> Evaluator<'a> {
@@ -59,6 +75,21 @@ impl<'a> Evaluator<'a> {
             steepness: [Cell::new(None), Cell::new(None)],
             kept,
         }
+    }
+
+    /// The source of evaluators of the same margins, for pieces of work.
+    pub(super) fn seed(&self) -> EvaluatorSeed<'a> {
+        EvaluatorSeed {
+            compensation: self.compensation,
+            criteria: self.criteria.clone(),
+            with_prefilter: self.with_prefilter,
+            steepness: [self.steepness[0].get(), self.steepness[1].get()],
+        }
+    }
+
+    /// Counts responses that a piece of work evaluated.
+    pub(super) fn count(&self, responses: u64) {
+        self.responses.set(self.responses.get() + responses);
     }
 
     /// Number of responses of a plant that were evaluated so far.

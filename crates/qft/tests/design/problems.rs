@@ -3,6 +3,7 @@
 use phea_dynamics::controller::{Element, Timing};
 use phea_dynamics::expression::Recorded;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
+use phea_dynamics::pieces::Workers;
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
@@ -138,6 +139,7 @@ pub(crate) fn least_gain(structure: Structure, seed: u64) -> DesignOptions {
         reserve_db: 0.0,
         poles: PoleRange::default(),
         coefficients: CoefficientFormat::Double,
+        workers: Workers::CALLER,
     }
 }
 

@@ -3,6 +3,7 @@
 
 use phea_dynamics::controller::Timing;
 use phea_dynamics::expression::Recorded;
+use phea_dynamics::pieces::Workers;
 use phea_dynamics::uncertain_plant::{
     PlantCoefficients, RationalCoefficients, UncertainParameter, UncertainPlant,
 };
@@ -29,6 +30,7 @@ fn growing(maximum_order: usize, prefilter: PrefilterChoice, seed: u64) -> Desig
         reserve_db: 0.0,
         poles: PoleRange::default(),
         coefficients: CoefficientFormat::Double,
+        workers: Workers::CALLER,
     }
 }
 

@@ -11,6 +11,7 @@ type Margins = fn(&[f64]) -> Vec<f64>;
 /// Step of the differences; their error is its square times a third derivative.
 const STEP: f64 = 1e-5;
 
+#[derive(Clone)]
 pub(crate) struct Formula {
     pub(crate) bounds: Vec<[f64; 2]>,
     pub(crate) objective: Objective,

@@ -21,6 +21,7 @@ const FREQUENCIES: [usize; 2] = [61, 41];
 /// Plants whose margins are given for each frequency, the worst ones.
 const PLANTS_GIVEN: usize = 3;
 
+#[derive(Clone)]
 struct Servo {
     bounds: [[f64; 2]; 4],
     plants: Vec<[f64; 2]>,

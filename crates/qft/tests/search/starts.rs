@@ -1,5 +1,7 @@
 //! The search from many starts.
 
+use phea_dynamics::pieces::{WorkPiece, Workers};
+use phea_dynamics::watch::{Stopped, Watch};
 use phea_qft::loop_shaping::{Aim, DescentStatus, SearchOptions, SearchResult, SearchStatus, search};
 
 use super::formula::Formula;
@@ -82,6 +84,33 @@ fn a_descent_that_comes_near_an_end_is_not_completed() {
     assert!(all.ends.iter().all(|end| end.x == one.x), "{:?}", all.ends);
     // each joins as it comes within a twentieth of the bounds, not at the bottom of the valley
     assert!(all.work.slopes < 3 * one.work.slopes, "{:?} {:?}", all.work, one.work);
+}
+
+/// Workers that take the pieces from the last to the first.
+fn backwards(pieces: Vec<WorkPiece<'_>>, _: &'static str, watch: Watch<'_>) -> Result<(), Stopped> {
+    pieces.into_iter().rev().try_for_each(|piece| piece(&mut *watch))
+}
+
+/// Samples and descents need nothing of one another: whoever works on how many of them at once, in
+/// whatever order, finds the same and counts the same work, also where descents join.
+#[test]
+fn the_result_does_not_depend_on_the_workers() {
+    let valley = |x: &[f64]| vec![-100.0 * (x[1] - x[0] * x[0]).powi(2) - (1.0 - x[0]).powi(2)];
+    let mut joining = Formula::new(2, |_| 0.0, valley);
+    joining.bounds = vec![[-2.0, 2.0]; 2];
+    for problem in [hills(), joining] {
+        let options = SearchOptions { scanned: 3, finished: 8, ..SearchOptions::new(Aim::WorstMargin, 1) };
+        let found = |at_once: usize| {
+            let workers = Workers { at_once, work: backwards };
+            let options = SearchOptions { workers, ..options };
+            search(&mut problem.clone(), vec![vec![0.5; 2]], &options, &mut |_| true).unwrap().unwrap()
+        };
+        let alone = search(&mut problem.clone(), vec![vec![0.5; 2]], &options, &mut |_| true);
+        let alone = format!("{:?}", alone.unwrap().unwrap());
+        for at_once in [1, 2, 3, 16] {
+            assert_eq!(format!("{:?}", found(at_once)), alone, "{at_once}");
+        }
+    }
 }
 
 /// Starts that end feasible and starts that do not: the feasible one wins, whatever the others

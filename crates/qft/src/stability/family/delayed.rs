@@ -2,10 +2,13 @@
 //! sampling it anew; which plants it is found for, by estimates.
 
 use phea_dynamics::order::sort_by_number;
+use phea_dynamics::watch::{Stopped, Watch, part, tell};
 
-use super::{STARTS, StabilityAudit};
+use super::judged::JudgedFamily;
+use super::{STAGE, STARTS, StabilityAudit};
 use crate::closed_loop::Compensation;
 use crate::family::{Extent, Family, UncertainFamily};
+use crate::kept_plants::KeptPlants;
 use crate::stability::characteristic::FeedbackPath;
 use crate::stability::search::climb;
 use crate::stability::{CriticalDelay, DelayMargin, StabilityStatus, of_member, resampled};
@@ -29,29 +32,33 @@ impl StabilityAudit<'_> {
     /// two samples changes |L| too. So the plants are ranked again in the loop that is delayed by
     /// most of the margin so far, and searches start from the worst of them there, until they find
     /// no plant that tolerates less.
-    pub(super) fn resample(&mut self) {
+    pub(super) fn resample(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         let mut estimated = std::mem::take(&mut self.estimated);
         if let Some(PlantPoint::Parameters(values)) = self.record.delay.as_ref().map(|margin| &margin.plant) {
             estimated.push(values.clone());
         }
         let mut least = self.least(estimated);
-        for _ in 0..ROUNDS {
+        for round in 0..ROUNDS {
+            let share = [round, round + 1].map(|done| done as f64 / ROUNDS as f64);
+            let watch = &mut part(&mut *watch, STAGE, share);
             let Some(known) = &least else { break };
             let less = |found: &DelayMargin| found.delay_s < (1.0 - GAIN) * known.delay_s;
-            let Some(found) = self.least(self.worst_near(known)).filter(less) else { break };
+            let Some(found) = self.least(self.worst_near(known, watch)?).filter(less) else { break };
             least = Some(found);
         }
         self.record.delay = least.or(self.record.delay.take());
         self.resampled = true;
+        Ok(())
     }
 
     /// The least that these plants tolerate, sampled anew with every delay.
     fn least(&self, plants: Vec<Vec<f64>>) -> Option<DelayMargin> {
-        let (Family::Uncertain(family), Ok(path)) = (self.family, &self.path) else { return None };
+        let JudgedFamily { family, compensation, path, .. } = &self.around;
+        let (Family::Uncertain(family), Ok(path)) = (family, path) else { return None };
         let mut least: Option<DelayMargin> = None;
         for values in plants {
             let Some(plant) = family.plant().coefficients(&values) else { continue };
-            let Some(found) = resampled::critical_delay(&plant, self.compensation, path) else { continue };
+            let Some(found) = resampled::critical_delay(&plant, compensation, path) else { continue };
             if least.as_ref().is_none_or(|least| found.delay_s < least.delay_s) {
                 let CriticalDelay { delay_s, frequency_rad_per_s } = found;
                 let plant = PlantPoint::Parameters(values);
@@ -63,15 +70,20 @@ impl StabilityAudit<'_> {
 
     /// The plants that tolerate least in the loop that is delayed by most of this margin; over a
     /// box, those at which searches from them end.
-    fn worst_near(&self, margin: &DelayMargin) -> Vec<Vec<f64>> {
-        let (Family::Uncertain(family), Ok(path)) = (self.family, &self.path) else { return vec![] };
-        let delayed = self.compensation.with_delay(self.compensation.delay_s() + NEARLY * margin.delay_s);
-        let mut worst = |shares: &[f64]| sensitivity(family, &delayed, path, &family.values(shares));
-        let starts = self.starts_near(family, margin, &mut worst);
+    fn worst_near(&self, margin: &DelayMargin, watch: Watch<'_>) -> Result<Vec<Vec<f64>>, Stopped> {
+        let JudgedFamily { family, compensation, path, .. } = &self.around;
+        let (Family::Uncertain(family), Ok(path)) = (family, path) else { return Ok(vec![]) };
+        let delayed = compensation.with_delay(compensation.delay_s() + NEARLY * margin.delay_s);
+        let worst = |shares: &[f64]| sensitivity(family, &delayed, path, &family.values(shares));
+        let starts = self.starts_near(family, margin, &worst);
         if family.extent() != Extent::Box {
-            return starts.iter().map(|shares| family.values(shares)).collect();
+            return Ok(starts.iter().map(|shares| family.values(shares)).collect());
         }
-        starts.iter().map(|shares| family.values(&climb(shares, &mut worst).0)).collect()
+        let end = |_: &KeptPlants, shares: Vec<f64>, watch: Watch<'_>| {
+            tell(watch, STAGE, 0, 1)?;
+            Ok(family.values(&climb(&shares, &mut |shares| worst(shares)).0))
+        };
+        self.kept.each(starts, (STAGE, watch), end)
     }
 
     /// The plant of a margin, and those that tolerate least by another measure, apart from each
@@ -80,7 +92,7 @@ impl StabilityAudit<'_> {
         &self,
         family: &UncertainFamily,
         margin: &DelayMargin,
-        worst: &mut dyn FnMut(&[f64]) -> f64,
+        worst: &dyn Fn(&[f64]) -> f64,
     ) -> Vec<Vec<f64>> {
         let values = |plant: &PlantPoint| match plant {
             PlantPoint::Parameters(values) => Some(family.shares(values)),

@@ -2,7 +2,7 @@
 
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable;
-use phea_dynamics::watch::{Stopped, Watch, tell};
+use phea_dynamics::watch::{Stopped, Watch, part, tell};
 
 use super::super::evaluator::FREQUENCY_TOLERANCE;
 use super::super::finding::{self, FoundMargin, SpecificationCriteria};
@@ -14,10 +14,13 @@ use super::super::start::{STARTS, interior_range, tasks};
 use super::super::{PlantPoint, SpecificationFinding};
 use super::{AuditEffort, STAGE, SpecificationAudit, plant_at};
 use crate::family::{Extent, Family, UncertainFamily};
+use crate::kept_plants::KeptPlants;
 use crate::minimum;
 
 /// Number of cases of each specification whose frequencies are examined for the whole family.
 const FREQUENCIES: usize = 8;
+/// Searches for each worker that are done at once where one may make others needless.
+const FOR_EACH_WORKER: usize = 2;
 /// Least relative distance of these frequencies.
 const FREQUENCY_DISTANCE: f64 = 1e-3;
 
@@ -146,20 +149,81 @@ impl SpecificationAudit<'_> {
         if effort == AuditEffort::KnownPlants {
             return Ok(());
         }
-        let starts = self.starts(family);
-        for (done, (number, task)) in starts.iter().enumerate() {
-            tell(watch, STAGE, done, starts.len())?;
-            match effort {
-                AuditEffort::UntilBelow(least_db) if self.worst_known_db(*number) < least_db => {
+        let mut left = self.starts(family).into_iter().peekable();
+        let all = left.len();
+        while left.peek().is_some() {
+            let share = (all - left.len()) as f64 / all as f64;
+            let (skipped, now) = self.next_searches(effort, &mut left);
+            self.skipped += skipped;
+            let until = (all - left.len()) as f64 / all as f64;
+            let found = self.searched(family, &now, &mut part(&mut *watch, STAGE, [share, until]))?;
+            for ((number, task), (outcome, responses, tried)) in now.iter().zip(found) {
+                // what another search has found meanwhile may make this one needless
+                if self.is_skipped(effort, *number) {
                     self.skipped += 1;
+                    continue;
                 }
-                _ => {
-                    self.searches += 1;
-                    self.search_from(family, *number, task);
-                }
+                self.searches += 1;
+                self.evaluator.count(responses);
+                self.tried = [0, 1].map(|index: usize| self.tried[index] + tried[index]);
+                self.take(family, (*number, task), outcome);
             }
         }
         Ok(())
+    }
+
+    /// The next searches that are done at once, with the number of those that are skipped before:
+    /// all of them, or where a search may make others needless a few for each worker.
+    fn next_searches(
+        &self,
+        effort: AuditEffort,
+        left: &mut impl Iterator<Item = (usize, SearchTask)>,
+    ) -> (usize, Vec<(usize, SearchTask)>) {
+        let most = match effort {
+            AuditEffort::UntilBelow(_) => match self.evaluator.kept.workers().at_once {
+                0 | 1 => 1,
+                at_once => FOR_EACH_WORKER * at_once,
+            },
+            AuditEffort::Complete | AuditEffort::KnownPlants => usize::MAX,
+        };
+        let (mut skipped, mut now) = (0, Vec::new());
+        while now.len() < most
+            && let Some((number, task)) = left.next()
+        {
+            if self.is_skipped(effort, number) {
+                skipped += 1;
+            } else {
+                now.push((number, task));
+            }
+        }
+        (skipped, now)
+    }
+
+    /// Where searches end, each with its responses and with how many plants it tried, and of how
+    /// many of them all factors were needed.
+    fn searched(
+        &self,
+        family: &UncertainFamily,
+        tasks: &[(usize, SearchTask)],
+        watch: Watch<'_>,
+    ) -> Result<Vec<(SearchOutcome, u64, [usize; 2])>, Stopped> {
+        let seed = self.evaluator.seed();
+        let search = |kept: &KeptPlants, task: &SearchTask, watch: Watch<'_>| {
+            tell(watch, STAGE, 0, 1)?;
+            let evaluator = seed.evaluator(kept);
+            let outcome = search(&evaluator, family, task);
+            Ok((outcome, evaluator.responses(), kept.tried()))
+        };
+        let tasks: Vec<&SearchTask> = tasks.iter().map(|(_, task)| task).collect();
+        self.evaluator.kept.each(tasks, (STAGE, watch), search)
+    }
+
+    /// True where a violation of the specification is known that needs no search for a worse one.
+    fn is_skipped(&self, effort: AuditEffort, number: usize) -> bool {
+        match effort {
+            AuditEffort::UntilBelow(least_db) => self.worst_known_db(number) < least_db,
+            AuditEffort::Complete | AuditEffort::KnownPlants => false,
+        }
     }
 
     /// The least margin of a specification that is known, dB.
@@ -189,8 +253,13 @@ impl SpecificationAudit<'_> {
         starts
     }
 
-    fn search_from(&mut self, family: &UncertainFamily, number: usize, task: &SearchTask) {
-        let SearchOutcome { found, undefined } = search(&self.evaluator, family, task);
+    /// Takes what a search for a specification has found.
+    fn take(
+        &mut self,
+        family: &UncertainFamily,
+        (number, task): (usize, &SearchTask),
+        SearchOutcome { found, undefined }: SearchOutcome,
+    ) {
         if let Some(slot @ None) = self.undefined.get_mut(number) {
             *slot = undefined;
         }

@@ -1,0 +1,68 @@
+//! Independent pieces of a long procedure, which its caller may work on side by side.
+
+use crate::watch::{Stopped, Watch, part};
+
+/// A piece of work that needs no result of another piece of the same procedure. It writes its
+/// result where it borrowed the place for it, and stops where its watch answers `false`.
+pub type WorkPiece<'a> = Box<dyn FnOnce(Watch<'_>) -> Result<(), Stopped> + Send + 'a>;
+
+/// The owner of the threads. What a procedure returns does not depend on it.
+#[derive(Clone, Copy, Debug)]
+pub struct Workers {
+    /// Number of pieces that are worked on at once, at least 1.
+    pub at_once: usize,
+    /// Works on all pieces, each with a watch of its own, and reports the progress of the stage;
+    /// [`Stopped`] where the watch or a piece stopped.
+    pub work: fn(Vec<WorkPiece<'_>>, &'static str, Watch<'_>) -> Result<(), Stopped>,
+}
+
+impl Workers {
+    /// The calling thread, which works on one piece after the other.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_dynamics::pieces::{WorkPiece, Workers};
+    /// use phea_dynamics::watch::{Stopped, Watch, unwatched};
+    /// let mut squares = [0; 4];
+    /// let places = squares.iter_mut().enumerate();
+    /// let square = |(index, place): (usize, &mut usize)| *place = index * index;
+    /// let pieces = places.map(|place| -> WorkPiece<'_> {
+    ///     Box::new(move |_: Watch<'_>| {
+    ///         square(place);
+    ///         Ok::<(), Stopped>(())
+    ///     })
+    /// });
+    /// Workers::CALLER.work(pieces.collect(), "squaring", &mut unwatched)?;
+    /// assert_eq!(squares, [0, 1, 4, 9]);
+    /// # Ok::<(), Stopped>(())
+    /// ```
+    pub const CALLER: Workers = Workers { at_once: 1, work: one_by_one };
+
+    /// Works on all pieces.
+    ///
+    /// # Errors
+    /// [`Stopped`] where the watch answers `false`.
+    pub fn work(
+        self,
+        pieces: Vec<WorkPiece<'_>>,
+        stage: &'static str,
+        watch: Watch<'_>,
+    ) -> Result<(), Stopped> {
+        (self.work)(pieces, stage, watch)
+    }
+}
+
+impl PartialEq for Workers {
+    fn eq(&self, other: &Workers) -> bool {
+        self.at_once == other.at_once && std::ptr::fn_addr_eq(self.work, other.work)
+    }
+}
+
+fn one_by_one(pieces: Vec<WorkPiece<'_>>, stage: &'static str, watch: Watch<'_>) -> Result<(), Stopped> {
+    let count = pieces.len() as f64;
+    for (index, piece) in pieces.into_iter().enumerate() {
+        let share = [index, index + 1].map(|done| done as f64 / count);
+        piece(&mut part(&mut *watch, stage, share))?;
+    }
+    Ok(())
+}
