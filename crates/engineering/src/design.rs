@@ -50,6 +50,7 @@ pub use words::{
 };
 
 use phea_dynamics::controller::{Controller, RateSensor, Timing};
+use phea_qft::audit::audit_by;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{
     Design, DesignOptions, DesignOutcome, DesignProblem, DesignStatus, PrefilterChoice, reshaped,
@@ -64,6 +65,7 @@ use crate::project::{self, Project};
 use crate::quantity::{self, DisplayUnit};
 use crate::robust::{RobustProblem, robust_problem};
 use crate::setup::{Setup, is_of_position};
+use crate::side_by_side::{all_cores, both};
 use crate::source::Source;
 use crate::trial::{Agreement, DrivenCorners, Trial, TrialRun, tried};
 use phea_dynamics::watch::{Stopped, Watch, part, within};
@@ -218,7 +220,7 @@ impl ProjectDesign {
             compensation: self.designed.problem.compensation.clone(),
             ..given.clone()
         };
-        let audit = phea_qft::audit::audit(&audit_request(&problem, &problem.family), watch)?;
+        let audit = audit_by(&audit_request(&problem, &problem.family), all_cores(), watch)?;
         self.design.audit = audit.clone();
         let (problem, audit, limit_findings) = split(&problem, &audit);
         let of_rig = caveat_of_rig(&problem, watch)?;
@@ -364,30 +366,47 @@ fn designed(
         return Err(DesignError::Admittance);
     }
     let given = robust_problem(source, as_given)?;
-    let published = match &as_given.controller {
-        None => None,
-        Some(law) => {
-            let mut view = audit_problem(&given, &mut within(&mut *watch, [0.0, 0.05]))?;
-            view.below_design = Some(below_design(as_given, &given, &view, watch)?);
-            Some(AuditedController::new(law.clone(), given.clone(), view)?)
-        }
-    };
-    let given = match std::ptr::eq(as_given, setup) {
-        true => given,
+    let as_designed = match std::ptr::eq(as_given, setup) {
+        true => given.clone(),
         false => robust_problem(source, setup)?,
     };
-    let limits = design_limits(setup, &given);
-    let nothing_asks = asked::nothing_asks(&given);
-    let given = limited(&given, &limits);
-    let (run, mut told) =
-        found_and_tried((source, setup), &given, seed, &mut within(&mut *watch, [0.05, 0.9]))?;
-    told.explanations.extend(nothing_asks);
+    let limits = design_limits(setup, &as_designed);
+    let nothing_asks = asked::nothing_asks(&as_designed);
+    let limited = limited(&as_designed, &limits);
+    let (published, found) = both(
+        watch,
+        0.05,
+        |watch| audited_as_given(as_given, &given, watch),
+        |watch| {
+            let (run, told, twin) =
+                found_and_tried((source, setup), &limited, seed, &mut within(&mut *watch, [0.0, 0.9]))?;
+            let mut stopped = told.stopped;
+            let continuous = unless_stopped(&mut stopped, || {
+                let watch = &mut within(watch, [0.9, 1.0]);
+                twin.and_then(|twin| twin.of(&told.design))
+                    .unwrap_or_else(|| continuous_as_sampled((source, setup), &run.problem, &told, watch))
+            })?;
+            Ok::<_, DesignError>((run, ProjectDesign { stopped, ..told }, continuous))
+        },
+    );
+    let (run, mut told, continuous) = found?;
     let mut stopped = told.stopped;
-    let continuous = unless_stopped(&mut stopped, || {
-        continuous_as_sampled((source, setup), &run.problem, &told, &mut within(watch, [0.9, 1.0]))
-    })?;
+    let published = unless_stopped(&mut stopped, || published)?;
+    told.explanations.extend(nothing_asks);
     let [published, continuous] = [published, continuous].map(|one| one.map(Box::new));
     Ok((run, ProjectDesign { stopped, published, continuous, ..told }))
+}
+
+/// The controller that the project gives, with its audit; `None` where it gives none.
+fn audited_as_given(
+    setup: &Setup<'_>,
+    given: &RobustProblem,
+    watch: Watch<'_>,
+) -> Result<Option<AuditedController>, DesignError> {
+    let Some(law) = &setup.controller else { return Ok(None) };
+    let mut view = audit_problem(given, watch)?;
+    view.below_design = Some(below_design(setup, given, &view, watch)?);
+    Ok(Some(AuditedController::new(law.clone(), given.clone(), view)?))
 }
 
 /// A result that follows a design; absent once the watch has stopped it, since the design remains.

@@ -6,7 +6,7 @@
 //! ```
 
 use phea_dynamics::watch::{Watch, within};
-use phea_qft::design::DesignStatus;
+use phea_qft::design::{Design, DesignProblem, DesignStatus};
 
 use super::added_by_rig::added;
 use super::by_steps::{AimedSteps, SteppedPlants, by_steps, shortened};
@@ -14,27 +14,48 @@ use super::command_of_steps::{CommandDepth, command_of_steps};
 use super::relaxed::relaxations;
 use super::search::{found, rank};
 use super::step_aim::StepAim;
-use super::{DesignError, DesignRun, ProjectDesign, tried_design, unless_stopped};
+use super::{
+    AuditedController, DesignError, DesignRun, ProjectDesign, continuous_as_sampled, tried_design,
+    unless_stopped,
+};
 use crate::audit::try_to_prove;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
+use crate::side_by_side::{all_cores, both};
 use crate::source::Source;
 use crate::trial::Agreement;
 
 /// How often the search goes on as long as the nonlinear rig misses what is required.
 const TRIES: usize = 6;
 
-/// The best design with its trial; without one where the watch stops it before.
+/// A design, and its twin for the continuous loop.
+pub(super) struct ContinuousTwin {
+    /// The design.
+    of: Design,
+    /// The one that was made without samples, as [`continuous_as_sampled`] finds it.
+    found: Result<Option<AuditedController>, DesignError>,
+}
+
+impl ContinuousTwin {
+    /// The twin of this design; `None` of another one.
+    pub(super) fn of(self, design: &Design) -> Option<Result<Option<AuditedController>, DesignError>> {
+        (self.of == *design).then_some(self.found)
+    }
+}
+
+/// The best design with its trial; without one where the watch stops it before. Also the design
+/// made without samples, which is looked for during the trial where that leads to no other design.
 pub(super) fn found_and_tried(
     (source, setup): (&dyn Source, &Setup<'_>),
     given: &RobustProblem,
     seed: Option<u32>,
     watch: Watch<'_>,
-) -> Result<(DesignRun, ProjectDesign), DesignError> {
+) -> Result<(DesignRun, ProjectDesign, Option<ContinuousTwin>), DesignError> {
     let plants = SteppedPlants::default();
     let (aim, run, told) =
         found(setup, (given, StepAim::AS_REQUIRED, &plants), seed, &mut within(&mut *watch, [0.0, 0.5]))?;
-    let told = with_trial((source, setup), told, &mut within(&mut *watch, [0.5, 0.6]))?;
+    let (told, twin) =
+        with_trial_and_twin((source, setup), &run.problem, told, &mut within(&mut *watch, [0.5, 0.6]))?;
     let mut best = (run, told);
     // the design that the next one begins from, unless that is the best one
     let mut latest: Option<(DesignRun, ProjectDesign)> = None;
@@ -84,7 +105,29 @@ pub(super) fn found_and_tried(
         Err(DesignError::Stopped(_)) => told.stopped = true,
         Err(error) => return Err(error),
     }
-    Ok((run, told))
+    Ok((run, told, twin))
+}
+
+/// A design with the trial of its controller, and meanwhile with what was made without samples.
+fn with_trial_and_twin(
+    (source, setup): (&dyn Source, &Setup<'_>),
+    problem: &DesignProblem,
+    told: ProjectDesign,
+    watch: Watch<'_>,
+) -> Result<(ProjectDesign, Option<ContinuousTwin>), DesignError> {
+    // a rig that misses what is required in time leads to another design
+    let is_required = told.designed.problem.in_time.iter().any(|one| one.follows);
+    if told.stopped || is_required || all_cores().at_once == 1 {
+        return Ok((with_trial((source, setup), told, watch)?, None));
+    }
+    let untried = told.clone();
+    let (found, told) = both(
+        watch,
+        0.5,
+        |watch| continuous_as_sampled((source, setup), problem, &untried, watch),
+        |watch| with_trial((source, setup), told, watch),
+    );
+    Ok((told?, Some(ContinuousTwin { of: untried.design, found })))
 }
 
 /// The design without zeros and poles that do next to nothing, where the nonlinear rig satisfies

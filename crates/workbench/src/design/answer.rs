@@ -60,7 +60,7 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
         .with("minimum_delay_margin_s", view.minimum_delay_margin_s)
         .with("limits", limits::rows(view))
         .with("reserve_db", view.options.reserve_db)
-        .maybe("published_reason", view.published.is_none().then_some("the project gives no controller"))
+        .maybe("published_reason", why_not_published(view))
         .each("rounds", &design.rounds, round)
         .known("starts", starts, "no search ended")
         .each("binding", &design.binding, |limit| {
@@ -77,6 +77,14 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
         .maybe("rounding", view.rounding.as_ref().map(|rounding| rounding::row(rounding, &side.view.names)))
         .known("machine", view.trial.as_ref().map(trial::body), no_machine)
         .known("repair", view.repair.as_ref().map(repair::row), no_repair))
+}
+
+/// The reason for the absence of the given controller.
+fn why_not_published(view: &ProjectDesign) -> Option<&'static str> {
+    view.published.is_none().then_some(match view.stopped {
+        true => "the project gives no controller, or the design was stopped before it was audited",
+        false => "the project gives no controller",
+    })
 }
 
 /// The structure, what others reached, and the law in the words of a manual.
