@@ -18,6 +18,7 @@ mod in_use;
 mod instruments;
 mod intervals;
 mod joint;
+mod memory;
 mod misfit;
 mod reading;
 mod recording;
@@ -316,6 +317,11 @@ pub fn identify(
     let variables = Variables::around(&first_guess, tested.nominal_voltage);
     let first = fit::fitted(&recordings, tested, &variables, search, watch)?;
     let starts = first.starts;
+    let remembered = memory::remembered(&first, first_guess.hysteresis_width, watch)?;
+    let first = match &remembered {
+        Some(memory::Remembered { recordings, start }) => fit::from_near(recordings, &first, start, watch)?,
+        None => first,
+    };
     let (evidence, found, terms) = best_model(first, (search.leakage_model, known.leakage_model), watch)?;
     let variables = found.together.variables.clone();
     let coefficients = found.coefficients();
@@ -329,18 +335,13 @@ pub fn identify(
     for (scale, deviation) in deviations.iter_mut().zip(&told.deviations) {
         *scale = if deviation.is_finite() { *scale * deviation } else { f64::INFINITY };
     }
-    // a coefficient that is not determined may have ended anywhere: a further test is judged at its
-    // usual value
-    let mut usual = coefficients.to_array();
-    for ((number, interval), start) in usual.iter_mut().zip(intervals).zip(first_guess.to_array()) {
-        *number = if interval.is_some() { *number } else { start };
-    }
-    let usual = StaticCoefficients::from_array(usual);
+    let usual = usual(&coefficients, &intervals, &first_guess);
     let bootstrap = match search.bootstrap {
         0 => None,
         repetitions => Some(bootstrap::bootstrap(&found, repetitions, search.seed, watch)?),
     };
     let tested = found.together.tested;
+    let recordings = found.together.recordings.to_vec();
     Ok(Identification {
         coefficients,
         intervals,
@@ -362,6 +363,20 @@ pub fn identify(
         oil,
         recordings,
     })
+}
+
+/// The coefficients at which a further test is judged: one that is not determined may have ended
+/// anywhere, and has its usual value.
+fn usual(
+    coefficients: &StaticCoefficients,
+    intervals: &[Option<[f64; 2]>; STATIC_COEFFICIENTS],
+    first_guess: &StaticCoefficients,
+) -> StaticCoefficients {
+    let mut usual = coefficients.to_array();
+    for ((number, interval), start) in usual.iter_mut().zip(intervals).zip(first_guess.to_array()) {
+        *number = if interval.is_some() { *number } else { start };
+    }
+    StaticCoefficients::from_array(usual)
 }
 
 /// Both models of the leakage compared, with what the valve has beyond edges that open in

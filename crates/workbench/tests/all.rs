@@ -114,6 +114,7 @@ mod valve_evidence;
 mod valve_identification;
 mod valve_in_use;
 mod valve_instruments;
+mod valve_memory;
 mod valve_numbers;
 mod valve_reversals;
 mod valve_terms;

@@ -45,6 +45,7 @@ pub(super) fn averaged(recording: &Recording) -> Recording {
         kind: signal.kind,
         values: blocks.iter().map(|block| inner_mean(signal.values.get(block.clone())?)).collect(),
     });
+    let memory = recording.inputs.first().map_or(0.0, |input| input.memory);
     let these = |values: &Vec<f64>| blocks.iter().map(|block| mean(values, block)).collect();
     Recording {
         file: recording.file.clone(),
@@ -59,6 +60,7 @@ pub(super) fn averaged(recording: &Recording) -> Recording {
                     supply: Supply { pressure, tank_pressure },
                     load_pressure,
                     oil,
+                    memory,
                 }
             })
             .collect(),

@@ -14,7 +14,7 @@ pub const DECISIVE: f64 = 10.0;
 const ROUNDS: usize = 30;
 
 /// Greatest correlation of neighbours that is used: one row in two hundred counts.
-const MOST_CORRELATED: f64 = 0.99;
+pub(super) const MOST_CORRELATED: f64 = 0.99;
 
 /// How well a model of the leakage explains the recordings.
 #[derive(Clone, Debug, PartialEq)]

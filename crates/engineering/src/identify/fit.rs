@@ -126,6 +126,17 @@ pub(super) fn with_another_model<'a>(
     fitted_from(&starts, together, ROUGH_EVALUATIONS, watch)
 }
 
+/// Recordings explained by the same model from near where another fit ended.
+pub(super) fn from_near<'a>(
+    recordings: &'a [Recording],
+    like: &Fit<'_>,
+    start: &[f64],
+    watch: Watch<'_>,
+) -> Result<Fit<'a>, IdentifyError> {
+    let together = Together::new(recordings, like.together.tested, &like.together.variables);
+    fitted_from(&[start.to_vec()], together, EVALUATIONS, watch)
+}
+
 /// A few steps towards the minimum that a model of the valve with another term has beside this one,
 /// with the same scales: enough to tell whether the term is worth a fit.
 pub(super) fn a_few_steps_with<'a>(

@@ -109,6 +109,12 @@ impl Recording {
         self.signals.iter().find(|signal| signal.kind == kind)
     }
 
+    /// The lag of earlier cycles that the spool brings along, in V; zero of a test that begins
+    /// without, as far as its rows tell.
+    pub fn memory_at_start(&self) -> f64 {
+        self.inputs.first().map_or(0.0, |input| input.memory)
+    }
+
     /// The branches of the test: rows in a row whose command goes one way, rows at which it rests
     /// among those before them.
     pub fn branches(&self) -> Vec<TestBranch> {

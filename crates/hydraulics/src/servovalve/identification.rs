@@ -114,12 +114,21 @@ pub struct TestInput {
     pub load_pressure: f64,
     /// The oil, against that which the coefficients are stated at.
     pub oil: WarmOil,
+    /// Lag z of the torque motor's iron in V that the spool brings along to the first row.
+    pub memory: f64,
 }
 
 impl TestInput {
     /// A row whose command is known without noise, with the oil that the valve is stated at.
     pub fn new(command: f64, supply: Supply, load_pressure: f64) -> TestInput {
-        TestInput { command, followed_command: command, supply, load_pressure, oil: WarmOil::STATED }
+        TestInput {
+            command,
+            followed_command: command,
+            supply,
+            load_pressure,
+            oil: WarmOil::STATED,
+            memory: 0.0,
+        }
     }
 }
 
@@ -171,7 +180,7 @@ pub struct TestedValve {
 }
 
 impl TestedValve {
-    /// What a slow test shows row by row, the spool without memory at its beginning.
+    /// What a slow test shows row by row, the spool with the memory that its first row states.
     ///
     /// Equations: [`blocked_ports`], [`connected_ports`], [`tare_flow`],
     /// [`SpoolImperfection::slow_opening`].
@@ -287,9 +296,13 @@ fn openings<S: Scalar>(coefficients: &StaticCoefficients<S>, inputs: &[TestInput
         rate_limit: None,
     };
     let mut memory = None;
+    let begun = |input: &TestInput, followed| SlowSpool {
+        magnetic_lag: S::from(input.memory),
+        ..SlowSpool::at(followed)
+    };
     let one = |input: &TestInput| {
         let followed = S::from(input.followed_command);
-        let opening = spool.slow_opening(memory.get_or_insert(SlowSpool::at(followed)), followed);
+        let opening = spool.slow_opening(memory.get_or_insert_with(|| begun(input, followed)), followed);
         opening + S::from(input.command - input.followed_command)
     };
     inputs.iter().map(one).collect()

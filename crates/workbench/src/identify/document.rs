@@ -247,12 +247,30 @@ fn remarks(found: &Identification) -> Vec<String> {
     if !zero.is_empty() {
         remarks.push(format!("These may be zero: {}; the bounds from above have 95 %.", zero.join("; ")));
     }
+    remarks.extend(remembered(found));
     let misfits = found.misfits();
     remarks.extend(misfits.iter().map(|one| format!("Misfit: {}.", misfit_in_words(found, one))));
     if !misfits.is_empty() {
         remarks.push("The intervals, those of a bootstrap too, count noise alone: they do not cover what the model does not explain.".to_string());
     }
     remarks
+}
+
+/// The tests that begin with the memory of earlier cycles.
+fn remembered(found: &Identification) -> Option<String> {
+    let begun = found.recordings.iter().filter(|one| one.memory_at_start() != 0.0);
+    let told: Vec<String> = begun
+        .map(|one| {
+            let millivolts = 1e3 * one.memory_at_start();
+            format!("{} ({} mV)", one.file, significant(millivolts, 2))
+        })
+        .collect();
+    (!told.is_empty()).then(|| {
+        format!(
+            "These tests begin with the memory of earlier cycles, the lag of the spool behind its command: {}.",
+            told.join(", ")
+        )
+    })
 }
 
 fn not_told(untold: &super::Untold) -> String {

@@ -28,6 +28,7 @@ pub(super) struct TestBody<'a> {
     ports: &'static str,
     rows: usize,
     rows_left_out: usize,
+    memory_at_start_v: f64,
     columns: Vec<ColumnBody<'a>>,
     unused_columns: &'a [String],
 }
@@ -66,6 +67,7 @@ impl Read {
             },
             rows: contents.rows,
             rows_left_out: contents.rows_left_out,
+            memory_at_start_v: recording.memory_at_start(),
             columns: contents.columns.iter().map(column).collect(),
             unused_columns: &contents.unused,
         })

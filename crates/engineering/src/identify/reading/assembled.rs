@@ -33,6 +33,7 @@ pub(super) fn assembled(
                 PortCircuit::Blocked => 0.0,
             },
             oil: WarmOil::STATED,
+            memory: 0.0,
         }
     };
     let inputs: Vec<TestInput> = (0..taken.rows()).map(input).collect();

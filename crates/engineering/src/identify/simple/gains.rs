@@ -7,6 +7,7 @@ use phea_hydraulics::servovalve::{PortCircuit, TestedValve, flow_coefficient_fro
 
 use super::straight_line::straight_line;
 use super::{CurveReading, direction, largest_command};
+use crate::identify::evidence::DECISIVE;
 use crate::identify::recording::{Recording, SignalKind};
 
 /// Commands from null, over the nominal voltage, between which the flow gain is read: beyond the
@@ -169,9 +170,13 @@ const KINKS: i32 = 10;
 fn inverse_slope(branches: &[Vec<NearNull>]) -> Option<CurveReading> {
     let rows = branches.iter().map(Vec::len).sum::<usize>();
     let fits = NullBend::all().filter(|bend| rows > bend.numbers() + 1 + branches.len());
-    let found = fits.filter_map(|bend| bent(branches, bend));
-    let best = found.min_by(|one, other| one.1.total_cmp(&other.1));
-    best.map(|(reading, _)| reading).filter(|_| rows >= FEWEST)
+    let found: Vec<(CurveReading, f64)> = fits.filter_map(|bend| bent(branches, bend)).collect();
+    let (best, least) = found.iter().copied().min_by(|one, other| one.1.total_cmp(&other.1))?;
+    // what another bend says that explains the rows about as well is possible too
+    let likely = found.iter().filter(|(_, criterion)| criterion - least < DECISIVE);
+    let ends = likely.filter_map(|(reading, _)| reading.interval);
+    let [low, high] = ends.fold(best.interval?, |[low, high], [from, to]| [low.min(from), high.max(to)]);
+    (rows >= FEWEST).then_some(CurveReading { interval: Some([low, high]), ..best })
 }
 
 /// The same with this bend, and the criterion of Schwarz.

@@ -1,0 +1,183 @@
+//! What the spool remembers where a test begins.
+//!
+//! ```text
+//! z = s h + (z_0 - s h) exp(-|dU|/(2 h))        the slow spool:  dz/dz_0 = exp(-S/(2 h)),  S the way of the command since the first row
+//! ```
+//!
+//! A test that begins after other cycles begins with their memory z_0, between -h and h. It is
+//! found for each test by itself, where the loss of its first residuals is least, and the
+//! coefficients are fitted anew with it, until it stays.
+
+use phea_dynamics::least_squares::Settings;
+use phea_dynamics::portable;
+use phea_dynamics::watch::Watch;
+use phea_hydraulics::servovalve::TestInput;
+
+use super::IdentifyError;
+use super::channels::Channel;
+use super::evidence::{DECISIVE, MOST_CORRELATED, criteria};
+use super::fit::{self, Fit};
+use super::recording::Recording;
+
+/// Fits with other memories at most.
+const PASSES: usize = 6;
+
+/// Change of a memory, over the width of the hysteresis, that changes nothing.
+const SETTLED: f64 = 2e-3;
+
+/// Memories that are tried between both ends, and steps of the section that follows.
+const TRIED: i32 = 16;
+const SECTIONS: usize = 24;
+
+/// Share of the first memory that a row still has to be counted.
+const FORGOTTEN: f64 = 1e-3;
+
+/// Recordings with the memories that their tests begin with, and where the fit of them ended.
+pub(super) struct Remembered {
+    pub(super) recordings: Vec<Recording>,
+    /// The variables there.
+    pub(super) start: Vec<f64>,
+}
+
+/// Those of the recordings that a fit explains; `None` where no test asks for one. `width` is the
+/// first guess of the hysteresis in V.
+///
+/// A fit with a wrong memory may end far from the right one: where it leaves a misfit, tests that go
+/// on the way that they went are tried too.
+///
+/// # Errors
+/// Those of a fit.
+pub(super) fn remembered(
+    first: &Fit<'_>,
+    width: f64,
+    watch: Watch<'_>,
+) -> Result<Option<Remembered>, IdentifyError> {
+    if first.signals().iter().any(|signal| signal.misfit().is_some()) {
+        let mut went_on = first.together.recordings.to_vec();
+        went_on.iter_mut().for_each(|recording| goes_on(recording, width));
+        let start = first.together.variables.start();
+        let other = fit::from_near(&went_on, first, &start, watch)?;
+        let [before, after] = criteria([first, &other]);
+        if before - after > DECISIVE {
+            return settled(&other, vec![true; went_on.len()], watch).map(Some);
+        }
+    }
+    let asked: Vec<bool> =
+        memories(first).iter().map(|told| told.is_some_and(|one| one.gain > DECISIVE)).collect();
+    if !asked.contains(&true) {
+        return Ok(None);
+    }
+    settled(first, asked, watch).map(Some)
+}
+
+/// A test that goes on the way that it went before it was recorded: its spool lags by half the
+/// width.
+fn goes_on(recording: &mut Recording, width: f64) {
+    let rises = recording.branches().first().is_some_and(|branch| branch.rises);
+    let memory = if rises { 0.5 * width } else { -0.5 * width };
+    recording.inputs.iter_mut().take(1).for_each(|input| input.memory = memory);
+}
+
+/// The memories where they and the coefficients stay.
+fn settled(first: &Fit<'_>, mut asked: Vec<bool>, watch: Watch<'_>) -> Result<Remembered, IdentifyError> {
+    let is_asked = |told: &Option<FirstMemory>| told.is_some_and(|one| one.gain > DECISIVE);
+    let mut told = memories(first);
+    let mut recordings = first.together.recordings.to_vec();
+    let mut start = first.minimum.variables.clone();
+    for _ in 0..PASSES {
+        let width = first.together.variables.coefficients(&start).hysteresis_width;
+        let mut most = 0.0_f64;
+        let all = recordings.iter_mut().zip(&told).zip(&asked).filter(|(_, asked)| **asked);
+        for ((recording, told), _) in all {
+            let (Some(told), Some(input)) = (told, recording.inputs.first_mut()) else { continue };
+            most = most.max((input.memory - told.memory).abs());
+            input.memory = told.memory;
+        }
+        if most < SETTLED * width {
+            break;
+        }
+        let again = fit::from_near(&recordings, first, &start, watch)?;
+        start.clone_from(&again.minimum.variables);
+        told = memories(&again);
+        asked.iter_mut().zip(&told).for_each(|(asked, told)| *asked |= is_asked(told));
+    }
+    Ok(Remembered { recordings, start })
+}
+
+/// The memory that a test begins with, in V, and by how much it lowers the criterion.
+#[derive(Clone, Copy, Debug)]
+struct FirstMemory {
+    memory: f64,
+    gain: f64,
+}
+
+/// That of each recording; `None` where no row shows it.
+fn memories(fit: &Fit<'_>) -> Vec<Option<FirstMemory>> {
+    let signals = fit.signals();
+    let half = 0.5 * fit.coefficients().hysteresis_width;
+    let of = |(index, recording): (usize, &Recording)| {
+        let begun = Begun::new(fit, index, recording);
+        let own = signals.iter().filter(|signal| signal.recording == index);
+        let correlation =
+            own.map(|signal| signal.correlation.clamp(0.0, MOST_CORRELATED)).fold(0.0, f64::max);
+        let share = (1.0 - correlation) / (1.0 + correlation);
+        let at = |place: i32| half * f64::from(place) / f64::from(TRIED / 2);
+        let tried = (-TRIED / 2..=TRIED / 2).map(|place| (place, begun.loss(at(place))));
+        let (place, _) = tried.min_by(|one, other| one.1.total_cmp(&other.1))?;
+        let memory = least([at(place - 1).max(-half), at(place + 1).min(half)], |memory| begun.loss(memory));
+        let rows = begun.inputs.len() as f64;
+        let gain = 2.0 * share * (begun.loss(0.0) - begun.loss(memory)) - portable::ln(rows.max(1.0));
+        (rows > 0.0).then_some(FirstMemory { memory, gain })
+    };
+    fit.together.recordings.iter().enumerate().map(of).collect()
+}
+
+/// The rows of a test that the first memory reaches.
+struct Begun<'f> {
+    fit: &'f Fit<'f>,
+    recording: &'f Recording,
+    index: usize,
+    inputs: Vec<TestInput>,
+}
+
+impl<'f> Begun<'f> {
+    fn new(fit: &'f Fit<'f>, index: usize, recording: &'f Recording) -> Begun<'f> {
+        let width = fit.coefficients().hysteresis_width;
+        let mut before = recording.inputs.first().map_or(0.0, |input| input.followed_command);
+        let mut way = 0.0;
+        let remembers = |input: &&TestInput| {
+            way += (input.followed_command - before).abs();
+            before = input.followed_command;
+            portable::exp(-way / width) > FORGOTTEN
+        };
+        let inputs = recording.inputs.iter().take_while(remembers).copied().collect();
+        Begun { fit, recording, index, inputs }
+    }
+
+    /// The loss of the residuals with this memory in V.
+    fn loss(&self, memory: f64) -> f64 {
+        let together = &self.fit.together;
+        let beyond = Settings::default().robust_beyond;
+        let mut inputs = self.inputs.clone();
+        inputs.iter_mut().take(1).for_each(|input| input.memory = memory);
+        let outputs = together.tested.outputs(&self.fit.coefficients(), self.recording.circuit, &inputs);
+        let of_channel = |channel: &Channel| -> f64 {
+            let Some(signal) = self.recording.signals.get(channel.signal) else { return 0.0 };
+            let read = outputs.iter().zip(&signal.values).filter(|(_, value)| value.is_some());
+            let residuals = read.zip(together.scales(channel)).map(|((output, value), scale)| {
+                ((signal.kind.shown(output) - value.unwrap_or(0.0)) / scale).abs()
+            });
+            residuals.map(|one| one.min(beyond) * (one - one.min(beyond) / 2.0)).sum()
+        };
+        together.channels.iter().filter(|channel| channel.recording == self.index).map(of_channel).sum()
+    }
+}
+
+/// Where a function is least between two ends, by thirds.
+fn least([mut low, mut high]: [f64; 2], of: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..SECTIONS {
+        let third = (high - low) / 3.0;
+        if of(low + third) < of(high - third) { high -= third } else { low += third }
+    }
+    f64::midpoint(low, high)
+}
