@@ -33,7 +33,7 @@ const SECTIONS: usize = 24;
 const FORGOTTEN: f64 = 1e-3;
 
 /// Recordings with the memories that their tests begin with, and where the fit of them ended.
-pub(super) struct Remembered {
+pub(super) struct WithMemories {
     pub(super) recordings: Vec<Recording>,
     /// The variables there.
     pub(super) start: Vec<f64>,
@@ -42,8 +42,8 @@ pub(super) struct Remembered {
 /// Those of the recordings that a fit explains; `None` where no test asks for one. `width` is the
 /// first guess of the hysteresis in V.
 ///
-/// A fit with a wrong memory may end far from the right one: where it leaves a misfit, tests that go
-/// on the way that they went are tried too.
+/// A fit with a wrong memory may end far from the right one: where it leaves a misfit, tests that
+/// go on the way that they went are tried too.
 ///
 /// # Errors
 /// Those of a fit.
@@ -51,7 +51,7 @@ pub(super) fn remembered(
     first: &Fit<'_>,
     width: f64,
     watch: Watch<'_>,
-) -> Result<Option<Remembered>, IdentifyError> {
+) -> Result<Option<WithMemories>, IdentifyError> {
     if first.signals().iter().any(|signal| signal.misfit().is_some()) {
         let mut went_on = first.together.recordings.to_vec();
         went_on.iter_mut().for_each(|recording| goes_on(recording, width));
@@ -79,7 +79,7 @@ fn goes_on(recording: &mut Recording, width: f64) {
 }
 
 /// The memories where they and the coefficients stay.
-fn settled(first: &Fit<'_>, mut asked: Vec<bool>, watch: Watch<'_>) -> Result<Remembered, IdentifyError> {
+fn settled(first: &Fit<'_>, mut asked: Vec<bool>, watch: Watch<'_>) -> Result<WithMemories, IdentifyError> {
     let is_asked = |told: &Option<FirstMemory>| told.is_some_and(|one| one.gain > DECISIVE);
     let mut told = memories(first);
     let mut recordings = first.together.recordings.to_vec();
@@ -101,7 +101,7 @@ fn settled(first: &Fit<'_>, mut asked: Vec<bool>, watch: Watch<'_>) -> Result<Re
         told = memories(&again);
         asked.iter_mut().zip(&told).for_each(|(asked, told)| *asked |= is_asked(told));
     }
-    Ok(Remembered { recordings, start })
+    Ok(WithMemories { recordings, start })
 }
 
 /// The memory that a test begins with, in V, and by how much it lowers the criterion.
