@@ -19,6 +19,9 @@ const SEARCHES: [&str; 1] = ["comparisons/recompute_design.py"];
 /// Valves identified by phea and by SciPy: fifty of them before a release.
 const RANDOM_VALVES: &str = "comparisons/compare_identify.py";
 
+/// Valves whose recordings are made in Python: four hundred recordings of each before a release.
+const RECORDED_VALVES: &str = "comparisons/compare_valves.py";
+
 /// So much memory that was given back is kept by a script for its next array.
 const KEPT_BYTES: &str = "1000000000";
 
@@ -94,7 +97,9 @@ pub(super) fn soak(root: &Path) -> Outcome {
     let ran = environment(root, &mut told).and_then(|python| {
         let python = python.to_string_lossy().into_owned();
         SEARCHES.iter().try_for_each(|script| quietly(root, &mut told, &python, &[script]))?;
-        quietly(root, &mut told, &python, &[RANDOM_VALVES, "--sets", "50", &phea])
+        let random = quietly(root, &mut told, &python, &[RANDOM_VALVES, "--sets", "50", &phea]);
+        let recorded = [RECORDED_VALVES, "--seeds", "400", "--verified", "20", &phea];
+        random.and(quietly(root, &mut told, &python, &recorded))
     });
     print!("{told}");
     ran.map_or_else(Outcome::Failed, |()| Outcome::Passed)
