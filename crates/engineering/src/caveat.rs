@@ -16,9 +16,11 @@ use phea_hydraulics::series::MOST_SEGMENTS;
 
 use fed::{fed_in_loop, feed_forward, impedance, measured_without_pressures, pressures_in_loop};
 use leakage_humps::leakage_humps;
-use misfit::misfit;
+use misfit::misfits;
 use moved_roots::moved_roots;
 use overlap::overlap;
+
+pub use misfit::misfits_in_runs;
 
 use crate::family::{ShutGas, shut_gas};
 use crate::project::{CrossPortKind, DeclaredSeries, Load, Project, Pump, SupplyModel};
@@ -46,7 +48,7 @@ pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
         .chain(overlap(setup))
         .map(|sentence| Caveat { sentence, unproven: false });
     of_valve
-        .chain(misfit(setup))
+        .chain(misfits(setup))
         .chain(of_rig)
         .chain(moved_roots(setup))
         .chain(blocked_piston(setup))
@@ -93,7 +95,7 @@ pub fn of_models(setup: &Setup<'_>) -> Vec<String> {
         .chain(null_sides::null_sides(setup))
         .chain(leakage_humps(setup))
         .chain(overlap(setup))
-        .chain(misfit(setup).map(|caveat| caveat.sentence))
+        .chain(misfits(setup).into_iter().map(|caveat| caveat.sentence))
         .collect()
 }
 

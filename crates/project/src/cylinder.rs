@@ -3,6 +3,7 @@
 use std::f64::consts::FRAC_PI_4;
 
 use super::key::{key, plain};
+use super::misfit::DeclaredMisfit;
 use super::visitor::{Variants, Visitor};
 use crate::catalogue_kind::CatalogueKind;
 use phea_quantity::{
@@ -168,7 +169,7 @@ impl DeclaredCylinder {
         let k = plain("end_stops", "End stops of the piston at both ends; absent: none.");
         v.table(k, &mut self.end_stops, EndStops::visit);
         let k = plain("friction", "Friction of seals and bearings; absent: none.");
-        v.table(k, &mut self.friction, DeclaredFriction::visit);
+        v.table(k, &mut self.friction, DeclaredFriction::visit_of_cylinder);
     }
 }
 
@@ -179,6 +180,8 @@ pub struct DeclaredFriction {
     pub law: FrictionLaw,
     /// N·s/m, slope at high velocity (σ₂ of LuGre).
     pub viscous: f64,
+    /// What it leaves unexplained of the recordings that it was identified from.
+    pub misfit: Option<DeclaredMisfit>,
 }
 
 /// A friction law, without its viscous part.
@@ -283,5 +286,11 @@ impl DeclaredFriction {
             .of_motion()
             .not_negative();
         v.quantity(k.or(0.0), &mut self.viscous);
+    }
+
+    /// The friction of a cylinder, which is identified from recordings.
+    pub(crate) fn visit_of_cylinder<V: Visitor>(&mut self, v: &mut V) {
+        self.visit(v);
+        DeclaredMisfit::visit(&mut self.misfit, v);
     }
 }

@@ -5,6 +5,7 @@ use super::fluid::DeclaredAccumulator;
 use super::interval::BoundedNumber;
 use super::key::{key, plain};
 use super::line_motion::LineMotion;
+use super::misfit::DeclaredMisfit;
 use super::visitor::{Kinds, Visitor};
 use crate::catalogue_kind::CatalogueKind;
 use phea_hydraulics::stiffness::StiffnessModel;
@@ -32,6 +33,8 @@ pub struct DeclaredLine {
     pub motion: LineMotion,
     /// At its chamber's end.
     pub accumulator: Option<DeclaredAccumulator>,
+    /// What it leaves unexplained of the recordings that it was identified from.
+    pub misfit: Option<DeclaredMisfit>,
 }
 
 /// What a line is made of.
@@ -218,6 +221,7 @@ impl DeclaredLine {
         v.variant(plain("model", "What of the line moves."), &mut self.motion, false);
         let k = plain("accumulator", "A gas-charged accumulator at the chamber's end of the line.");
         v.table(k, &mut self.accumulator, DeclaredAccumulator::visit_at_chamber);
+        DeclaredMisfit::visit(&mut self.misfit, v);
     }
 }
 

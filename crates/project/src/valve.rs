@@ -2,7 +2,7 @@
 
 use super::key::{key, plain};
 use super::visitor::Visitor;
-use super::{DeclaredSupply, PartCost};
+use super::{DeclaredMisfit, DeclaredSupply, PartCost};
 use crate::catalogue_kind::CatalogueKind;
 use phea_hydraulics::servovalve::LeakageModel;
 use phea_quantity::{
@@ -55,7 +55,7 @@ pub struct Valve {
     /// s, step response time of the data sheet; for information.
     pub response_time: Option<f64>,
     /// What its coefficients leave unexplained of the recordings that they were identified from.
-    pub misfit: Option<ValveMisfit>,
+    pub misfit: Option<DeclaredMisfit>,
     /// What it costs and weighs.
     pub cost: PartCost,
 }
@@ -68,15 +68,6 @@ pub struct ValveLap {
     pub positive: f64,
     /// Of edges 4 and 5, which a negative command opens.
     pub negative: f64,
-}
-
-/// The greatest misfit of identified coefficients.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ValveMisfit {
-    /// Its root mean square, over the range of the signal.
-    pub share: f64,
-    /// Which signal of which recording, and where.
-    pub at: Option<String>,
 }
 
 /// Coefficients of the edges as declared, or the data sheet values from which they follow, equal
@@ -163,14 +154,6 @@ impl ValveLap {
         v.quantity(k, &mut self.positive);
         let k = key("negative", &RATIO, "Of edges 4 and 5, over full travel; negative: underlap.");
         v.quantity(k, &mut self.negative);
-    }
-}
-
-impl ValveMisfit {
-    fn visit<V: Visitor>(&mut self, v: &mut V) {
-        let k = key("share", &RATIO, "Root mean square of the misfit, over the range of the signal.");
-        v.quantity(k.not_negative(), &mut self.share);
-        v.text(plain("at", "Which signal of which recording, and where."), &mut self.at, false);
     }
 }
 
@@ -264,8 +247,7 @@ impl Valve {
         self.visit_coefficients(v);
         let k = key("response_time", &TIME, "Step response time of the data sheet; for information.");
         v.optional(k.positive(), &mut self.response_time);
-        let k = plain("misfit", "What these coefficients leave unexplained of recordings, as identified.");
-        v.table(k, &mut self.misfit, ValveMisfit::visit);
+        DeclaredMisfit::visit(&mut self.misfit, v);
         self.cost.visit(v);
     }
 

@@ -15,6 +15,7 @@ pub(crate) use figures::pictures;
 pub use files::files;
 
 use crate::answer::significant;
+use crate::project::DeclaredMisfit;
 use crate::quantity::{DisplayUnit, TIME, VELOCITY, display};
 
 /// Why a coefficient is not determined, in words.
@@ -71,6 +72,17 @@ pub(crate) fn misfit_in_words(found: &FrictionIdentification, misfit: &FrictionM
         misfit.signal.name(),
         significant(misfit.correlation, 2)
     )
+}
+
+/// The greatest misfit as `[cylinder.friction]` has it.
+pub(crate) fn declared_misfit(found: &FrictionIdentification) -> Option<DeclaredMisfit> {
+    let misfit = found.misfits.first()?;
+    let file = found.recordings.get(misfit.recording).map_or("", |one| one.file.as_str());
+    let most = misfit
+        .place
+        .map_or_else(String::new, |[velocity, _]| format!(", most at {}", display(velocity, &VELOCITY, 3)));
+    let at = Some(format!("{} of {file}{most}", misfit.signal.name()));
+    Some(DeclaredMisfit { share: misfit.share, at })
 }
 
 /// What would show the damping of the bristles.

@@ -3,13 +3,14 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use phea_workbench::command::{self, Request};
+use phea_workbench::command::{self, Request, SimulateRequest};
 use phea_workbench::identify::{Identification, Known, Search, SignalKind, identify, recordings};
 use phea_workbench::project::RecordedTest;
-use phea_workbench::source::Memory;
+use phea_workbench::source::{Memory, Source};
 use serde_json::Value;
 
 use crate::ask;
+use crate::friction_identification::{SLIDING, identified as friction_of, recorded};
 
 const RECORDED: [(&str, &str); 4] = [
     ("leakage.csv", include_str!("../../../examples/ybitu/recorded/leakage.csv")),
@@ -92,4 +93,80 @@ fn no_verdict_on_a_valve_of_a_large_misfit_is_met() {
     assert!(small.1.contains("leave 0.400 % of the range"), "{}", small.1);
     assert_eq!(large.0["verdict"], "not_proven", "{}", large.1);
     assert!(large.1.contains("(valve.misfit, flow of metering.csv)"), "{}", large.1);
+}
+
+/// The verdict and the text of a check that any controller satisfies, with these settings.
+fn judged(settings: &[&str]) -> (Value, String) {
+    let anything =
+        "specification=[{ kind = \"robust_stability\", limit = 1000, frequencies = [1], band = [1, 2] }]";
+    let loaded = ask::load(ask::HOSE, &[&[anything], settings].concat(), &[]);
+    let request = Request::Verify { proof: false, on_machine: false };
+    let answer = command::answer(&Memory::default(), &loaded, &[], &request).unwrap();
+    (serde_json::from_str::<Value>(&answer.json).unwrap()["verdict"].clone(), answer.text)
+}
+
+/// The moduli of the lines are in every plant; of a friction the plant has `viscous`, unless the
+/// project states its viscous friction, as the example does by an interval.
+#[test]
+fn misfits_of_line_and_friction_reach_the_verdicts_that_rest_on_them() {
+    let (verdict, text) = judged(&["line.misfit={ share = \"0.2 %\", at = \"volume of rise.csv\" }"]);
+    assert_eq!(verdict, "met", "{text}");
+    assert_eq!(text.matches("(line.misfit, volume of rise.csv)").count(), 1, "{text}");
+    let (verdict, text) = judged(&["line.b={ misfit = { share = \"2 %\" } }"]);
+    assert_eq!(verdict, "not_proven", "{text}");
+    assert!(text.contains("(line.b.misfit)") && !text.contains("(line.a.misfit)"), "{text}");
+    let friction = "cylinder.friction.misfit={ share = \"2 %\", at = \"force of runs.csv\" }";
+    let (verdict, text) = judged(&[friction]);
+    assert_eq!(verdict, "met", "{text}");
+    assert!(text.contains("has its viscous friction from elsewhere"), "{text}");
+    let of_friction =
+        "uncertainty={ flow_gain = { nominal = 5.4e-5, minimum = 3.23e-5, maximum = 5.61e-5 } }";
+    let (verdict, text) = judged(&[friction, of_friction]);
+    assert_eq!(verdict, "not_proven", "{text}");
+    assert!(text.contains("(cylinder.friction.misfit, force of runs.csv)"), "{text}");
+}
+
+/// Runs of the machine, which have all of a friction, warn of its misfit.
+#[test]
+fn runs_of_the_machine_warn_of_a_misfit() {
+    let settings = [
+        "cylinder.friction.misfit={ share = \"0.1 %\" }",
+        "scenario=[{ name = \"rest\", duration = \"1 ms\" }]",
+    ];
+    let loaded = ask::load(ask::HOSE, &settings, &[]);
+    let request = Request::Simulate(SimulateRequest::default());
+    let answer = command::answer(&Memory::default(), &loaded, &[], &request).unwrap();
+    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let warning = json["warnings"][0].as_str().unwrap_or_else(|| panic!("{json}"));
+    assert!(warning.contains("cylinder.friction.misfit") && answer.text.contains(warning), "{}", answer.text);
+}
+
+/// The greatest misfit of recorded friction is in the fragment, which the project reads.
+#[test]
+fn a_misfit_of_friction_is_in_its_fragment() {
+    let bench = "bench.friction={ velocities = 8, slowest = \"2 mm/s\", fastest = \"200 mm/s\" }";
+    let table = String::from_utf8(recorded(&[bench]).read(SLIDING).unwrap()).unwrap();
+    let (heading, rows) = table.split_once('\n').unwrap();
+    let count = rows.lines().count();
+    // each velocity, out and back, with seals that are a tenth harder or softer than at the last
+    let changed = |(row, line): (usize, &str)| {
+        let mut cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        let way = if (8 * row / count).is_multiple_of(2) { 0.1 } else { -0.1 };
+        cells[2] += way * (cells[2] - cells[3]);
+        cells.iter().map(f64::to_string).collect::<Vec<_>>().join(",") + "\n"
+    };
+    let harder: String = rows.lines().enumerate().map(changed).collect();
+    let source = Memory::default().with(SLIDING, format!("{heading}\n{harder}"));
+    let answer = friction_of(&source, &[SLIDING]).unwrap();
+    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let share = json["misfits"][0]["share"].as_f64().unwrap_or_else(|| panic!("{json}"));
+    let fragment = answer.files.iter().find(|file| file.name == "friction.toml").unwrap();
+    let text = String::from_utf8(fragment.bytes.clone()).unwrap();
+    let misfit =
+        text.lines().find_map(|line| line.strip_prefix("misfit = ")).unwrap_or_else(|| panic!("{text}"));
+    let loaded = ask::load(ask::HOSE, &[&format!("cylinder.friction.misfit={misfit}")], &[]);
+    let friction = loaded.project.actuator.as_ref().unwrap().cylinder.friction.clone().unwrap();
+    let declared = friction.misfit.unwrap();
+    assert!((declared.share / share - 1.0).abs() < 0.01, "{declared:?} {share}");
+    assert!(declared.at.is_some_and(|at| at.starts_with("force of sliding.csv, most at")), "{text}");
 }

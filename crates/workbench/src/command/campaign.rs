@@ -72,7 +72,7 @@ pub fn campaign_watched(
         files,
         affirmative: complete,
     };
-    Ok(answer.print("campaign", std::slice::from_ref(loaded)))
+    Ok(answer.with_misfits(&loaded.project).print("campaign", std::slice::from_ref(loaded)))
 }
 
 /// One run: its numbers as settings of the project, and the complete output of `simulate` with
@@ -100,5 +100,6 @@ fn one(
         body: campaign::run_body((plan, &draw), &settings, (&drawn, &runs)),
         files: simulate::files(&drawn, &runs),
         affirmative: runs.iter().all(ScenarioRun::is_reliable),
-    })
+    }
+    .with_misfits(&drawn.project))
 }

@@ -104,7 +104,8 @@ pub(super) fn simulate_answer(
         body: body(loaded, &runs),
         files: written,
         affirmative: all && runs.iter().all(ScenarioRun::is_reliable),
-    })
+    }
+    .with_misfits(&loaded.project))
 }
 
 fn frequency_answer(

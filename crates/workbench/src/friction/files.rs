@@ -1,4 +1,4 @@
-use super::{FRICTION_NAMES, FrictionIdentification, because, misfit_in_words};
+use super::{FRICTION_NAMES, FrictionIdentification, because, declared_misfit, misfit_in_words};
 use crate::answer::{OutputFile, in_toml};
 
 /// The table `[cylinder.friction]` of a project with what was identified: what the data do not
@@ -17,8 +17,10 @@ pub fn files(found: &FrictionIdentification) -> Vec<OutputFile> {
     let files: Vec<&str> = found.recordings.iter().map(|one| one.file.as_str()).collect();
     let misfit = |one| format!("# {}: the intervals below do not cover it.\n", misfit_in_words(found, one));
     let misfits: String = found.misfits.iter().map(misfit).collect();
+    let misfit = declared_misfit(found).map(|misfit| format!("misfit = {}\n", misfit.in_toml()));
+    let misfit = misfit.unwrap_or_default();
     let text = format!(
-        "# Identified by phea from {}.\n{misfits}[cylinder.friction]\nmodel = \"lugre\"\n{lines}",
+        "# Identified by phea from {}.\n{misfits}[cylinder.friction]\nmodel = \"lugre\"\n{lines}{misfit}",
         files.join(", ")
     );
     vec![OutputFile::new("friction.toml", text)]

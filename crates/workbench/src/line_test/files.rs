@@ -3,7 +3,7 @@ use phea_hydraulics::line::Line;
 
 use super::{KnownLine, LineIdentification};
 use crate::answer::{OutputFile, significant};
-use crate::project::LineSide;
+use crate::project::{DeclaredMisfit, LineSide};
 
 /// Digits of the numbers of a fragment.
 const DIGITS: usize = 6;
@@ -11,8 +11,9 @@ const DIGITS: usize = 6;
 /// The fragment of a project with the line as it was identified; none where nothing of it was.
 pub fn files(found: &LineIdentification) -> Vec<OutputFile> {
     let Some(keys) = keys(found) else { return Vec::new() };
+    let misfit = misfit(found).unwrap_or_default();
     let head = "# The line, identified by phea from recordings with its far end blocked. Put these keys into the\n# project's own tables in place of those that are there.\n";
-    vec![OutputFile::new("line.toml", format!("{head}{keys}"))]
+    vec![OutputFile::new("line.toml", format!("{head}{keys}{misfit}"))]
 }
 
 /// Tables with their keys.
@@ -69,6 +70,16 @@ fn keys(found: &LineIdentification) -> Option<String> {
             Some(keys + &air(found))
         }
     }
+}
+
+/// The greatest misfit, as a table of the line.
+fn misfit(found: &LineIdentification) -> Option<String> {
+    let misfits = found.misfits();
+    let greatest = misfits.iter().max_by(|one, other| one.share.total_cmp(&other.share))?;
+    let at = Some(format!("{} of {}", greatest.signal, greatest.file));
+    let entries = DeclaredMisfit { share: greatest.share, at }.entries().join("\n");
+    let line = table(&found.known).trim_end_matches(']');
+    Some(format!("\n{line}.misfit]\n{entries}\n"))
 }
 
 /// The free air in the oil, where the pressure rise shows it.

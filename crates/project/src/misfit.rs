@@ -1,0 +1,45 @@
+//! `misfit` of the valve, of its lines and of the friction: what identified numbers leave
+//! unexplained of recordings.
+
+use super::key::{key, plain};
+use super::visitor::Visitor;
+use phea_quantity::{RATIO, significant};
+
+/// The greatest misfit of the numbers of a part that were identified from recordings.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DeclaredMisfit {
+    /// Its root mean square, over the range of the signal.
+    pub share: f64,
+    /// Which signal of which recording, and where.
+    pub at: Option<String>,
+}
+
+impl DeclaredMisfit {
+    /// As the value of the key `misfit`.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_project::DeclaredMisfit;
+    /// let misfit = DeclaredMisfit { share: 0.0123, at: Some("force of \"a\".csv".to_string()) };
+    /// assert_eq!(misfit.in_toml(), "{ share = 0.0123, at = \"force of /a/.csv\" }");
+    /// ```
+    pub fn in_toml(&self) -> String {
+        format!("{{ {} }}", self.entries().join(", "))
+    }
+
+    /// Each of its own keys with the value.
+    pub fn entries(&self) -> Vec<String> {
+        let at = self.at.iter().map(|at| format!("at = \"{}\"", at.replace(['"', '\\'], "/")));
+        [format!("share = {}", significant(self.share, 3))].into_iter().chain(at).collect()
+    }
+
+    /// The key `misfit` of a part.
+    pub(crate) fn visit<V: Visitor>(misfit: &mut Option<DeclaredMisfit>, v: &mut V) {
+        let k = plain("misfit", "What these numbers leave unexplained of recordings, as identified.");
+        v.table(k, misfit, |misfit, v| {
+            let k = key("share", &RATIO, "Root mean square of the misfit, over the range of the signal.");
+            v.quantity(k.not_negative(), &mut misfit.share);
+            v.text(plain("at", "Which signal of which recording, and where."), &mut misfit.at, false);
+        });
+    }
+}
