@@ -4,6 +4,7 @@
 //! the verdict; where a specification depends on it, the verdict is not proven.
 
 mod fed;
+mod friction_directions;
 mod leakage_humps;
 mod misfit;
 mod moved_roots;
@@ -15,6 +16,7 @@ use phea_hydraulics::operating_point::{Condition, OperatingPoint};
 use phea_hydraulics::series::MOST_SEGMENTS;
 
 use fed::{fed_in_loop, feed_forward, impedance, measured_without_pressures, pressures_in_loop};
+use friction_directions::friction_directions;
 use leakage_humps::leakage_humps;
 use misfit::misfits;
 use moved_roots::moved_roots;
@@ -49,6 +51,7 @@ pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
         .map(|sentence| Caveat { sentence, unproven: false });
     of_valve
         .chain(misfits(setup))
+        .chain(friction_directions(setup))
         .chain(of_rig)
         .chain(moved_roots(setup))
         .chain(blocked_piston(setup))

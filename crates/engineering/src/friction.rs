@@ -11,6 +11,7 @@
 //! presses is straight between knots, one that shakes is a sum of sines. One set of coefficients
 //! explains all.
 
+mod directions;
 mod guess;
 mod misfit;
 mod motion;
@@ -18,31 +19,34 @@ mod pressing;
 mod problem;
 mod profile;
 mod reading;
+mod reasons;
 mod shaking;
 mod shown;
 mod signs;
 mod told;
 mod varying;
 
+pub use directions::{DirectionEvidence, DirectionModel, ExplainedByDirections};
 pub use misfit::{FrictionMisfit, FrictionSignal};
 pub use motion::ConstantVelocity;
 pub use pressing::PressedRows;
 pub use reading::{FrictionRecording, KnownCylinder, friction_recordings, recorded_runs};
+pub use reasons::{ROWS_OF_RINGING, UntoldFriction};
 pub use shaking::ShakenRows;
 pub use shown::{PressedCurve, SteadyPoint};
-pub use told::{FrictionEstimate, ROWS_OF_RINGING, UntoldFriction};
+pub use told::FrictionEstimate;
 pub use varying::VaryingVelocity;
 
-use phea_dynamics::least_squares::Ending;
-use phea_dynamics::watch::Watch;
-use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, LuGre};
+use phea_dynamics::least_squares::{Ending, Minimum};
+use phea_dynamics::watch::{Stopped, Watch};
+use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, LuGre, Stribeck};
 
 use self::problem::{FrictionProblem, KeptShapes};
 use crate::identify::IdentifyError;
 use crate::quantity::{VELOCITY, display};
 
 /// Names of the coefficients as `[cylinder.friction]` has them, and their units.
-pub const FRICTION_NAMES: [(&str, &str); FRICTION_COEFFICIENTS] = [
+pub const FRICTION_NAMES: [(&str, &str); BOTH_WAYS] = [
     ("coulomb", "N"),
     ("static", "N"),
     ("stribeck_velocity", "m/s"),
@@ -51,6 +55,13 @@ pub const FRICTION_NAMES: [(&str, &str); FRICTION_COEFFICIENTS] = [
     ("bristle_stiffness", "N/m"),
     ("bristle_damping", "N.s/m"),
 ];
+
+/// Coefficients of a friction that is the same both ways.
+const BOTH_WAYS: usize = 7;
+
+/// Names of the levels of retracting as `[cylinder.friction.retracting]` has them, and their units.
+pub const RETRACTING_NAMES: [(&str, &str); FRICTION_COEFFICIENTS - BOTH_WAYS] =
+    [("coulomb", "N"), ("static", "N"), ("viscous", "N.s/m")];
 
 /// The friction that explains the recordings best.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,11 +76,18 @@ pub struct FrictionIdentification {
     pub presses: Vec<PressedRows>,
     /// Where it is shaken.
     pub shakes: Vec<ShakenRows>,
-    /// Each coefficient, in the order of [`FRICTION_NAMES`].
-    pub estimates: [FrictionEstimate; FRICTION_COEFFICIENTS],
+    /// Each coefficient, in the order of [`FRICTION_NAMES`]; where friction differs by direction,
+    /// those of extending.
+    pub estimates: [FrictionEstimate; BOTH_WAYS],
+    /// Levels of retracting, in the order of [`RETRACTING_NAMES`]; `None` where friction is the
+    /// same both ways.
+    pub retracting: Option<[FrictionEstimate; FRICTION_COEFFICIENTS - BOTH_WAYS]>,
+    /// Comparison of one friction with one for each direction; `None` where nothing slides in one.
+    pub evidence: Option<DirectionEvidence>,
     /// The friction of the minimum, with numbers for what is open.
     pub lugre: LuGre,
-    /// N, that the instruments show without friction; `None` where the recordings go one way.
+    /// N, that the instruments show without friction; `None` where the recordings go one way, and
+    /// where friction differs by direction.
     pub zero: Option<FrictionEstimate>,
     /// N, root mean square of what is left of the force, each block as one row; and m of the
     /// position of what was pressed.
@@ -104,6 +122,9 @@ const ROUGH: f64 = 1e-4;
 /// The same of the last one: a thousandth of what one standard deviation changes.
 const FINE: f64 = 1e-7;
 
+/// Searches to that end at most, each from the minimum of the one before.
+const FINE_SEARCHES: usize = 3;
+
 /// Relative change of the scales below which no further round is made.
 const SAME_SCALE: f64 = 1e-2;
 
@@ -123,30 +144,18 @@ pub fn identify_friction(
         slides.extend(constant);
         varying.extend(other);
     }
-    let guess::Guess { around, others, presses, shakes } =
+    let guess::Guess { around, others, by_direction, presses, shakes } =
         guess::guess(&recordings, &slides, known.moving_mass)
             .ok_or_else(|| IdentifyError::Data(nothing(&recordings, &varying)))?;
-    let finds_zero = goes_both_ways(&slides, &presses);
+    let goes_both_ways = goes_both_ways(&slides, &presses);
     let setting = (known.moving_mass, around);
-    let mut problem = FrictionProblem::new(&recordings, &slides, (&presses, &shakes), setting, finds_zero);
+    let problem = FrictionProblem::new(&recordings, &slides, (&presses, &shakes), setting, goes_both_ways);
     let mut kept = KeptShapes::default();
-    let mut minimum = problem.first_minimum(&others, ROUGH, &mut kept, watch)?;
-    for _ in 0..ROUNDS {
-        let change = problem.rescale(&minimum.linearised.residuals);
-        minimum = problem.searched(&minimum.variables, ROUGH, &mut kept, watch)?;
-        if change < SAME_SCALE {
-            break;
-        }
-    }
-    minimum = problem.searched(&minimum.variables, FINE, &mut kept, watch)?;
-    if minimum.ending == Ending::NoStart {
-        return Err(IdentifyError::Data(NO_START.to_string()));
-    }
-    if minimum.linearised.residuals.len() <= problem.count() {
-        return Err(IdentifyError::Data("the recordings have too few rows to fit a friction".to_string()));
-    }
+    let curves = (others.as_slice(), by_direction);
+    let (best, evidence) = SearchedFriction::by_evidence(problem, curves, &mut kept, watch)?;
+    let SearchedFriction { problem, minimum } = best;
     let (lugre, _) = problem.friction(&minimum.variables);
-    let (estimates, zero) = told::estimates(&problem, &minimum);
+    let told::Estimates { estimates, retracting, zero } = told::estimates(&problem, &minimum);
     let residual_rms = shown::residual_rms(&problem, &minimum);
     let misfits = misfit::misfits(&problem, &minimum.linearised.residuals);
     let independent = problem.channels.iter().map(|channel| channel.independent).fold(1.0, f64::min);
@@ -155,6 +164,8 @@ pub fn identify_friction(
     let ending = minimum.ending;
     Ok(FrictionIdentification {
         estimates,
+        retracting,
+        evidence,
         lugre,
         zero,
         residual_rms,
@@ -170,6 +181,87 @@ pub fn identify_friction(
         shakes,
         recordings,
     })
+}
+
+/// A model, and where its search ends.
+struct SearchedFriction<'a> {
+    problem: FrictionProblem<'a>,
+    minimum: Minimum,
+}
+
+impl<'a> SearchedFriction<'a> {
+    /// The model that the recordings support, from further curves for one friction, and from one
+    /// with levels of each direction.
+    fn by_evidence(
+        problem: FrictionProblem<'a>,
+        (others, by_direction): (&[(Stribeck, f64)], Option<Stribeck>),
+        kept: &mut KeptShapes,
+        watch: Watch<'_>,
+    ) -> Result<(SearchedFriction<'a>, Option<DirectionEvidence>), IdentifyError> {
+        let same = SearchedFriction::from_guess(problem.clone(), others, kept, watch)?;
+        if same.minimum.ending == Ending::NoStart {
+            return Err(IdentifyError::Data(NO_START.to_string()));
+        }
+        if same.minimum.linearised.residuals.len() <= problem.count() {
+            return Err(IdentifyError::Data(
+                "the recordings have too few rows to fit a friction".to_string(),
+            ));
+        }
+        let Some(curve) = by_direction else { return Ok((same, None)) };
+        let directions = DirectionModel::DiffersByDirection;
+        let differs =
+            SearchedFriction::by_direction(FrictionProblem { directions, ..problem }, curve, kept, watch)?;
+        if differs.minimum.ending == Ending::NoStart {
+            return Ok((same, None));
+        }
+        let evidence = DirectionEvidence::of([&same, &differs]);
+        Ok((if evidence.chosen() == directions { differs } else { same }, Some(evidence)))
+    }
+
+    /// One friction for both directions.
+    fn from_guess(
+        problem: FrictionProblem<'a>,
+        others: &[(Stribeck, f64)],
+        kept: &mut KeptShapes,
+        watch: Watch<'_>,
+    ) -> Result<SearchedFriction<'a>, Stopped> {
+        let minimum = problem.first_minimum(others, ROUGH, kept, watch)?;
+        SearchedFriction::refined(problem, minimum, kept, watch)
+    }
+
+    /// Levels of each direction, from a curve that has both.
+    fn by_direction(
+        problem: FrictionProblem<'a>,
+        curve: Stribeck,
+        kept: &mut KeptShapes,
+        watch: Watch<'_>,
+    ) -> Result<SearchedFriction<'a>, Stopped> {
+        let minimum = problem.minimum_from(&(curve, 0.0), ROUGH, kept, watch)?;
+        SearchedFriction::refined(problem, minimum, kept, watch)
+    }
+
+    /// With the scale of each signal from its residuals.
+    fn refined(
+        mut problem: FrictionProblem<'a>,
+        mut minimum: Minimum,
+        kept: &mut KeptShapes,
+        watch: Watch<'_>,
+    ) -> Result<SearchedFriction<'a>, Stopped> {
+        for _ in 0..ROUNDS {
+            let change = problem.rescale(&minimum.linearised.residuals);
+            minimum = problem.searched(&minimum.variables, ROUGH, kept, watch)?;
+            if change < SAME_SCALE {
+                break;
+            }
+        }
+        for _ in 0..FINE_SEARCHES {
+            minimum = problem.searched(&minimum.variables, FINE, kept, watch)?;
+            if minimum.ending == Ending::Converged {
+                break;
+            }
+        }
+        Ok(SearchedFriction { problem, minimum })
+    }
 }
 
 const NO_START: &str = "no friction near the recorded forces lets the piston stay where it is recorded: look for a position or a pressure that is wrong by a factor, or for rows of two tests in one file";

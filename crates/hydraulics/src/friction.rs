@@ -8,7 +8,7 @@ mod tested;
 
 pub use lugre::{LuGre, LuGrePassivity};
 pub use moving::{FrictionForce, MovingFriction};
-pub use stribeck::{Stribeck, StribeckShape};
+pub use stribeck::{FrictionLevels, Stribeck, StribeckShape};
 pub use tested::{
     FRICTION_COEFFICIENTS, KnottedForce, MultisineForce, MultisineShapes, PressedMass, SLIDING_VARIABLES,
     SensitiveDisplacement, SlidBlock, TRENDS, trends,
@@ -31,7 +31,8 @@ pub enum Friction<S = f64> {
 }
 
 impl<S: Copy> Friction<S> {
-    /// Viscous coefficient f_v in N s/m: the slope of the curve where it no longer falls.
+    /// Viscous coefficient f_v in N s/m: the slope of the curve where it no longer falls, for
+    /// positive velocity.
     pub fn viscous(&self) -> S {
         match self {
             Friction::Viscous { viscous } => *viscous,
@@ -42,6 +43,16 @@ impl<S: Copy> Friction<S> {
 }
 
 impl Friction {
+    /// Viscous coefficients in N s/m for positive and for negative velocity.
+    pub fn viscous_by_direction(&self) -> [f64; 2] {
+        match self {
+            Friction::Viscous { viscous } => [*viscous; 2],
+            Friction::Stribeck(curve) | Friction::LuGre(LuGre { curve, .. }) => {
+                curve.both_levels().map(|levels| levels.viscous)
+            }
+        }
+    }
+
     /// Impossible parameters of this friction; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         match self {

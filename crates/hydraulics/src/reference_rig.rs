@@ -146,6 +146,7 @@ pub fn benchmark_components() -> Components {
         stribeck_velocity: 0.01,
         stribeck_exponent: 2.0,
         viscous: 100.0,
+        retracting: None,
     };
     Components {
         cylinder: Cylinder { area_a: 1.583e-3, area_b: 1.583e-3, ..cylinder() },

@@ -3,7 +3,7 @@
 use phea_dynamics::scalar::{Dual, Parameters, Scalar};
 use phea_dynamics::simulation::DIRECTIONS;
 use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, EntrainedAir, Fluid, bulk_modulus_with_air};
-use phea_hydraulics::friction::{Friction, LuGre, LuGrePassivity, Stribeck};
+use phea_hydraulics::friction::{Friction, FrictionLevels, LuGre, LuGrePassivity, Stribeck, StribeckShape};
 use phea_hydraulics::line::{
     Anchoring, Hose, Line, Pipe, PipeWall, Stiffening, StiffeningMember, pipe_wall_compliance,
 };
@@ -140,6 +140,7 @@ fn curve() -> Stribeck {
         stribeck_velocity: 0.01,
         stribeck_exponent: 2.0,
         viscous: 100.0,
+        retracting: None,
     }
 }
 
@@ -191,4 +192,68 @@ fn lugre_gives_no_energy_exactly_when_it_is_passive() {
     assert!(least_dissipation(at(200.0)) >= 0.0);
     assert!(matches!(at(205.0).passivity(), LuGrePassivity::NotPassive { .. }));
     assert!(least_dissipation(at(205.0)) < 0.0);
+}
+
+/// A friction whose way back is harder.
+fn harder_back() -> LuGre {
+    let retracting = Some(FrictionLevels { coulomb: 110.0, static_friction: 160.0, viscous: 130.0 });
+    LuGre { curve: Stribeck { retracting, ..curve() }, bristle_stiffness: 1e7, bristle_damping: 200.0 }
+}
+
+/// Each direction has the curve of a friction with its levels both ways, and where the motion turns
+/// round neither force nor rate of the bristles jumps, whatever their deflection.
+#[test]
+fn friction_by_direction_is_one_friction_for_each_and_continuous_between_them() {
+    let both = harder_back();
+    let back = Stribeck { coulomb: 110.0, static_friction: 160.0, viscous: 130.0, ..curve() };
+    for velocity in [1e-5, 3e-3, 0.02, 0.4] {
+        assert_eq!(both.curve.steady_force(velocity), curve().steady_force(velocity));
+        assert_eq!(both.curve.steady_force(-velocity), -back.steady_force(velocity));
+    }
+    for deflection in [-1.6e-5, -4e-6, 0.0, 7e-6, 1.2e-5] {
+        let [more, less] = [1e-12, -1e-12].map(|velocity| both.force(velocity, deflection));
+        assert!((more - less).abs() < 1e-8, "{more} {less}");
+    }
+    let [more, less] =
+        [1e-12, -1e-12].map(|velocity| both.curve.regular_force(StribeckShape::Squared, velocity, 1e-4));
+    assert!((more - less).abs() < 1e-5, "{more} {less}");
+}
+
+/// Moved slowly to and fro, the bristles carry -g of retracting and g of extending in turn; what a
+/// whole cycle takes is the sum of both over the distance.
+#[test]
+fn a_slow_cycle_takes_the_friction_of_each_direction() {
+    let both = harder_back();
+    let (speed, turns, parts) = (0.05, 2, 40_000);
+    let step = 0.1 / speed / f64::from(parts);
+    let (mut deflection, mut taken) = (0.0, [0.0; 2]);
+    for way in [1.0, -1.0].repeat(turns) {
+        let velocity = way * speed;
+        for _ in 0..parts {
+            let carried = both.curve.sliding_force(velocity);
+            let settled = way * carried / both.bristle_stiffness;
+            let decay = phea_dynamics::portable::exp(-both.bristle_stiffness * speed * step / carried);
+            deflection = settled + (deflection - settled) * decay;
+            taken[usize::from(way < 0.0)] += both.force(velocity, deflection) * velocity * step;
+        }
+    }
+    // ORIGIN: analytic, force times distance of each way; the bristles take a little to turn round
+    for (found, force) in taken.iter().zip([85.0, 116.5]) {
+        let expected = turns as f64 * 0.1 * force;
+        assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
+    }
+}
+
+/// The stricter direction decides on passivity.
+#[test]
+fn friction_by_direction_is_passive_where_both_directions_are() {
+    let passive = harder_back();
+    // ORIGIN: analytic, sigma_1 (F_S - F_C)/F_C: 100 of 100 N s/m extending, 90.9 of 130 retracting
+    assert_eq!(passive.passivity(), LuGrePassivity::Passive { surplus: 0.0 });
+    let levels = FrictionLevels { coulomb: 80.0, static_friction: 160.0, viscous: 130.0 };
+    let worse = LuGre { curve: Stribeck { retracting: Some(levels), ..curve() }, ..passive };
+    assert_eq!(worse.passivity(), LuGrePassivity::NotPassive { required_viscous: 200.0 });
+    let below = FrictionLevels { static_friction: 70.0, ..levels };
+    let impossible = Stribeck { retracting: Some(below), ..curve() };
+    assert_eq!(impossible.problems()[0].quantity, "retracting.static");
 }

@@ -10,7 +10,7 @@ use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
-use phea_hydraulics::friction::{Friction, Stribeck};
+use phea_hydraulics::friction::{Friction, FrictionLevels, Stribeck};
 use phea_hydraulics::line::{
     Conduit, DynamicLine, END_SHARE, LaminarFriction, Segments, StiffeningMember, TransmissionLine,
 };
@@ -76,7 +76,7 @@ fn hose() -> Components {
     components(hose_line(), StiffnessModel::ByVolume)
 }
 
-/// Unequal areas and lines, air, and a static friction curve.
+/// Unequal areas and lines, air, and a static friction curve that differs by direction.
 fn asymmetric() -> Components {
     let [area_a, area_b] = [0.0, 0.022].map(|rod| annulus_area(0.05, rod));
     let air = Some(EntrainedAir { volume_fraction: 0.02, polytropic_exponent: 1.4 });
@@ -86,6 +86,7 @@ fn asymmetric() -> Components {
         stribeck_velocity: 0.01,
         stribeck_exponent: 1.4,
         viscous: 100.0,
+        retracting: Some(FrictionLevels { coulomb: 95.0, static_friction: 160.0, viscous: 140.0 }),
     };
     Components {
         fluid: Fluid { entrained_air: air, ..hose().fluid },

@@ -180,8 +180,37 @@ pub struct DeclaredFriction {
     pub law: FrictionLaw,
     /// N·s/m, slope at high velocity (σ₂ of LuGre).
     pub viscous: f64,
-    /// What it leaves unexplained of the recordings that it was identified from.
+    /// Levels while the rod retracts, where they differ.
+    pub retracting: Option<RetractingFriction>,
+    /// Part of the recordings that it was identified from and leaves unexplained.
     pub misfit: Option<DeclaredMisfit>,
+}
+
+/// Levels of friction while the rod retracts; what is absent is as while it extends.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RetractingFriction {
+    /// N, sliding friction F_C.
+    pub coulomb: Option<f64>,
+    /// N, breakaway friction F_S.
+    pub static_friction: Option<f64>,
+    /// N·s/m, slope at high velocity.
+    pub viscous: Option<f64>,
+}
+
+impl RetractingFriction {
+    /// Stated levels, to be changed.
+    pub fn each_mut(&mut self) -> impl Iterator<Item = &mut f64> {
+        [&mut self.coulomb, &mut self.static_friction, &mut self.viscous].into_iter().flatten()
+    }
+
+    fn visit<V: Visitor>(&mut self, v: &mut V) {
+        let k = key("coulomb", &FORCE, "Sliding friction F_C; absent: as while it extends.").of_motion();
+        v.optional(k.positive(), &mut self.coulomb);
+        let k = key("static", &FORCE, "Breakaway friction F_S; absent: as while it extends.").of_motion();
+        v.optional(k.positive(), &mut self.static_friction);
+        let k = key("viscous", &DAMPING, "Slope of friction over velocity; absent: as while it extends.");
+        v.optional(k.of_motion().not_negative(), &mut self.viscous);
+    }
 }
 
 /// A friction law, without its viscous part.
@@ -291,6 +320,8 @@ impl DeclaredFriction {
     /// The friction of a cylinder, which is identified from recordings.
     pub(crate) fn visit_of_cylinder<V: Visitor>(&mut self, v: &mut V) {
         self.visit(v);
+        let k = plain("retracting", "What differs while the rod retracts; absent: the same both ways.");
+        v.table(k, &mut self.retracting, RetractingFriction::visit);
         DeclaredMisfit::visit(&mut self.misfit, v);
     }
 }

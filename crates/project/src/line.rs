@@ -33,7 +33,7 @@ pub struct DeclaredLine {
     pub motion: LineMotion,
     /// At its chamber's end.
     pub accumulator: Option<DeclaredAccumulator>,
-    /// What it leaves unexplained of the recordings that it was identified from.
+    /// Part of the recordings that it was identified from and leaves unexplained.
     pub misfit: Option<DeclaredMisfit>,
 }
 

@@ -18,9 +18,14 @@ use crate::answer::significant;
 use crate::project::DeclaredMisfit;
 use crate::quantity::{DisplayUnit, TIME, VELOCITY, display};
 
-/// Why a coefficient is not determined, in words.
+/// Reasons for which a coefficient is not determined, in words.
 pub(crate) fn because(estimate: &FrictionEstimate) -> Option<String> {
-    let reason = match estimate.untold? {
+    let reasons: Vec<String> = estimate.untold.iter().map(|reason| in_words(*reason)).collect();
+    (!reasons.is_empty()).then(|| reasons.join("; "))
+}
+
+fn in_words(reason: UntoldFriction) -> String {
+    match reason {
         UntoldFriction::NothingSlides => "nothing slides at a constant velocity".to_string(),
         UntoldFriction::NoFall => {
             "no fall of the friction from static to sliding is seen: record slower runs".to_string()
@@ -54,8 +59,17 @@ pub(crate) fn because(estimate: &FrictionEstimate) -> Option<String> {
             significant(residual, 2)
         ),
         UntoldFriction::Hidden => "noise hides its effect in these recordings".to_string(),
-    };
-    Some(reason)
+    }
+}
+
+/// Each coefficient with the path of its key below `[cylinder.friction]`, and its unit.
+pub(crate) fn coefficients(
+    found: &FrictionIdentification,
+) -> impl Iterator<Item = (String, &'static str, &FrictionEstimate)> {
+    let both = FRICTION_NAMES.iter().zip(&found.estimates);
+    let both = both.map(|((name, unit), one)| ((*name).to_string(), *unit, one));
+    let back = RETRACTING_NAMES.iter().zip(found.retracting.iter().flatten());
+    both.chain(back.map(|((name, unit), one)| (format!("retracting.{name}"), *unit, one)))
 }
 
 /// What the friction does not explain.

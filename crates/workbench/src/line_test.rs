@@ -38,7 +38,7 @@ pub(crate) fn numbers(
         ("dynamic_bulk_modulus_pa", "effective bulk modulus in fast motion", &found.dynamic_bulk_modulus),
         ("relaxation_time_s", "relaxation time of the wall", &found.relaxation_time),
         ("secant_bulk_modulus_pa", "secant bulk modulus of the pressure rise", &found.secant_bulk_modulus),
-        ("entrained_air", "free air in the oil", &found.entrained_air),
+        ("entrained_air", "free air, of the mixture at atmospheric pressure", &found.entrained_air),
         ("density_kg_per_m3", "density of the oil, from its inertia", &found.density),
         ("modulus_slope", "growth of the modulus at rest with the pressure", &found.modulus_slope),
     ]

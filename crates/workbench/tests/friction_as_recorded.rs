@@ -146,27 +146,3 @@ fn a_run_that_sticks_and_slips_is_no_constant_velocity() {
     assert!(answer.text.contains("velocities that are not constant"), "{}", answer.text);
     assert!(found["recordings"][0]["varying_velocities"].as_array().is_some_and(Vec::is_empty), "{found}");
 }
-
-/// A rod seal whose friction is a third greater on the way in: its mean is found, and the rest is
-/// reported as a misfit of the force, while recordings of the model have none.
-#[test]
-fn friction_that_differs_by_direction_is_a_misfit() {
-    let bench = "bench.friction={ velocities = 8, slowest = \"2 mm/s\", fastest = \"200 mm/s\" }";
-    let source = recorded(&[bench]);
-    let same = found(&source, &[SLIDING]);
-    assert!(same["misfits"].as_array().is_some_and(Vec::is_empty), "{same}");
-    let harder = changed(&source, SLIDING, |cells| {
-        // the forces of the way back are negative
-        let difference = cells[2] - cells[3];
-        cells[2] += 0.33 * difference.min(0.0);
-    });
-    let source = Memory::default().with(SLIDING, harder);
-    let answer = identified(&source, &[SLIDING]).unwrap();
-    let found: Value = serde_json::from_str(&answer.json).unwrap();
-    let misfit = &found["misfits"][0];
-    assert_eq!(misfit["signal"], "force", "{found}");
-    assert!(misfit["share"].as_f64().unwrap() > 5e-3, "{misfit}");
-    assert!(found["warnings"][0]["message"].as_str().unwrap().contains(SLIDING), "{found}");
-    assert!(answer.text.contains("differs by direction"), "{}", answer.text);
-    assert!(answer.text.contains("between both directions"), "{}", answer.text);
-}

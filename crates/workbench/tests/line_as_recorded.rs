@@ -25,7 +25,7 @@ const ATMOSPHERE: f64 = 101_325.0;
 
 /// Compliance in 1/Pa of oil with a fraction of air at a gauge pressure, compressed at constant
 /// temperature, and of a wall, over the volume: liquid and gas in parallel, by their volumes.
-fn compliance(fraction: f64, pressure: f64) -> f64 {
+pub(crate) fn compliance(fraction: f64, pressure: f64) -> f64 {
     let oil = 1.45e9;
     let absolute = pressure + ATMOSPHERE;
     let liquid = (1.0 - fraction) * (-pressure / oil).exp();
@@ -33,9 +33,42 @@ fn compliance(fraction: f64, pressure: f64) -> f64 {
     1.0 / MODULUS - 1.0 / oil + (liquid / oil + gas / absolute) / (liquid + gas)
 }
 
-/// A pressure rise from 2 to 60 bar and back, with rest in between.
+/// Compliance of air that is a fraction of the volume of the line.
+pub(crate) fn of_oil(fraction: f64, pressure: f64) -> f64 {
+    let absolute = pressure + ATMOSPHERE;
+    1.0 / MODULUS + fraction * ATMOSPHERE / (absolute * absolute)
+}
+
+/// The volume of which air is a fraction.
+#[derive(Clone, Copy)]
+pub(crate) enum OfVolume {
+    /// The mixture at atmospheric pressure.
+    Mixture,
+    /// The line at any pressure.
+    Line,
+}
+
+/// A rising pressure, and the air in the oil.
+#[derive(Clone, Copy)]
+pub(crate) struct Rise {
+    pub(crate) fraction: f64,
+    /// Pa.
+    pub(crate) pressures: [f64; 2],
+    pub(crate) of: OfVolume,
+}
+
+/// A pressure rise from 2 to 60 bar and back.
 fn rise(known: &KnownLine, fraction: f64, seed: u64) -> LineRecord {
-    let [low, high] = [2e5, 60e5];
+    rise_of(known, Rise { fraction, pressures: [2e5, 60e5], of: OfVolume::Mixture }, seed)
+}
+
+/// A pressure rise and its way back, with rest in between.
+pub(crate) fn rise_of(known: &KnownLine, rise: Rise, seed: u64) -> LineRecord {
+    let Rise { fraction, pressures: [low, high], of } = rise;
+    let compliance = match of {
+        OfVolume::Mixture => compliance,
+        OfVolume::Line => of_oil,
+    };
     let mut noise = stream(seed, 7);
     let (mut times, mut volumes, mut pressures) = (Vec::new(), Vec::new(), Vec::new());
     let steps = 20_000;
@@ -64,7 +97,7 @@ fn rise(known: &KnownLine, fraction: f64, seed: u64) -> LineRecord {
     LineRecord::Rise(RiseRecord { file, source, times, volumes, pressures })
 }
 
-fn found(record: LineRecord, known: &KnownLine) -> LineIdentification {
+pub(crate) fn found(record: LineRecord, known: &KnownLine) -> LineIdentification {
     identify_line(vec![record], known.clone(), &SETTINGS, &mut |_| true).unwrap()
 }
 
@@ -113,10 +146,14 @@ fn inertia(s: Complex64, rate: f64) -> Complex64 {
     1.0 / (1.0 - 2.0 * ratio / z)
 }
 
-/// Flow and pressure of an exact hose with a wave speed of 535 m/s, in periods of 0.25 s.
-fn response(known: &KnownLine, seed: u64) -> LineRecord {
+/// Flow and pressure of an exact hose with a wave speed in m/s, of whose compliance a fraction is a
+/// volume at each end, in periods of 0.25 s.
+///
+/// ```text
+/// Z = p/q = 1/(1/Z_in + s f C)        Z_in = Z_c (Z_end + Z_c tanh(Gamma))/(Z_c + Z_end tanh(Gamma)),  Z_end = 1/(s f C)
+/// ```
+pub(crate) fn response(known: &KnownLine, [speed, end_share]: [f64; 2], seed: u64) -> LineRecord {
     let [length, bore] = known.dimensions().unwrap();
-    let speed = 535.0;
     let area = std::f64::consts::FRAC_PI_4 * bore * bore;
     let [density, viscosity] = [known.fluid.density, known.fluid.kinematic_viscosity];
     let time_step = 1e-3;
@@ -131,8 +168,14 @@ fn response(known: &KnownLine, seed: u64) -> LineRecord {
         .map(|omega| {
             let s = Complex64::new(0.0, *omega);
             let root = sqrt_complex(inertia(s, viscosity / (bore * bore / 4.0)));
-            let passed = exp_complex(-2.0 * s * length / speed * root);
-            density * speed / area * root * (1.0 + passed) / (1.0 - passed)
+            // without its ends the line is stiffer, and its wave faster
+            let within = speed / (1.0 - 2.0 * end_share).sqrt();
+            let passed = exp_complex(-2.0 * s * length / within * root);
+            let tanh = (1.0 - passed) / (1.0 + passed);
+            let own = density * within / area * root;
+            let end = s * end_share * area * length / (density * speed * speed);
+            let admittance = (end * own + tanh) / (own * (1.0 + end * own * tanh));
+            1.0 / (admittance + end)
         })
         .collect();
     for row in 0..1250_u32 {
@@ -169,7 +212,7 @@ fn the_speed_of_an_exact_wave_is_within_its_interval() {
         let known = known(&loaded);
         let mut covered = 0;
         for seed in 1..=20 {
-            let found = found(response(&known, seed), &known);
+            let found = found(response(&known, [535.0, 0.0], seed), &known);
             let speed = found.wave_speed.as_ref().unwrap_or_else(|why| panic!("{seed}: {why}"));
             assert!((speed.value / 535.0 - 1.0).abs() < 3e-3, "{seed}: {speed:?}");
             assert!(found.response.as_ref().unwrap().is_explained(), "{seed}");

@@ -241,9 +241,9 @@ fn breakaway(
     settings: &FrictionBench,
     way: f64,
 ) -> Result<Vec<CylinderMoment>, BenchError> {
-    let breaking = lugre.curve.static_friction;
+    let breaking = lugre.curve.levels(way).static_friction;
     let peak = settings.peak_force.unwrap_or(1.3 * breaking);
-    let corners = forces(settings, peak, PART * breaking);
+    let corners = forces(settings, peak, PART * least_static(lugre));
     let duration = corners.last().map_or(0.0, |(time, _)| *time);
     let rows = counted(duration / settings.sample_time)?;
     let length = breaking / lugre.bristle_stiffness;
@@ -268,7 +268,15 @@ const LONGEST_SLIP: f64 = 0.1;
 
 /// Longest step of the integration in s up to this velocity.
 fn longest_step(lugre: &LuGre, fastest: f64) -> f64 {
-    LONGEST_SLIP * lugre.curve.coulomb / (lugre.bristle_stiffness * fastest)
+    let [extending, retracting] = lugre.curve.both_levels();
+    let least = extending.coulomb.min(retracting.coulomb);
+    LONGEST_SLIP * least / (lugre.bristle_stiffness * fastest)
+}
+
+/// Static friction in N, the lesser of both directions.
+fn least_static(lugre: &LuGre) -> f64 {
+    let [extending, retracting] = lugre.curve.both_levels();
+    extending.static_friction.min(retracting.static_friction)
 }
 
 /// Times and forces between which the force is straight.

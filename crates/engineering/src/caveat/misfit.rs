@@ -11,7 +11,7 @@ const BOUND: f64 = 5e-3;
 
 /// A part with a misfit.
 struct UnexplainedPart<'a> {
-    kind: PartKind,
+    kind: UnexplainedKind,
     /// Its table.
     table: &'static str,
     misfit: &'a DeclaredMisfit,
@@ -19,7 +19,7 @@ struct UnexplainedPart<'a> {
 
 /// The parts that are identified from recordings.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum PartKind {
+enum UnexplainedKind {
     Valve,
     Line,
     Friction,
@@ -41,20 +41,20 @@ fn unexplained_parts(project: &Project) -> Vec<UnexplainedPart<'_>> {
     let [a, b] = [&actuator.line.a.misfit, &actuator.line.b.misfit];
     let lines = if a == b { [("line", a), ("line", &None)] } else { [("line.a", a), ("line.b", b)] };
     let friction = actuator.friction().and_then(|friction| friction.misfit.as_ref());
-    let parts = [(PartKind::Valve, "valve", actuator.valve.misfit.as_ref())]
+    let parts = [(UnexplainedKind::Valve, "valve", actuator.valve.misfit.as_ref())]
         .into_iter()
-        .chain(lines.map(|(table, misfit)| (PartKind::Line, table, misfit.as_ref())))
-        .chain([(PartKind::Friction, "cylinder.friction", friction)]);
+        .chain(lines.map(|(table, misfit)| (UnexplainedKind::Line, table, misfit.as_ref())))
+        .chain([(UnexplainedKind::Friction, "cylinder.friction", friction)]);
     parts.filter_map(|(kind, table, misfit)| Some(UnexplainedPart { kind, table, misfit: misfit? })).collect()
 }
 
 impl UnexplainedPart<'_> {
-    /// What is left unexplained, and of which recording.
+    /// Statement of the misfit with its recording.
     fn statement(&self) -> String {
         let numbers = match self.kind {
-            PartKind::Valve => "the coefficients of the valve leave",
-            PartKind::Line => "the moduli of the line leave",
-            PartKind::Friction => "the friction leaves",
+            UnexplainedKind::Valve => "the coefficients of the valve leave",
+            UnexplainedKind::Line => "the moduli of the line leave",
+            UnexplainedKind::Friction => "the friction leaves",
         };
         let at = self.misfit.at.as_ref().map_or_else(String::new, |at| format!(", {at}"));
         format!(
@@ -64,7 +64,7 @@ impl UnexplainedPart<'_> {
         )
     }
 
-    /// What it means for a verdict.
+    /// Consequence for a verdict.
     fn caveat(&self, setup: &Setup<'_>) -> Caveat {
         let beyond = self.misfit.share > BOUND;
         let bound = significant(100.0 * BOUND, 3);
@@ -73,13 +73,13 @@ impl UnexplainedPart<'_> {
             false => format!("up to {bound} % a verdict on this {part} stands"),
         };
         let (consequence, unproven) = match self.kind {
-            PartKind::Valve => (judged("valve"), beyond),
-            PartKind::Line => (judged("line"), beyond),
-            PartKind::Friction if takes_viscous_of_friction(setup) => {
+            UnexplainedKind::Valve => (judged("valve"), beyond),
+            UnexplainedKind::Line => (judged("line"), beyond),
+            UnexplainedKind::Friction if takes_viscous_of_friction(setup) => {
                 let of_plant = judged("`viscous`");
                 (format!("the linear plant has `viscous` alone of it, and {of_plant}; {IN_RUNS}"), beyond)
             }
-            PartKind::Friction => {
+            UnexplainedKind::Friction => {
                 let stands = "the linear plant has its viscous friction from elsewhere, so that a verdict on the linear loop stands";
                 (format!("{stands}; {IN_RUNS}"), false)
             }
@@ -88,7 +88,7 @@ impl UnexplainedPart<'_> {
     }
 }
 
-/// What a misfit of friction means for the machine.
+/// Consequence of a misfit of friction for the machine.
 const IN_RUNS: &str = "runs of the machine have all of this friction, and sticking, settling and residual errors that they show do not contain its misfit";
 
 /// True where the viscous friction of the linear plant follows from the identified friction: it is

@@ -276,8 +276,9 @@ fn linear_parameters(rig: &Rig, list: &mut List) {
 fn friction(rig: &Rig, list: &mut List) {
     let Friction::LuGre(lugre) = &rig.actuator.components().friction else { return };
     list.group("Friction");
+    let levels = lugre.curve.both_levels();
     let least =
-        lugre.bristle_damping * (lugre.curve.static_friction - lugre.curve.coulomb) / lugre.curve.coulomb;
+        levels.map(|levels| levels.passive_viscous(lugre.bristle_damping)).into_iter().fold(0.0, f64::max);
     list.add(
         "friction.passive_viscous_minimum",
         "σ_2",

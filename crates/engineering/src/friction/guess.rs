@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 use phea_dynamics::portable;
-use phea_hydraulics::friction::{LuGre, Stribeck};
+use phea_hydraulics::friction::{FrictionLevels, LuGre, Stribeck};
 
 use super::FrictionRecording;
 use super::motion::{ConstantVelocity, noise};
@@ -15,6 +15,8 @@ pub(super) struct Guess {
     pub(super) around: Around,
     /// Further curves and zeros of the force from which a search begins.
     pub(super) others: Vec<(Stribeck, f64)>,
+    /// A curve with levels of each direction; `None` where nothing slides in one of them.
+    pub(super) by_direction: Option<Stribeck>,
     pub(super) presses: Vec<PressedRows>,
     pub(super) shakes: Vec<ShakenRows>,
 }
@@ -88,7 +90,8 @@ pub(super) fn guess(
         zero,
         softest: curve.static_friction / (LEFT_BY_REVERSAL * shortest_way(slides, recordings)),
     };
-    Some(Guess { around, others: steady.collect(), presses, shakes })
+    let by_direction = directed_guess(slides, &breakaways);
+    Some(Guess { around, others: steady.collect(), by_direction, presses, shakes })
 }
 
 fn slides_in(slides: &[ConstantVelocity], recording: usize) -> bool {
@@ -109,6 +112,7 @@ fn without_sliding(static_friction: f64) -> Stribeck {
         stribeck_velocity: 0.01,
         stribeck_exponent: 2.0,
         viscous: 0.0,
+        retracting: None,
     }
 }
 
@@ -138,23 +142,51 @@ const STARTS: usize = 8;
 /// constant velocity and those at which the piston breaks away: linear least squares for each of
 /// some Stribeck velocities and exponents, the best first. Few speeds are explained by many.
 fn steady_guesses(slides: &[ConstantVelocity], breakaways: &[Breakaway]) -> Vec<(Stribeck, f64)> {
-    const VELOCITIES: usize = 16;
     if slides.is_empty() {
         return without_slides(breakaways).into_iter().collect();
     }
-    let speeds = || slides.iter().map(|slide| slide.velocity.abs());
-    let [slowest, fastest] = [speeds().fold(f64::INFINITY, f64::min), speeds().fold(0.0, f64::max)];
-    let slid = slides.iter().map(|slide| (slide.velocity, slide.settled_force()));
-    let broken = breakaways.iter().map(|one| (one.way * AT_REST * slowest, one.force));
-    let points: Vec<(f64, f64)> = slid.chain(broken).collect();
-    let first = BELOW_SLOWEST * slowest;
-    let ratio = portable::pow(fastest / first, 1.0 / (VELOCITIES - 1) as f64);
-    let velocities = (0..VELOCITIES).map(|index| first * portable::pow(ratio, index as f64));
-    let shapes = velocities.flat_map(|velocity| [2.0, 1.0].map(|exponent| (velocity, exponent)));
+    let points = steady_points(slides, breakaways);
     let mut found: Vec<(f64, Stribeck, f64)> =
-        shapes.filter_map(|(velocity, exponent)| steady_curve(&points, velocity, exponent)).collect();
+        shapes(slides).filter_map(|(velocity, exponent)| steady_curve(&points, velocity, exponent)).collect();
     found.sort_by(|one, other| one.0.total_cmp(&other.0));
     found.into_iter().take(STARTS).map(|(_, curve, zero)| (curve, zero)).collect()
+}
+
+/// The best curve through the same forces with levels of each direction, which share the Stribeck
+/// velocity and its exponent.
+fn directed_guess(slides: &[ConstantVelocity], breakaways: &[Breakaway]) -> Option<Stribeck> {
+    let (out, back): (Vec<_>, Vec<_>) =
+        steady_points(slides, breakaways).into_iter().partition(|(velocity, _)| *velocity > 0.0);
+    let slides_both_ways =
+        [1.0, -1.0].iter().all(|way| slides.iter().any(|slide| slide.velocity * way > 0.0));
+    let curve = |(velocity, exponent): (f64, f64)| {
+        let (cost, curve, _) = steady_curve(&out, velocity, exponent)?;
+        let (cost_back, back, _) = steady_curve(&back, velocity, exponent)?;
+        let Stribeck { coulomb, static_friction, viscous, .. } = back;
+        let retracting = Some(FrictionLevels { coulomb, static_friction, viscous });
+        Some((cost + cost_back, Stribeck { retracting, ..curve }))
+    };
+    let all = shapes(slides).filter(|_| slides_both_ways).filter_map(curve);
+    all.min_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, curve)| curve)
+}
+
+/// Velocities and forces of all runs, those at which the piston breaks away at almost no velocity.
+fn steady_points(slides: &[ConstantVelocity], breakaways: &[Breakaway]) -> Vec<(f64, f64)> {
+    let slowest = slides.iter().map(|slide| slide.velocity.abs()).fold(f64::INFINITY, f64::min);
+    let slid = slides.iter().map(|slide| (slide.velocity, slide.settled_force()));
+    let broken = breakaways.iter().map(|one| (one.way * AT_REST * slowest, one.force));
+    slid.chain(broken).collect()
+}
+
+/// Stribeck velocities and exponents that are tested.
+fn shapes(slides: &[ConstantVelocity]) -> impl Iterator<Item = (f64, f64)> {
+    const VELOCITIES: usize = 16;
+    let speeds = || slides.iter().map(|slide| slide.velocity.abs());
+    let [slowest, fastest] = [speeds().fold(f64::INFINITY, f64::min), speeds().fold(0.0, f64::max)];
+    let first = BELOW_SLOWEST * slowest;
+    let ratio = portable::pow(fastest / first, 1.0 / (VELOCITIES - 1) as f64);
+    let velocities = (0..VELOCITIES).map(move |index| first * portable::pow(ratio, index as f64));
+    velocities.flat_map(|velocity| [2.0, 1.0].map(|exponent| (velocity, exponent)))
 }
 
 /// The curve with this Stribeck velocity and exponent, the zero, and how badly both explain the
@@ -172,6 +204,7 @@ fn steady_curve(points: &[(f64, f64)], velocity: f64, exponent: f64) -> Option<(
         stribeck_velocity: velocity,
         stribeck_exponent: exponent,
         viscous: viscous.max(0.0),
+        retracting: None,
     };
     (typical > 0.0).then_some((cost, curve, zero))
 }

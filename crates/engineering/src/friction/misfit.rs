@@ -8,6 +8,7 @@
 
 use phea_dynamics::order::ends;
 
+use super::directions::DirectionModel;
 use super::problem::{FrictionChannel, FrictionProblem};
 
 /// A signal that the friction does not explain.
@@ -57,8 +58,14 @@ const SUM_BY_CHANCE: f64 = 4.0;
 /// Misfits of a smaller share of the range are not reported, as for a valve.
 const SMALLEST_SHARE: f64 = 1e-3;
 
-/// Constant velocities that the steady curve and the zero explain whatever they are.
-const EXPLAINED: usize = 6;
+/// Constant velocities that the steady curve and the zero, or the curves of both directions,
+/// explain whatever they are.
+fn explained_by(directions: DirectionModel) -> usize {
+    match directions {
+        DirectionModel::SameBothWays => 6,
+        DirectionModel::DiffersByDirection => 8,
+    }
+}
 
 /// The signals that are not explained by these residuals, the greatest misfit first.
 pub(super) fn misfits(problem: &FrictionProblem<'_>, residuals: &[f64]) -> Vec<FrictionMisfit> {
@@ -66,7 +73,7 @@ pub(super) fn misfits(problem: &FrictionProblem<'_>, residuals: &[f64]) -> Vec<F
     let mut channels = problem.channels.iter();
     for slides in problem.slides.chunk_by(|one, next| one.recording == next.recording) {
         let Some(channel) = channels.next() else { break };
-        found.extend(of_slides(slides, channel, residuals));
+        found.extend(of_slides(slides, channel, (residuals, explained_by(problem.directions))));
     }
     let presses = problem.presses.iter().map(|press| (press.recording, press.rows));
     let shakes = problem.shakes.iter().map(|shake| (shake.recording, shake.force.rows));
@@ -108,7 +115,7 @@ struct SlideResidual {
 fn of_slides(
     slides: &[super::ConstantVelocity],
     channel: &FrictionChannel,
-    residuals: &[f64],
+    (residuals, explained): (&[f64], usize),
 ) -> Option<FrictionMisfit> {
     let recording = slides.first()?.recording;
     let mut rest = own(channel, residuals).iter();
@@ -131,7 +138,7 @@ fn of_slides(
         }
     };
     let all: Vec<SlideResidual> = slides.iter().map(of).collect();
-    let freedom = all.len().checked_sub(EXPLAINED).filter(|freedom| *freedom > 0)? as f64;
+    let freedom = all.len().checked_sub(explained).filter(|freedom| *freedom > 0)? as f64;
     let square = |value: f64| value * value;
     let sum: f64 = all.iter().map(|one| square(one.mean / one.deviation)).sum();
     let product: f64 = all.iter().map(|one| 2.0 * one.halves[0] * one.halves[1]).sum();

@@ -48,6 +48,12 @@ const CERTAIN_CHANGE: f64 = 0.05;
 /// Share by which the force may still change in the second half.
 const SETTLED: f64 = 0.05;
 
+/// Standard deviations of the slope of a force beyond which it is no noise.
+const CERTAIN_SLOPE: f64 = 6.0;
+
+/// Relative difference of slopes that belong to one line.
+const SAME_SLOPE: f64 = 0.25;
+
 /// Sum of the residuals of a line, over noise and the root of their number, beyond which it is not
 /// a line. The largest of white noise exceeds 0.9 in one case of twenty: a bend too many does no
 /// harm.
@@ -185,7 +191,9 @@ pub(super) fn sliding_runs(recording: &FrictionRecording, index: usize) -> Slidi
                 [slope, range[0], range[1]].map(|slope| slope / recording.time_step);
             let range = [least, greatest];
             found.varying.push(VaryingVelocity { recording: index, rows, velocity, range });
-        } else if is_settled(&recording.forces, &rows, force_noise) {
+        } else if is_settled(&recording.forces, &rows, force_noise)
+            && !is_ramp(&recording.forces, &rows, force_noise)
+        {
             found.constant.push(taken(recording, index, rows));
         }
     }
@@ -239,6 +247,20 @@ fn is_settled(forces: &[f64], rows: &Range<usize>, noise: f64) -> bool {
     let [second, last] = [rows.start + quarter, rows.end - quarter].map(mean);
     let by_noise = 6.0 * noise * (2.0 / quarter as f64).sqrt();
     (last - second).abs() <= by_noise.max(SETTLED * last.abs())
+}
+
+/// True where the force rises or falls along one line through the rows and beyond them: bristles
+/// that are loaded slowly move the piston as steadily as sliding does.
+fn is_ramp(forces: &[f64], rows: &Range<usize>, noise: f64) -> bool {
+    let count = rows.len();
+    let slope = |rows: Range<usize>| RowLine::through(forces, &rows).slope;
+    let own = slope(rows.clone());
+    let by_noise = CERTAIN_SLOPE * noise * (12.0 / count as f64).sqrt() / count as f64;
+    let before = rows.start.checked_sub(count / 2).map(|start| start..rows.start);
+    let after = Some(rows.end..rows.end + count / 2).filter(|after| after.end <= forces.len());
+    let around: Vec<f64> = before.into_iter().chain(after).map(slope).collect();
+    let is_alike = |slope: &f64| (slope - own).abs() <= SAME_SLOPE * own.abs();
+    own.abs() > by_noise && !around.is_empty() && around.iter().all(is_alike)
 }
 
 fn taken(recording: &FrictionRecording, index: usize, rows: Range<usize>) -> ConstantVelocity {

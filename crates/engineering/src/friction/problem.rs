@@ -1,28 +1,21 @@
 //! Everything that was recorded, explained by one friction: residuals with derivatives.
 
 mod shake;
+mod variables;
 
 pub(super) use shake::KeptShapes;
+pub(super) use variables::{DAMPING, EXTENDING, LevelVariables, RETRACTING, SHARED, ZERO};
 
 use phea_dynamics::least_squares::{Ending, Linearised, Minimum, Settings, minimise};
-use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch, tell};
 use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, KnottedForce, LuGre, PressedMass, Stribeck};
 
 use super::FrictionRecording;
+use super::directions::DirectionModel;
 use super::motion::ConstantVelocity;
 use super::pressing::PressedRows;
 use super::shaking::ShakenRows;
 use phea_dynamics::order::median;
-
-/// The variables that are of no recording: the coefficients, and the zero of the force.
-pub(super) const SHARED: usize = FRICTION_COEFFICIENTS + 1;
-
-/// Index of the damping of the bristles.
-pub(super) const DAMPING: usize = 6;
-
-/// Index of the zero of the force.
-pub(super) const ZERO: usize = FRICTION_COEFFICIENTS;
 
 /// Evaluations of a search.
 const EVALUATIONS: usize = 60;
@@ -78,7 +71,7 @@ pub(super) struct FrictionChannel {
     /// Noise of each row, by its differences.
     pub(super) noise: f64,
     /// The scale of each row is at least this: finer weights would hide all others in rounding.
-    finest: f64,
+    pub(super) finest: f64,
 }
 
 /// What is explained, and how.
@@ -90,8 +83,10 @@ pub(super) struct FrictionProblem<'a> {
     pub(super) shakes: &'a [ShakenRows],
     pub(super) mass: f64,
     pub(super) around: Around,
-    /// Whether the zero of the force is searched for.
-    pub(super) finds_zero: bool,
+    /// True where friction acts both ways, which a zero of the force does not.
+    pub(super) goes_both_ways: bool,
+    /// Model of both directions.
+    pub(super) directions: DirectionModel,
     /// One of each recording that slides; then force and position of each that is pressed, and of
     /// each that is shaken.
     pub(super) channels: Vec<FrictionChannel>,
@@ -103,7 +98,7 @@ impl<'a> FrictionProblem<'a> {
         slides: &'a [ConstantVelocity],
         (presses, shakes): (&'a [PressedRows], &'a [ShakenRows]),
         (mass, around): (f64, Around),
-        finds_zero: bool,
+        goes_both_ways: bool,
     ) -> FrictionProblem<'a> {
         let mut channels = Vec::new();
         let mut first = 0;
@@ -128,21 +123,18 @@ impl<'a> FrictionProblem<'a> {
         for (position, shake) in positions.zip(shakes.iter().rev()) {
             position.scale = position.scale.max(FIRST_SCALE * shake.swing());
         }
-        FrictionProblem { recordings, slides, presses, shakes, mass, around, finds_zero, channels }
-    }
-
-    /// How many variables there are: those that are shared; of each constant velocity what the
-    /// bristles brought along; of each press where it began, and its force at each knot; of each
-    /// shake how it began, and the sizes of its force.
-    pub(super) fn count(&self) -> usize {
-        let shaken: usize = self.shakes.iter().map(ShakenRows::variable_count).sum();
-        self.first_of_shakes() + shaken
-    }
-
-    /// Index of the first variable of a shake.
-    pub(super) fn first_of_shakes(&self) -> usize {
-        let pressed: usize = self.presses.iter().map(|press| 1 + press.force.knots.len()).sum();
-        SHARED + self.slides.len() + pressed
+        let directions = DirectionModel::SameBothWays;
+        FrictionProblem {
+            recordings,
+            slides,
+            presses,
+            shakes,
+            mass,
+            around,
+            goes_both_ways,
+            directions,
+            channels,
+        }
     }
 
     /// How many channels belong to what slides; force and position of each press and shake follow.
@@ -156,91 +148,11 @@ impl<'a> FrictionProblem<'a> {
         sliding.next_back().map_or(0, |channel| channel.residuals[1])
     }
 
-    /// The friction, and the zero of the force in N.
-    pub(super) fn friction(&self, variables: &[f64]) -> (LuGre, f64) {
-        let at = |index: usize| variables.get(index).copied().unwrap_or(0.0);
-        let Around { lugre, force, damping, .. } = self.around;
-        let by = |value: f64, index: usize| value * portable::exp(at(index));
-        let static_friction = at(0) * force;
-        let found = LuGre::from_array([
-            static_friction - at(1) * force,
-            static_friction,
-            by(lugre.curve.stribeck_velocity, 2),
-            by(lugre.curve.stribeck_exponent, 3),
-            at(4) * damping[0],
-            by(lugre.bristle_stiffness, 5),
-            at(6) * damping[1],
-        ]);
-        (found, at(ZERO) * force)
-    }
-
-    /// Derivatives over the shared variables from those over the coefficients.
-    pub(super) fn shared_slopes(&self, lugre: &LuGre, gradient: &[f64]) -> [f64; FRICTION_COEFFICIENTS] {
-        let of = |index: usize| gradient.get(index).copied().unwrap_or(0.0);
-        let Around { force, damping, .. } = self.around;
-        [
-            (of(0) + of(1)) * force,
-            -of(0) * force,
-            of(2) * lugre.curve.stribeck_velocity,
-            of(3) * lugre.curve.stribeck_exponent,
-            of(4) * damping[0],
-            of(5) * lugre.bristle_stiffness,
-            of(6) * damping[1],
-        ]
-    }
-
-    /// Where a search begins with a curve and a zero of the force.
-    fn start(&self, (curve, zero): &(Stribeck, f64)) -> Vec<f64> {
-        let Around { lugre, force, damping, .. } = self.around;
-        let over = |value: f64, usual: f64| portable::ln(value / usual);
-        let mut start = vec![
-            curve.static_friction / force,
-            (curve.static_friction - curve.coulomb) / force,
-            over(curve.stribeck_velocity, lugre.curve.stribeck_velocity),
-            over(curve.stribeck_exponent, lugre.curve.stribeck_exponent),
-            curve.viscous / damping[0],
-            0.0,
-            lugre.bristle_damping / damping[1],
-            zero / force,
-        ];
-        start.extend(self.slides.iter().map(|_| 0.0));
-        for press in self.presses {
-            start.push(0.0);
-            start.extend(press.force.forces.iter().map(|value| value / force));
-        }
-        start.extend(self.shakes.iter().flat_map(|shake| self.shake_start(shake)));
-        start
-    }
-
-    /// What a variable may be. Where nothing is shaken the damping of the bristles stays: a slow
-    /// force does not show it, and what rings freely would follow the noise.
-    pub(super) fn bounds(&self) -> Vec<[f64; 2]> {
-        let zero = if self.finds_zero { [-100.0, 100.0] } else { [0.0, 0.0] };
-        let damping = match self.shakes {
-            [] => [self.around.lugre.bristle_damping / self.around.damping[1]; 2],
-            _ => [0.0, 1e3],
-        };
-        let exponent = self.around.lugre.curve.stribeck_exponent;
-        let exponents = [0.2, 10.0].map(|end| portable::ln(end / exponent));
-        let softest = portable::ln(self.around.softest / self.around.lugre.bristle_stiffness);
-        let stiffness = [softest.clamp(-9.0, 0.0), 9.0];
-        let mut bounds =
-            vec![[1e-4, 1e3], [0.0, 1e3], [-7.0, 7.0], exponents, [0.0, 1e4], stiffness, damping, zero];
-        // what bristles can hold is between -F_S and F_S
-        bounds.extend(self.slides.iter().map(|_| [-4.0, 4.0]));
-        for press in self.presses {
-            bounds.push([-1e6, 1e6]);
-            bounds.extend(press.force.forces.iter().map(|_| [-1e3, 1e3]));
-        }
-        bounds.extend(self.shakes.iter().flat_map(Self::shake_bounds));
-        bounds
-    }
-
     /// Residuals over their scales, with derivatives; `None` where there is no such friction, or
     /// the simulation has no end.
     fn linearised(&self, variables: &[f64], kept: &mut KeptShapes) -> Option<Linearised> {
         let (lugre, zero) = self.friction(variables);
-        if lugre.curve.coulomb <= 0.0 {
+        if !slides_at_all(&lugre) {
             return None;
         }
         let all = self.channels.last().map_or(0, |channel| channel.residuals[1]);
@@ -268,7 +180,7 @@ impl<'a> FrictionProblem<'a> {
     /// The same of what slides alone, over the shared variables and those of the slides.
     pub(super) fn slides_linearised(&self, variables: &[f64]) -> Option<Linearised> {
         let friction = self.friction(variables);
-        if friction.0.curve.coulomb <= 0.0 {
+        if !slides_at_all(&friction.0) {
             return None;
         }
         let mut rows = ResidualRows::with_room_for(self.first_row_of_others(), variables.len());
@@ -386,9 +298,8 @@ impl<'a> FrictionProblem<'a> {
         })
     }
 
-    /// Minimum from the guess; static friction is raised where the piston would run away under the
-    /// recorded forces. Where all slides, the best from other curves too: few speeds leave several
-    /// minima.
+    /// Minimum from the guess. Where all slides, the best from other curves too: few speeds leave
+    /// several minima.
     pub(super) fn first_minimum(
         &self,
         others: &[(Stribeck, f64)],
@@ -396,23 +307,41 @@ impl<'a> FrictionProblem<'a> {
         kept: &mut KeptShapes,
         watch: Watch<'_>,
     ) -> Result<Minimum, Stopped> {
-        let start = self.start(&(self.around.lugre.curve, self.around.zero));
-        let mut minimum = self.searched(&start, tolerance, kept, watch)?;
-        for factor in RAISED {
-            if minimum.ending != Ending::NoStart {
-                break;
-            }
-            let mut raised = start.clone();
-            // F_S is the first variable, the fall from it to F_C the second
-            raised.iter_mut().take(2).for_each(|value| *value += factor - 1.0);
-            minimum = self.searched(&raised, tolerance, kept, watch)?;
-        }
+        let guess = (self.around.lugre.curve, self.around.zero);
+        let mut minimum = self.minimum_from(&guess, tolerance, kept, watch)?;
         let all_slides = self.presses.is_empty() && self.shakes.is_empty();
         for other in others.iter().filter(|_| all_slides) {
             let found = self.searched(&self.start(other), tolerance, kept, watch)?;
             if found.cost < minimum.cost {
                 minimum = found;
             }
+        }
+        Ok(minimum)
+    }
+
+    /// Minimum from a curve and a zero of the force; static friction is raised where the piston
+    /// would run away under the recorded forces.
+    pub(super) fn minimum_from(
+        &self,
+        guess: &(Stribeck, f64),
+        tolerance: f64,
+        kept: &mut KeptShapes,
+        watch: Watch<'_>,
+    ) -> Result<Minimum, Stopped> {
+        let start = self.start(guess);
+        let mut minimum = self.searched(&start, tolerance, kept, watch)?;
+        for factor in RAISED {
+            if minimum.ending != Ending::NoStart {
+                break;
+            }
+            let mut raised = start.clone();
+            // static friction and its fall, so that Coulomb friction stays
+            let both = [EXTENDING, RETRACTING].map(|levels| [levels.static_friction, levels.fall]);
+            let known = self.known_variables();
+            for index in both.into_iter().flatten().filter(|index| !known.contains(index)) {
+                raised.iter_mut().skip(index).take(1).for_each(|value| *value += factor - 1.0);
+            }
+            minimum = self.searched(&raised, tolerance, kept, watch)?;
         }
         Ok(minimum)
     }
@@ -435,6 +364,11 @@ impl<'a> FrictionProblem<'a> {
         }
         change
     }
+}
+
+/// True where Coulomb friction is positive in both directions.
+fn slides_at_all(lugre: &LuGre) -> bool {
+    lugre.curve.both_levels().iter().all(|levels| levels.coulomb > 0.0)
 }
 
 /// The mass of a press, in steps that its ringing on the bristles needs.

@@ -12,7 +12,7 @@
 use nalgebra::{DMatrix, DVector};
 use phea_dynamics::least_squares::{Ending, Linearised, Minimum, Settings, minimise};
 
-use super::problem::{FrictionProblem, SHARED};
+use super::problem::{FrictionProblem, LevelVariables, SHARED};
 
 /// Increase of the sum at the ends of a 95 % interval, over the efficiency of the loss.
 const AT_THE_END: f64 = 1.96 * 1.96 / 2.0 / 0.95;
@@ -40,10 +40,11 @@ const ROBUST_BEYOND: f64 = 1.345;
 /// Eigenvalue of the information over the largest below which nothing is known.
 const UNKNOWN: f64 = 1e-12;
 
-/// A coefficient that is held: by one of the variables, or F_C, which is F_S less the fall.
+/// A coefficient that is held: by one of the variables, or F_C of a direction, which is F_S less
+/// the fall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum HeldCoefficient {
-    Coulomb,
+    Coulomb(LevelVariables),
     Variable(usize),
 }
 
@@ -67,7 +68,7 @@ impl<'a> SlidingProfile<'a> {
         let ending = Ending::NoStart;
         let least = Minimum { variables, cost: f64::INFINITY, linearised, evaluations: 0, ending };
         let mut found = SlidingProfile { problem, centre, others, least };
-        found.least = found.searched(&found.least.variables, &found.bounds(), |x| x.to_vec())?;
+        found.least = found.searched(&found.least.variables, &found.bounds(), None)?;
         (!problem.slides.is_empty()).then_some(found)
     }
 
@@ -79,7 +80,7 @@ impl<'a> SlidingProfile<'a> {
     pub(super) fn value(held: HeldCoefficient, variables: &[f64]) -> f64 {
         let at = |index: usize| variables.get(index).copied().unwrap_or(0.0);
         match held {
-            HeldCoefficient::Coulomb => at(0) - at(1),
+            HeldCoefficient::Coulomb(of) => at(of.static_friction) - at(of.fall),
             HeldCoefficient::Variable(index) => at(index),
         }
     }
@@ -95,7 +96,7 @@ impl<'a> SlidingProfile<'a> {
         let bounds = self.problem.bounds();
         let of = |index: usize| bounds.get(index).copied().unwrap_or([0.0, 0.0]);
         match held {
-            HeldCoefficient::Coulomb => of(0),
+            HeldCoefficient::Coulomb(levels) => of(levels.static_friction),
             HeldCoefficient::Variable(index) => of(index),
         }
     }
@@ -163,48 +164,36 @@ impl<'a> SlidingProfile<'a> {
         match held {
             HeldCoefficient::Variable(index) => {
                 set(index, [value; 2]);
-                self.searched(start, &bounds, |x| x.to_vec())
+                self.searched(start, &bounds, None)
             }
-            HeldCoefficient::Coulomb => {
-                // the second variable is F_C here, and F_S is at least that
-                set(1, [value; 2]);
-                set(0, [value, 1e3]);
-                let with_fall = |x: &[f64]| {
-                    let mut variables = x.to_vec();
-                    if let [first, second, ..] = variables.as_mut_slice() {
-                        *second = *first - *second;
-                    }
-                    variables
-                };
-                let mut found = self.searched(&with_fall(start), &bounds, with_fall)?;
-                found.variables = with_fall(&found.variables);
+            HeldCoefficient::Coulomb(levels) => {
+                // the fall is F_C here, and F_S is at least that
+                set(levels.fall, [value; 2]);
+                set(levels.static_friction, [value, 1e3]);
+                let mut found = self.searched(&exchanged(start, levels), &bounds, Some(levels))?;
+                found.variables = exchanged(&found.variables, levels);
                 Some(found)
             }
         }
     }
 
-    /// Where a search ends whose variables are changed before use: the second one by the first less
-    /// it, or not at all.
+    /// Where a search ends over the variables, or over F_C in place of the fall of a direction.
     fn searched(
         &self,
         start: &[f64],
         bounds: &[[f64; 2]],
-        changed: impl Fn(&[f64]) -> Vec<f64>,
+        coulomb_of: Option<LevelVariables>,
     ) -> Option<Minimum> {
         let settings =
             Settings { maximum_evaluations: EVALUATIONS, tolerance: TOLERANCE, ..Settings::default() };
         let count = start.len();
         let mut evaluate = |x: &[f64]| {
-            let variables = changed(x);
-            let is_changed = variables != x;
-            Ok(self.linearised(&variables).map(|mut found| {
-                if is_changed {
-                    for row in found.jacobian.chunks_exact_mut(count) {
-                        if let [first, second, ..] = row {
-                            *first += *second;
-                            *second = -*second;
-                        }
-                    }
+            let Some(levels) = coulomb_of else { return Ok(self.linearised(x)) };
+            Ok(self.linearised(&exchanged(x, levels)).map(|mut found| {
+                for row in found.jacobian.chunks_exact_mut(count) {
+                    let by_fall = row.get(levels.fall).copied().unwrap_or(0.0);
+                    row.iter_mut().skip(levels.static_friction).take(1).for_each(|slope| *slope += by_fall);
+                    row.iter_mut().skip(levels.fall).take(1).for_each(|slope| *slope = -by_fall);
                 }
                 found
             }))
@@ -223,6 +212,15 @@ impl<'a> SlidingProfile<'a> {
         }
         Some(found)
     }
+}
+
+/// F_C in place of the fall of a direction, or the fall in place of F_C: each is F_S less the
+/// other.
+fn exchanged(variables: &[f64], of: LevelVariables) -> Vec<f64> {
+    let mut exchanged = variables.to_vec();
+    let static_friction = variables.get(of.static_friction).copied().unwrap_or(0.0);
+    exchanged.iter_mut().skip(of.fall).take(1).for_each(|fall| *fall = static_friction - *fall);
+    exchanged
 }
 
 /// What is pressed and shaken says of the shared variables: residuals that are as well explained

@@ -56,7 +56,7 @@ impl PressedRows {
 impl FrictionIdentification {
     /// The recorded friction map, and the curve at its velocities.
     pub fn steady_points(&self) -> Vec<SteadyPoint> {
-        let zero = self.zero.map_or(0.0, |zero| zero.value);
+        let zero = self.zero.as_ref().map_or(0.0, |zero| zero.value);
         let point = |slide: &ConstantVelocity| SteadyPoint {
             recording: slide.recording,
             velocity: slide.velocity,
@@ -73,7 +73,7 @@ impl FrictionIdentification {
 
     /// The recorded and the explained position of a press.
     pub fn pressed_curve(&self, index: usize) -> Option<PressedCurve> {
-        let zero = self.zero.map_or(0.0, |zero| zero.value);
+        let zero = self.zero.as_ref().map_or(0.0, |zero| zero.value);
         let press = self.presses.get(index)?;
         let (knots, begins) = self.pressed.get(index)?;
         let recording = self.recordings.get(press.recording)?;

@@ -5,7 +5,7 @@ use phea_hydraulics::contact::Contact;
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::force_sensor::ForceSensor;
-use phea_hydraulics::friction::{Friction, LuGre, Stribeck};
+use phea_hydraulics::friction::{Friction, FrictionLevels, LuGre, Stribeck};
 use phea_hydraulics::line::{Anchoring, Hose, Line, Pipe, PipeWall, Stiffening};
 use phea_hydraulics::linkage::{Linkage, STANDARD_GRAVITY};
 use phea_hydraulics::series::{SeriesElement, SeriesSpring, SeriesTravel, Transmission};
@@ -474,6 +474,17 @@ fn friction<S: Scalar>(
         stribeck_velocity: at("stribeck_velocity", curve.stribeck_velocity),
         stribeck_exponent: at("stribeck_exponent", curve.stribeck_exponent),
         viscous,
+        retracting: declared.retracting.map(|back| {
+            let numbers = numbers.within("retracting");
+            let or = |key: &str, own: Option<f64>, extending: S| {
+                own.map_or(extending, |value| numbers.at(key, value))
+            };
+            FrictionLevels {
+                coulomb: or("coulomb", back.coulomb, at("coulomb", curve.coulomb)),
+                static_friction: or("static", back.static_friction, at("static", curve.static_friction)),
+                viscous: or("viscous", back.viscous, viscous),
+            }
+        }),
     };
     match &declared.law {
         FrictionLaw::Viscous => Friction::Viscous { viscous },

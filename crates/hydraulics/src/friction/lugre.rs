@@ -1,6 +1,6 @@
 use phea_dynamics::scalar::Scalar;
 
-use super::{Stribeck, StribeckShape};
+use super::{FrictionLevels, Stribeck, StribeckShape};
 use crate::parameter::{ParameterError, Problems};
 
 /// Friction of elastic bristles with mean deflection z. Units: N/m, N s/m.
@@ -48,7 +48,7 @@ impl<S: Scalar> LuGre<S> {
     /// ```
     /// use phea_hydraulics::friction::{LuGre, Stribeck};
     /// let curve = Stribeck {
-    ///     coulomb: 80.0, static_friction: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0,
+    ///     coulomb: 80.0, static_friction: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0, retracting: None,
     /// };
     /// let lugre = LuGre { curve, bristle_stiffness: 1e7, bristle_damping: 2e3 };
     /// let settled = -curve.sliding_force(-0.004) / 1e7;
@@ -66,7 +66,7 @@ impl<S: Scalar> LuGre<S> {
     pub(crate) fn force_and_rate(&self, shape: StribeckShape, velocity: S, deflection: S) -> (S, S) {
         let spring = self.bristle_stiffness * deflection;
         let rate = velocity - velocity.abs() * spring / self.curve.sliding_force_of(shape, velocity);
-        (spring + self.bristle_damping * rate + self.curve.viscous * velocity, rate)
+        (spring + self.bristle_damping * rate + self.curve.levels(velocity).viscous * velocity, rate)
     }
 
     /// Friction force in N at sliding velocity v in m/s and bristle deflection z in m.
@@ -78,7 +78,7 @@ impl<S: Scalar> LuGre<S> {
     pub fn force(&self, velocity: S, deflection: S) -> S {
         self.bristle_stiffness * deflection
             + self.bristle_damping * self.bristle_rate(velocity, deflection)
-            + self.curve.viscous * velocity
+            + self.curve.levels(velocity).viscous * velocity
     }
 }
 
@@ -94,7 +94,8 @@ impl LuGre {
         all
     }
 
-    /// Whether sigma_2 >= sigma_1 (F_S - F_C)/F_C, the condition for passivity.
+    /// Passivity by sigma_2 >= sigma_1 (F_S - F_C)/F_C, required of each direction: bristles that
+    /// one of them has loaded are swept in that direction, beyond its own F_C.
     ///
     /// Source: Barabanov and Ortega (2000), IEEE Transactions on Automatic Control 45(4).
     ///
@@ -102,7 +103,7 @@ impl LuGre {
     /// ```
     /// use phea_hydraulics::friction::{LuGre, LuGrePassivity, Stribeck};
     /// let curve = Stribeck {
-    ///     coulomb: 80.0, static_friction: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0,
+    ///     coulomb: 80.0, static_friction: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0, retracting: None,
     /// };
     /// let lugre = LuGre { curve, bristle_stiffness: 1e7, bristle_damping: 2e3 };
     /// assert_eq!(lugre.passivity(), LuGrePassivity::NotPassive { required_viscous: 1000.0 });
@@ -110,10 +111,14 @@ impl LuGre {
     /// assert_eq!(softer.passivity(), LuGrePassivity::Passive { surplus: 50.0 });
     /// ```
     pub fn passivity(&self) -> LuGrePassivity {
-        let Stribeck { coulomb, static_friction, viscous, .. } = self.curve;
-        let required_viscous = self.bristle_damping * (static_friction - coulomb) / coulomb;
-        if viscous >= required_viscous {
-            LuGrePassivity::Passive { surplus: viscous - required_viscous }
+        let of = |levels: FrictionLevels| {
+            let required_viscous = levels.passive_viscous(self.bristle_damping);
+            (levels.viscous - required_viscous, required_viscous)
+        };
+        let [extending, retracting] = self.curve.both_levels().map(of);
+        let (surplus, required_viscous) = if retracting.0 < extending.0 { retracting } else { extending };
+        if surplus >= 0.0 {
+            LuGrePassivity::Passive { surplus }
         } else {
             LuGrePassivity::NotPassive { required_viscous }
         }

@@ -136,7 +136,7 @@ impl<S: Scalar> MovingFriction<S> {
                 let sliding = lugre.curve.sliding_force_of(*shape, velocity);
                 spring.squared() * velocity.abs() / sliding
                     + lugre.bristle_damping * velocity * bristle_rate
-                    + lugre.curve.viscous * velocity.squared()
+                    + lugre.curve.levels(velocity).viscous * velocity.squared()
             }
             _ => force * velocity,
         }

@@ -8,9 +8,12 @@ use crate::parameter::{ParameterError, Problems};
 /// F(v) = sign(v) g(v) + sigma_2 v                                      thesis (4.33)
 /// g(v) = F_C + (F_S - F_C) exp(-|v/v_S|^alpha)                         thesis (4.31), corrected
 /// ```
+///
+/// Where a seal resists one direction more than the other, F_C, F_S and sigma_2 are those of
+/// `retracting` for v < 0. F is zero or jumps at v = 0 either way, so that this adds no jump.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stribeck<S = f64> {
-    /// Coulomb friction F_C in N.
+    /// Coulomb friction F_C in N; with `retracting`, for v > 0.
     pub coulomb: S,
     /// Static (breakaway) friction F_S in N.
     pub static_friction: S,
@@ -18,6 +21,19 @@ pub struct Stribeck<S = f64> {
     pub stribeck_velocity: S,
     /// Stribeck exponent alpha.
     pub stribeck_exponent: S,
+    /// Viscous coefficient sigma_2 in N s/m.
+    pub viscous: S,
+    /// The levels for v < 0; absent: the same.
+    pub retracting: Option<FrictionLevels<S>>,
+}
+
+/// Levels of a steady curve, which may differ by direction. Units: N, N s/m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrictionLevels<S = f64> {
+    /// Coulomb friction F_C in N.
+    pub coulomb: S,
+    /// Static (breakaway) friction F_S in N.
+    pub static_friction: S,
     /// Viscous coefficient sigma_2 in N s/m.
     pub viscous: S,
 }
@@ -33,13 +49,39 @@ pub enum StribeckShape {
 }
 
 impl<S: Scalar> Stribeck<S> {
+    /// The levels in the direction of a velocity in m/s.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_hydraulics::friction::{FrictionLevels, Stribeck};
+    /// let retracting = FrictionLevels { coulomb: 110.0, static_friction: 150.0, viscous: 130.0 };
+    /// let curve = Stribeck {
+    ///     coulomb: 80.0, static_friction: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0,
+    ///     retracting: Some(retracting),
+    /// };
+    /// assert_eq!(curve.levels(-0.1), retracting);
+    /// assert_eq!((curve.steady_force(0.5), curve.steady_force(-0.5)), (130.0, -175.0));
+    /// ```
+    #[inline(always)]
+    pub fn levels(&self, velocity: S) -> FrictionLevels<S> {
+        let Stribeck { coulomb, static_friction, viscous, retracting, .. } = *self;
+        let Some(back) = retracting else { return FrictionLevels { coulomb, static_friction, viscous } };
+        let is_back = velocity.less_than(S::from(0.0));
+        FrictionLevels {
+            coulomb: S::select(is_back, back.coulomb, coulomb),
+            static_friction: S::select(is_back, back.static_friction, static_friction),
+            viscous: S::select(is_back, back.viscous, viscous),
+        }
+    }
+
     /// g(v) in N as [`Stribeck::sliding_force`], the shape known beforehand.
     #[inline(always)]
     pub(crate) fn sliding_force_of(&self, shape: StribeckShape, velocity: S) -> S {
         match shape {
             StribeckShape::Squared => {
                 let square = (velocity / self.stribeck_velocity).squared();
-                self.coulomb + (self.static_friction - self.coulomb) * (-square).exp()
+                let FrictionLevels { coulomb, static_friction, .. } = self.levels(velocity);
+                coulomb + (static_friction - coulomb) * (-square).exp()
             }
             StribeckShape::Power => self.sliding_force(velocity),
         }
@@ -60,7 +102,7 @@ impl<S: Scalar> Stribeck<S> {
     /// ```
     /// use phea_hydraulics::friction::{Stribeck, StribeckShape};
     /// let curve = Stribeck {
-    ///     coulomb: 80.0, static_friction: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0,
+    ///     coulomb: 80.0, static_friction: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0, retracting: None,
     /// };
     /// let smooth: f64 = curve.regular_force(StribeckShape::Squared, 0.1, 1e-5);
     /// assert!((smooth - curve.steady_force(0.1)).abs() < 1e-5);
@@ -69,7 +111,7 @@ impl<S: Scalar> Stribeck<S> {
     #[inline(always)]
     pub fn regular_force(&self, shape: StribeckShape, velocity: S, regular_velocity: S) -> S {
         let speed = (velocity.squared() + regular_velocity.squared()).sqrt();
-        self.sliding_force_of(shape, velocity) * velocity / speed + self.viscous * velocity
+        self.sliding_force_of(shape, velocity) * velocity / speed + self.levels(velocity).viscous * velocity
     }
 
     /// The force that the bristles carry when sliding steadily at v in m/s, in N.
@@ -83,7 +125,8 @@ impl<S: Scalar> Stribeck<S> {
         let least = S::from(f64::MIN_POSITIVE);
         let relative = (velocity / self.stribeck_velocity).abs().maximum(least);
         let power = (self.stribeck_exponent * relative.ln()).exp();
-        self.coulomb + (self.static_friction - self.coulomb) * (-power).exp()
+        let FrictionLevels { coulomb, static_friction, .. } = self.levels(velocity);
+        coulomb + (static_friction - coulomb) * (-power).exp()
     }
 
     /// The steady friction force in N; zero at standstill, where any force up to F_S is possible.
@@ -97,7 +140,7 @@ impl<S: Scalar> Stribeck<S> {
     /// ```
     /// use phea_hydraulics::friction::Stribeck;
     /// let curve = Stribeck {
-    ///     coulomb: 80.0, static_friction: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0,
+    ///     coulomb: 80.0, static_friction: 120.0, stribeck_velocity: 0.01, stribeck_exponent: 2.0, viscous: 100.0, retracting: None,
     /// };
     /// assert_eq!(curve.steady_force(0.5), 130.0);
     /// assert_eq!(curve.steady_force(-0.003), -curve.steady_force(0.003));
@@ -107,21 +150,27 @@ impl<S: Scalar> Stribeck<S> {
         let (zero, one) = (S::from(0.0), S::from(1.0));
         let negative_or_zero = S::select(velocity.less_than(zero), -one, zero);
         let sign = S::select(zero.less_than(velocity), one, negative_or_zero);
-        sign * self.sliding_force(velocity) + self.viscous * velocity
+        sign * self.sliding_force(velocity) + self.levels(velocity).viscous * velocity
     }
 }
 
 impl Stribeck {
     /// Impossible parameters of this curve; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
+        let [extending, retracting] = self.both_levels().map(|levels| levels.problems());
         let mut problems = Problems::default();
-        problems.positive("coulomb", self.coulomb);
-        let not_below = self.static_friction >= self.coulomb;
-        problems.require("static", self.static_friction, not_below, "at least the Coulomb friction");
+        problems.all(extending);
         problems.positive("stribeck_velocity", self.stribeck_velocity);
         problems.positive("stribeck_exponent", self.stribeck_exponent);
-        problems.not_negative("viscous", self.viscous);
+        if self.retracting.is_some() {
+            problems.component("retracting", retracting);
+        }
         problems.into_vec()
+    }
+
+    /// The levels of both directions, of positive velocity first.
+    pub fn both_levels(&self) -> [FrictionLevels; 2] {
+        [1.0, -1.0].map(|velocity| self.levels(velocity))
     }
 
     /// How its exponent is best evaluated.
@@ -131,6 +180,29 @@ impl Stribeck {
     }
 }
 
+impl FrictionLevels {
+    fn problems(&self) -> Vec<ParameterError> {
+        let mut problems = Problems::default();
+        problems.positive("coulomb", self.coulomb);
+        let not_below = self.static_friction >= self.coulomb;
+        problems.require("static", self.static_friction, not_below, "at least the Coulomb friction");
+        problems.not_negative("viscous", self.viscous);
+        problems.into_vec()
+    }
+
+    /// sigma_2 in N s/m that LuGre friction with this damping of its bristles requires to be
+    /// passive.
+    ///
+    /// ```text
+    /// sigma_2 >= sigma_1 (F_S - F_C)/F_C
+    /// ```
+    pub fn passive_viscous(&self, bristle_damping: f64) -> f64 {
+        bristle_damping * (self.static_friction - self.coulomb) / self.coulomb
+    }
+}
+
+phea_dynamics::parameters! { FrictionLevels { coulomb, static_friction, viscous } }
+
 phea_dynamics::parameters! {
-    Stribeck { coulomb, static_friction, stribeck_velocity, stribeck_exponent, viscous }
+    Stribeck { coulomb, static_friction, stribeck_velocity, stribeck_exponent, viscous, retracting }
 }

@@ -219,7 +219,8 @@ impl Machine {
         match self.friction {
             MovingFriction::LuGre { lugre, .. } => {
                 let curve = lugre.curve;
-                (curve.steady_force(velocity) - curve.viscous * velocity) / lugre.bristle_stiffness
+                (curve.steady_force(velocity) - curve.levels(velocity).viscous * velocity)
+                    / lugre.bristle_stiffness
             }
             _ => 0.0,
         }

@@ -3,8 +3,7 @@
 use super::{Check, adjustment, cross_port, line_motion};
 use crate::{
     Component, DeclaredAccumulator, DeclaredActuator, DeclaredCylinder, DeclaredFriction, DeclaredLine,
-    DeclaredLines, DeclaredPipe, DeclaredSupply, FrictionLaw, NullLeakage, Project, Pump, StribeckCurve,
-    SupplyModel, Valve,
+    DeclaredLines, DeclaredPipe, DeclaredSupply, FrictionLaw, NullLeakage, Project, Pump, SupplyModel, Valve,
 };
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE as ATMOSPHERE;
 use phea_hydraulics::servovalve::LeakageModel;
@@ -274,26 +273,55 @@ fn piston(cylinder: &DeclaredCylinder, check: &mut Check<'_, '_>) {
 }
 
 fn friction(friction: &DeclaredFriction, part: &str, check: &mut Check<'_, '_>) {
-    let at = |key: &str| format!("{part}.friction.{key}");
+    let table = format!("{part}.friction");
     let (FrictionLaw::Stribeck { curve, .. } | FrictionLaw::LuGre { curve, .. }) = &friction.law else {
+        if friction.retracting.is_some() {
+            let message = "viscous friction alone is the same both ways: choose `model = \"stribeck\"` or `\"lugre\"`, or remove `retracting`";
+            check.error(&format!("{table}.retracting"), message);
+        }
         return;
     };
-    let StribeckCurve { coulomb, static_friction: breakaway, .. } = *curve;
-    if !check.declared(&at("static")) || !check.declared(&at("coulomb")) {
+    if !check.declared(&format!("{table}.static")) || !check.declared(&format!("{table}.coulomb")) {
         return;
     }
+    let extending = [curve.coulomb, curve.static_friction, friction.viscous];
+    levels(friction, (&table, &table), extending, check);
+    if let Some(back) = friction.retracting {
+        let [coulomb, breakaway, viscous] = extending;
+        let retracting = [
+            back.coulomb.unwrap_or(coulomb),
+            back.static_friction.unwrap_or(breakaway),
+            back.viscous.unwrap_or(viscous),
+        ];
+        levels(friction, (&format!("{table}.retracting"), &table), retracting, check);
+    }
+}
+
+/// The levels of one direction, of keys in the first table where they are there, otherwise in the
+/// second.
+fn levels(
+    friction: &DeclaredFriction,
+    (own, other): (&str, &str),
+    [coulomb, breakaway, viscous]: [f64; 3],
+    check: &mut Check<'_, '_>,
+) {
+    let at = |key: &str, check: &Check<'_, '_>| {
+        let path = format!("{own}.{key}");
+        if check.declared(&path) { path } else { format!("{other}.{key}") }
+    };
     if breakaway < coulomb {
-        return check.in_order([&at("coulomb"), &at("static")], [coulomb, breakaway]);
+        let [lower, upper] = ["coulomb", "static"].map(|key| at(key, check));
+        return check.in_order([&lower, &upper], [coulomb, breakaway]);
     }
     let FrictionLaw::LuGre { bristle_damping, .. } = friction.law else { return };
     let least = bristle_damping * (breakaway - coulomb) / coulomb;
-    if friction.viscous < least {
+    if viscous < least {
         let unit = check.motion().dimension(&DAMPING).si;
         let message = format!(
             "this LuGre friction can give out energy: it is passive for `viscous` of at least {least} {unit} \
              (bristle_damping (static - coulomb)/coulomb; Barabanov and Ortega, 2000)"
         );
-        check.warning(&at("viscous"), message);
+        check.warning(&at("viscous", check), message);
     }
 }
 

@@ -1,7 +1,9 @@
 //! `identify --of friction`: the friction that explains recorded runs of the cylinder.
 
 use crate::answer::{Answer, picture_files};
-use crate::friction::{self, KnownCylinder, friction_recordings, identify_friction, recorded_runs};
+use crate::friction::{
+    self, FrictionEstimate, KnownCylinder, friction_recordings, identify_friction, recorded_runs,
+};
 use crate::identify::IdentifyError;
 use crate::project::Loaded;
 use crate::source::Source;
@@ -49,6 +51,11 @@ pub fn friction_watched(
         text: friction::document(&found).text(),
         json: friction::json(loaded, &found),
         files,
-        affirmative: found.has_converged() && found.estimates.iter().all(|one| one.untold.is_none()),
+        affirmative: found.has_converged()
+            && found
+                .estimates
+                .iter()
+                .chain(found.retracting.iter().flatten())
+                .all(FrictionEstimate::is_determined),
     })
 }

@@ -17,8 +17,8 @@ pub(super) struct Unprinted {
 }
 
 impl Unprinted {
-    /// With the misfits of identified parts, which the runs of the machine do not contain: warnings,
-    /// and `warnings` of the JSON where there are any.
+    /// With the misfits of identified parts, which the runs of the machine do not contain:
+    /// warnings, and `warnings` of the JSON where there are any.
     pub(super) fn with_misfits(mut self, project: &Project) -> Unprinted {
         let misfits = misfits_in_runs(project);
         if !misfits.is_empty() {

@@ -1,6 +1,6 @@
 use super::{
-    FRICTION_NAMES, FrictionEstimate, FrictionIdentification, FrictionMisfit, ShakenRows, because,
-    misfit_in_words,
+    ExplainedByDirections, FRICTION_NAMES, FrictionEstimate, FrictionIdentification, FrictionMisfit,
+    RETRACTING_NAMES, ShakenRows, because, misfit_in_words,
 };
 use crate::answer::{Json, Object, envelope};
 use crate::project::Loaded;
@@ -17,13 +17,26 @@ const KEYS: [&str; FRICTION_NAMES.len()] = [
     "bristle_damping_n_s_per_m",
 ];
 
+/// Keys of the levels of retracting.
+const RETRACTING_KEYS: [&str; RETRACTING_NAMES.len()] = ["coulomb_n", "static_n", "viscous_n_s_per_m"];
+
 /// The JSON object of `identify --of friction`.
 pub fn json(loaded: &Loaded, found: &FrictionIdentification) -> String {
     let coefficients = KEYS.iter().zip(&found.estimates);
     let friction = coefficients.fold(Object::new(), |object, (key, one)| object.with(*key, estimate(one)));
+    let retracting = found.retracting.as_ref().map(|estimates| {
+        let all = RETRACTING_KEYS.iter().zip(estimates);
+        all.fold(Object::new(), |object, (key, one)| object.with(*key, estimate(one)))
+    });
+    let no_zero = match found.retracting {
+        Some(_) => "the friction differs by direction, and the instruments are taken to have no zero error",
+        None => "the recordings go one way",
+    };
     let body = Object::new()
-        .with("friction", friction)
-        .known("force_zero_n", found.zero.map(|zero| estimate(&zero)), "the recordings go one way")
+        .with("friction", friction.with("retracting", retracting))
+        .known("force_zero_n", found.zero.as_ref().map(estimate), no_zero)
+        .each("direction_models", found.evidence.iter().flat_map(|evidence| &evidence.models), model)
+        .with("direction_models_difference", found.evidence.map(|evidence| evidence.difference()))
         .each("recordings", 0..found.recordings.len(), |index| recording(found, index))
         .with("force_residual_rms_n", found.residual_rms[0])
         .with("position_residual_rms_m", found.residual_rms[1])
@@ -43,6 +56,17 @@ fn estimate(one: &FrictionEstimate) -> Object {
     let value = reason.is_none().then_some(one.value);
     let ends = one.interval.map(Json::Number).to_vec();
     Object::new().with("value", value).with("confidence_95", Json::List(ends)).with("reason", reason)
+}
+
+/// Evidence for one friction for both directions, or for one for each.
+fn model(explained: &ExplainedByDirections) -> Object {
+    let [coulomb, breaking, .., back_coulomb, back_breaking, _] = explained.lugre.to_array();
+    Object::new()
+        .with("model", explained.model.name())
+        .with("criterion", explained.criterion)
+        .with("force_zero_n", explained.zero)
+        .with("coulomb_n", [coulomb, back_coulomb])
+        .with("static_n", [breaking, back_breaking])
 }
 
 fn file(found: &FrictionIdentification, recording: usize) -> String {
@@ -72,7 +96,7 @@ fn recording(found: &FrictionIdentification, index: usize) -> Object {
         .each("constant_velocities", slides, |slide| {
             Object::new()
                 .with("velocity_m_per_s", slide.velocity)
-                .with("force_n", slide.settled_force() - found.zero.map_or(0.0, |zero| zero.value))
+                .with("force_n", slide.settled_force() - found.zero.as_ref().map_or(0.0, |zero| zero.value))
                 .with("rows", slide.rows.len() as u64)
         })
         .each("varying_velocities", varying, |one| {

@@ -1,8 +1,12 @@
 //! The friction of a cylinder for people.
 
-use super::{FRICTION_NAMES, FrictionIdentification, ShakenRows, VaryingVelocity, because, misfit_in_words};
+use super::{
+    DirectionEvidence, DirectionModel, FrictionEstimate, FrictionIdentification, ShakenRows, VaryingVelocity,
+    because, coefficients, misfit_in_words,
+};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
+use crate::identify::DECISIVE;
 use crate::quantity::DisplayUnit;
 
 /// Coefficients with their intervals and why some are open, the friction map, and how well all is
@@ -16,7 +20,7 @@ pub(crate) fn document(found: &FrictionIdentification) -> Document {
 /// The same for a chapter of the report.
 pub(crate) fn tell(found: &FrictionIdentification, out: &mut Document) {
     let headings = ["coefficient", "identified", "95 % from", "to", "unit"];
-    out.section("Friction of the cylinder", Table::new(headings).with(coefficients(found)));
+    out.section("Friction of the cylinder", Table::new(headings).with(rows(found)));
     out.sentences(remarks(found));
     let points = found.steady_points();
     if !points.is_empty() {
@@ -87,24 +91,22 @@ fn file(found: &FrictionIdentification, recording: usize) -> String {
     found.recordings.get(recording).map_or(String::new(), |one| one.file.clone())
 }
 
-fn coefficients(found: &FrictionIdentification) -> Vec<[Cell; 5]> {
-    let all = FRICTION_NAMES.iter().zip(&found.estimates);
-    all.map(|((name, unit), one)| {
-        let value = if one.untold.is_none() { Cell::number(one.value, 4) } else { Cell::Missing };
+fn rows(found: &FrictionIdentification) -> Vec<[Cell; 5]> {
+    let row = |(name, unit, one): (String, &'static str, &FrictionEstimate)| {
+        let value = if one.is_determined() { Cell::number(one.value, 4) } else { Cell::Missing };
         let [low, high] = one.interval.map(|end| match end.is_finite() {
             true => Cell::number(end, 4),
             false => Cell::Missing,
         });
-        [Cell::Code((*name).to_string()), value, low, high, Cell::from(*unit)]
-    })
-    .collect()
+        [Cell::Code(name), value, low, high, Cell::from(unit)]
+    };
+    coefficients(found).map(row).collect()
 }
 
 /// What is open, and the zero of the force.
 fn remarks(found: &FrictionIdentification) -> Vec<String> {
-    let all = FRICTION_NAMES.iter().zip(&found.estimates);
-    let open =
-        all.filter_map(|((name, _), one)| Some(format!("`{name}` is not determined: {}.", because(one)?)));
+    let open = coefficients(found)
+        .filter_map(|(name, _, one)| Some(format!("`{name}` is not determined: {}.", because(one)?)));
     let zero = match &found.zero {
         Some(zero) => {
             let [value, low, high] =
@@ -116,12 +118,32 @@ fn remarks(found: &FrictionIdentification) -> Vec<String> {
             };
             format!("Without friction the instruments show {value} N (95 %: {low} to {high} N).{directions}")
         }
+        None if found.retracting.is_some() => {
+            "The instruments are taken to show no force without friction: an error of their zero would make each level of one direction greater by as much, and each of the other smaller. Reading the pressures with both ports open to the tank shows it."
+                .to_string()
+        }
         None => {
             "The recordings go one way: that the instruments show no force without friction is taken for granted."
                 .to_string()
         }
     };
-    open.chain([zero]).collect()
+    open.chain(found.evidence.iter().map(directions)).chain([zero]).collect()
+}
+
+/// The model that the recordings support: the same both ways, or by direction.
+fn directions(evidence: &DirectionEvidence) -> String {
+    let by = significant(evidence.difference().abs(), 3);
+    match (evidence.chosen(), evidence.difference() > 0.0) {
+        (DirectionModel::DiffersByDirection, _) => format!(
+            "The friction differs by direction: the information criterion of Schwarz is lower by {by} with levels for each than with the same for both, where {DECISIVE} is decisive. Coefficients without `retracting` are those of extending, or of both."
+        ),
+        (DirectionModel::SameBothWays, true) => format!(
+            "One friction for both directions: with levels for each the information criterion of Schwarz is lower by {by}, where {DECISIVE} would be decisive."
+        ),
+        (DirectionModel::SameBothWays, false) => format!(
+            "One friction for both directions: with levels for each the information criterion of Schwarz is higher by {by}."
+        ),
+    }
 }
 
 fn explained(found: &FrictionIdentification) -> Vec<String> {
@@ -143,7 +165,7 @@ fn explained(found: &FrictionIdentification) -> Vec<String> {
     sentences.extend(found.misfits.iter().map(|one| format!("Misfit: {}.", misfit_in_words(found, one))));
     if !found.misfits.is_empty() {
         sentences.push(
-            "The intervals cover noise, not a misfit: friction that differs by direction, with the position or the temperature, or runs that are not steady, may be the cause."
+            "The intervals cover noise, not a misfit: friction that changes with the position or the temperature, or runs that are not steady, may be the cause."
                 .to_string(),
         );
     }

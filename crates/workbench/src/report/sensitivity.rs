@@ -9,7 +9,7 @@ use super::simulation::told;
 use crate::document::{Document, Table};
 use crate::error::CommandError;
 use crate::figure::DisplayUnit;
-use crate::project::{DeclaredActuator, FrictionLaw, Project};
+use crate::project::{DeclaredActuator, FrictionLaw, Project, RetractingFriction};
 use crate::setup::Setup;
 use crate::simulate::{METRICS, Metrics, ScenarioRun, Window, cause_words, metrics_row, simulate_project};
 use crate::source::Source;
@@ -80,8 +80,12 @@ fn sensitivity(
             break;
         };
         friction.viscous *= factor;
+        for level in friction.retracting.iter_mut().flat_map(RetractingFriction::each_mut) {
+            *level *= factor;
+        }
         if factor == 0.0 {
             friction.law = FrictionLaw::Viscous;
+            friction.retracting = None;
         }
         if let FrictionLaw::Stribeck { curve, .. } | FrictionLaw::LuGre { curve, .. } = &mut friction.law {
             curve.coulomb *= factor;

@@ -149,6 +149,12 @@ fn with_accumulators() -> Vec<(String, Vec<&'static str>)> {
         ),
         (SIMULATION.to_string(), vec!["operating_point.load_force=2 kN"]),
         (SIMULATION.to_string(), vec!["cylinder.dead_volume=30 mL"]),
+        (
+            SIMULATION.to_string(),
+            vec![
+                "cylinder.friction.retracting={ coulomb = \"95 N\", static = \"150 N\", viscous = \"120 N.s/m\" }",
+            ],
+        ),
         (HEAT.to_string(), vec![]),
         (
             HEAT.to_string(),

@@ -139,6 +139,7 @@ fn friction(chance: &mut Chance, most_force: f64, mass: f64) -> Friction {
         stribeck_velocity,
         stribeck_exponent: if chance.happens(0.6) { 2.0 } else { chance.between(1.0, 2.0) },
         viscous: steepest * chance.decades(0.02, 0.3),
+        retracting: None,
     };
     if chance.happens(0.6) {
         let bristle_stiffness = coulomb / chance.decades(3e-6, 5e-5);

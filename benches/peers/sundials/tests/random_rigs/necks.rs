@@ -131,6 +131,7 @@ fn friction(chance: &mut Chance, most_force: f64, moving_mass: f64) -> Friction 
         stribeck_velocity: chance.decades(3e-3, 3e-2),
         stribeck_exponent: 2.0,
         viscous: most_force * chance.decades(0.01, 0.2),
+        retracting: None,
     };
     let bristle_stiffness = coulomb / chance.decades(3e-6, 5e-5);
     let bristle_damping = chance.decades(0.1, 1.0) * (bristle_stiffness * moving_mass).sqrt();

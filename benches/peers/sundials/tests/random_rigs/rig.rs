@@ -270,6 +270,7 @@ fn friction(chance: &mut Chance, most_force: f64, mass: f64, bristles: bool) -> 
         stribeck_velocity: chance.decades(1e-3, 5e-2),
         stribeck_exponent: if chance.happens(0.7) { 2.0 } else { chance.between(0.7, 2.0) },
         viscous,
+        retracting: None,
     };
     let bristle_stiffness = coulomb / chance.decades(1e-6, 1e-4);
     let bristle_damping = chance.decades(0.05, 1.0) * (bristle_stiffness * mass).sqrt();

@@ -6,7 +6,7 @@ use phea_dynamics::simulation::schroeder_phases;
 use phea_hydraulics::cylinder::Cylinder;
 use phea_hydraulics::friction::{LuGre, MultisineForce, PressedMass, TRENDS};
 
-use super::{CylinderMoment, counted, longest_step};
+use super::{CylinderMoment, counted, least_static, longest_step};
 use crate::bench::BenchError;
 use crate::project::ShakenFriction;
 
@@ -32,7 +32,7 @@ pub(super) fn shaken(
     cylinder: &Cylinder,
     settings: &ShakenFriction,
 ) -> Result<Vec<CylinderMoment>, BenchError> {
-    let breaking = lugre.curve.static_friction;
+    let breaking = least_static(lugre);
     let ringing = (lugre.bristle_stiffness / cylinder.moving_mass).sqrt();
     let frequencies = excited(settings, ringing)?;
     let length = breaking / lugre.bristle_stiffness;

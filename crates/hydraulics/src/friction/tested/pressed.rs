@@ -88,13 +88,14 @@ impl PressedMass {
     /// between rows; w, the slip of the bristles, is taken as straight within a step, from a first
     /// solution with its value at the beginning (Cox and Matthews 2002, ETD2RK). A step is good
     /// while the bristles slip by little more than their deflection in it: it suits the time before
-    /// the piston breaks away, and its beginning.
+    /// the piston breaks away, and its beginning. Of a friction that differs by direction g does so
+    /// here, and sigma_2, which is small next to sigma_1, is that of positive velocity.
     ///
     /// # Example
     /// A slow force F that stays below F_S moves the piston by -(F_S/sigma_0) ln(1 - F/F_S).
     /// ```
     /// use phea_hydraulics::friction::{LuGre, PressedMass};
-    /// let lugre = LuGre::from_array([80.0, 120.0, 0.01, 2.0, 100.0, 1e7, 2e3]);
+    /// let lugre = LuGre::same_both_ways([80.0, 120.0, 0.01, 2.0, 100.0, 1e7, 2e3]);
     /// let force: Vec<f64> = (0..=9000).map(|row| 90.0 * row as f64 / 9000.0).collect();
     /// let pressed = PressedMass { mass: 13.1, time_step: 1e-3, substeps: 4 };
     /// let moved = pressed.displacements(&lugre, &force);
@@ -158,7 +159,7 @@ impl PressedMass {
     /// X = F/(sigma_0 - M omega^2 + j omega (sigma_1 + sigma_2)).
     /// ```
     /// use phea_hydraulics::friction::{LuGre, MultisineForce, PressedMass};
-    /// let lugre = LuGre::from_array([80.0, 120.0, 0.01, 2.0, 100.0, 1e7, 2e3]);
+    /// let lugre = LuGre::same_both_ways([80.0, 120.0, 0.01, 2.0, 100.0, 1e7, 2e3]);
     /// // 0.01 N where the spring and the mass cancel
     /// let omega = (1e7_f64 / 13.1).sqrt();
     /// let sizes = vec![0.0, 0.0, 0.0, 0.01, 0.0];

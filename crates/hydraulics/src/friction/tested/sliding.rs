@@ -1,4 +1,4 @@
-use phea_dynamics::scalar::{Dual, Parameters, Scalar};
+use phea_dynamics::scalar::{Dual, Scalar};
 
 use super::FRICTION_COEFFICIENTS;
 use crate::friction::LuGre;
@@ -35,7 +35,7 @@ impl SlidBlock {
     /// Far from a reversal nothing but the steady curve is left.
     /// ```
     /// use phea_hydraulics::friction::{LuGre, SlidBlock};
-    /// let lugre = LuGre::from_array([80.0, 120.0, 0.01, 2.0, 100.0, 1e7, 2e3]);
+    /// let lugre = LuGre::same_both_ways([80.0, 120.0, 0.01, 2.0, 100.0, 1e7, 2e3]);
     /// let block = |distance| SlidBlock { velocity: -0.004, distance, half_length: 1e-6 };
     /// let steady = lugre.curve.steady_force(-0.004);
     /// assert!((block(1e-3).force(&lugre, 150.0) - steady).abs() < 1e-9);
@@ -56,11 +56,9 @@ impl SlidBlock {
     /// and over c.
     pub fn sensitive_force(&self, lugre: &LuGre, left: f64) -> (f64, [f64; SLIDING_VARIABLES]) {
         type SlidingSlope = Dual<SLIDING_VARIABLES>;
-        let mut index = 0;
-        let open = lugre.convert(&mut |value| {
-            index += 1;
-            SlidingSlope::variable(value, index - 1)
-        });
+        let numbers = lugre.to_array();
+        let open =
+            LuGre::from_array(std::array::from_fn(|index| SlidingSlope::variable(numbers[index], index)));
         let force = self.force(&open, SlidingSlope::variable(left, FRICTION_COEFFICIENTS));
         (force.value(), *force.gradient())
     }

@@ -1,0 +1,223 @@
+//! Reasons for which the recordings leave coefficients open. Each fact that they lack is a reason
+//! of its own, and stays next to the others.
+
+use std::f64::consts::PI;
+
+use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, LuGre};
+
+use super::directions::DirectionModel;
+use super::problem::FrictionProblem;
+use super::told::FrictionEstimate;
+use super::{ConstantVelocity, PressedRows};
+
+/// Reason for which the recordings do not determine a coefficient.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum UntoldFriction {
+    /// Nothing slides at a constant velocity.
+    NothingSlides,
+    /// The force is the same at all slow velocities: no fall from static friction is seen.
+    NoFall,
+    /// Friction falls from static to Coulomb friction, and too few runs slide in between.
+    FewOnFall {
+        /// m/s, up to which further runs would show it.
+        below: f64,
+    },
+    /// Neither is a run slow enough for static friction, nor does the piston break away from rest.
+    NotApproached,
+    /// Nothing is pressed from rest while its position is recorded.
+    NothingPressed,
+    /// Nothing shakes the piston on its bristles while its position is recorded.
+    NothingShaken {
+        /// rad/s, at which the mass rings on the bristles, where their stiffness is determined.
+        ringing: Option<f64>,
+        /// N, static friction, where it is determined.
+        breaking: Option<f64>,
+    },
+    /// The piston is shaken, and there are too few rows in a period of its ringing.
+    TooFewRows {
+        /// s between rows, the longest that would do.
+        time_step: f64,
+    },
+    /// The piston is shaken too little, or away from where it rings.
+    ShakenTooLittle {
+        /// Standard deviation over the largest at which it is determined.
+        factor: f64,
+    },
+    /// The force changes within a few rows, or rises too quickly, while the piston is pressed.
+    QuickForce,
+    /// Noise hides it.
+    Hidden,
+    /// The rows that are pressed are not explained.
+    NotExplained {
+        /// Residual over the noise.
+        residual: f64,
+    },
+}
+
+/// Duration of a force that rises slowly, over the delay by the damping: twice its inverse is the
+/// error of the stiffness where the damping is not the one that is taken for granted.
+const SLOW: f64 = 250.0;
+
+/// Fewest rows in a period of the ringing.
+pub const ROWS_OF_RINGING: f64 = 8.0;
+
+/// Part of the friction of the slowest run that static friction has at least.
+const UP_TO_NOISE: f64 = 0.98;
+
+/// Residual over noise beyond which recordings are not explained.
+const EXPLAINED: f64 = 1.5;
+
+impl FrictionEstimate {
+    /// Adds a reason. What to record says more than that noise hides it.
+    fn leave_open(&mut self, reason: UntoldFriction) {
+        self.untold.retain(|known| *known != UntoldFriction::Hidden && *known != reason);
+        self.untold.push(reason);
+    }
+}
+
+/// The fall from static to Coulomb friction of a direction, and its standard deviation, in N.
+#[derive(Clone, Copy)]
+pub(super) struct Fall {
+    pub(super) value: f64,
+    pub(super) deviation: f64,
+}
+
+/// Coulomb and static friction of a direction, and what shows them.
+struct LoadedDirection<'a> {
+    levels: [&'a mut FrictionEstimate; 2],
+    fall: Fall,
+    slides: Vec<&'a ConstantVelocity>,
+    presses: Vec<&'a PressedRows>,
+}
+
+/// Adds to each coefficient why it is open, as far as it is known.
+pub(super) fn reasons(
+    (problem, lugre): (&FrictionProblem<'_>, &LuGre),
+    found: &mut [FrictionEstimate; FRICTION_COEFFICIENTS],
+    falls: [Fall; 2],
+) {
+    let [coulomb, breaking, velocity, exponent, viscous, stiffness, damping, back_coulomb, back_breaking, _] =
+        found;
+    let differs = problem.directions == DirectionModel::DiffersByDirection;
+    let directions = [(coulomb, breaking, 1.0), (back_coulomb, back_breaking, -1.0)];
+    let mut directions: Vec<LoadedDirection<'_>> = directions
+        .into_iter()
+        .zip(falls)
+        .take(if differs { 2 } else { 1 })
+        .map(|((coulomb, breaking, way), fall)| LoadedDirection {
+            levels: [coulomb, breaking],
+            fall,
+            slides: problem.slides.iter().filter(|one| !differs || one.velocity * way > 0.0).collect(),
+            presses: problem.presses.iter().filter(|one| !differs || one.way() * way > 0.0).collect(),
+        })
+        .collect();
+    of_the_fall(problem, &directions, [velocity, exponent]);
+    for direction in &mut directions {
+        of_levels(problem, lugre, direction);
+    }
+    if problem.slides.is_empty() {
+        viscous.leave_open(UntoldFriction::NothingSlides);
+    }
+    if problem.presses.is_empty() && problem.shakes.is_empty() && !stiffness.is_determined() {
+        stiffness.leave_open(UntoldFriction::NothingPressed);
+    }
+    let breaking = directions.first().and_then(|one| {
+        let [_, breaking] = &one.levels;
+        breaking.is_determined().then_some(breaking.value)
+    });
+    of_the_bristles(problem, [stiffness, damping], breaking);
+}
+
+/// Reasons of Stribeck velocity and exponent.
+fn of_the_fall(
+    problem: &FrictionProblem<'_>,
+    directions: &[LoadedDirection<'_>],
+    [velocity, exponent]: [&mut FrictionEstimate; 2],
+) {
+    let falls = directions.iter().any(|direction| {
+        let [coulomb, breaking] = &direction.levels;
+        direction.fall.value > 2.0 * direction.fall.deviation || breaking.interval[0] > coulomb.interval[1]
+    });
+    let fastest = problem.slides.iter().map(|slide| slide.velocity.abs()).fold(0.0, f64::max);
+    let below = (2.0 * velocity.interval[1]).min(fastest);
+    for one in [velocity, exponent] {
+        if problem.slides.is_empty() {
+            one.leave_open(UntoldFriction::NothingSlides);
+        } else if !falls {
+            one.leave_open(UntoldFriction::NoFall);
+        } else if !one.is_determined() {
+            one.leave_open(UntoldFriction::FewOnFall { below });
+        }
+    }
+}
+
+/// Reasons of Coulomb and static friction.
+fn of_levels(problem: &FrictionProblem<'_>, lugre: &LuGre, direction: &mut LoadedDirection<'_>) {
+    let LoadedDirection { levels: [coulomb, breaking], slides, presses, .. } = direction;
+    if slides.is_empty() {
+        coulomb.leave_open(UntoldFriction::NothingSlides);
+    }
+    if presses.is_empty() && !slides.is_empty() && !breaking.is_determined() {
+        breaking.leave_open(UntoldFriction::NotApproached);
+        // it is no less than what the slowest run shows, up to noise
+        let slowest = slides.iter().map(|slide| slide.velocity);
+        let slowest = slowest.min_by(|one, other| one.abs().total_cmp(&other.abs())).unwrap_or(0.0);
+        let shown = UP_TO_NOISE * lugre.curve.sliding_force(slowest);
+        breaking.interval[0] = breaking.interval[0].min(shown);
+    }
+    if problem.presses.is_empty() && problem.slides.is_empty() {
+        breaking.leave_open(UntoldFriction::NothingPressed);
+    }
+}
+
+/// Reasons of stiffness and damping of the bristles.
+fn of_the_bristles(
+    problem: &FrictionProblem<'_>,
+    [stiffness, damping]: [&mut FrictionEstimate; 2],
+    breaking: Option<f64>,
+) {
+    let explained = problem.channels.get(problem.sliding_channels()..).unwrap_or_default();
+    let residual = explained.iter().map(|channel| channel.scale / channel.noise).fold(0.0, f64::max);
+    if residual > EXPLAINED {
+        for one in [&mut *stiffness, &mut *damping] {
+            one.leave_open(UntoldFriction::NotExplained { residual });
+        }
+    }
+    let ringing = (stiffness.value / problem.mass).sqrt();
+    let longest = 2.0 * PI / (ROWS_OF_RINGING * ringing);
+    if shaken_time_step(problem).is_some_and(|time_step| time_step > longest) {
+        damping.leave_open(UntoldFriction::TooFewRows { time_step: longest });
+    }
+    let is_quick = presses_quickly(problem, stiffness, damping);
+    if problem.shakes.is_empty() {
+        let ringing = stiffness.is_determined().then_some(ringing);
+        damping.interval = [0.0, f64::INFINITY];
+        damping.leave_open(UntoldFriction::NothingShaken { ringing, breaking });
+    } else if is_quick {
+        damping.leave_open(UntoldFriction::QuickForce);
+    }
+    if is_quick {
+        stiffness.leave_open(UntoldFriction::QuickForce);
+    }
+}
+
+/// s between the rows of what is shaken, the longest.
+fn shaken_time_step(problem: &FrictionProblem<'_>) -> Option<f64> {
+    let recordings = problem.shakes.iter().filter_map(|shake| problem.recordings.get(shake.recording));
+    recordings.map(|one| one.time_step).reduce(f64::max)
+}
+
+/// True where a force that presses is not known between its rows, or is too quick for a damping
+/// that is taken for granted, which delays the mass.
+fn presses_quickly(
+    problem: &FrictionProblem<'_>,
+    stiffness: &FrictionEstimate,
+    damping: &FrictionEstimate,
+) -> bool {
+    let is_searched = !problem.shakes.is_empty() && damping.is_determined();
+    let delay = if is_searched { 0.0 } else { damping.value / stiffness.value };
+    problem.presses.iter().any(|press| {
+        let time_step = problem.recordings.get(press.recording).map_or(0.0, |one| one.time_step);
+        press.has_quick_force || press.rows as f64 * time_step < SLOW * delay
+    })
+}
