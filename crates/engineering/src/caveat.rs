@@ -9,7 +9,7 @@ mod leakage_humps;
 mod misfit;
 mod moved_roots;
 mod null_sides;
-mod overlap;
+pub(crate) mod overlap;
 
 use phea_hydraulics::cross_port::Restrictor;
 use phea_hydraulics::operating_point::{Condition, OperatingPoint};

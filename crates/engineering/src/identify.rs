@@ -328,7 +328,7 @@ pub fn identify(
     let groups = found.together.groups(found.block_rows());
     let shared = instruments::shared_changes(&found.together, &found.minimum.variables, oil.as_ref());
     let told = intervals::told(&found.minimum.linearised, (&groups, &shared), &variables, &coefficients);
-    let signals = found.signals();
+    let signals = found.signals_with(&instruments::without_errors(&found.minimum.linearised, &shared));
     let mut intervals = intervals::intervals(&variables, &coefficients, &told.deviations);
     intervals::lowered_tare_flow(&mut intervals, &recordings, &signals);
     let mut deviations = variables.scales(&coefficients);
@@ -390,6 +390,10 @@ fn best_model<'a>(
     watch: Watch<'_>,
 ) -> Result<(ModelEvidence, Fit<'a>, Vec<TermEvidence>), IdentifyError> {
     let (evidence, found) = better_leakage(first, models, watch)?;
+    // beside a model that the recordings contradict, a term would stand for what that model has not
+    if evidence.preferred().is_some_and(|preferred| preferred != found.together.tested.leakage_model) {
+        return Ok((evidence, found, Vec::new()));
+    }
     let (found, told) = terms::with_terms(found, watch)?;
     if found.together.tested.terms == ValveTerms::default() || found.together.tested.terms.leakage_by_edge {
         return Ok((evidence, found, told));

@@ -33,7 +33,7 @@ fn unlike() -> Servovalve {
 }
 
 /// ORIGIN: analytic. Far from its end an edge has the area of a sharp one, and passes it over one
-/// plus the saturation times it; never more than half a hundredth of the lap beside.
+/// plus the saturation times it; never more than a thousandth of the lap beside.
 #[test]
 fn openings_are_those_of_a_sharp_edge() {
     for shape in SHAPES {
@@ -47,10 +47,10 @@ fn openings_are_those_of_a_sharp_edge() {
                 (found.backward, -spool / 10.0, shape.lap_negative),
             ] {
                 let wanted = passed(sharp(travel, lap));
-                assert!((found - wanted).abs() <= lap.abs() / 200.0 + 1e-16, "{shape:?} {spool}");
+                assert!((found - wanted).abs() <= lap.abs() / 1000.0 + 1e-16, "{shape:?} {spool}");
                 let beyond = (travel - lap).abs();
                 // the rounding of an edge falls off with the distance from its end
-                let rounded = (0.01 * lap) * (0.01 * lap) / (4.0 * beyond.max(1e-9));
+                let rounded = (0.002 * lap) * (0.002 * lap) / (4.0 * beyond.max(1e-9));
                 assert!((found - wanted).abs() <= 1.01 * rounded + 1e-15, "{shape:?} {spool}");
             }
         }

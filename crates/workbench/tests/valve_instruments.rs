@@ -147,3 +147,38 @@ fn a_stated_accuracy_is_in_the_intervals() {
     let width = |found: &Value| interval(found, "/null_bias_v").map_or(0.0, |[low, high]| high - low);
     assert!(width(&pressures) > width(&asked("")));
 }
+
+/// A transducer that reads 0.3 bar too much leaves a misfit where nothing is said of it, and none
+/// where its accuracy allows for it; one that reads 3 bar too much is beyond that.
+#[test]
+fn what_a_stated_accuracy_explains_is_no_misfit() {
+    use crate::ask::{HOSE, load};
+    use phea_workbench::command::{IdentifyRequest, identify_watched};
+    use phea_workbench::source::Memory;
+    let files = recorded(&["bench.pressure_noise=\"0.05 bar\""]);
+    let misfits = |error: f64, accuracy: &str| -> usize {
+        let source = files.iter().fold(Memory::default(), |source, (name, text)| {
+            let place = text.lines().next().unwrap().split(',').position(|one| one == "pressure_a_bar");
+            let line = |(index, line): (usize, &str)| {
+                let mut cells: Vec<String> = line.split(',').map(str::to_string).collect();
+                if let Some(cell) = place.filter(|_| index > 0).and_then(|place| cells.get_mut(place)) {
+                    *cell = (error + cell.parse::<f64>().unwrap()).to_string();
+                }
+                cells.join(",")
+            };
+            source.with(name, text.lines().enumerate().map(line).collect::<Vec<_>>().join("\n"))
+        });
+        let file = |name: &str| format!("{{ file = \"{name}\"{accuracy} }}");
+        let recordings = ["leakage.csv", "pressure_gain.csv", "metering.csv"].map(file).join(", ");
+        let loaded = load(HOSE, &[&format!("identify.recording=[{recordings}]")], &[]);
+        let request = IdentifyRequest { starts: Some(1), seed: 1, ..IdentifyRequest::default() };
+        let found = identify_watched(&source, Some(&loaded), &request, &mut |_| true);
+        let found: Value =
+            serde_json::from_str(&found.unwrap_or_else(|error| panic!("{error}")).json).unwrap();
+        found["misfits"].as_array().unwrap().len()
+    };
+    let stated = ", pressure_a = { accuracy = \"0.3 bar\" }";
+    assert!(misfits(0.3, "") > 0);
+    assert_eq!(misfits(0.3, stated), 0);
+    assert!(misfits(3.0, stated) > 0);
+}

@@ -15,7 +15,7 @@ pub(super) fn overlap(setup: &Setup<'_>) -> Option<String> {
     let [from, to, share] = dead_band(&components.valve, &components.supply)?;
     let [from, to] = [from, to].map(|spool| display(spool, &VOLTAGE, 3));
     Some(format!(
-        "the edges of the valve overlap from {from} to {to}: between them its flow gain is at most {} % of that beyond (valve.lap). Each plant is that \
+        "the edges of the valve overlap from {from} to {to}: between them its flow gain without load is {} % of that beyond (valve.lap). Each plant is that \
          of small motions about its operating point; only a simulation shows a loop that crosses the lap, and hunts there where it has an \
          integrator",
         significant(100.0 * share, 2)
@@ -24,7 +24,7 @@ pub(super) fn overlap(setup: &Setup<'_>) -> Option<String> {
 
 /// Spool positions between which no edge is open, and the magnitude of the flow gain in the middle
 /// over that beyond.
-fn dead_band(valve: &Servovalve, supply: &Supply) -> Option<[f64; 3]> {
+pub(crate) fn dead_band(valve: &Servovalve, supply: &Supply) -> Option<[f64; 3]> {
     let OpeningLaw::Shaped(shape) = valve.opening else { return None };
     let [from, to] = [-shape.lap_negative, shape.lap_positive].map(|lap| lap * valve.nominal_voltage);
     if from >= to {

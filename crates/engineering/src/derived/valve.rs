@@ -199,7 +199,9 @@ fn edges(declared: &project::Valve, supply: &project::DeclaredSupply, rig: &Rig,
     let mean = |edges: [f64; 4]| edges.iter().sum::<f64>() / 4.0;
     if let ValveCoefficients::Edges { edges, rating: Some(RatedFlow { flow, pressure_drop }) } = declared.flow
     {
-        let rated = flow_coefficient_from_rating(flow, pressure_drop);
+        // the data sheet's flow is that of full travel
+        let [positive, negative] = valve.opening.full();
+        let rated = flow_coefficient_from_rating(flow, pressure_drop) / f64::midpoint(positive, negative);
         list.add("valve.flow_coefficient_rated", "K_vp", rated, COEFFICIENT, FROM_RATING);
         list.stated(mean(edges.in_order()), "[valve.flow_coefficients], the mean of its edges", None);
     }

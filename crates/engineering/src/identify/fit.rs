@@ -78,7 +78,12 @@ impl Fit<'_> {
 
     /// How well each signal is explained.
     pub(super) fn signals(&self) -> Vec<SignalFit> {
-        let residuals = self.together.by_channel(&self.minimum.linearised.residuals);
+        self.signals_with(&self.minimum.linearised.residuals)
+    }
+
+    /// How well each signal is explained where these residuals are left.
+    pub(super) fn signals_with(&self, residuals: &[f64]) -> Vec<SignalFit> {
+        let residuals = self.together.by_channel(residuals);
         let one = |(channel, own): (&Channel, &[f64])| {
             let squares: f64 = own.iter().map(|residual| residual * residual).sum();
             let unscaled = own.iter().zip(self.together.scales(channel)).map(|(one, scale)| one * scale);

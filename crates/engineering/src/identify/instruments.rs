@@ -1,5 +1,8 @@
 //! Errors that instruments have throughout the tests, and the residuals that follow from them.
 
+use nalgebra::DMatrix;
+use phea_dynamics::least_squares::{Linearised, Settings};
+
 use super::channels::Together;
 use super::recording::{Recording, SignalKind};
 use super::warm::TestOil;
@@ -45,6 +48,46 @@ pub(super) fn shared_changes(
         moved.iter().zip(&undisturbed).map(|(moved, own)| moved - own).collect()
     };
     errors(together.recordings).iter().map(change).collect()
+}
+
+/// What is left of the residuals of a minimum where the instruments err as explains most of them,
+/// within what they are stated to be wrong by, and the coefficients follow.
+///
+/// ```text
+/// r - J x - D a        x, a by least squares,    |a| <= sqrt(3) standard deviations
+/// ```
+pub(super) fn without_errors(at: &Linearised, shared: &[Vec<f64>]) -> Vec<f64> {
+    if shared.is_empty() {
+        return at.residuals.clone();
+    }
+    let beyond = Settings::default().robust_beyond;
+    let rows = at.residuals.len();
+    let own = at.jacobian.len().checked_div(rows).unwrap_or(0);
+    let count = own + shared.len();
+    let row = |index: usize| {
+        let slopes = at.jacobian.iter().skip(index * own).take(own).copied();
+        slopes.chain(shared.iter().map(move |change| change.get(index).copied().unwrap_or(0.0)))
+    };
+    let [mut normal, mut score] = [DMatrix::<f64>::zeros(count, count), DMatrix::zeros(count, 1)];
+    for (index, residual) in at.residuals.iter().enumerate().filter(|(_, one)| one.abs() <= beyond) {
+        let slopes: Vec<f64> = row(index).collect();
+        for (i, first) in slopes.iter().enumerate().filter(|(_, first)| **first != 0.0) {
+            score[(i, 0)] += first * residual;
+            slopes.iter().enumerate().for_each(|(j, second)| normal[(i, j)] += first * second);
+        }
+    }
+    // an error has its stated deviation where the residuals say nothing of it
+    for index in 0..count {
+        normal[(index, index)] += if index < own { 1e-9 * normal[(index, index)] + 1e-12 } else { 1.0 };
+    }
+    let Some(normal) = normal.cholesky() else { return at.residuals.clone() };
+    let mut found = normal.solve(&score);
+    let bound = 3.0_f64.sqrt();
+    for index in own..count {
+        found[(index, 0)] = found[(index, 0)].clamp(-bound, bound);
+    }
+    let explained = |index: usize| row(index).zip(found.iter()).map(|(slope, one)| slope * one).sum::<f64>();
+    at.residuals.iter().enumerate().map(|(index, residual)| residual - explained(index)).collect()
 }
 
 /// All errors of all instruments, each once.

@@ -117,8 +117,13 @@ impl Identification {
             branch.into_iter().enumerate().map(move |(range, found)| (is_rising, range, found))
         });
         let places = all.filter(|(.., (_, rows))| *rows > 0).map(|(is_rising, range, (sum, rows))| {
-            let from = least + range as f64 * width;
-            MisfitPlace { is_rising, command: [from, from + width], share: sum / rows as f64 / signal.range }
+            // the end at null is null, not the rounding of a sum
+            let end = |steps: usize| ((least + steps as f64 * width) / width * 1e6).round() * 1e-6 * width;
+            MisfitPlace {
+                is_rising,
+                command: [end(range), end(range + 1)],
+                share: sum / rows as f64 / signal.range,
+            }
         });
         places.max_by(|one, other| one.share.abs().total_cmp(&other.share.abs()))
     }

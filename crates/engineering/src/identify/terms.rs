@@ -86,8 +86,12 @@ pub(super) fn with_terms<'a>(
             let mut with = fit::a_few_steps_with(&found, tested, watch)?;
             let mut gain = gained(&found, &with);
             if gain > 0.0 || fits_badly {
-                with = fit::with_another_model(&found, tested, watch)?;
-                gain = gained(&found, &with);
+                let whole = fit::with_another_model(&found, tested, watch)?;
+                let of_whole = gained(&found, &whole);
+                // it may end elsewhere, and worse
+                if of_whole > gain {
+                    (with, gain) = (whole, of_whole);
+                }
             }
             left.push(TermEvidence { term, gain, taken: false });
             if gain >= DECISIVE && best.as_ref().is_none_or(|(most, _)| gain > *most) {

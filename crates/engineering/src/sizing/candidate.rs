@@ -276,6 +276,14 @@ fn stiffening(option: &HoseOption, findings: &mut Vec<SizingReason>) {
 
 /// The time constant with the flow gains of both sides of null, at the least stiffness.
 fn null_sides(problem: &SizingProblem, candidate: &Candidate, findings: &mut Vec<SizingReason>) {
+    if let Some(share) = problem.dead_band {
+        let text = format!(
+            "the edges of the valve overlap, and K_qU at null, which is sized with, is {} % of that beyond the lap: a loop of this gain is unstable \
+             there. State the gain beyond the lap, `sizing.flow_gain`, and its `flow_pressure_coefficient`",
+            significant(100.0 * share, 2)
+        );
+        rejects(findings, text);
+    }
     let Some(gains) = problem.null_flow_gains else { return };
     let softest = problem.with_stiffness(candidate.branch.stiffness.minimum);
     let [below, above] = gains.map(|flow_gain| {

@@ -5,6 +5,7 @@ use phea_hydraulics::linear::LinearParameters;
 
 use super::{HoseOption, OtherMeansProblem, SizedLoad, SizingProblem};
 use crate::catalogue::{Catalogue, CatalogueKind, DASH_SIZES};
+use crate::caveat::overlap;
 use crate::project::{self, HoseProperties, Load, Project, SettlingTime, Speed};
 use crate::quantity::significant;
 use crate::rig::{
@@ -91,6 +92,7 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
         },
         sensor_alone: rig.softened(&rig.linear).sensor_stiffness,
         load: sized_load(actuator, rig),
+        dead_band: dead_band(setup, wish.flow_gain)?,
         null_flow_gains: rig.null_flow_gains().filter(|_| {
             wish.flow_gain
                 .or(project.linear.get("flow_gain"))
@@ -293,4 +295,12 @@ fn sooner(project: &Project, time_constant_s: f64) -> Option<String> {
         one.number,
         one.wish.settling_time_s?
     ))
+}
+
+/// K_qU at null over that beyond the lap of a valve whose edges overlap, where no K_qU is stated.
+fn dead_band(setup: &Setup<'_>, stated: Option<f64>) -> Result<Option<f64>, SizingError> {
+    let components = setup.rig()?.actuator.components();
+    let is_stated = stated.or(setup.project.linear.get("flow_gain")).is_some();
+    let found = overlap::dead_band(&components.valve, &components.supply).map(|[_, _, share]| share);
+    Ok(found.filter(|_| !is_stated))
 }

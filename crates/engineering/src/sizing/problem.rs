@@ -29,6 +29,9 @@ pub struct SizingProblem {
     /// K_qU of a spool at null that retracts the piston and of one that extends it, m3/(s V);
     /// `None` where they are equal or K_qU is stated.
     pub null_flow_gains: Option<[f64; 2]>,
+    /// K_qU at null over that beyond the lap, of a valve whose edges overlap; `None` of any other,
+    /// and where K_qU is stated.
+    pub dead_band: Option<f64>,
     /// Bulk modulus of the fluid beta_0, Pa.
     pub fluid_modulus: f64,
     /// Density of the fluid, kg/m3.

@@ -23,7 +23,7 @@ pub enum OpeningLaw<S = f64> {
 ///
 /// ```text
 /// s+ = u - l+            s- = -u - l-                      the travel of an edge beyond its lap
-/// a  = (s + sqrt(s^2 + (r l)^2))/2,    r = 1/100           the edge is rounded over a share of its lap
+/// a  = (s + sqrt(s^2 + (r l)^2))/2,    r = 1/500           the edge is rounded over a share of its lap
 /// u+ = a/(1 + c a)                                         c the saturation
 /// ```
 ///
@@ -95,8 +95,8 @@ impl<S: Scalar> LeakageShape<S> {
 }
 
 /// Share of its lap over which an edge is rounded: the law has a slope everywhere, and differs from
-/// a sharp edge by half a hundredth of the lap at most.
-const ROUNDED: f64 = 0.01;
+/// a sharp edge by a thousandth of the lap at most.
+const ROUNDED: f64 = 0.002;
 
 /// Square of a travel that moves nothing: keeps the root of a sharp edge apart from zero.
 const NO_TRAVEL: f64 = 1e-60;

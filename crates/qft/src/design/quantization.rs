@@ -37,8 +37,8 @@ pub enum QuantizationError {
     /// A converter is impossible.
     #[error(transparent)]
     Converter(#[from] ConverterError),
-    /// A continuous controller has no samples to round.
-    #[error("rounding needs a sampled loop")]
+    /// A continuous controller has no samples to round, and the waves of lines have no recursion.
+    #[error("the effect of rounding is computed for sampled loops whose lines are lumped")]
     Continuous,
     /// A coefficient beyond what its format can hold.
     #[error(transparent)]

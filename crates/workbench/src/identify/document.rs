@@ -142,9 +142,15 @@ fn terms(found: &Identification) -> Vec<String> {
         })
         .collect();
     let left = (!left.is_empty()).then(|| {
-        format!("They do not ask for {}: less than {DECISIVE} is not decisive.", left.join(", nor for "))
+        format!("They do not ask for {}: only a fall of {DECISIVE} is decisive.", left.join(", nor for "))
     });
-    taken.chain(left).collect()
+    let is_doubtful = found.terms.iter().any(|one| one.taken) && !found.misfits().is_empty();
+    let doubt = is_doubtful.then(|| {
+        "The model does not explain these recordings: what they ask for may stand for something that the model has not, with intervals that \
+         do not hold."
+            .to_string()
+    });
+    taken.chain(left).chain(doubt).collect()
 }
 
 fn described(model: LeakageModel) -> &'static str {
@@ -175,7 +181,9 @@ fn coefficients(found: &Identification) -> Vec<Vec<Cell>> {
                 Some([low, high]) => [Some(low), Some(high)].map(number),
                 None => [Cell::Missing, Cell::Missing],
             };
-            let mut row = vec![Cell::Code((*name).to_string()), number(interval.map(|_| value))];
+            let path = found.path(name);
+            let name = path.strip_prefix("valve.").unwrap_or(name);
+            let mut row = vec![Cell::Code(name.to_string()), number(interval.map(|_| value))];
             row.extend(ends(interval));
             if let Some(bootstrap) = &found.bootstrap {
                 row.extend(ends(interval.and(bootstrap.intervals.get(index).copied())));

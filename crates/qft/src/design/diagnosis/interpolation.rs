@@ -277,5 +277,7 @@ fn real_points(ceilings: &Ceilings) -> Vec<Complex64> {
     let count = (decades * POINTS_PER_DECADE).ceil().clamp(1.0, POINTS_MAXIMUM);
     let step = decades * std::f64::consts::LN_10 / count;
     let inner = (0..count as u32).map(|index| low * portable::exp(step * f64::from(index)));
-    inner.chain([high]).map(|s| Complex64::new(s, 0.0)).collect()
+    let points = inner.chain([high]).map(|s| Complex64::new(s, 0.0));
+    // the ends of the plane are the image of no point
+    points.filter(|at| ceilings.boundary.plane.root(*at).re.is_finite()).collect()
 }
