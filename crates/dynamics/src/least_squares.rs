@@ -16,6 +16,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 pub use uncertainty::{Direction, Uncertainty, uncertainty, uncertainty_by_scale, uncertainty_with_shared};
 
+use crate::portable;
 use crate::watch::Stopped;
 
 /// Residuals, and their derivatives row by row.
@@ -95,9 +96,46 @@ pub struct Minimum {
 pub type Evaluate<'a> = &'a mut dyn FnMut(&[f64]) -> Result<Option<Linearised>, Stopped>;
 
 /// The loss of a residual, rho.
-fn loss(residual: f64, beyond: f64) -> f64 {
+///
+/// # Example
+/// ```
+/// use phea_dynamics::least_squares::loss;
+/// assert_eq!([loss(1.0, 2.0), loss(-2.0, 2.0), loss(4.0, 2.0)], [0.5, 2.0, 6.0]);
+/// ```
+pub fn loss(residual: f64, beyond: f64) -> f64 {
     let magnitude = residual.abs();
     if magnitude <= beyond { residual * residual / 2.0 } else { beyond * (magnitude - beyond / 2.0) }
+}
+
+/// Rounds in which the likeliest scale is found.
+const SCALE_ROUNDS: usize = 30;
+
+/// The contribution of residuals to the negative logarithm of a likelihood, at their likeliest
+/// scale s, which is at least `least`. A constant is left out.
+///
+/// ```text
+/// n ln s + sum rho(r/s)        s^2 = sum psi(r/s) r s/n
+/// ```
+///
+/// # Example
+/// Of plain squares the scale is the root mean square, and half of each residual's loss is left.
+/// ```
+/// use phea_dynamics::least_squares::negative_log_likelihood;
+/// let found = negative_log_likelihood(&[3.0, -3.0, 3.0], 0.0, f64::INFINITY);
+/// assert!((found - 3.0 * (3.0_f64.ln() + 0.5)).abs() < 1e-12);
+/// ```
+pub fn negative_log_likelihood(residuals: &[f64], least: f64, beyond: f64) -> f64 {
+    let count = residuals.len().max(1) as f64;
+    let mut scale = 1.0_f64.max(least);
+    for _ in 0..SCALE_ROUNDS {
+        let weighted = |residual: &f64| {
+            let relative = (residual / scale).abs();
+            relative.min(beyond) * relative
+        };
+        let square = residuals.iter().map(weighted).sum::<f64>() / count;
+        scale = (scale * square.sqrt()).max(least);
+    }
+    count * portable::ln(scale) + residuals.iter().map(|residual| loss(residual / scale, beyond)).sum::<f64>()
 }
 
 /// Its derivative over the residual, psi(r)/r.

@@ -200,9 +200,10 @@ pub struct Identification {
     pub first_guess: StaticCoefficients,
     /// Both models of the leakage compared.
     pub evidence: ModelEvidence,
-    /// What each term of the valve explains.
+    /// Evidence for each term of the valve.
     pub terms: Vec<TermEvidence>,
-    /// How well each signal is explained.
+    /// How well each signal is explained, with the instruments wrong as explains most, within their
+    /// stated accuracies.
     pub signals: Vec<SignalFit>,
     /// Root mean square of all residuals, each over the range of its signal.
     pub residual_rms: f64,
@@ -382,8 +383,8 @@ fn usual(
 /// Both models of the leakage compared, with what the valve has beyond edges that open in
 /// proportion; and the fit of the wanted model, or else the preferred one, or else the usual one.
 ///
-/// What a valve has beyond may make one model of the leakage look like the other: where it has
-/// something, both are compared again with it.
+/// A term of the valve may make one model of the leakage look like the other: where one is taken,
+/// both are compared again beside it.
 fn best_model<'a>(
     first: Fit<'a>,
     models: (Option<LeakageModel>, LeakageModel),

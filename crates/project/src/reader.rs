@@ -324,8 +324,13 @@ impl<'a> Reader<'a> {
 
     /// Opens the table under a hit; returns whether it is one.
     fn enter(&mut self, key: Key, hit: Hit<'a>, path: String) -> bool {
+        self.enter_as(key, hit, path, "a table")
+    }
+
+    /// The same of a key that expects this.
+    fn enter_as(&mut self, key: Key, hit: Hit<'a>, path: String, expected: &str) -> bool {
         if !matches!(hit.node.value, Value::Table(_)) {
-            self.wrong_kind(key, "a table", hit.node);
+            self.wrong_kind(key, expected, hit.node);
             return false;
         }
         self.open(path, hit.node.place, vec![Layer { node: hit.node, hidden: Vec::new(), entry: hit.entry }]);

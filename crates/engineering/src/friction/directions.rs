@@ -1,6 +1,6 @@
 //! Evidence for one friction in both directions, or for one in each.
 
-use phea_dynamics::least_squares::Settings;
+use phea_dynamics::least_squares::{Settings, negative_log_likelihood};
 use phea_dynamics::portable;
 use phea_hydraulics::friction::LuGre;
 
@@ -46,9 +46,6 @@ pub struct DirectionEvidence {
     /// One friction for both directions, then one for each.
     pub models: [ExplainedByDirections; 2],
 }
-
-/// Number of rounds for finding the likeliest value of a scale.
-const ROUNDS: usize = 30;
 
 impl DirectionEvidence {
     /// By how much the criterion is lower with levels of each direction.
@@ -109,23 +106,9 @@ fn losses<'a>(problem: &'a FrictionProblem<'_>, residuals: &'a [f64]) -> impl It
     problem.channels.iter().map(move |channel| {
         let [from, to] = channel.residuals;
         let own = residuals.get(from..to).unwrap_or_default();
-        let count = rows_of(channel).max(1.0);
-        // in the unit of the signal; no finer than an instrument resolves
+        // over the scale of the fit; no finer than an instrument resolves
         let unit = channel.effective_scale();
-        let mut scale = unit.max(channel.finest);
-        for _ in 0..ROUNDS {
-            let weighted = |residual: &f64| {
-                let relative = (residual * unit / scale).abs();
-                relative.min(beyond) * relative
-            };
-            let square = own.iter().map(weighted).sum::<f64>() / count;
-            scale = (scale * square.sqrt()).max(channel.finest);
-        }
-        let loss = |residual: &f64| {
-            let relative = (residual * unit / scale).abs();
-            let inside = relative.min(beyond);
-            inside * (relative - inside / 2.0)
-        };
-        count * portable::ln(scale) + own.iter().map(loss).sum::<f64>()
+        let scales = rows_of(channel) * portable::ln(unit);
+        negative_log_likelihood(own, channel.finest / unit, beyond) + scales
     })
 }

@@ -177,7 +177,7 @@ impl<'a> SlidingProfile<'a> {
         }
     }
 
-    /// Where a search ends over the variables, or over F_C in place of the fall of a direction.
+    /// The end of a search over the variables, or over F_C in place of the fall of a direction.
     fn searched(
         &self,
         start: &[f64],

@@ -211,7 +211,7 @@ impl<'a> Together<'a> {
         self.searched_with(start, few, watch)
     }
 
-    /// Where the first steps of a search from here lead.
+    /// The end of the first steps of a search from here.
     pub(super) fn searched_briefly(&self, start: &[f64], watch: Watch<'_>) -> Result<Minimum, Stopped> {
         let brief = Settings { maximum_evaluations: FIRST_STEPS, ..Settings::default() };
         self.searched_with(start, brief, watch)

@@ -1,6 +1,6 @@
 //! Which model of the leakage the recordings support.
 
-use phea_dynamics::least_squares::Settings;
+use phea_dynamics::least_squares::{Settings, negative_log_likelihood};
 use phea_dynamics::portable;
 use phea_hydraulics::servovalve::{LeakageModel, StaticCoefficients};
 
@@ -10,11 +10,8 @@ use super::fit::Fit;
 /// Raftery 1995, "very strong").
 pub const DECISIVE: f64 = 10.0;
 
-/// Number of rounds for finding the likeliest value of a scale.
-const ROUNDS: usize = 30;
-
 /// Greatest correlation of neighbours that is used: one row in two hundred counts.
-pub(super) const MOST_CORRELATED: f64 = 0.99;
+const MOST_CORRELATED: f64 = 0.99;
 
 /// How well a model of the leakage explains the recordings.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,11 +82,7 @@ pub(super) fn criteria(fits: [&Fit<'_>; 2]) -> [f64; 2] {
     let second_is_better = sum(&losses[1], &all) < sum(&losses[0], &all);
     let [first, second] = &signals;
     let better = if second_is_better { second } else { first };
-    let share = |correlation: f64| {
-        let correlation = correlation.clamp(0.0, MOST_CORRELATED);
-        (1.0 - correlation) / (1.0 + correlation)
-    };
-    let shares: Vec<f64> = better.iter().map(|signal| share(signal.correlation)).collect();
+    let shares: Vec<f64> = better.iter().map(|signal| independent_share(signal.correlation)).collect();
     let independent_rows: f64 =
         better.iter().zip(&shares).map(|(signal, share)| share * signal.rows as f64).sum();
     let of = |index: usize| {
@@ -99,30 +92,21 @@ pub(super) fn criteria(fits: [&Fit<'_>; 2]) -> [f64; 2] {
     [of(0), of(1)]
 }
 
+/// Share of rows that are independent where neighbouring residuals have this correlation.
+pub(super) fn independent_share(correlation: f64) -> f64 {
+    let correlation = correlation.clamp(0.0, MOST_CORRELATED);
+    (1.0 - correlation) / (1.0 + correlation)
+}
+
 /// The contribution of each signal to -ln L at its likeliest scale.
 fn losses(fit: &Fit<'_>) -> Vec<f64> {
     let beyond = Settings::default().robust_beyond;
     let residuals = fit.together.by_channel(&fit.minimum.linearised.residuals);
     let of = |(channel, own): (&super::channels::Channel, &[f64])| {
-        let count = own.len() as f64;
         // over the scale of the fit; no finer than an instrument resolves
         let least = channel.least_scale() / channel.scale;
-        let mut scale = 1.0_f64.max(least);
-        for _ in 0..ROUNDS {
-            let weighted = |residual: &f64| {
-                let relative = (residual / scale).abs();
-                relative.min(beyond) * relative
-            };
-            let square = own.iter().map(weighted).sum::<f64>() / count;
-            scale = (scale * square.sqrt()).max(least);
-        }
-        let loss = |residual: &f64| {
-            let relative = (residual / scale).abs();
-            let inside = relative.min(beyond);
-            inside * (relative - inside / 2.0)
-        };
         let scales = fit.together.scales(channel).map(portable::ln).sum::<f64>();
-        count * portable::ln(scale) + scales + own.iter().map(loss).sum::<f64>()
+        negative_log_likelihood(own, least, beyond) + scales
     };
     fit.together.channels.iter().zip(residuals).map(of).collect()
 }

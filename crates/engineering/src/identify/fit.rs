@@ -81,6 +81,11 @@ impl Fit<'_> {
         self.signals_with(&self.minimum.linearised.residuals)
     }
 
+    /// Whether a signal is left unexplained.
+    pub(super) fn has_misfit(&self) -> bool {
+        self.signals().iter().any(|signal| signal.misfit().is_some())
+    }
+
     /// How well each signal is explained where these residuals are left.
     pub(super) fn signals_with(&self, residuals: &[f64]) -> Vec<SignalFit> {
         let residuals = self.together.by_channel(residuals);

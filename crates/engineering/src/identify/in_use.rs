@@ -179,8 +179,7 @@ fn settings(
     settings
 }
 
-/// What the project declares of the valve and the recordings tell nothing of, taken away: an
-/// identified valve has what it was identified with.
+/// Settings that take away the declared terms of the valve without which it was identified.
 fn without(found: &Identification, project: &Project) -> Vec<String> {
     let terms = found.tested.terms;
     let declares = |path: &str| project.number(path).is_some_and(|number| number != 0.0);

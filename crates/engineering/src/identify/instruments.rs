@@ -50,7 +50,7 @@ pub(super) fn shared_changes(
     errors(together.recordings).iter().map(change).collect()
 }
 
-/// What is left of the residuals of a minimum where the instruments err as explains most of them,
+/// The rest of the residuals of a minimum where the instruments err as explains most of them,
 /// within what they are stated to be wrong by, and the coefficients follow.
 ///
 /// ```text

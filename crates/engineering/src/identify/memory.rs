@@ -1,4 +1,4 @@
-//! What the spool remembers where a test begins.
+//! The memory of the spool at the beginning of a test.
 //!
 //! ```text
 //! z = s h + (z_0 - s h) exp(-|dU|/(2 h))        the slow spool:  dz/dz_0 = exp(-S/(2 h)),  S the way of the command since the first row
@@ -8,14 +8,14 @@
 //! found for each test by itself, where the loss of its first residuals is least, and the
 //! coefficients are fitted anew with it, until it stays.
 
-use phea_dynamics::least_squares::Settings;
+use phea_dynamics::least_squares::{Settings, loss};
 use phea_dynamics::portable;
 use phea_dynamics::watch::Watch;
 use phea_hydraulics::servovalve::TestInput;
 
 use super::IdentifyError;
 use super::channels::Channel;
-use super::evidence::{DECISIVE, MOST_CORRELATED, criteria};
+use super::evidence::{DECISIVE, criteria, independent_share};
 use super::fit::{self, Fit};
 use super::recording::Recording;
 
@@ -52,7 +52,7 @@ pub(super) fn remembered(
     width: f64,
     watch: Watch<'_>,
 ) -> Result<Option<WithMemories>, IdentifyError> {
-    if first.signals().iter().any(|signal| signal.misfit().is_some()) {
+    if first.has_misfit() {
         let mut went_on = first.together.recordings.to_vec();
         went_on.iter_mut().for_each(|recording| goes_on(recording, width));
         let start = first.together.variables.start();
@@ -62,8 +62,7 @@ pub(super) fn remembered(
             return settled(&other, vec![true; went_on.len()], watch).map(Some);
         }
     }
-    let asked: Vec<bool> =
-        memories(first).iter().map(|told| told.is_some_and(|one| one.gain > DECISIVE)).collect();
+    let asked: Vec<bool> = memories(first).iter().map(is_asked).collect();
     if !asked.contains(&true) {
         return Ok(None);
     }
@@ -80,7 +79,6 @@ fn goes_on(recording: &mut Recording, width: f64) {
 
 /// The memories where they and the coefficients stay.
 fn settled(first: &Fit<'_>, mut asked: Vec<bool>, watch: Watch<'_>) -> Result<WithMemories, IdentifyError> {
-    let is_asked = |told: &Option<FirstMemory>| told.is_some_and(|one| one.gain > DECISIVE);
     let mut told = memories(first);
     let mut recordings = first.together.recordings.to_vec();
     let mut start = first.minimum.variables.clone();
@@ -111,6 +109,11 @@ struct FirstMemory {
     gain: f64,
 }
 
+/// Whether the recording asks for it.
+fn is_asked(told: &Option<FirstMemory>) -> bool {
+    told.is_some_and(|one| one.gain > DECISIVE)
+}
+
 /// That of each recording; `None` where no row shows it.
 fn memories(fit: &Fit<'_>) -> Vec<Option<FirstMemory>> {
     let signals = fit.signals();
@@ -118,9 +121,7 @@ fn memories(fit: &Fit<'_>) -> Vec<Option<FirstMemory>> {
     let of = |(index, recording): (usize, &Recording)| {
         let begun = Begun::new(fit, index, recording);
         let own = signals.iter().filter(|signal| signal.recording == index);
-        let correlation =
-            own.map(|signal| signal.correlation.clamp(0.0, MOST_CORRELATED)).fold(0.0, f64::max);
-        let share = (1.0 - correlation) / (1.0 + correlation);
+        let share = independent_share(own.map(|signal| signal.correlation).fold(0.0, f64::max));
         let at = |place: i32| half * f64::from(place) / f64::from(TRIED / 2);
         let tried = (-TRIED / 2..=TRIED / 2).map(|place| (place, begun.loss(at(place))));
         let (place, _) = tried.min_by(|one, other| one.1.total_cmp(&other.1))?;
@@ -164,10 +165,10 @@ impl<'f> Begun<'f> {
         let of_channel = |channel: &Channel| -> f64 {
             let Some(signal) = self.recording.signals.get(channel.signal) else { return 0.0 };
             let read = outputs.iter().zip(&signal.values).filter(|(_, value)| value.is_some());
-            let residuals = read.zip(together.scales(channel)).map(|((output, value), scale)| {
-                ((signal.kind.shown(output) - value.unwrap_or(0.0)) / scale).abs()
-            });
-            residuals.map(|one| one.min(beyond) * (one - one.min(beyond) / 2.0)).sum()
+            let residuals = read
+                .zip(together.scales(channel))
+                .map(|((output, value), scale)| (signal.kind.shown(output) - value.unwrap_or(0.0)) / scale);
+            residuals.map(|residual| loss(residual, beyond)).sum()
         };
         together.channels.iter().filter(|channel| channel.recording == self.index).map(of_channel).sum()
     }

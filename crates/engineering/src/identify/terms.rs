@@ -77,7 +77,6 @@ pub(super) fn with_terms<'a>(
     let mut taken: Vec<TermEvidence> = Vec::new();
     loop {
         let tested = found.together.tested;
-        let fits_badly = found.signals().iter().any(|signal| signal.misfit().is_some());
         let mut left: Vec<TermEvidence> = Vec::new();
         let mut best: Option<(f64, Fit<'a>)> = None;
         for term in ValveTerm::ALL.into_iter().filter(|term| !term.is_in(tested.terms)) {
@@ -85,7 +84,7 @@ pub(super) fn with_terms<'a>(
             // far from where a wrong model ended, a few steps do not show what a term is worth
             let mut with = fit::a_few_steps_with(&found, tested, watch)?;
             let mut gain = gained(&found, &with);
-            if gain > 0.0 || fits_badly {
+            if gain > 0.0 || found.has_misfit() {
                 let whole = fit::with_another_model(&found, tested, watch)?;
                 let of_whole = gained(&found, &whole);
                 // it may end elsewhere, and worse

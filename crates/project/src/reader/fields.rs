@@ -314,7 +314,7 @@ impl Visitor for Reader<'_> {
                 }
                 true
             }
-            _ => self.enter(key, hit, path),
+            _ => self.enter_as(key, hit, path, "a table, or an array of its values"),
         };
         if entered {
             let mut value = T::default();

@@ -117,7 +117,7 @@ impl FrictionProblem<'_> {
         ]
     }
 
-    /// Where a search begins with a curve and a zero of the force.
+    /// The start of a search with a curve and a zero of the force.
     pub(super) fn start(&self, (curve, zero): &(Stribeck, f64)) -> Vec<f64> {
         let Around { lugre, force, damping, .. } = self.around;
         let over = |value: f64, usual: f64| portable::ln(value / usual);
