@@ -3,6 +3,7 @@
 //! A simulation includes the whole machine. What the linear plant cannot represent is stated before
 //! the verdict; where a specification depends on it, the verdict is not proven.
 
+mod beyond_reach;
 mod fed;
 mod friction_directions;
 mod leakage_humps;
@@ -15,6 +16,7 @@ use phea_hydraulics::cross_port::Restrictor;
 use phea_hydraulics::operating_point::{Condition, OperatingPoint};
 use phea_hydraulics::series::MOST_SEGMENTS;
 
+use beyond_reach::beyond_reach;
 use fed::{fed_in_loop, feed_forward, impedance, measured_without_pressures, pressures_in_loop};
 use friction_directions::friction_directions;
 use leakage_humps::leakage_humps;
@@ -51,6 +53,7 @@ pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
         .map(|sentence| Caveat { sentence, unproven: false });
     of_valve
         .chain(misfits(setup))
+        .chain(beyond_reach(setup))
         .chain(friction_directions(setup))
         .chain(of_rig)
         .chain(moved_roots(setup))

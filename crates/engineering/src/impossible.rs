@@ -2,6 +2,7 @@
 //! it and what would satisfy it.
 
 mod in_time;
+mod on_rig;
 
 use phea_qft::design::{DesignProblem, Finding, FindingSeverity, diagnose};
 use phea_qft::family::{Extent, Family, UncertainFamily, vertices};
@@ -22,9 +23,10 @@ const MEMBERS: usize = 8;
 const COORDINATES_MAXIMUM: usize = 8;
 
 /// Requirements that no linear loop can satisfy: limits that cross; what a few plants forbid
-/// (the nominal one, some corners, some members), whatever the controller; and times shorter than a
-/// delay. Each holds for every controller and prefilter; an empty list does not mean that a
-/// controller exists. Where there is no robust problem, only crossed limits are found.
+/// (the nominal one, some corners, some members), whatever the controller; times shorter than a
+/// delay; and required steps that the rig does not reach. Each holds for every controller and
+/// prefilter; an empty list does not mean that a controller exists. Where there is no robust
+/// problem, only crossed limits are found.
 ///
 /// # Errors
 /// [`SpecificationError`] for a limit that is absent or not a function of frequency.
@@ -37,14 +39,15 @@ pub fn impossibilities(source: &dyn Source, setup: &Setup<'_>) -> Result<Vec<Lat
     }
     let Ok(problem) = robust_problem(source, setup) else { return Ok(found) };
     found.extend(in_time::findings(setup, &problem));
-    found.extend(of_plants(setup, &problem));
+    let few = few_plants(&problem.family);
+    found.extend(on_rig::findings(setup, &problem, &few));
+    found.extend(of_plants(setup, &problem, few));
     Ok(found)
 }
 
 /// What a few plants forbid.
-fn of_plants(setup: &Setup<'_>, problem: &RobustProblem) -> Vec<LateError> {
-    let whole = design_problem(setup, problem);
-    let few = DesignProblem { family: few_plants(&whole.family), ..whole };
+fn of_plants(setup: &Setup<'_>, problem: &RobustProblem, family: Family) -> Vec<LateError> {
+    let few = DesignProblem { family, ..design_problem(setup, problem) };
     let is_new = |finding: &Finding| {
         finding.severity() == FindingSeverity::Impossible && !matches!(finding, Finding::CrossedLimits { .. })
     };

@@ -76,7 +76,7 @@ pub(crate) use file_names::table_names;
 pub use files::{RunTable, files};
 pub use follower::Follower;
 pub use force_limits::ForceLimit;
-pub(crate) use force_limits::ForceLimits;
+pub(crate) use force_limits::{BeyondReach, ForceLimits, steps_beyond};
 pub use foreseen::{foreseen, unreadable};
 pub use reference_step::{ReferenceStep, SteppedReference, stepped_references};
 pub(crate) use required::concerned;

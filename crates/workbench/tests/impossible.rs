@@ -87,3 +87,101 @@ fn limits_of_tracking_that_cross() {
     };
     assert_begins(of, 1.28, 1.26, "specification[0].lower", &["the limits cross", "raise `upper`"]);
 }
+
+/// A rig whose piston stalls at (p_S - p_T) A = 47.1 kN at the lowest supply pressure.
+const RIG: &str = r#"schema = 1
+title = "rig"
+[fluid]
+bulk_modulus = "1.5 GPa"
+density = "870 kg/m3"
+[supply]
+model = "constant"
+pressure = "160 bar"
+tank_pressure = "0 bar"
+[valve]
+nominal_voltage = "10 V"
+natural_frequency = "80 Hz"
+damping_ratio = 0.8
+leakage_shape = 60
+nominal_flow = "20 L/min"
+nominal_pressure_drop = "70 bar"
+null_leakage = "0.6 L/min"
+null_leakage_pressure = "140 bar"
+[cylinder]
+piston_diameter = "70 mm"
+rod_diameter = "30 mm"
+stroke = "300 mm"
+moving_mass = "18 kg"
+internal_leakage = "1e-13 m3/(s.Pa)"
+[cylinder.friction]
+model = "stribeck"
+coulomb = "250 N"
+static = "350 N"
+stribeck_velocity = "8 mm/s"
+stribeck_exponent = 2
+regular_velocity = "1 mm/s"
+viscous = "400 N.s/m"
+[line.pipe]
+model = "parker_eo_14x2"
+[line]
+length = "0.8 m"
+model = "lumped"
+[force_sensor]
+stiffness = "150 MN/m"
+capacity = "48 kN"
+[load]
+model = "spring_mass_damper"
+mass = "40 kg"
+stiffness = "12 MN/m"
+damping = "3000 N.s/m"
+[operating_point]
+load_force = "8 kN"
+[uncertainty]
+"supply.pressure" = { nominal = "160 bar", minimum = "150 bar", maximum = "165 bar", points = 2 }
+[controller]
+numerator = "2e-4*s + 2e-3"
+denominator = "s"
+[prefilter]
+numerator = "1"
+denominator = "0.02*s + 1"
+[[specification]]
+kind = "step"
+overshoot_percent = 20
+"#;
+
+fn rig(required: &str) -> String {
+    format!("{RIG}{required}")
+}
+
+/// (70^2 - 30^2) mm^2 pi/4 at 150 bar is 47.12 kN: a step to more is none of this rig, and no
+/// verdict on it is met. The sensor ends at 48 kN.
+#[test]
+fn a_step_beyond_the_stall_force_or_the_sensor() {
+    let to = |most: f64| {
+        rig(&format!(
+            "settling_time = \"5 s\"\ninitial_force = \"8 kN\"\namplitude = \"{} kN\"\n",
+            most - 8.0
+        ))
+    };
+    let key = "specification[0].amplitude";
+    assert_begins(to, 47.1, 47.2, key, &["goes to 47.2 kN", "stalls at 47.12 kN", "150 bar"]);
+    assert_begins(to, 47.1, 48.1, key, &["48.1 kN"]);
+    let sensor = said(&to(48.1));
+    let beyond = |one: &Value| one["sentence"].as_str().unwrap().contains("`capacity` of 48 kN");
+    assert!(sensor.iter().any(beyond), "{sensor:?}");
+    let verdict = |most: f64| {
+        let verify = Request::Verify { proof: false, on_machine: false };
+        json(&to(most), &[], &[], &verify)["verdict"].as_str().unwrap().to_string()
+    };
+    assert_eq!((verdict(47.1).as_str(), verdict(47.2).as_str()), ("met", "not_proven"));
+}
+
+/// The valve moves the force by at most U V(t): far less than 20 kN in 2 ms, and more in 1 s.
+#[test]
+fn a_step_that_the_whole_voltage_does_not_bring_in_time() {
+    let in_time = |time: f64| {
+        rig(&format!("settling_time = \"{time} s\"\ninitial_force = \"8 kN\"\namplitude = \"20 kN\"\n"))
+    };
+    let parts = ["within 10.0 V the valve moves the linear plant by", "of the 20 kN", "times the flow"];
+    assert_begins(|time| in_time(-time), -1.0, -0.002, "specification[0].settling_time", &parts);
+}

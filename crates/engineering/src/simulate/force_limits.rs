@@ -3,8 +3,11 @@
 use phea_hydraulics::actuator::Components;
 use phea_hydraulics::servovalve::Supply;
 
+use super::TimeRequirement;
 use crate::project::{DeclaredActuator, Project};
+use crate::quantity::{FORCE, PRESSURE, display};
 use crate::rig::{Numbers, components};
+use crate::setup::Setup;
 
 /// Forces that a rig reaches, and those that its sensor withstands.
 pub(crate) struct ForceLimits<'a> {
@@ -13,6 +16,44 @@ pub(crate) struct ForceLimits<'a> {
     pub(super) stall: Vec<(f64, [f64; 2])>,
     /// N, to either side.
     pub(super) capacity: Option<f64>,
+}
+
+/// A step that is required and that a rig does not reach, or does not survive.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct BeyondReach {
+    /// The key that states it.
+    pub(crate) path: String,
+    /// The step and the reason.
+    pub(crate) sentence: String,
+    /// What would change that.
+    pub(crate) cure: String,
+}
+
+/// The ends of required steps that are beyond the force at which the piston stalls, or beyond the
+/// capacity of the force sensor.
+pub(crate) fn steps_beyond(setup: &Setup<'_>, required: &[TimeRequirement]) -> Vec<BeyondReach> {
+    let (Some(actuator), Ok(rig)) = (&setup.project.actuator, setup.rig()) else { return vec![] };
+    let limits = ForceLimits::of(setup.project, actuator);
+    let text = |value: f64| display(value, setup.project.motion().dimension(&FORCE), 4);
+    let mut found = Vec::new();
+    for TimeRequirement { number, steps, .. } in required {
+        let from_n = steps.initial_force_n.unwrap_or(rig.point.hydraulic_force);
+        let to_n = steps.amplitude_n.map(|amplitude_n| from_n + amplitude_n);
+        let begins = steps.initial_force_n.map(|from_n| ("initial_force", "begins at", from_n));
+        for (key, verb, force_n) in begins.into_iter().chain(to_n.map(|to_n| ("amplitude", "goes to", to_n)))
+        {
+            let own = |(reason, cure): (String, String)| BeyondReach {
+                path: format!("specification[{}].{key}", number - 1),
+                sentence: format!(
+                    "[[specification]] {number}, `{key}`: the step {verb} {}, {reason}",
+                    text(force_n)
+                ),
+                cure,
+            };
+            found.extend(limits.beyond(force_n).into_iter().map(own));
+        }
+    }
+    found
 }
 
 /// What limits a force at rest.
@@ -36,6 +77,34 @@ impl<'a> ForceLimits<'a> {
         };
         let capacity = actuator.force_sensor.capacity;
         ForceLimits { project, stall: pressures.map(stall).collect(), capacity }
+    }
+
+    /// The reasons for which the rig does not reach a force in N, or does not survive it, each with
+    /// what would change that.
+    pub(crate) fn beyond(&self, force_n: f64) -> Vec<(String, String)> {
+        let text = |value: f64| display(value, self.project.motion().dimension(&FORCE), 4);
+        let (sign, side) = if force_n < 0.0 { (-1.0, 0) } else { (1.0, 1) };
+        let mut found = Vec::new();
+        let exceeds = |(_, stall): &&(f64, [f64; 2])| sign * force_n > sign * stall[side];
+        // the declared supply comes first: the lowest of the family adds nothing to it
+        if let Some((pressure, stall)) = self.stall.iter().find(exceeds) {
+            let pressure = display(*pressure, &PRESSURE, 4);
+            let stalls = text(stall[side]);
+            found.push((
+                format!(
+                    "and at a supply of {pressure} the piston stalls at {stalls}: no controller reaches it"
+                ),
+                format!("stay within {stalls}, raise the supply pressure, or take a larger actuator"),
+            ));
+        }
+        if let Some(capacity) = self.capacity.filter(|capacity| sign * force_n > *capacity) {
+            let capacity = text(capacity);
+            found.push((
+                format!("beyond the sensor's `capacity` of {capacity}"),
+                format!("stay within {capacity}, or take a sensor of more capacity"),
+            ));
+        }
+        found
     }
 
     /// The greatest force in a direction, N with its sign, at every supply pressure of the family,

@@ -8,7 +8,7 @@ use super::course::driven_by;
 use super::force_limits::ForceLimits;
 use super::{SimulateError, measured};
 use crate::project::{DeclaredActuator, Findings, LateError, Load, MotionShape, Project, Scenario, Signal};
-use crate::quantity::{FORCE, LENGTH, PRESSURE, TIME, display};
+use crate::quantity::{FORCE, LENGTH, TIME, display};
 use crate::setup::Setup;
 use crate::source::Source;
 
@@ -129,22 +129,9 @@ impl ForceLimits<'_> {
             format!("the reference goes to {} at {}", force(value), display(time_s, &TIME, 4))
         };
         let mut found = Vec::new();
-        for (end, side) in [(least, 0), (most, 1)] {
-            let sign = if side == 0 { -1.0 } else { 1.0 };
-            let beyond = |(_, stall): &&(f64, [f64; 2])| sign * end.1 > sign * stall[side];
-            // the declared supply comes first: the lowest of the family adds nothing to it
-            if let Some((pressure, stall)) = self.stall.iter().find(beyond) {
-                found.push(format!(
-                    "{}, and at a supply of {} the piston stalls at {}: no controller reaches it",
-                    reached(end),
-                    display(*pressure, &PRESSURE, 4),
-                    force(stall[side])
-                ));
-            }
-            if let Some(capacity) = self.capacity.filter(|capacity| sign * end.1 > *capacity) {
-                let capacity = force(capacity);
-                found.push(format!("{}, beyond the sensor's `capacity` of {capacity}", reached(end)));
-            }
+        for end in [least, most] {
+            let beyond = self.beyond(end.1).into_iter();
+            found.extend(beyond.map(|(reason, _)| format!("{}, {reason}", reached(end))));
         }
         found
     }

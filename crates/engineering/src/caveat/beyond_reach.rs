@@ -1,0 +1,13 @@
+//! Required steps that the declared rig does not reach.
+
+use super::Caveat;
+use crate::setup::Setup;
+use crate::simulate::{steps_beyond, time_requirements};
+
+/// A linear loop follows a step of any size: what is beyond the stall force or the capacity of the
+/// sensor is no step of this rig.
+pub(super) fn beyond_reach(setup: &Setup<'_>) -> Vec<Caveat> {
+    let required = time_requirements(setup.project).unwrap_or_default();
+    let beyond = steps_beyond(setup, &required).into_iter();
+    beyond.map(|one| Caveat { sentence: format!("{}; {}", one.sentence, one.cure), unproven: true }).collect()
+}

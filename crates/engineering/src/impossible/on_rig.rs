@@ -1,0 +1,132 @@
+//! Required steps that the rig does not reach: beyond the force at which the piston stalls, beyond
+//! the capacity of the force sensor, or beyond what the valve's whole voltage does in the time.
+//!
+//! ```text
+//! |u(t)| <= U   gives   |y(t)| <= U integral of |h| over 0 ... t = U V(t)
+//! settled within the band b at t_s:   (1 - b) A <= y(t_s) <= U V(t_s - delay)
+//! ```
+//!
+//! h is the impulse response of the plant and V the total variation of its step response; A is the
+//! size of the step.
+
+use phea_dynamics::linear::{Polynomial, TransferFunction};
+use phea_dynamics::time_response::{step_response, uniform_times};
+use phea_dynamics::uncertain_plant::UncertainPlant;
+use phea_qft::family::Family;
+
+use crate::project::{LateError, Project};
+use crate::quantity::{DisplayUnit, FORCE, display, significant};
+use crate::robust::RobustProblem;
+use crate::setup::Setup;
+use crate::simulate::{BeyondReach, TimeRequirement, steps_beyond};
+
+/// Points of a step response.
+const POINTS: usize = 1000;
+/// What is added to the variation of a response that is known at points, as a share.
+const BETWEEN_POINTS: f64 = 0.02;
+
+/// The steps of a project that its rig does not reach, of these plants of its family.
+pub(super) fn findings(setup: &Setup<'_>, problem: &RobustProblem, few: &Family) -> Vec<LateError> {
+    let beyond = steps_beyond(setup, &problem.in_time).into_iter();
+    let beyond =
+        beyond.map(|BeyondReach { path, sentence, cure }| LateError { path, message: sentence, help: cure });
+    let slow = problem.in_time.iter().filter_map(|required| too_slow(setup, required, few));
+    beyond.chain(slow).collect()
+}
+
+fn force(project: &Project, value: f64) -> String {
+    display(value, project.motion().dimension(&FORCE), 4)
+}
+
+/// A step that the valve's whole voltage does not bring into its band in time, of the plant that
+/// does least.
+fn too_slow(setup: &Setup<'_>, required: &TimeRequirement, few: &Family) -> Option<LateError> {
+    let Family::Uncertain(few) = few else { return None };
+    let (amplitude_n, settling_s) = (required.steps.amplitude_n?, required.wish.settling_time_s?);
+    let rig = setup.rig().ok()?;
+    let from_n = required.steps.initial_force_n.unwrap_or(rig.point.hydraulic_force);
+    let stated = setup.project.controller.as_ref().and_then(|controller| controller.saturation);
+    let limit_v = stated.unwrap_or(rig.actuator.components().valve.nominal_voltage);
+    let time_s = settling_s - setup.timing.delay_s;
+    let each =
+        few.members().iter().filter_map(|values| reached(few.plant(), values, (time_s, from_n), limit_v));
+    let reached_n = each.reduce(f64::min)?;
+    let needed_n = (1.0 - required.wish.band_percent / 100.0) * amplitude_n.abs();
+    (reached_n < needed_n).then(|| LateError {
+        path: format!("specification[{}].settling_time", required.number - 1),
+        message: format!(
+            "[[specification]] {}, `settling_time`: within {} V the valve moves the linear plant by {} of the {} of the step in {}",
+            required.number,
+            significant(limit_v, 3),
+            force(setup.project, reached_n),
+            force(setup.project, amplitude_n.abs()),
+            DisplayUnit::MILLISECOND.text(settling_s, 3),
+        ),
+        help: format!(
+            "require a smaller `amplitude` or more time, or take a valve with {} times the flow",
+            significant(needed_n / reached_n, 2)
+        ),
+    })
+}
+
+/// The most that the plant with these parameters does within a time in s from an equilibrium at a
+/// force in N, by commands of at most this, V; `None` where that is not known. The command that
+/// holds the force may be taken away too.
+fn reached(
+    plant: &UncertainPlant,
+    values: &[f64],
+    (time_s, from_n): (f64, f64),
+    limit_v: f64,
+) -> Option<f64> {
+    let slow = plant.member(values)?.slow();
+    let [numerator, denominator] = [slow.command.numerator, slow.command.denominator].map(Polynomial::new);
+    let command = TransferFunction::from_polynomials(&numerator, &denominator).ok()?;
+    let moving_s = time_s - slow.dead_time_s;
+    let values = step_response(&command, &uniform_times(moving_s, POINTS).ok()?).ok()?;
+    let steps = values.iter().zip(values.iter().skip(1)).map(|(one, next)| (next - one).abs());
+    let variation = (1.0 + BETWEEN_POINTS) * (values.first()?.abs() + steps.sum::<f64>());
+    let at_rest = command.dc_gain();
+    let held_v = if at_rest.is_finite() && at_rest != 0.0 { (from_n / at_rest).abs() } else { 0.0 };
+    Some((limit_v + held_v) * variation)
+}
+
+#[cfg(test)]
+mod tests {
+    use phea_dynamics::portable;
+    use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainPlant};
+
+    use super::{BETWEEN_POINTS, reached};
+
+    fn plant(numerator: f64, denominator: &'static [f64], dead_time_s: f64) -> UncertainPlant {
+        let recorded = UncertainPlant::record(vec![], |_| PlantCoefficients {
+            command: RationalCoefficients {
+                numerator: vec![numerator.into()],
+                denominator: denominator.iter().map(|one| (*one).into()).collect(),
+            },
+            disturbance: None,
+            dead_time_s: dead_time_s.into(),
+            rate: None,
+        });
+        recorded.unwrap()
+    }
+
+    #[track_caller]
+    fn assert_reached(plant: &UncertainPlant, (time_s, from_n): (f64, f64), limit_v: f64, expected: f64) {
+        let found = reached(plant, &[], (time_s, from_n), limit_v).unwrap() / (1.0 + BETWEEN_POINTS);
+        assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
+    }
+
+    /// An integrator of 3 does 3 U t, after its dead time; a lag of 2 V to 5 N and 0.1 s does
+    /// 5 U (1 - e^(-t/0.1)), and may let go of what holds it; a resonance without damping is pushed
+    /// on every half period, so that 10 periods of 2 pi/w do 40 U/w^2.
+    // ORIGIN: analytic
+    #[test]
+    fn the_most_that_a_bounded_command_does() {
+        assert_reached(&plant(3.0, &[1.0, 0.0], 0.1), (0.6, 8.0), 2.0, 3.0);
+        let lag = 1.0 - portable::exp(-2.0);
+        assert_reached(&plant(5.0, &[0.1, 1.0], 0.0), (0.2, 0.0), 2.0, 10.0 * lag);
+        assert_reached(&plant(5.0, &[0.1, 1.0], 0.0), (0.2, 10.0), 2.0, 20.0 * lag);
+        let periods = 10.0 * std::f64::consts::TAU / 50.0;
+        assert_reached(&plant(1.0, &[1.0, 0.0, 2500.0], 0.0), (periods, 0.0), 1.0, 40.0 / 2500.0);
+    }
+}
