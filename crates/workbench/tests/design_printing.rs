@@ -381,6 +381,7 @@ fn a_structure_whose_steps_alone_miss_is_missed_in_time() {
             relative_degree: 0,
             compared_db: None,
             steps: Some(ReachedStep { overshoot_percent, settling_time_s, rise_time_s: 9.0 }),
+            misses_on_rig: false,
         };
     let met = StructureEnding::Met;
     view.structures = vec![
@@ -389,11 +390,13 @@ fn a_structure_whose_steps_alone_miss_is_missed_in_time() {
         structure(met, [4.9, 1.6]),
         structure(met, [4.9, f64::INFINITY]),
         structure(StructureEnding::Missed, [5.1, 1.6]),
+        ReachedStructure { misses_on_rig: true, ..structure(met, [4.9, 1.4]) },
     ];
     let object: serde_json::Value = serde_json::from_str(&body(&view).unwrap().print()).unwrap();
     let found: Vec<&str> =
         object["structures"].as_array().unwrap().iter().map(|one| one["status"].as_str().unwrap()).collect();
-    assert_eq!(found, ["met", "missed_in_time", "missed_in_time", "missed_in_time", "missed"]);
+    let missed = "missed_in_time";
+    assert_eq!(found, ["met", missed, missed, missed, "missed", missed]);
     assert_eq!(object["structures"][1]["worst_overshoot_percent"], 5.1);
 }
 

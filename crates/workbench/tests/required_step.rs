@@ -353,3 +353,26 @@ fn a_step_that_no_gain_satisfies_is_answered() {
         assert!(words.contains("step is not met: at most 2 % overshoot"), "{words}");
     }
 }
+
+/// A resonance of 25 rad/s whose gain is known to a factor of four: a PID with filter satisfies a
+/// step of 0.5 s, and misses the limits of tracking that lead a search there. It is moved by its
+/// steps, and no longer structure is taken.
+#[test]
+fn the_shortest_structure_is_led_by_its_steps() {
+    let step = "[[specification]]\nkind = \"step\"\novershoot_percent = 10\nsettling_time = \"0.5 s\"\n";
+    let text = format!(
+        "schema = 1\ntitle = \"resonance\"\n[plant]\nnumerator = \"k\"\n\
+         denominator = \"0.0016*s^2 + 0.01*s + 1\"\n[uncertainty]\n\
+         k = {{ nominal = 2, minimum = 1, maximum = 4, points = 3, spacing = \"log\" }}\n\
+         [[specification]]\nkind = \"robust_stability\"\nlimit = 1.4\nfrequencies = [1, 10, 100]\n\
+         band = [0, inf]\n{step}[design]\nprefilter_gain = 2\n"
+    );
+    let (object, words) = answer(&text, &Request::Design { seed: None, stages: false, repair: false });
+    assert_eq!((object["status"].as_str(), object["structure"]["name"].as_str()), (Some("met"), Some("pid")));
+    let order = |one: &Value| one["order"].as_u64().unwrap();
+    let structures = object["structures"].as_array().unwrap();
+    let longer = structures.iter().filter(|one| order(one) > 2 && one["status"] == "met");
+    assert_eq!(longer.count(), 0, "{words}");
+    let crossover = object["figures"]["crossover_rad_per_s"].as_f64().unwrap();
+    assert!(crossover > 5.0, "{crossover}");
+}

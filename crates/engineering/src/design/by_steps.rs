@@ -36,6 +36,9 @@ use crate::simulate::TrackingWish;
 
 /// Most members whose steps are looked at after each search.
 const LOOKED_AT: usize = 12;
+/// What a search by steps may lack to what it aims at, where a trial on the nonlinear rig tells
+/// more than another start, dB.
+const NEARLY_DB: f64 = 0.05;
 /// Shares of what is required that the search keeps for linear steps, since the nonlinear rig takes
 /// some of it.
 const OVERSHOOT_SHARE: f64 = 0.6;
@@ -72,6 +75,7 @@ pub(super) fn by_steps(
     let Some(led) = led(setup, aimed, (run, told))? else { return Ok(None) };
     let starts = led.starts(told, run.outcome.tried());
     let count = starts.len() as f64;
+    let least_db = if aimed.added.is_empty() { 0.0 } else { -NEARLY_DB };
     let mut best: Option<AuditedStep> = None;
     let mut waiting: Vec<BegunDesign<'_>> = Vec::new();
     for (index, (start, reach)) in starts.into_iter().enumerate() {
@@ -79,7 +83,7 @@ pub(super) fn by_steps(
         let watch = &mut within(&mut *watch, share);
         let begun = led.begun(start, told, reach, &mut within(&mut *watch, [0.0, 0.5]))?;
         match begun {
-            Some(begun) if begun.least_db >= 0.0 => {
+            Some(begun) if begun.least_db >= least_db => {
                 best = led.better(best, begun, told, &mut within(watch, [0.5, 1.0]))?;
             }
             // what the neighbours of a design do not reach, other structures may
@@ -102,6 +106,33 @@ pub(super) fn by_steps(
     let Some(best) = best else { return Ok(None) };
     let best = led.completed(best, told, &mut within(watch, [0.9, 1.0]))?;
     Ok(Some(taken(best, aimed.added, (run, told))?))
+}
+
+/// The simplest structure that reaches what is required by its steps: shorter than that of a
+/// design, and given up for it since it misses the limits on the way to the step, which may be
+/// stricter than the step itself; `None` where none does.
+pub(super) fn simpler(
+    setup: &Setup<'_>,
+    aimed: AimedSteps<'_>,
+    (run, told): (&DesignRun, &ProjectDesign),
+    watch: Watch<'_>,
+) -> Result<Option<(DesignRun, ProjectDesign)>, DesignError> {
+    let Some(led) = led(setup, aimed, (run, told))? else { return Ok(None) };
+    let starts = led.simpler(told, run)?;
+    let count = starts.len() as f64;
+    for (index, start) in starts.into_iter().enumerate() {
+        let share = [index, index + 1].map(|done| done as f64 / count);
+        let mut watch = within(&mut *watch, share);
+        let begun = led.begun(start, told, SearchReach::Anywhere, &mut watch)?;
+        let Some(begun) = begun.filter(|begun| begun.least_db >= 0.0) else { continue };
+        let found = led.agreed(begun, None, told, &mut watch)?.filter(AuditedStep::is_reached);
+        let Some(found) = found else { continue };
+        if !structures::earns_its_poles(run, told, &found.told)? {
+            let found = led.completed(found, told, &mut watch)?;
+            return Ok(Some(taken(found, aimed.added, (run, told))?));
+        }
+    }
+    Ok(None)
 }
 
 /// The design without zeros and poles that do next to nothing, led again; `None` where it has none,

@@ -52,8 +52,8 @@ pub(super) fn found_and_tried(
     watch: Watch<'_>,
 ) -> Result<(DesignRun, ProjectDesign, Option<ContinuousTwin>), DesignError> {
     let plants = SteppedPlants::default();
-    let (aim, run, told) =
-        found(setup, (given, StepAim::AS_REQUIRED, &plants), seed, &mut within(&mut *watch, [0.0, 0.5]))?;
+    let first = StepAim::first(setup, given);
+    let (aim, run, told) = found(setup, (given, first, &plants), seed, &mut within(&mut *watch, [0.0, 0.5]))?;
     let (told, twin) =
         with_trial_and_twin((source, setup), &run.problem, told, &mut within(&mut *watch, [0.5, 0.6]))?;
     let mut best = (run, told);
@@ -64,7 +64,9 @@ pub(super) fn found_and_tried(
     for index in 0..TRIES {
         let share = [index, index + 1].map(|done| 0.6 + 0.3 * done as f64 / TRIES as f64);
         let before = latest.as_ref().unwrap_or(&best);
-        if !misses(&before.1) {
+        // what the rig satisfies and a limit does not, a search with its runs may
+        let lacks_a_limit = latest.as_ref().is_some_and(|(_, told)| rank(told).0 > 0);
+        if !misses(&before.1) && !lacks_a_limit {
             break;
         }
         let aimed = AimedSteps { added: &known, ..aimed };

@@ -11,10 +11,12 @@ use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::portable;
 use phea_qft::specification::{Limit, Requirement, Specification};
 
-use super::{CommandOfSteps, DesignError, DesignLimitKind, ProjectDesign, limit_words};
+use super::deployable::limit_value;
+use super::{CommandOfSteps, DesignError, DesignLimitKind, ProjectDesign, design_limits, limit_words};
 use crate::audit::TimeFinding;
 use crate::project::{DeclaredLimit, DeclaredSpecification, Project, ResponseWish, SpecificationKind};
 use crate::robust::{RobustError, RobustProblem};
+use crate::setup::Setup;
 use crate::simulate::{ReachedStep, TimeRequirement, TrackingWish};
 use crate::specification::{specification, specifications};
 use phea_dynamics::closed_loop::ClosedLoop;
@@ -53,6 +55,16 @@ pub(super) struct StepAim {
 impl StepAim {
     /// At what is required itself.
     pub(super) const AS_REQUIRED: StepAim = StepAim { overshoot: 1.0, settling: 1.0, prefilter_gain: None };
+
+    /// The aim of the first search: at what is required itself. Where nothing but a step leads the
+    /// search, by a loop that does with the prefilter that may be built: a loop with no gain has
+    /// the spread of its plants at every frequency, and no neighbour of it is nearer to the limits
+    /// on the way to the step.
+    pub(super) fn first(setup: &Setup<'_>, given: &RobustProblem) -> StepAim {
+        let prefilter_gain = required_step(given)
+            .and(limit_value(&design_limits(setup, given), DesignLimitKind::PrefilterGain));
+        StepAim { prefilter_gain, ..StepAim::AS_REQUIRED }
+    }
 
     /// The same with a larger gain of the prefilter that the loop must do with.
     pub(super) fn with_prefilter_gain(self, factor: f64) -> StepAim {
@@ -140,10 +152,7 @@ impl StepAim {
         for (own, limit) in problem.specifications.iter_mut().zip(limits) {
             *own = limit;
         }
-        let tracks = |one: &Specification| one.requirement.is_tracking();
-        if !problem.specifications.iter().any(tracks)
-            && let Some(required) = given.in_time.iter().find(|one| one.limits.is_none())
-        {
+        if let Some(required) = required_step(given) {
             problem.specifications.push(self.towards(required)?);
             problem.specification_names.push(limit_words(DesignLimitKind::RequiredStep).to_string());
             problem.design_limits.push(DesignLimitKind::RequiredStep);
@@ -203,6 +212,14 @@ impl StepAim {
         };
         Ok(specification(&declared, ClosedLoop::Tracking, required.number).map_err(RobustError::from)?)
     }
+}
+
+/// The required step that a search is led to by limits on tracking of its own; `None` where
+/// specifications limit tracking, or none is required.
+fn required_step(given: &RobustProblem) -> Option<&TimeRequirement> {
+    let tracks = |one: &Specification| one.requirement.is_tracking();
+    let required = given.in_time.iter().find(|one| one.limits.is_none());
+    required.filter(|_| !given.specifications.iter().any(tracks))
 }
 
 /// A limit that leads to a loop whose prefilter needs no larger gain, from the first limit on

@@ -6,7 +6,7 @@ use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{
-    BINDING_DB, NamedStructure, Objective, PrefilterChoice, StructureEnding, TriedStructure,
+    BINDING_DB, ControllerChoice, NamedStructure, Objective, PrefilterChoice, StructureEnding, TriedStructure,
 };
 use phea_qft::loop_shaping::{SampledMargin, Structure};
 
@@ -51,6 +51,8 @@ pub struct ReachedStructure {
     /// audit, of others those of members spread over the family; absent where no prefilter was
     /// fitted.
     pub steps: Option<ReachedStep>,
+    /// Whether it was tried on the nonlinear rig, and a run misses what is required in time.
+    pub misses_on_rig: bool,
 }
 
 /// The word of a structure in a project; empty for one without a name.
@@ -85,7 +87,10 @@ pub(super) fn led(
     };
     let own = reached_by(run, led, &own)?;
     let mut all: Vec<ReachedStructure> = before.structures.clone();
-    all.iter_mut().for_each(|one| one.is_chosen = false);
+    for tried in all.iter_mut().filter(|one| one.is_chosen) {
+        tried.misses_on_rig = before.misses_on_rig();
+        tried.is_chosen = false;
+    }
     match all.iter_mut().find(|one| one.structure == own.structure) {
         Some(known) => *known = own,
         None => all.push(own),
@@ -137,6 +142,7 @@ fn reached_by(
     };
     Ok(ReachedStructure {
         steps,
+        misses_on_rig: false,
         name: tried.name,
         other_words: law.filter(|_| tried.name == Some(NamedStructure::Pid)).and_then(words_of_no_pid),
         order: tried.structure.order()?,
@@ -191,6 +197,23 @@ fn noise_gain_db(run: &DesignRun, told: &ProjectDesign) -> Option<f64> {
     }
     let frequencies = run.outcome.samples()?.frequencies_rad_per_s();
     noise_gain_around(&told.designed.problem, &frequencies)
+}
+
+/// True where a design lowers what it is compared by enough to be taken in place of one with fewer
+/// poles.
+pub(super) fn earns_its_poles(
+    run: &DesignRun,
+    longer: &ProjectDesign,
+    shorter: &ProjectDesign,
+) -> Result<bool, LinearError> {
+    let ControllerChoice::Any { earned_per_pole_db, .. } = longer.options.controller else {
+        return Ok(false);
+    };
+    let [own, other] = [longer, shorter].map(|one| one.design.structure.order());
+    let further = own?.saturating_sub(other?).max(1) as f64;
+    let gained_db =
+        noise_gain_db(run, shorter).zip(noise_gain_db(run, longer)).map(|(one, other)| one - other);
+    Ok(gained_db.is_some_and(|gained_db| gained_db >= earned_per_pole_db * further))
 }
 
 /// The same of the loop of a problem, over these frequencies in rad/s.

@@ -60,6 +60,10 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
             "steps missed: those of the controller that the search over frequency found; the structure alone{named} is led by its steps and may satisfy them"
         )]);
     }
+    let missed_on_rig = view.structures.iter().any(|one| one.misses_on_rig);
+    out.sentences(missed_on_rig.then(|| {
+        "nonlinear runs missed: it satisfies every specification, a run of it on the nonlinear rig missed what is required in time, and the search went on from there".to_string()
+    }));
     let way = limit_words(DesignLimitKind::RequiredStep);
     let is_led = view.structures.iter().any(|one| one.binding.as_deref() == Some(way));
     out.sentences(is_led.then(|| {
@@ -217,6 +221,7 @@ fn ending_words(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
     match one.ending {
         _ if misses_in_time(view, one) && one.is_chosen => "steps missed, nearest",
         _ if misses_in_time(view, one) => "steps missed",
+        _ if one.misses_on_rig => "nonlinear runs missed",
         StructureEnding::Met if one.is_chosen => "met, taken",
         StructureEnding::Met => "met",
         StructureEnding::Missed if one.is_chosen => "missed, nearest",
@@ -230,7 +235,7 @@ fn ending_words(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
 
 fn ending_key(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
     match one.ending {
-        _ if misses_in_time(view, one) => "missed_in_time",
+        _ if misses_in_time(view, one) || one.misses_on_rig => "missed_in_time",
         StructureEnding::Met => "met",
         StructureEnding::Missed => "missed",
         StructureEnding::NotEarned => "not_earned",

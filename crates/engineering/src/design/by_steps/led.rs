@@ -9,7 +9,7 @@ use phea_qft::loop_shaping::{Aim, DescentOptions, SampledMargin, Samples, Search
 
 use super::shaping::{RESERVE_DB, StepShaping, StepWishes};
 use super::starts::SearchReach;
-use super::{AimedSteps, with_rig, with_room};
+use super::{AimedSteps, NEARLY_DB, with_rig, with_room};
 use crate::audit::audit_request;
 use crate::design::command_of_steps::{CommandDepth, ScenarioSteps, command_of_steps};
 use crate::design::search::rank;
@@ -70,11 +70,6 @@ enum AuditDepth {
 impl AuditedStep {
     pub(super) fn is_reached(&self) -> bool {
         self.told.is_met() && self.excess <= 1.0
-    }
-
-    /// True where it keeps every limit on frequency responses.
-    fn keeps_limits(&self) -> bool {
-        self.verdict == 0
     }
 
     /// True where it is nearer than another by more than this share.
@@ -317,9 +312,11 @@ impl<'a> LedDesign<'a> {
     /// True where a design reaches what is aimed at, or is so near that a trial on the nonlinear
     /// rig tells more than another start.
     pub(super) fn suffices(&self, found: Option<&AuditedStep>) -> bool {
-        let is_near = |found: &AuditedStep| {
-            !self.aimed.added.is_empty() && found.keeps_limits() && found.excess <= NEAR
+        let keeps_limits = |found: &AuditedStep| {
+            found.verdict == 0 || found.least.as_ref().is_some_and(|least| least.margin_db >= -NEARLY_DB)
         };
+        let is_near =
+            |found: &AuditedStep| !self.aimed.added.is_empty() && keeps_limits(found) && found.excess <= NEAR;
         found.is_some_and(|found| found.is_reached() || is_near(found))
     }
 }

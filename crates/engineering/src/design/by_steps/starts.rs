@@ -1,9 +1,10 @@
 //! Designs from which searches by steps begin.
 
-use phea_qft::design::{Design, TriedStructure};
+use phea_qft::design::{Design, StructureEnding, TriedStructure};
+use phea_qft::loop_shaping::SampledMargin;
 
 use super::led::LedDesign;
-use crate::design::ProjectDesign;
+use crate::design::{DesignError, DesignRun, ProjectDesign};
 
 /// Structures that it begins from.
 const STARTS: usize = 4;
@@ -47,6 +48,29 @@ impl LedDesign<'_> {
         let is_near = !self.aimed.added.is_empty() && told.worst_run() <= NEAR;
         let beside = is_near.then(|| (design.clone(), SearchReach::Beside));
         beside.into_iter().chain(anywhere).filter(|(one, _)| !one.free_numbers.is_empty()).collect()
+    }
+}
+
+impl LedDesign<'_> {
+    /// The structures that are shorter than that of a design, and were given up for the limits on
+    /// the way to its step alone, the simplest first.
+    pub(super) fn simpler(&self, told: &ProjectDesign, run: &DesignRun) -> Result<Vec<Design>, DesignError> {
+        let own = told.design.structure.order()?;
+        let given = run.aimed.specifications.len() - run.aimed.design_limits.len();
+        let leads = |margin: &SampledMargin| {
+            let limit = margin.specification.checked_sub(given);
+            limit.and_then(|limit| run.aimed.design_limits.get(limit)).is_some_and(|kind| kind.is_led_to())
+        };
+        let mut shorter: Vec<(usize, &TriedStructure)> = Vec::new();
+        for tried in run.outcome.tried() {
+            let order = tried.structure.order()?;
+            let misses = tried.ending == StructureEnding::Missed && tried.least.as_ref().is_some_and(leads);
+            if order < own && misses && !tried.free_numbers.is_empty() {
+                shorter.push((order, tried));
+            }
+        }
+        shorter.sort_by_key(|(order, tried)| (*order, tried.structure.dimension()));
+        Ok(shorter.into_iter().map(|(_, tried)| begun_from(tried, &told.design)).collect())
     }
 }
 
