@@ -86,6 +86,24 @@ fn one_wrong_sign_is_named_and_the_proposed_setting_turns_it() {
     }
 }
 
+/// Without both port pressures the drop of the meter is not known: it is warned of, and with both
+/// it is not.
+#[test]
+fn a_drop_that_was_not_recorded_is_warned_of() {
+    let told = |text: &str| -> Vec<String> {
+        let read = read(text, "").unwrap_or_else(|refusal| panic!("{refusal}"));
+        read.warnings.into_iter().map(|one| one.message).collect()
+    };
+    let text = metering(RIGHT, true);
+    let of_drop = |text: &str| told(text).into_iter().filter(|message| message.contains("counts as zero"));
+    assert_eq!(of_drop(&text).count(), 0);
+    let [one] = of_drop(&text.replace("pressure_b_bar", "beside")).collect::<Vec<_>>().try_into().unwrap();
+    assert!(one.starts_with("without `pressure_b` the drop"), "{one}");
+    let neither = text.replace("pressure_a_bar", "one").replace("pressure_b_bar", "other");
+    let [both] = of_drop(&neither).collect::<Vec<_>>().try_into().unwrap();
+    assert!(both.starts_with("without `pressure_a` and `pressure_b` the drop"), "{both}");
+}
+
 /// The table of what a file holds says which column was turned, in its own range.
 #[test]
 fn a_column_that_is_reversed_is_described_so() {

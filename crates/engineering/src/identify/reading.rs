@@ -172,6 +172,9 @@ fn recording(
         unused,
     };
     let is_test = assembled::is_test(&taken, circuit, whole, findings);
+    if is_test {
+        assembled::warn_of_unknown_drop(&taken, circuit, whole, findings);
+    }
     // a long text and the test made of it need not be held at once
     table.close(findings);
     is_test.then(|| (assembled::assembled(declared, &taken, circuit, known), contents))
