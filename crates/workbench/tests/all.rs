@@ -121,6 +121,7 @@ mod valve_instruments;
 mod valve_memory;
 mod valve_numbers;
 mod valve_reversals;
+mod valve_siblings;
 mod valve_terms;
 mod valve_tests;
 mod velocity_sensor;

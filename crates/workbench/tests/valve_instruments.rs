@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::valve_identification::{TRUTH, identified, interval, recorded, value};
 
 /// How many of the twelve intervals of each seed hold the truth.
-fn covered(settings: &[&str], seeds: std::ops::Range<usize>) -> usize {
+pub(crate) fn covered(settings: &[&str], seeds: std::ops::Range<usize>) -> usize {
     let of_seed = |seed: usize| {
         let seed = format!("bench.seed={seed}");
         let found = identified(&recorded(&[settings, &[seed.as_str()]].concat()));
