@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! project, audit -> rigs::rigs -> Tried { project, plant } -> TriedMachine::driven, at two sizes of the step -> judge -> Run { linear, machine, agreement, reason } -> answer
-//! all satisfy what is required -> corners of the box -> the worst of them
+//! all satisfy what is required -> corners of the box and plants inside -> the worst of them
 //! ```
 
 mod corners;
@@ -52,7 +52,7 @@ pub enum TrialError {
     Stopped(#[from] Stopped),
 }
 
-/// What the corners of the box take of a trial, in rigs.
+/// What the corners of the box and the plants inside take of a trial, in rigs.
 const CORNERS_SHARE: f64 = 4.0;
 /// The stage of a trial, for the watch.
 const STAGE: &str = "nonlinear simulation";
@@ -62,13 +62,14 @@ const STAGE: &str = "nonlinear simulation";
 pub struct Trial {
     /// At least one.
     pub runs: Vec<TrialRun>,
-    /// The runs of all corners of the box that were driven, whose worst are among `runs`.
+    /// The runs of all corners of the box and plants inside that were driven, whose worst are among
+    /// `runs`.
     pub corners: Vec<TrialRun>,
     /// Plants for which no rig was found, and why.
     pub not_driven: Vec<String>,
 }
 
-/// When the corners of the box are driven.
+/// When the corners of the box and the plants inside are driven.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrivenCorners {
     /// Always: a search wants to know what the rig adds there.

@@ -51,6 +51,15 @@ const BAND_SHARE_WITH_RIG: f64 = 0.95;
 /// Least overshoot that is aimed at, percent.
 const LEAST_OVERSHOOT_PERCENT: f64 = 0.3;
 
+/// Designs from which a search by steps begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum SearchStarts {
+    /// The design, and the structures that came nearest.
+    Nearest,
+    /// The structures beyond those.
+    Others,
+}
+
 /// The aim of a search by steps, and what is known of them.
 #[derive(Clone, Copy)]
 pub(super) struct AimedSteps<'a> {
@@ -60,6 +69,8 @@ pub(super) struct AimedSteps<'a> {
     pub(super) added: &'a [AddedByRig],
     /// The plants, which all searches of a design share.
     pub(super) plants: &'a SteppedPlants,
+    /// The designs from which a search begins.
+    pub(super) from: SearchStarts,
 }
 
 /// The design with its steps led towards the aimed share of what is required, from its own

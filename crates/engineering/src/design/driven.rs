@@ -8,8 +8,8 @@
 use phea_dynamics::watch::{Watch, within};
 use phea_qft::design::{Design, DesignProblem, DesignStatus};
 
-use super::added_by_rig::added;
-use super::by_steps::{AimedSteps, SteppedPlants, by_steps, shortened};
+use super::added_by_rig::{AddedByRig, added};
+use super::by_steps::{AimedSteps, SearchStarts, SteppedPlants, by_steps, shortened, simpler};
 use super::command_of_steps::{CommandDepth, command_of_steps};
 use super::relaxed::relaxations;
 use super::search::{found, rank};
@@ -27,6 +27,11 @@ use crate::trial::Agreement;
 
 /// How often the search goes on as long as the nonlinear rig misses what is required.
 const TRIES: usize = 6;
+
+/// A try that brings the worst run nearer by less than this share is one in vain, and so many in
+/// turn are the last.
+const GAIN: f64 = 0.05;
+const IN_VAIN: usize = 2;
 
 /// A design, and its twin for the continuous loop.
 pub(super) struct ContinuousTwin {
@@ -53,42 +58,24 @@ pub(super) fn found_and_tried(
 ) -> Result<(DesignRun, ProjectDesign, Option<ContinuousTwin>), DesignError> {
     let plants = SteppedPlants::default();
     let first = StepAim::first(setup, given);
-    let (aim, run, told) = found(setup, (given, first, &plants), seed, &mut within(&mut *watch, [0.0, 0.5]))?;
-    let (told, twin) =
-        with_trial_and_twin((source, setup), &run.problem, told, &mut within(&mut *watch, [0.5, 0.6]))?;
-    let mut best = (run, told);
-    // the design that the next one begins from, unless that is the best one
-    let mut latest: Option<(DesignRun, ProjectDesign)> = None;
-    let aimed = AimedSteps { given, aim, added: &[], plants: &plants };
-    let mut known = added(&best.1, &[]);
-    for index in 0..TRIES {
-        let share = [index, index + 1].map(|done| 0.6 + 0.3 * done as f64 / TRIES as f64);
-        let before = latest.as_ref().unwrap_or(&best);
-        // what the rig satisfies and a limit does not, a search with its runs may
-        let lacks_a_limit = latest.as_ref().is_some_and(|(_, told)| rank(told).0 > 0);
-        if !misses(&before.1) && !lacks_a_limit {
-            break;
-        }
-        let aimed = AimedSteps { added: &known, ..aimed };
-        match next_design((source, setup), aimed, before, &mut within(&mut *watch, share)) {
-            Ok(Some(found)) => {
-                known = added(&found.1, &known);
-                latest = if is_better(&found.1, &best.1) {
-                    best = found;
-                    None
-                } else {
-                    Some(found)
-                };
+    let begins = (given, first, &plants);
+    let (mut driven, mut twin) =
+        simplest((source, setup), begins, seed, &mut within(&mut *watch, [0.0, 0.7]))?;
+    // without the limit that leads away from a loop without gain, the search goes another way
+    if first != StepAim::AS_REQUIRED && !driven.told.stopped && misses(&driven.told) {
+        let begins = (given, StepAim::AS_REQUIRED, &plants);
+        match simplest((source, setup), begins, seed, &mut within(&mut *watch, [0.7, 0.9])) {
+            Ok((other, _)) if is_better(&other.told, &driven.told) => {
+                (driven, twin) = (other.with_missed(&driven.told), None);
             }
-            Err(DesignError::Stopped(_)) => best.1.stopped = true,
+            Err(DesignError::Stopped(_)) => driven.told.stopped = true,
             // what was found before remains
-            Ok(None) | Err(_) => break,
-        }
-        if best.1.stopped {
-            break;
+            Ok(_) | Err(_) => {}
         }
     }
-    let aimed = AimedSteps { added: &known, ..aimed };
+    let DrivenDesign { aim, run, told, known } = driven;
+    let best = (run, told);
+    let aimed = AimedSteps { given, aim, added: &known, plants: &plants, from: SearchStarts::Nearest };
     let (run, mut told) = shorter((source, setup), aimed, best, &mut within(&mut *watch, [0.9, 0.94]));
     if told.command_of_steps.is_none() {
         told.command_of_steps = command_of_steps(setup, &told, &plants, CommandDepth::Whole);
@@ -108,6 +95,116 @@ pub(super) fn found_and_tried(
         Err(error) => return Err(error),
     }
     Ok((run, told, twin))
+}
+
+/// A design with its trial, and what its runs add to the steps of the linear loop.
+struct DrivenDesign {
+    aim: StepAim,
+    run: DesignRun,
+    told: ProjectDesign,
+    known: Vec<AddedByRig>,
+}
+
+impl DrivenDesign {
+    /// The same beside a shorter structure whose runs miss what is required.
+    fn with_missed(mut self, shorter: &ProjectDesign) -> DrivenDesign {
+        self.told.note_missed_on_rig(shorter);
+        self
+    }
+}
+
+/// The best design that a search with this aim leads to: the simplest structure by its steps,
+/// unless the nonlinear rig misses what is required with that and less with another.
+fn simplest(
+    (source, setup): (&dyn Source, &Setup<'_>),
+    (given, first, plants): (&RobustProblem, StepAim, &SteppedPlants),
+    seed: Option<u32>,
+    watch: Watch<'_>,
+) -> Result<(DrivenDesign, Option<ContinuousTwin>), DesignError> {
+    let rig = (source, setup);
+    let (aim, run, told) = found(setup, (given, first, plants), seed, &mut within(&mut *watch, [0.0, 0.5]))?;
+    let aimed = AimedSteps { given, aim, added: &[], plants, from: SearchStarts::Nearest };
+    let (simple, told) = with_simpler(setup, aimed, (&run, told), &mut within(&mut *watch, [0.5, 0.55]));
+    let Some(simple) = simple else {
+        return driven(rig, aimed, (run, told), &mut within(watch, [0.55, 1.0]));
+    };
+    let (of_simple, twin) = driven(rig, aimed, simple, &mut within(&mut *watch, [0.55, 0.8]))?;
+    if of_simple.told.stopped || !misses(&of_simple.told) {
+        return Ok((of_simple, twin));
+    }
+    let (other, _) = driven(rig, aimed, (run, told), &mut within(watch, [0.8, 1.0]))?;
+    Ok(match is_better(&other.told, &of_simple.told) {
+        true => (other.with_missed(&of_simple.told), None),
+        false => (of_simple, twin),
+    })
+}
+
+/// The simplest structure that is as good a design by its steps, where there is one, and the design
+/// itself.
+fn with_simpler(
+    setup: &Setup<'_>,
+    aimed: AimedSteps<'_>,
+    (run, mut told): (&DesignRun, ProjectDesign),
+    watch: Watch<'_>,
+) -> (Option<(DesignRun, ProjectDesign)>, ProjectDesign) {
+    if told.stopped || !told.is_met() {
+        return (None, told);
+    }
+    let found = simpler(setup, aimed, (run, &told), watch);
+    told.stopped = matches!(found, Err(DesignError::Stopped(_)));
+    // what was found before remains
+    (found.ok().flatten(), told)
+}
+
+/// A design with its trial, and as long as that misses what is required, the designs that follow
+/// from what the runs add: the best of them.
+fn driven(
+    (source, setup): (&dyn Source, &Setup<'_>),
+    aimed: AimedSteps<'_>,
+    (run, told): (DesignRun, ProjectDesign),
+    watch: Watch<'_>,
+) -> Result<(DrivenDesign, Option<ContinuousTwin>), DesignError> {
+    let problem = run.problem.clone();
+    let (told, twin) =
+        with_trial_and_twin((source, setup), &problem, told, &mut within(&mut *watch, [0.0, 0.25]))?;
+    let mut best = (run, told);
+    // the design that the next one begins from, unless that is the best one
+    let mut latest: Option<(DesignRun, ProjectDesign)> = None;
+    let mut known = added(&best.1, &[]);
+    let (mut nearest, mut in_vain) = (best.1.worst_run(), 0);
+    for index in 0..TRIES {
+        let share = [index, index + 1].map(|done| 0.25 + 0.75 * done as f64 / TRIES as f64);
+        let before = latest.as_ref().unwrap_or(&best);
+        // what the rig satisfies and a limit does not, a search with its runs may
+        let lacks_a_limit = latest.as_ref().is_some_and(|(_, told)| rank(told).0 > 0);
+        if !misses(&before.1) && !lacks_a_limit || in_vain > IN_VAIN {
+            break;
+        }
+        let from = if in_vain == IN_VAIN { SearchStarts::Others } else { SearchStarts::Nearest };
+        let aimed = AimedSteps { added: &known, from, ..aimed };
+        match next_design((source, setup), aimed, before, &mut within(&mut *watch, share)) {
+            Ok(Some(found)) => {
+                known = added(&found.1, &known);
+                let gains = found.1.worst_run() < (1.0 - GAIN) * nearest;
+                in_vain = if gains || found.1.worst_run() <= 1.0 { 0 } else { in_vain + 1 };
+                nearest = nearest.min(found.1.worst_run());
+                latest = if is_better(&found.1, &best.1) {
+                    best = found;
+                    None
+                } else {
+                    Some(found)
+                };
+            }
+            Err(DesignError::Stopped(_)) => best.1.stopped = true,
+            // what was found before remains
+            Ok(None) | Err(_) => break,
+        }
+        if best.1.stopped {
+            break;
+        }
+    }
+    let (run, told) = best;
+    Ok((DrivenDesign { aim: aimed.aim, run, told, known }, twin))
 }
 
 /// A design with the trial of its controller, and meanwhile with what was made without samples.

@@ -7,7 +7,7 @@ use phea_dynamics::watch::{Stopped, Watch, within};
 use phea_qft::design::{ControllerChoice, DesignStatus, Finding, design_stricter};
 use phea_qft::verification::Verdict;
 
-use super::by_steps::{AimedSteps, SteppedPlants, by_steps, simpler};
+use super::by_steps::{AimedSteps, SearchStarts, SteppedPlants, by_steps};
 use super::command_of_steps::{CommandDepth, command_of_steps};
 use super::problem::{design_options, design_problem};
 use super::step_aim::{REPETITIONS, StepAim};
@@ -72,17 +72,12 @@ fn led_by_steps(
 ) -> (DesignRun, ProjectDesign) {
     let misses = told.designed.view.in_time.iter().any(TimeFinding::violates);
     let command = told.exceeded_command().is_some_and(|command| !command.is_out_of_reach());
-    if told.stopped {
+    if told.stopped || !(misses || command) {
         return (run, told);
     }
-    let aimed = AimedSteps { given, aim, added: &[], plants };
-    let moved = match misses || command {
-        true => by_steps(setup, aimed, (&run, &told), watch)
-            .map(|moved| moved.filter(|moved| by_rank(&moved.1, &told).is_lt())),
-        false => simpler(setup, aimed, (&run, &told), watch),
-    };
-    match moved {
-        Ok(Some(moved)) => moved,
+    let aimed = AimedSteps { given, aim, added: &[], plants, from: SearchStarts::Nearest };
+    match by_steps(setup, aimed, (&run, &told), watch) {
+        Ok(Some(moved)) if by_rank(&moved.1, &told).is_lt() => moved,
         Err(DesignError::Stopped(_)) => {
             told.stopped = true;
             (run, told)

@@ -228,6 +228,17 @@ pub(super) fn noise_gain_around(around: &RobustProblem, frequencies_rad_per_s: &
 }
 
 impl ProjectDesign {
+    /// Takes in that a shorter structure was designed, and a run of it on the nonlinear rig misses
+    /// what is required.
+    pub(super) fn note_missed_on_rig(&mut self, shorter: &ProjectDesign) {
+        let Some(own) = shorter.structures.iter().find(|one| one.is_chosen) else { return };
+        let missed = ReachedStructure { is_chosen: false, misses_on_rig: true, ..own.clone() };
+        let known = self.structures.iter_mut().find(|one| !one.is_chosen && one.structure == own.structure);
+        if let Some(known) = known {
+            *known = missed;
+        }
+    }
+
     /// The same with the structures that were tried for less strict limits and not again.
     pub(super) fn with_shorter(mut self, tried: Vec<ReachedStructure>) -> ProjectDesign {
         let is_same = |one: &ReachedStructure, other: &ReachedStructure| one.structure == other.structure;

@@ -1,6 +1,8 @@
-//! The corners of the box on the nonlinear rig: a required step is held against them too, since
-//! what friction and limits add to a step is not largest where the linear one is worst.
+//! The corners of the box and some plants inside it on the nonlinear rig: a required step is held
+//! against them too, since what friction and limits add to a step is not largest where the linear
+//! one is worst.
 
+use phea_dynamics::portable;
 use phea_dynamics::watch::Watch;
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::verification::PlantPoint;
@@ -21,7 +23,14 @@ const ALL_OF: usize = 4;
 const GENERATORS: [usize; 11] =
     [0b0111, 0b1011, 0b1101, 0b1110, 0b1111, 0b0011, 0b0101, 0b0110, 0b1001, 0b1010, 0b1100];
 
-/// The runs of the corners that have a rig, of which something is required; empty without a box.
+/// Iterations to the golden ratio, each of which brings it at least twice as near.
+const ITERATIONS: usize = 60;
+/// Plants that are driven in all, and the fewest of them inside the box.
+const ALL: usize = 16;
+const LEAST_INSIDE: usize = 4;
+
+/// The runs of the corners and of the plants inside that have a rig, of which something is
+/// required; empty without a box.
 pub(super) fn runs_of_corners(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -56,8 +65,9 @@ pub(super) fn worst_of(runs: &[TrialRun]) -> Vec<TrialRun> {
 
 fn rigs(setup: &Setup<'_>, problem: &RobustProblem, view: &ProjectAudit) -> Result<Vec<Tried>, TrialError> {
     let Family::Uncertain(family) = &problem.family else { return Ok(vec![]) };
-    let corners = corners(family);
-    let what = format!("the worst of {} corners of the box", corners.len());
+    let (corners, inside) = (corners(family), inside(family));
+    let what =
+        format!("the worst of {} corners of the box and {} plants inside", corners.len(), inside.len());
     let rig = setup.rig()?;
     let of = |values: Vec<f64>| {
         let plant = PlantPoint::Parameters(values.clone());
@@ -72,7 +82,36 @@ fn rigs(setup: &Setup<'_>, problem: &RobustProblem, view: &ProjectAudit) -> Resu
             is_declared: false,
         })
     };
-    Ok(corners.into_iter().filter_map(of).collect())
+    Ok(corners.into_iter().chain(inside).filter_map(of).collect())
+}
+
+/// Plants inside a box, evenly spread: coordinate i of plant k is at the share that is left of
+///
+/// ```text
+/// 1/2 + k/g^(i + 1),      g^(d + 1) = g + 1    for d coordinates
+/// ```
+///
+/// (Roberts 2018, an additive sequence by the generalised golden ratio.)
+fn inside(family: &UncertainFamily) -> Vec<Vec<f64>> {
+    let corners = corners(family).len();
+    if corners == 0 {
+        return vec![];
+    }
+    let dimension = family.coordinates().len();
+    let steps = golden_steps(dimension);
+    let shares =
+        |plant: usize| -> Vec<f64> { steps.iter().map(|step| (0.5 + plant as f64 * step).fract()).collect() };
+    let count = ALL.saturating_sub(corners).max(LEAST_INSIDE);
+    (1..=count).map(|plant| family.values(&shares(plant))).collect()
+}
+
+/// 1/g, 1/g^2 ... for so many coordinates.
+fn golden_steps(dimension: usize) -> Vec<f64> {
+    let mut golden = 2.0;
+    for _ in 0..ITERATIONS {
+        golden = portable::exp(portable::ln(1.0 + golden) / (dimension as f64 + 1.0));
+    }
+    std::iter::successors(Some(1.0 / golden), |step| Some(step / golden)).take(dimension).collect()
 }
 
 /// All corners of a box of few coordinates, or sixteen in which every two coordinates have all
@@ -102,6 +141,16 @@ fn end(corner: usize, coordinate: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// ORIGIN: analytic, g is the golden ratio of one coordinate and the plastic number of two.
+    #[test]
+    fn plants_inside_are_spread_by_the_golden_ratio() {
+        let [one] = golden_steps(1)[..] else { panic!() };
+        assert!((one - (5.0_f64.sqrt() - 1.0) / 2.0).abs() < 1e-15);
+        let two = golden_steps(2);
+        assert!((1.0 / two[0] - 1.324717957244746).abs() < 1e-14);
+        assert!((two[1] - two[0] * two[0]).abs() < 1e-15);
+    }
 
     /// ORIGIN: analytic, an orthogonal array of strength two: of 16 corners, each pair of ends of
     /// two coordinates is taken 4 times.

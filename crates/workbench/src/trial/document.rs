@@ -142,7 +142,7 @@ fn required(trial: &Trial) -> Document {
     out
 }
 
-/// Which corners of the box the worst are, and by what.
+/// The corner of the box or plant inside that is the worst, and by what.
 fn corners(trial: &Trial) -> Vec<String> {
     let is_corner = |run: &&TrialRun| trial.corners.iter().any(|corner| corner.what == run.what);
     let words = |run: &TrialRun| {
@@ -153,7 +153,9 @@ fn corners(trial: &Trial) -> Vec<String> {
     };
     let mut told: Vec<String> = trial.runs.iter().filter(is_corner).filter_map(words).collect();
     if !told.is_empty() {
-        told.push("the worst corner is the one that takes the largest share of what is required".to_string());
+        told.push(
+            "the worst of them is the one that takes the largest share of what is required".to_string(),
+        );
     }
     told
 }

@@ -3,6 +3,7 @@
 use phea_qft::design::{Design, StructureEnding, TriedStructure};
 use phea_qft::loop_shaping::SampledMargin;
 
+use super::SearchStarts;
 use super::led::LedDesign;
 use crate::design::{DesignError, DesignRun, ProjectDesign};
 
@@ -27,7 +28,7 @@ pub(super) enum SearchReach {
 impl LedDesign<'_> {
     /// The design, and the structures that came nearest as they were found, its own among them
     /// where it was led since, the simplest of them first, behind its prefilter where they have
-    /// none. Before them what lies beside a design whose runs on the nonlinear rig miss by little.
+    /// none; or the structures beyond those.
     pub(super) fn starts(
         &self,
         told: &ProjectDesign,
@@ -42,12 +43,27 @@ impl LedDesign<'_> {
         };
         let others: Vec<&TriedStructure> = tried.iter().filter(|one| is_other(one)).collect();
         let others = in_order(others, |one| (least(one), one.structure.dimension()));
-        let others = others.into_iter().take(STARTS - 1).map(|tried| begun_from(tried, design));
-        let anywhere =
-            std::iter::once(design.clone()).chain(others).map(|start| (start, SearchReach::Anywhere));
+        let nearest = STARTS - 1;
+        let (skipped, most) = match self.aimed.from {
+            SearchStarts::Nearest => (0, nearest),
+            SearchStarts::Others => (nearest, STARTS),
+        };
+        let others = others.into_iter().skip(skipped).take(most).map(|tried| begun_from(tried, design));
+        let others = others.map(|start| (start, SearchReach::Anywhere));
+        let starts: Vec<(Design, SearchReach)> = match self.aimed.from {
+            SearchStarts::Others => others.collect(),
+            SearchStarts::Nearest => self.own_starts(told).chain(others).collect(),
+        };
+        starts.into_iter().filter(|(one, _)| !one.free_numbers.is_empty()).collect()
+    }
+
+    /// The design; before it what lies beside it, where its runs on the nonlinear rig miss by
+    /// little.
+    fn own_starts(&self, told: &ProjectDesign) -> impl Iterator<Item = (Design, SearchReach)> + use<> {
+        let design = &told.design;
         let is_near = !self.aimed.added.is_empty() && told.worst_run() <= NEAR;
         let beside = is_near.then(|| (design.clone(), SearchReach::Beside));
-        beside.into_iter().chain(anywhere).filter(|(one, _)| !one.free_numbers.is_empty()).collect()
+        beside.into_iter().chain(std::iter::once((design.clone(), SearchReach::Anywhere)))
     }
 }
 
