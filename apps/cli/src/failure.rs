@@ -12,7 +12,7 @@ pub(crate) struct Failure {
 
 /// The answer is yes.
 pub(crate) const DONE: u8 = 0;
-/// The answer is no.
+/// The answer is no, or there is none since the command was stopped.
 pub(crate) const NO: u8 = 1;
 /// The request is invalid.
 pub(crate) const WRONG_INPUT: u8 = 2;
@@ -23,6 +23,11 @@ impl Failure {
     /// The request is invalid.
     pub(crate) fn wrong_input(text: impl Into<String>) -> Failure {
         Failure { status: WRONG_INPUT, text: text.into(), json: String::new() }
+    }
+
+    /// The command was stopped before it had an answer.
+    pub(crate) fn stopped(message: &str) -> Failure {
+        Failure { status: NO, text: message.to_string(), json: String::new() }
     }
 
     /// The request is valid, but something could not be written.

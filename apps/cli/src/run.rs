@@ -241,7 +241,7 @@ fn compared(several: &Several) -> Result<(Answer, Vec<PathBuf>), Failure> {
         !interruption.is_asked()
     });
     line.clear();
-    let answer = answer.map_err(|error| refused(first, &request, &error))?;
+    let answer = answer.map_err(|error| refused(first, &request, (&error, line.stage())))?;
     let written = match &several.out {
         Some(folder) => {
             write(folder, &answer.files, &inputs).map_err(|message| failed(&request, first, &message))?
@@ -282,7 +282,7 @@ fn answered(
     let catalogues = &common.catalogues;
     let answer = command::answer_into(&FileSystem, &loaded, catalogues, request, destination, &mut watch);
     line.clear();
-    let answer = answer.map_err(|error| refused(&loaded, request, &error))?;
+    let answer = answer.map_err(|error| refused(&loaded, request, (&error, line.stage())))?;
     let mut written = tables.map(Folder::into_begun).unwrap_or_default();
     written.extend(match (&common.out, &page) {
         (Some(folder), _) => write(folder, &answer.files, &inputs).map_err(explain)?,
@@ -317,7 +317,13 @@ fn load(path: &str, settings: &[String], catalogues: &[String], command: &str) -
     Ok(loaded)
 }
 
-fn refused(loaded: &Loaded, request: &Request, error: &CommandError) -> Failure {
+/// Why there is no answer; `stage` is the one that was reported last.
+fn refused(loaded: &Loaded, request: &Request, (error, stage): (&CommandError, Option<&str>)) -> Failure {
+    if let CommandError::Stopped(_) = error {
+        let message = command::stopped_text(request, stage);
+        let json = command::failure_json(Some(request.name()), Some(&loaded.sha256), &message);
+        return Failure::stopped(&message).with_json(json);
+    }
     let failure = match error.refusal() {
         _ if error.is_of_files() => Failure::not_written(&error.to_string()),
         Some(report) => Failure::wrong_input(report.render(styled())),

@@ -45,6 +45,8 @@ pub(crate) struct ProgressLine {
     terminal: bool,
     /// The line that was shown last; empty before the first.
     shown: String,
+    /// The stage that was reported last.
+    stage: Option<&'static str>,
     /// Time and share of the first report, for work that proceeds evenly.
     even: Option<(Instant, f64)>,
 }
@@ -55,7 +57,8 @@ impl Default for ProgressLine {
         let wanted = std::env::var_os(variable).is_none_or(|value| value != never);
         let terminal = io::stderr().is_terminal();
         let begun = Instant::now();
-        let mut line = ProgressLine { begun, next: None, terminal, shown: String::new(), even: None };
+        let mut line =
+            ProgressLine { begun, next: None, terminal, shown: String::new(), stage: None, even: None };
         line.next = wanted.then(|| Instant::now() + line.patience());
         line
     }
@@ -77,6 +80,11 @@ impl ProgressLine {
         self.write(progress, &format!(", {hours}:{minutes:02}:{seconds:02} left"));
     }
 
+    /// The stage that was reported last; `None` before the first.
+    pub(crate) fn stage(&self) -> Option<&'static str> {
+        self.stage
+    }
+
     fn patience(&self) -> Duration {
         if self.terminal { PATIENCE } else { PATIENCE_OF_LOGS }
     }
@@ -87,6 +95,7 @@ impl ProgressLine {
     }
 
     fn write(&mut self, progress: Progress, more: &str) {
+        self.stage = Some(progress.stage).filter(|stage| !stage.is_empty()).or(self.stage);
         let now = Instant::now();
         if self.next.is_some_and(|next| now >= next) {
             self.next = Some(now + self.patience());

@@ -267,7 +267,7 @@ impl Judging<'_> {
             Some(reason) => Err(reason),
             None => match designed(self.source, setup.clone(), &mut designing) {
                 Err(DesignError::Stopped(_)) => return None,
-                Ok(view) if view.stopped => return None,
+                Ok(view) if view.is_stopped() => return None,
                 design => design.map_err(|error| error.to_string()),
             },
         };

@@ -24,6 +24,7 @@ mod search;
 mod side;
 mod step_aim;
 mod structures;
+mod unfinished;
 mod words;
 pub use crate::limit_kind::{
     DesignLimitKind, ExceededLimit, LimitOrigin, RELAXED_BY, limit_key, limit_unit_key, limit_words,
@@ -45,6 +46,8 @@ pub use repair::{Repair, RepairStatus};
 pub use rounding::Rounding;
 pub use side::{AuditedController, LoopFigures, NominalMargins};
 pub use structures::{ReachedStructure, structure_key};
+pub use unfinished::DesignPart;
+use unfinished::unless_stopped;
 pub use words::{
     objective_key, part_key, repair_key, repair_words, status_key, status_sentence, structure_words,
 };
@@ -94,8 +97,8 @@ pub struct ProjectDesign {
     pub minimum_delay_margin_s: f64,
     /// Whether the designed loop tolerates it, regardless of the specifications.
     pub tolerates_its_delay: bool,
-    /// Whether the watch stopped it: then it is the best so far.
-    pub stopped: bool,
+    /// What the watch left unfinished: then it is the best so far.
+    pub unfinished: Vec<DesignPart>,
     /// The designed controller with its audit.
     pub designed: AuditedController,
     /// The controller that the project gives, with its audit; absent where it gives none.
@@ -193,7 +196,7 @@ impl ProjectDesign {
             limits: design_limits(setup, given),
             limit_findings,
             options,
-            stopped: false,
+            unfinished: vec![],
             published: None,
             continuous: None,
             explanations: vec![],
@@ -378,23 +381,33 @@ fn designed(
         0.05,
         |watch| audited_as_given(as_given, &given, watch),
         |watch| {
-            let (run, told, twin) =
+            let (run, mut told, twin) =
                 found_and_tried((source, setup), &limited, seed, &mut within(&mut *watch, [0.0, 0.9]))?;
-            let mut stopped = told.stopped;
-            let continuous = unless_stopped(&mut stopped, || {
-                let watch = &mut within(watch, [0.9, 1.0]);
-                twin.and_then(|twin| twin.of(&told.design))
-                    .unwrap_or_else(|| continuous_as_sampled((source, setup), &run.problem, &told, watch))
-            })?;
-            Ok::<_, DesignError>((run, ProjectDesign { stopped, ..told }, continuous))
+            let mut unfinished = std::mem::take(&mut told.unfinished);
+            let is_sampled = run.problem.timing.sample_time_s.is_some();
+            let continuous = match is_sampled {
+                true => unless_stopped(&mut unfinished, DesignPart::WithoutSamples, || {
+                    let watch = &mut within(watch, [0.9, 1.0]);
+                    twin.and_then(|twin| twin.of(&told.design))
+                        .unwrap_or_else(|| continuous_as_sampled((source, setup), &run.problem, &told, watch))
+                })?,
+                false => None,
+            };
+            Ok::<_, DesignError>((run, ProjectDesign { unfinished, ..told }, continuous))
         },
     );
     let (run, mut told, continuous) = found?;
-    let mut stopped = told.stopped;
-    let published = unless_stopped(&mut stopped, || published)?;
+    // the audit of the given controller may have ended before the watch stopped the design
+    let published = match published {
+        Err(DesignError::Stopped(_)) => {
+            told.leave(DesignPart::GivenController);
+            None
+        }
+        other => other?,
+    };
     told.explanations.extend(nothing_asks);
     let [published, continuous] = [published, continuous].map(|one| one.map(Box::new));
-    Ok((run, ProjectDesign { stopped, published, continuous, ..told }))
+    Ok((run, ProjectDesign { published, continuous, ..told }))
 }
 
 /// The controller that the project gives, with its audit; `None` where it gives none.
@@ -407,23 +420,6 @@ fn audited_as_given(
     let mut view = audit_problem(given, watch)?;
     view.below_design = Some(below_design(setup, given, &view, watch)?);
     Ok(Some(AuditedController::new(law.clone(), given.clone(), view)?))
-}
-
-/// A result that follows a design; absent once the watch has stopped it, since the design remains.
-fn unless_stopped<Found>(
-    stopped: &mut bool,
-    find: impl FnOnce() -> Result<Option<Found>, DesignError>,
-) -> Result<Option<Found>, DesignError> {
-    if *stopped {
-        return Ok(None);
-    }
-    match find() {
-        Err(DesignError::Stopped(_)) => {
-            *stopped = true;
-            Ok(None)
-        }
-        found => found,
-    }
 }
 
 /// The machine under the designed controller, as the project would declare it.

@@ -23,7 +23,7 @@ use crate::setup::{ControlError, Setup, pressure_noise, velocity_noise};
 use crate::simulate::{TimeRequirement, time_requirements};
 use crate::source::Source;
 use crate::specification::{SpecificationError, kind_words, of_rounding, specifications};
-use phea_dynamics::watch::{Stopped, Watch, tell};
+use phea_dynamics::watch::{Stopped, Watch, part};
 
 /// A family of plants within a loop, and the specifications of the loop.
 #[derive(Clone, Debug)]
@@ -104,7 +104,7 @@ pub enum RobustError {
 pub enum BoundsError {
     /// A template.
     #[error("a template: {0}")]
-    Template(#[from] TemplateError),
+    Template(TemplateError),
     /// A bound.
     #[error("a bound at {frequency_rad_per_s} rad/s: {error}")]
     Bound {
@@ -116,6 +116,15 @@ pub enum BoundsError {
     /// The watch stopped it.
     #[error(transparent)]
     Stopped(#[from] Stopped),
+}
+
+impl From<TemplateError> for BoundsError {
+    fn from(error: TemplateError) -> BoundsError {
+        match error {
+            TemplateError::Stopped(stopped) => BoundsError::Stopped(stopped),
+            error => BoundsError::Template(error),
+        }
+    }
 }
 
 /// The robust problem of a project.
@@ -222,14 +231,16 @@ impl RobustProblem {
         let frequencies = self.design_frequencies();
         let options = TemplateOptions::default();
         let mut found = Vec::new();
-        let templates = Templates::new(&self.family, &self.compensation, &frequencies, options);
-        for (index, built) in templates.enumerate() {
-            match built {
+        let mut templates = Templates::new(&self.family, &self.compensation, &frequencies, options);
+        let share = |done: usize| done as f64 / frequencies.len().max(1) as f64;
+        for index in 0..frequencies.len() {
+            let own = [index, index + 1].map(share);
+            let watch = &mut part(&mut *watch, "templates and bounds", own);
+            match templates.next_watched(watch) {
                 // nothing is known beyond a measurement, so there is no template either
-                Err(TemplateError::OutOfReach { .. }) => {}
-                built => found.push(self.at_template(built?)?),
+                None | Some(Err(TemplateError::OutOfReach { .. })) => {}
+                Some(built) => found.push(self.at_template(built?)?),
             }
-            tell(watch, "templates and bounds", index + 1, frequencies.len())?;
         }
         Ok(found)
     }

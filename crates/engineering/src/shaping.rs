@@ -24,7 +24,7 @@ use crate::robust::{BoundsError, RobustError, RobustProblem, robust_problem};
 use crate::setup::{ControlError, Setup, is_of_position};
 use crate::source::Source;
 use phea_dynamics::linear::LinearError;
-use phea_dynamics::watch::{Stopped, Watch, tell};
+use phea_dynamics::watch::{Stopped, Watch, part};
 use workpiece::Workpiece;
 
 /// Whether the controller or the prefilter is shaped.
@@ -188,13 +188,17 @@ fn chart(problem: &RobustProblem, watch: Watch<'_>) -> Result<(DesignChart, Vec<
     let frequencies = problem.design_frequencies();
     let options = TemplateOptions::default();
     let (mut found, mut unreached) = (Vec::new(), Vec::new());
-    let templates = Templates::new(&problem.family, &problem.compensation, &frequencies, options);
-    for (index, built) in templates.enumerate() {
-        match built {
-            Err(TemplateError::OutOfReach { frequency_rad_per_s }) => unreached.push(frequency_rad_per_s),
-            built => found.push(built.map_err(BoundsError::from)?.template),
+    let mut templates = Templates::new(&problem.family, &problem.compensation, &frequencies, options);
+    let share = |done: usize| done as f64 / frequencies.len().max(1) as f64;
+    for index in 0..frequencies.len() {
+        let own = [index, index + 1].map(share);
+        match templates.next_watched(&mut part(&mut *watch, "templates", own)) {
+            None => {}
+            Some(Err(TemplateError::OutOfReach { frequency_rad_per_s })) => {
+                unreached.push(frequency_rad_per_s);
+            }
+            Some(built) => found.push(built.map_err(BoundsError::from)?.template),
         }
-        tell(watch, "templates", index + 1, frequencies.len())?;
     }
     let frequency_rad_per_s = found.first().map_or(f64::NAN, |template| template.frequency_rad_per_s);
     let chart = DesignChart::new(&problem.family, found, &problem.specifications)

@@ -16,12 +16,14 @@ mod witness;
 use num_complex::Complex64;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::portable;
+use phea_dynamics::watch::{Stopped, Watch, unwatched};
 
 use crate::closed_loop::Compensation;
 use crate::family::Family;
 
 pub(crate) use build::around_disc;
 pub use build::template;
+use build::template_watched;
 
 /// How finely a template is resolved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,6 +80,9 @@ pub enum TemplateError {
         /// rad/s
         frequency_rad_per_s: f64,
     },
+    /// The watch stopped it.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
     /// A response that is zero or not finite, of the nominal plant or in a family that consists of
     /// members only.
     #[error("member {member} has the response {response} at {frequency_rad_per_s} rad/s")]
@@ -154,12 +159,19 @@ impl<'a> Templates<'a> {
     }
 }
 
+impl Templates<'_> {
+    /// The next template, under this watch; `None` behind the last one.
+    pub fn next_watched(&mut self, watch: Watch<'_>) -> Option<Result<BuiltTemplate, TemplateError>> {
+        let &frequency_rad_per_s = self.frequencies_rad_per_s.next()?;
+        Some(template_watched((self.family, self.compensation), frequency_rad_per_s, &self.options, watch))
+    }
+}
+
 impl Iterator for Templates<'_> {
     type Item = Result<BuiltTemplate, TemplateError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        let &frequency_rad_per_s = self.frequencies_rad_per_s.next()?;
-        Some(template(self.family, self.compensation, frequency_rad_per_s, &self.options))
+        self.next_watched(&mut unwatched)
     }
 }
 

@@ -27,7 +27,7 @@ pub use output_names::OutputNames;
 pub use phea_engineering::identify::IdentifyError;
 pub use phea_engineering::response::ResponseSettings;
 pub use phea_hydraulics::servovalve::LeakageModel;
-pub use refusal::{error_json, error_text, failure_json, files_json, refusal_json};
+pub use refusal::{error_json, error_text, failure_json, files_json, refusal_json, stopped_text};
 pub use response::{ResponseRequest, response_watched};
 pub use schema::{SCHEMA_FILE, schema};
 pub use simulate::{FrequencyOptions, SimulateRequest};
@@ -349,17 +349,21 @@ fn design_answer(
         return Err(crossed.into());
     }
     let mut designing = within(&mut *watch, [0.0, if stages { 0.9 } else { 1.0 }]);
-    let view = match repair {
+    let mut view = match repair {
         true => design_and_repair(source, &setup, seed, &mut designing)?,
         false => design_project(source, &setup, seed, &mut designing)?,
     };
     drop(designing);
-    let watch = &mut within(watch, [0.9, 1.0]);
+    let files = match stages {
+        true => design::stage_files(loaded, &mut view, &mut within(watch, [0.9, 1.0]))?,
+        false => design::files(loaded, &view),
+    };
     Ok(Unprinted {
         document: design::output(loaded, &view)?,
         body: design::body(&view)?,
-        files: if stages { design::stage_files(loaded, &view, watch)? } else { design::files(loaded, &view) },
+        files,
         affirmative: view.is_met()
+            && !view.is_stopped()
             && view.agreement() != Agreement::Contradicts
             && view.trial.as_ref().and_then(Trial::satisfies) != Some(false),
     })

@@ -104,6 +104,7 @@ mod sizing_catalogue;
 mod sizing_flow;
 mod sizing_laws;
 mod specification;
+mod stopped_design;
 mod sweep;
 mod telescopic;
 mod textbook_rigs;

@@ -118,7 +118,7 @@ fn a_plant_known_by_its_response_takes_the_same_command() {
 
 /// The rig with hoses alone: without dry friction, without load, with the same gain to both sides
 /// of its null, and without scenarios.
-fn simple_rig() -> String {
+pub(crate) fn simple_rig() -> String {
     let between = |text: &str, from: &str, to: &str, other: &str| {
         let (before, rest) = text.split_once(from).unwrap();
         format!("{before}{other}{to}{}", rest.split_once(to).unwrap().1)

@@ -19,8 +19,8 @@ use phea_qft::verification::{AuditProblem, PlantPoint, TrackingJudgement, Verdic
 use phea_workbench::audit::audit_project;
 use phea_workbench::command::{Request, answer};
 use phea_workbench::design::{
-    AuditedController, DESIGNED_PROJECT, LedBy, ProjectDesign, ReachedStructure, body, design_options,
-    design_problem, files, output, stage_files,
+    AuditedController, DESIGNED_PROJECT, DesignPart, LedBy, ProjectDesign, ReachedStructure, body,
+    design_options, design_problem, files, output, stage_files,
 };
 use phea_workbench::project::{
     self, DeclaredQuantization, FeedForward, Loaded, Prefilter, RationalFunction, Transfer,
@@ -233,7 +233,7 @@ fn every_stage_is_a_file() {
     let names = |files: Vec<phea_workbench::answer::OutputFile>| {
         files.into_iter().map(|file| file.name).collect::<Vec<_>>()
     };
-    let files = stage_files(&loaded, &view, &mut |_| true).unwrap();
+    let files = stage_files(&loaded, &mut view, &mut |_| true).unwrap();
     let content = |name: &str| {
         let file = files.iter().find(|file| file.name == name).unwrap_or_else(|| panic!("no {name}"));
         String::from_utf8(file.bytes.clone()).unwrap()
@@ -256,8 +256,8 @@ fn every_stage_is_a_file() {
         assert!((0.1..=1.0).contains(&row[1]));
     }
     assert_eq!(view.designed.view.audit.verdict == Verdict::Met, view.is_met());
-    view.stopped = true;
-    let left = names(stage_files(&loaded, &view, &mut |_| false).unwrap());
+    view.leave(DesignPart::Search);
+    let left = names(stage_files(&loaded, &mut view, &mut |_| false).unwrap());
     assert!(!left.contains(&"bounds.csv".to_string()) && left.contains(&"loop.csv".to_string()), "{left:?}");
     assert!(text(&loaded, &view).starts_with("Design: stopped: this is the best controller found so far"));
 }

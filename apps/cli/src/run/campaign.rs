@@ -74,7 +74,7 @@ pub(super) fn answered(common: &Common, asked: &CampaignRequest) -> Result<(Answ
     line.clear();
     let answer = answer.map_err(|error| {
         table.iter().for_each(LockedTable::leave_no_trace);
-        refused(&loaded, &request, &error)
+        refused(&loaded, &request, (&error, line.stage()))
     })?;
     // the table stays locked until all other files are written
     let mut written: Vec<PathBuf> = table.iter().map(|table| table.path.clone()).collect();

@@ -68,6 +68,11 @@ pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<Path
     let hash = loaded.as_ref().map(|loaded| loaded.sha256.as_str());
     let explain = |message: &str| command::failure_json(Some(NAME), hash, message);
     let answer = answer.map_err(|error| {
+        if let IdentifyError::Stopped = error {
+            let stage = line.stage().map_or(String::new(), |stage| format!(" in the stage `{stage}`"));
+            let message = format!("stopped{stage}: there is no result yet; nothing was written");
+            return Failure::stopped(&message).with_json(explain(&message));
+        }
         let text = match &error {
             IdentifyError::Files(report) => report.render(styled()),
             other => format!("error: {other}"),

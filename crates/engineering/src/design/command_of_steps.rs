@@ -10,19 +10,22 @@
 
 mod scenario_steps;
 
+use phea_dynamics::watch::{Stopped, Watch, tell};
 use phea_qft::closed_loop::Member;
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::verification::{PlantPoint, Verdict};
 
 pub(super) use self::scenario_steps::ScenarioSteps;
 use self::scenario_steps::{CommandedSteps, last};
-use super::ProjectDesign;
 use super::by_steps::SteppedPlants;
+use super::{DesignError, DesignPart, ProjectDesign, unless_stopped};
 use crate::audit::{VisitedPlant, visited, worst_beside};
 use crate::linear_step::{KnownResponses, StepResponse, StepSignal, linear_step_knowing};
 use crate::setup::Setup;
 use crate::simulate::{ForceLimit, ForceLimits, ReferenceStep};
 
+/// Name of the stage.
+const STAGE: &str = "command of the steps";
 /// Points of a continuous response, over the whole of it and over its first part.
 const POINTS: usize = 1000;
 /// The first part of a continuous response, which has as many points by itself.
@@ -116,6 +119,9 @@ struct CommandSearch<'a> {
     plants: &'a SteppedPlants,
     of: ScenarioSteps,
     visited: Vec<UnitCommand>,
+    watch: Watch<'a>,
+    /// Whether the watch stopped it.
+    is_stopped: bool,
 }
 
 /// Where a search for the largest command looks.
@@ -129,37 +135,73 @@ pub(super) enum CommandDepth {
 
 /// The largest command of the scenarios' steps under a design; `None` where they have no step,
 /// nothing limits it, or a response is not known.
+///
+/// # Errors
+/// [`Stopped`] by the watch.
 pub(super) fn command_of_steps(
-    setup: &Setup<'_>,
-    told: &ProjectDesign,
+    (setup, told): (&Setup<'_>, &ProjectDesign),
     plants: &SteppedPlants,
     depth: CommandDepth,
-) -> Option<CommandOfSteps> {
-    let of = ScenarioSteps::of(setup, told)?;
-    let Family::Uncertain(family) = &told.designed.problem.family else { return None };
-    if told.designed.view.audit.stability.verdict != Verdict::Met {
-        return None;
-    }
-    let mut search = CommandSearch { told, family, plants, of, visited: vec![] };
-    for values in visited(family, &told.designed.view.audit) {
-        search.visit(&values)?;
-    }
-    let is_whole = depth == CommandDepth::Whole && family.extent() == Extent::Box;
-    if is_whole && family.plant().is_rational() {
-        search.between()?;
-    }
-    let found = search.worst(setup)?;
-    let moved_by = match (depth, family.extent()) {
-        (CommandDepth::Whole, Extent::Box) => search.moved_by(&found)?,
-        // beside a listed member there is no plant
-        _ => (0..family.plant().parameters().len()).collect(),
+    watch: Watch<'_>,
+) -> Result<Option<CommandOfSteps>, Stopped> {
+    let (Some(of), Family::Uncertain(family)) =
+        (ScenarioSteps::of(setup, told), &told.designed.problem.family)
+    else {
+        return Ok(None);
     };
-    Some(CommandOfSteps { moved_by, ..found })
+    if of.is_empty() || told.designed.view.audit.stability.verdict != Verdict::Met {
+        return Ok(None);
+    }
+    let mut search = CommandSearch { told, family, plants, of, visited: vec![], watch, is_stopped: false };
+    let found = search.found(setup, depth);
+    if search.is_stopped { Err(Stopped) } else { Ok(found) }
+}
+
+/// A design with the largest command of the scenarios' steps over its whole family; noted as
+/// unfinished where the watch stops it.
+///
+/// # Errors
+/// None but those of the watch of another part.
+pub(super) fn with_command_of_steps(
+    (setup, told): (&Setup<'_>, ProjectDesign),
+    plants: &SteppedPlants,
+    watch: Watch<'_>,
+) -> Result<ProjectDesign, DesignError> {
+    let mut unfinished = told.unfinished.clone();
+    let command_of_steps = match ScenarioSteps::of(setup, &told).is_some_and(|steps| !steps.is_empty()) {
+        true => unless_stopped(&mut unfinished, DesignPart::CommandOfSteps, || {
+            Ok(command_of_steps((setup, &told), plants, CommandDepth::Whole, watch)?)
+        })?,
+        false => None,
+    };
+    Ok(ProjectDesign { unfinished, command_of_steps, ..told })
 }
 
 impl CommandSearch<'_> {
+    /// The largest command; `None` where a response is not known, and where the watch stops it.
+    fn found(&mut self, setup: &Setup<'_>, depth: CommandDepth) -> Option<CommandOfSteps> {
+        let family = self.family;
+        for values in visited(family, &self.told.designed.view.audit) {
+            self.visit(&values)?;
+        }
+        let is_whole = depth == CommandDepth::Whole && family.extent() == Extent::Box;
+        if is_whole && family.plant().is_rational() {
+            self.between()?;
+        }
+        let found = self.worst(setup)?;
+        let moved_by = match is_whole {
+            true => self.moved_by(&found)?,
+            // beside a listed member there is no plant
+            false => (0..family.plant().parameters().len()).collect(),
+        };
+        Some(CommandOfSteps { moved_by, ..found })
+    }
+
     /// The command of a unit step; `None` where it cannot be computed.
-    fn command(&self, values: &[f64]) -> Option<StepResponse> {
+    fn command(&mut self, values: &[f64]) -> Option<StepResponse> {
+        let told = tell(self.watch, STAGE, self.visited.len(), VISITED_MAXIMUM);
+        self.is_stopped |= told.is_err();
+        told.ok()?;
         let compensation = &self.told.designed.problem.compensation;
         if !self.family.plant().is_rational() {
             let plant = self.plants.plant(values, (self.family, compensation)).ok()?;
@@ -269,7 +311,7 @@ impl CommandSearch<'_> {
 
     /// The parameters of the worst plant that move the largest command at an end of their range,
     /// the others unchanged; `None` where a command cannot be computed.
-    fn moved_by(&self, found: &CommandOfSteps) -> Option<Vec<usize>> {
+    fn moved_by(&mut self, found: &CommandOfSteps) -> Option<Vec<usize>> {
         let PlantPoint::Parameters(values) = &found.plant else { return Some(vec![]) };
         let mut moved_by = Vec::new();
         for (index, coordinate) in self.family.coordinates().iter().enumerate() {
@@ -278,9 +320,12 @@ impl CommandSearch<'_> {
                 *shares.get_mut(index)? = end;
                 let moved = self.family.values(&shares);
                 let known = self.visited.iter().find(|known| known.values == moved);
-                let largest_v = match known {
-                    Some(known) => known.largest_v,
-                    None => self.of.largest_v(&self.command(&moved)?),
+                let largest_v = match known.map(|known| known.largest_v) {
+                    Some(known_v) => known_v,
+                    None => {
+                        let command = self.command(&moved)?;
+                        self.of.largest_v(&command)
+                    }
                 };
                 if (largest_v - found.largest_v).abs() > ACCURACY * found.largest_v {
                     moved_by.extend(&coordinate.parameters);

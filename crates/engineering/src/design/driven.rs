@@ -10,13 +10,13 @@ use phea_qft::design::{Design, DesignProblem, DesignStatus};
 
 use super::added_by_rig::{AddedByRig, added};
 use super::by_steps::{AimedSteps, SearchStarts, SteppedPlants, by_steps, shortened, simpler};
-use super::command_of_steps::{CommandDepth, command_of_steps};
+use super::command_of_steps::with_command_of_steps;
 use super::relaxed::relaxations;
 use super::search::{found, rank};
 use super::step_aim::StepAim;
 use super::{
-    AuditedController, DesignError, DesignRun, ProjectDesign, continuous_as_sampled, tried_design,
-    unless_stopped,
+    AuditedController, DesignError, DesignPart, DesignRun, ProjectDesign, continuous_as_sampled,
+    tried_design, unless_stopped,
 };
 use crate::audit::try_to_prove;
 use crate::robust::RobustProblem;
@@ -62,13 +62,13 @@ pub(super) fn found_and_tried(
     let (mut driven, mut twin) =
         simplest((source, setup), begins, seed, &mut within(&mut *watch, [0.0, 0.7]))?;
     // without the limit that leads away from a loop without gain, the search goes another way
-    if first != StepAim::AS_REQUIRED && !driven.told.stopped && misses(&driven.told) {
+    if first != StepAim::AS_REQUIRED && !driven.told.is_stopped() && misses(&driven.told) {
         let begins = (given, StepAim::AS_REQUIRED, &plants);
         match simplest((source, setup), begins, seed, &mut within(&mut *watch, [0.7, 0.9])) {
             Ok((other, _)) if is_better(&other.told, &driven.told) => {
                 (driven, twin) = (other.with_missed(&driven.told), None);
             }
-            Err(DesignError::Stopped(_)) => driven.told.stopped = true,
+            Err(DesignError::Stopped(_)) => driven.told.leave(DesignPart::Search),
             // what was found before remains
             Ok(_) | Err(_) => {}
         }
@@ -78,23 +78,22 @@ pub(super) fn found_and_tried(
     let aimed = AimedSteps { given, aim, added: &known, plants: &plants, from: SearchStarts::Nearest };
     let (run, mut told) = shorter((source, setup), aimed, best, &mut within(&mut *watch, [0.9, 0.94]));
     if told.command_of_steps.is_none() {
-        told.command_of_steps = command_of_steps(setup, &told, &plants, CommandDepth::Whole);
+        told = with_command_of_steps((setup, told), &plants, watch)?;
     }
     // a design that was led by its steps is not proven on the way
     if told.designed.view.proof.is_none() {
         let problem = told.designed.problem.clone();
         let view = &mut told.designed.view;
-        let proof = unless_stopped(&mut told.stopped, || {
+        unless_stopped(&mut told.unfinished, DesignPart::Proof, || {
             Ok(Some(try_to_prove(&problem, view, &mut within(&mut *watch, [0.94, 0.97]))?))
-        });
-        proof?;
+        })?;
     }
-    match relaxations(setup, aimed, (&run, &told), &mut within(watch, [0.97, 1.0])) {
-        Ok(found) => told.relaxations = found,
-        Err(DesignError::Stopped(_)) => told.stopped = true,
-        Err(error) => return Err(error),
-    }
-    Ok((run, told, twin))
+    let mut unfinished = std::mem::take(&mut told.unfinished);
+    let found = unless_stopped(&mut unfinished, DesignPart::Relaxations, || {
+        relaxations(setup, aimed, (&run, &told), &mut within(watch, [0.97, 1.0])).map(Some)
+    })?;
+    let relaxations = found.unwrap_or_default();
+    Ok((run, ProjectDesign { unfinished, relaxations, ..told }, twin))
 }
 
 /// A design with its trial, and what its runs add to the steps of the linear loop.
@@ -129,7 +128,7 @@ fn simplest(
         return driven(rig, aimed, (run, told), &mut within(watch, [0.55, 1.0]));
     };
     let (of_simple, twin) = driven(rig, aimed, simple, &mut within(&mut *watch, [0.55, 0.8]))?;
-    if of_simple.told.stopped || !misses(&of_simple.told) {
+    if of_simple.told.is_stopped() || !misses(&of_simple.told) {
         return Ok((of_simple, twin));
     }
     let (other, _) = driven(rig, aimed, (run, told), &mut within(watch, [0.8, 1.0]))?;
@@ -147,11 +146,13 @@ fn with_simpler(
     (run, mut told): (&DesignRun, ProjectDesign),
     watch: Watch<'_>,
 ) -> (Option<(DesignRun, ProjectDesign)>, ProjectDesign) {
-    if told.stopped || !told.is_met() {
+    if told.is_stopped() || !told.is_met() {
         return (None, told);
     }
     let found = simpler(setup, aimed, (run, &told), watch);
-    told.stopped = matches!(found, Err(DesignError::Stopped(_)));
+    if matches!(found, Err(DesignError::Stopped(_))) {
+        told.leave(DesignPart::Search);
+    }
     // what was found before remains
     (found.ok().flatten(), told)
 }
@@ -185,6 +186,9 @@ fn driven(
         match next_design((source, setup), aimed, before, &mut within(&mut *watch, share)) {
             Ok(Some(found)) => {
                 known = added(&found.1, &known);
+                if found.1.is_stopped() {
+                    best.1.leave(DesignPart::Search);
+                }
                 let gains = found.1.worst_run() < (1.0 - GAIN) * nearest;
                 in_vain = if gains || found.1.worst_run() <= 1.0 { 0 } else { in_vain + 1 };
                 nearest = nearest.min(found.1.worst_run());
@@ -195,11 +199,11 @@ fn driven(
                     Some(found)
                 };
             }
-            Err(DesignError::Stopped(_)) => best.1.stopped = true,
+            Err(DesignError::Stopped(_)) => best.1.leave(DesignPart::Search),
             // what was found before remains
             Ok(None) | Err(_) => break,
         }
-        if best.1.stopped {
+        if best.1.is_stopped() {
             break;
         }
     }
@@ -216,7 +220,7 @@ fn with_trial_and_twin(
 ) -> Result<(ProjectDesign, Option<ContinuousTwin>), DesignError> {
     // a rig that misses what is required in time leads to another design
     let is_required = told.designed.problem.in_time.iter().any(|one| one.follows);
-    if told.stopped || is_required || all_cores().at_once == 1 {
+    if told.is_stopped() || is_required || all_cores().at_once == 1 {
         return Ok((with_trial((source, setup), told, watch)?, None));
     }
     let untried = told.clone();
@@ -237,7 +241,7 @@ fn shorter(
     (run, told): (DesignRun, ProjectDesign),
     watch: Watch<'_>,
 ) -> (DesignRun, ProjectDesign) {
-    if told.stopped || !told.is_met() || misses(&told) {
+    if told.is_stopped() || !told.is_met() || misses(&told) {
         return (run, told);
     }
     let found = shortened(setup, aimed, (&run, &told), &mut within(&mut *watch, [0.0, 0.7]));
@@ -247,14 +251,17 @@ fn shorter(
         Ok(Some((run, with_trial((source, setup), shorter, &mut within(watch, [0.7, 1.0]))?)))
     });
     match found {
-        Ok(Some((run, tried))) if !tried.stopped && agrees_as_well(&tried, &told) && !misses(&tried) => {
-            (run, tried)
-        }
-        Ok(Some((_, ProjectDesign { stopped: true, .. }))) | Err(DesignError::Stopped(_)) => {
-            (run, ProjectDesign { stopped: true, ..told })
-        }
+        Ok(Some((_, tried))) if tried.is_stopped() => stopped_in_search(run, told),
+        Ok(Some((run, tried))) if agrees_as_well(&tried, &told) && !misses(&tried) => (run, tried),
+        Err(DesignError::Stopped(_)) => stopped_in_search(run, told),
         Ok(_) | Err(_) => (run, told),
     }
+}
+
+/// A design whose search was stopped while it went on from there.
+fn stopped_in_search(run: DesignRun, mut told: ProjectDesign) -> (DesignRun, ProjectDesign) {
+    told.leave(DesignPart::Search);
+    (run, told)
 }
 
 /// True where the nonlinear rig agrees with one design as with another; settling times that satisfy
@@ -265,7 +272,7 @@ fn agrees_as_well(one: &ProjectDesign, other: &ProjectDesign) -> bool {
 
 /// True where the nonlinear rig misses what is required under a design that is met.
 fn misses(told: &ProjectDesign) -> bool {
-    let is_met = told.design.status == DesignStatus::Met && !told.stopped;
+    let is_met = told.design.status == DesignStatus::Met && !told.is_stopped();
     is_met && told.misses_on_rig()
 }
 
@@ -282,19 +289,25 @@ fn next_design(
     Ok(Some((run, with_trial((source, setup), told, &mut within(watch, [0.7, 1.0]))?)))
 }
 
-/// A design with the trial of its controller; absent once the watch has stopped it.
+/// A design with the trial of its controller; absent once the watch has stopped it, and without a
+/// rig.
 fn with_trial(
     (source, setup): (&dyn Source, &Setup<'_>),
     told: ProjectDesign,
     watch: Watch<'_>,
 ) -> Result<ProjectDesign, DesignError> {
-    let mut stopped = told.stopped;
-    let trial = unless_stopped(&mut stopped, || tried_design(source, setup.project, &told, watch))?;
-    Ok(ProjectDesign { stopped, trial, ..told })
+    if setup.project.actuator.is_none() {
+        return Ok(told);
+    }
+    let mut unfinished = told.unfinished.clone();
+    let trial = unless_stopped(&mut unfinished, DesignPart::Trial, || {
+        tried_design(source, setup.project, &told, watch)
+    })?;
+    Ok(ProjectDesign { unfinished, trial, ..told })
 }
 
 /// True where one design is as good as another over frequency, and its worst run is nearer to what
 /// is required.
 fn is_better(one: &ProjectDesign, other: &ProjectDesign) -> bool {
-    !one.stopped && rank(one).0 <= rank(other).0 && one.worst_run() < other.worst_run()
+    !one.is_stopped() && rank(one).0 <= rank(other).0 && one.worst_run() < other.worst_run()
 }

@@ -108,7 +108,7 @@ pub(super) fn relaxations<'a>(
 ) -> Result<Relaxations, DesignError> {
     let has_no_end =
         matches!(told.design.status, DesignStatus::NotConverged { .. } | DesignStatus::NotStabilised);
-    let (Some(samples), false) = (run.outcome.samples(), has_no_end || told.stopped) else {
+    let (Some(samples), false) = (run.outcome.samples(), has_no_end || told.is_stopped()) else {
         return Ok(Relaxations::default());
     };
     let watch = &mut part(watch, STAGE, [0.0, 1.0]);

@@ -15,8 +15,8 @@ use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::verification::Verdict;
 
 use super::by_steps::SteppedPlants;
-use super::command_of_steps::{CommandDepth, command_of_steps};
-use super::{DesignError, DesignRun, ProjectDesign, tried_design};
+use super::command_of_steps::with_command_of_steps;
+use super::{DesignError, DesignPart, DesignRun, ProjectDesign, tried_design, unless_stopped};
 use crate::audit::{ProjectAudit, audit_problem, try_to_prove};
 use crate::family::family;
 use crate::robust::RobustProblem;
@@ -121,8 +121,16 @@ pub(super) fn repaired(
     if let (RepairStatus::Met, Some(run)) = (repair.status, contradicting_waves(&design)) {
         repair.sentences.push(words::stable_with_waves(run));
     }
+    if repair.status == RepairStatus::Stopped {
+        design.leave(DesignPart::Repair);
+    }
     if design.designed.view.proof.is_none() {
-        try_to_prove(&design.designed.problem, &mut design.designed.view, watch)?;
+        let mut unfinished = std::mem::take(&mut design.unfinished);
+        let designed = &mut design.designed;
+        unless_stopped(&mut unfinished, DesignPart::Proof, || {
+            Ok(Some(try_to_prove(&designed.problem, &mut designed.view, watch)?))
+        })?;
+        design.unfinished = unfinished;
     }
     let runs = design.trial.iter().flat_map(|trial| &trial.runs);
     repair.sentences.extend(words::left(runs));
@@ -234,7 +242,7 @@ fn designed_again(
     if aimed.specifications[..own.len()] != own[..] {
         found = found.judged_by(&told.designed.problem, watch)?;
     }
-    found.command_of_steps = command_of_steps(setup, &found, &SteppedPlants::default(), CommandDepth::Whole);
+    found = with_command_of_steps((setup, found), &SteppedPlants::default(), watch)?;
     let trial = tried_design(source, setup.project, &found, watch)?;
     Ok(Some((status, ProjectDesign { trial, ..found })))
 }

@@ -8,10 +8,12 @@ use phea_qft::design::{ControllerChoice, DesignStatus, Finding, design_stricter}
 use phea_qft::verification::Verdict;
 
 use super::by_steps::{AimedSteps, SearchStarts, SteppedPlants, by_steps};
-use super::command_of_steps::{CommandDepth, command_of_steps};
+use super::command_of_steps::with_command_of_steps;
 use super::problem::{design_options, design_problem};
 use super::step_aim::{REPETITIONS, StepAim};
-use super::{DesignError, DesignRun, Explanation, ProjectDesign, ReachedStructure, proven, structures};
+use super::{
+    DesignError, DesignPart, DesignRun, Explanation, ProjectDesign, ReachedStructure, proven, structures,
+};
 use crate::audit::TimeFinding;
 use crate::limit_kind::limit_words;
 use crate::robust::RobustProblem;
@@ -37,9 +39,8 @@ pub(super) fn found(
         let before = found.last().map(|(_, run, told)| (run, told));
         let design = searched(setup, (given, &aimed), (seed, before), &mut within(&mut *watch, share));
         match design {
-            Ok((run, mut told)) => {
-                told.command_of_steps = command_of_steps(setup, &told, plants, CommandDepth::Whole);
-                let design = (run, told);
+            Ok((run, told)) => {
+                let design = (run, with_command_of_steps((setup, told), plants, watch)?);
                 let (run, told) =
                     led_by_steps(setup, (given, aim, plants), design, &mut within(&mut *watch, share));
                 found.push((aim, run, told));
@@ -49,7 +50,8 @@ pub(super) fn found(
             Err(_) => break,
         }
         // a stricter aim seldom helps where the limits of this one are missed, and takes as long
-        let met = found.last().filter(|(.., told)| !told.stopped && told.design.status == DesignStatus::Met);
+        let met =
+            found.last().filter(|(.., told)| !told.is_stopped() && told.design.status == DesignStatus::Met);
         let Some((.., told)) = met else { break };
         match aim.stricter(told).filter(|_| repetition < REPETITIONS) {
             Some(stricter) => aim = stricter,
@@ -72,14 +74,14 @@ fn led_by_steps(
 ) -> (DesignRun, ProjectDesign) {
     let misses = told.designed.view.in_time.iter().any(TimeFinding::violates);
     let command = told.exceeded_command().is_some_and(|command| !command.is_out_of_reach());
-    if told.stopped || !(misses || command) {
+    if told.is_stopped() || !(misses || command) {
         return (run, told);
     }
     let aimed = AimedSteps { given, aim, added: &[], plants, from: SearchStarts::Nearest };
     match by_steps(setup, aimed, (&run, &told), watch) {
         Ok(Some(moved)) if by_rank(&moved.1, &told).is_lt() => moved,
         Err(DesignError::Stopped(_)) => {
-            told.stopped = true;
+            told.leave(DesignPart::Search);
             (run, told)
         }
         // what was found before remains
@@ -144,14 +146,14 @@ fn searched(
         Some(told) => told,
         None => ProjectDesign::new(setup, aimed, problem, design, options, watch)?,
     };
-    let stopped = outcome.stopped;
+    let unfinished = Vec::from_iter(outcome.stopped.then_some(DesignPart::Search));
     let (known, aimed_at) = (given.specifications.len(), &aimed.specifications);
     if given.specifications != aimed_at[..known] {
         told = told.judged_by(given, watch)?;
     }
     told = told.met_where_it_is(known);
     told.structures = structures::reached(&run, &told)?;
-    Ok((run, ProjectDesign { stopped, explanations, ..told }))
+    Ok((run, ProjectDesign { unfinished, explanations, ..told }))
 }
 
 /// A finding in words, which say where a number is that of a limit of the design.

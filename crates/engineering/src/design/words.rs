@@ -12,7 +12,7 @@ use crate::quantity::significant;
 /// The word of a status in JSON.
 pub fn status_key(view: &ProjectDesign) -> &'static str {
     match view.design.status {
-        _ if view.stopped => "stopped",
+        _ if view.is_stopped() => "stopped",
         DesignStatus::Met if view.designed.view.verdict() == Verdict::NotProven => "not_proven",
         DesignStatus::Met if view.designed.view.audit.verdict == Verdict::Violated => "not_converged",
         DesignStatus::Met if view.designed.view.misses_in_time() || view.misses_on_rig() => "missed_in_time",
@@ -29,7 +29,7 @@ pub fn status_key(view: &ProjectDesign) -> &'static str {
 pub fn status_sentence(view: &ProjectDesign) -> String {
     let verdict =
         if view.is_met() { "satisfies every specification" } else { "does not satisfy every specification" };
-    if view.stopped {
+    if view.is_stopped() {
         return format!("stopped: this is the best controller found so far, and it {verdict}");
     }
     match &view.design.status {

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
+use phea_dynamics::watch::{Watch, unwatched};
 
 use super::explore::{Exploration, explore};
 use super::plants::{Plants, Stop};
@@ -67,6 +68,19 @@ pub fn template(
     frequency_rad_per_s: f64,
     options: &TemplateOptions,
 ) -> Result<BuiltTemplate, TemplateError> {
+    template_watched((family, compensation), frequency_rad_per_s, options, &mut unwatched)
+}
+
+/// The same under a watch, which is asked at each plant.
+///
+/// # Errors
+/// Those of [`template`], and [`TemplateError::Stopped`].
+pub(super) fn template_watched(
+    (family, compensation): (&Family, &Compensation),
+    frequency_rad_per_s: f64,
+    options: &TemplateOptions,
+    watch: Watch<'_>,
+) -> Result<BuiltTemplate, TemplateError> {
     let TemplateOptions { phase_deg, magnitude_db, .. } = *options;
     let possible = phase_deg > 0.0 && phase_deg < 90.0 && magnitude_db > 0.0 && magnitude_db.is_finite();
     if !possible {
@@ -75,7 +89,7 @@ pub fn template(
     match family {
         Family::Measured(family) => measured(family, compensation, frequency_rad_per_s),
         Family::Uncertain(family) => {
-            let mut plants = Plants::new(family, compensation, frequency_rad_per_s, *options);
+            let mut plants = Plants::new(family, compensation, frequency_rad_per_s, *options, watch);
             uncertain(&mut plants, frequency_rad_per_s)
         }
     }

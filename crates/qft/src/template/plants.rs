@@ -2,6 +2,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
+use phea_dynamics::watch::{Stopped, Watch, tell};
 
 use super::{TemplateError, TemplateOptions};
 use crate::closed_loop::{Compensation, MemberResponse};
@@ -66,8 +67,14 @@ pub(super) struct Gap {
 pub(super) enum Stop {
     /// The allowed plants or rounds are used up.
     Exhausted,
-    /// A plant cannot be evaluated.
+    /// A plant cannot be evaluated, or the watch stops it.
     Failed(TemplateError),
+}
+
+impl From<Stopped> for Stop {
+    fn from(stopped: Stopped) -> Stop {
+        Stop::Failed(stopped.into())
+    }
 }
 
 /// Neighbours on a straight line of the box, with their share of its length.
@@ -86,6 +93,9 @@ impl BoxLine {
     }
 }
 
+/// Name of the stage.
+const STAGE: &str = "template";
+
 /// Smallest part of a line that is divided further: a gap that remains there does not close.
 const PART_MINIMUM: f64 = 1.0 / (1 << 20) as f64;
 
@@ -100,6 +110,7 @@ pub(super) struct Plants<'a> {
     /// Evaluations at which refinement stops.
     pub(super) evaluations_maximum: usize,
     pub(super) gap: Option<Gap>,
+    watch: Watch<'a>,
 }
 
 impl<'a> Plants<'a> {
@@ -108,6 +119,7 @@ impl<'a> Plants<'a> {
         compensation: &'a Compensation,
         frequency_rad_per_s: f64,
         options: TemplateOptions,
+        watch: Watch<'a>,
     ) -> Plants<'a> {
         let evaluations_maximum = family.members().len().saturating_add(options.evaluations_maximum);
         Plants {
@@ -119,12 +131,19 @@ impl<'a> Plants<'a> {
             evaluations: 0,
             evaluations_maximum,
             gap: None,
+            watch,
         }
+    }
+
+    /// Tells the watch how many of the allowed plants were evaluated.
+    pub(super) fn ask(&mut self) -> Result<(), Stopped> {
+        tell(self.watch, STAGE, self.evaluations, self.evaluations_maximum)
     }
 
     /// P, Pd and H at these parameter values.
     pub(super) fn response(&mut self, values: &[f64]) -> Result<MemberResponse, TemplateError> {
         self.evaluations += 1;
+        self.ask()?;
         let plant = self.family.plant();
         let response = self.compensation.response_of(plant, values, self.frequency_rad_per_s);
         response.map_err(|reason| TemplateError::Plant { values: values.to_vec(), reason })

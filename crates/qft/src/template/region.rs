@@ -51,6 +51,9 @@ const STEP_MINIMUM: f64 = 1e-9;
 /// Smallest area, as a share of the square of the extent, that is not due to rounding.
 const AREA_MINIMUM: f64 = 1e-6;
 
+/// Largest area of a region that is a line.
+const LINE_AREA: f64 = AREA_MINIMUM * EXTENT * EXTENT;
+
 impl Region {
     /// An empty region, with integers for places from `low` to `high` and somewhat beyond.
     pub(super) fn new(low: PlantPosition, high: PlantPosition, tolerance: [f64; 2]) -> Region {
@@ -97,6 +100,11 @@ impl Region {
             let once = points.simplify(FillRule::NonZero, IntOverlayOptions::keep_all_points());
             contours.extend(once.into_iter().flatten());
         }
+        // as thin as rounding: a line, whose many contours on top of each other take long to unite
+        if contours.iter().map(area).sum::<f64>() <= LINE_AREA {
+            self.shapes = contours.into_iter().map(|contour| vec![contour]).collect();
+            return;
+        }
         self.shapes = united(&contours);
         for shape in &mut self.shapes {
             let mut outer = true;
@@ -106,8 +114,7 @@ impl Region {
 
     /// Whether the region consists of more than lines.
     pub(super) fn has_area(&self) -> bool {
-        let whole: f64 = self.shapes.iter().flatten().map(area).sum();
-        whole > AREA_MINIMUM * EXTENT * EXTENT
+        self.shapes.iter().flatten().map(area).sum::<f64>() > LINE_AREA
     }
 
     /// Identifies a place; the same after any number of turns.

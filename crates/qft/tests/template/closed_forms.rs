@@ -1,11 +1,12 @@
 use num_complex::Complex64;
 use phea_dynamics::portable::{argument, atan, ln, magnitude};
+use phea_dynamics::watch::Watch;
 use phea_qft::family::Spacing::{Linear, Logarithmic};
-use phea_qft::family::UncertainFamily;
-use phea_qft::template::{Resolution, Template, TemplateOptions};
+use phea_qft::family::{Family, UncertainFamily};
+use phea_qft::template::{Resolution, Template, TemplateError, TemplateOptions, Templates};
 
 use super::support::{
-    apart, beyond, built, coefficients, family, from_rim, logarithmic_area, polar, winding,
+    apart, beyond, built, coefficients, family, from_rim, logarithmic_area, plain_loop, polar, winding,
 };
 
 fn motor() -> UncertainFamily {
@@ -93,6 +94,47 @@ fn two_gains_in_series_are_a_segment_too() {
     for gain in [1.0, 2.5, 6.0] {
         let response = gain / Complex64::new(1.0, 1.0);
         assert!(from_rim(&template.outlines, response, &options) < 1e-3);
+    }
+}
+
+/// A lag too short to matter bends k/s by 6e-8 degrees at most: the polygons of its faces are as thin
+/// as rounding, and the template is the segment of k alone.
+// ORIGIN: analytic, 1/(w (T w + 1)) beside k/w
+#[test]
+fn a_parameter_that_hardly_moves_the_plant_leaves_a_segment() {
+    let family = family(&[("k", 1.0, 100.0, Logarithmic), ("T", 0.0, 1e-9, Linear)], 3, |p| {
+        coefficients(vec![p[0]], vec![p[1], 1.0.into(), 0.0.into()])
+    });
+    let template = built(&family, 0.5).template;
+    assert_resolved(&template);
+    let outlines = || template.outlines.iter().flatten();
+    assert!(outlines().all(|response| response.re.abs() < 1e-9 * magnitude(*response)));
+    let highest = outlines().map(|response| -response.im).fold(0.0, f64::max);
+    let lowest = outlines().map(|response| -response.im).fold(f64::INFINITY, f64::min);
+    assert!((highest - 200.0).abs() < 1e-6 && (lowest - 2.0).abs() < 1e-6, "{lowest} to {highest}");
+}
+
+/// The watch is asked at each plant, and where it answers no there is no template.
+#[test]
+fn a_template_asks_its_watch_at_each_plant() {
+    let (family, options) = (Family::Uncertain(motor()), TemplateOptions::default());
+    let around = plain_loop();
+    let at = |watch: Watch<'_>| {
+        Templates::new(&family, &around, &[1.0], options).next_watched(watch).expect("one frequency")
+    };
+    let mut asked = 0;
+    let whole = at(&mut |_| {
+        asked += 1;
+        true
+    });
+    assert_eq!(whole.map(|built| built.evaluations), Ok(asked));
+    for last in [1, asked / 2, asked] {
+        let mut left = last;
+        let stopped = at(&mut |_| {
+            left -= 1;
+            left > 0
+        });
+        assert!(matches!(stopped, Err(TemplateError::Stopped(_))) && left == 0, "{last}: {left}");
     }
 }
 

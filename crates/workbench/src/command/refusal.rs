@@ -26,6 +26,27 @@ pub fn error_json(loaded: &Loaded, request: &Request, error: &CommandError) -> S
     }
 }
 
+/// Why a command that was stopped has no answer: the stage in which it was, none before the first,
+/// and what was not begun.
+///
+/// # Example
+/// ```
+/// use phea_workbench::command::{Request, stopped_text};
+/// let text = stopped_text(&Request::Design { seed: None, stages: false, repair: true }, Some("trying PI"));
+/// assert!(text.starts_with("stopped in the stage `trying PI`: no controller was found yet"));
+/// assert!(stopped_text(&Request::Bench, None).starts_with("stopped before the first stage: there is no result"));
+/// ```
+pub fn stopped_text(request: &Request, stage: Option<&str>) -> String {
+    let place = stage.map_or("before the first stage".to_string(), |stage| format!("in the stage `{stage}`"));
+    let missing = match request {
+        Request::Design { .. } => {
+            "no controller was found yet, so that its audit, its trial on the nonlinear rig and its proof were not begun"
+        }
+        _ => "there is no result yet",
+    };
+    format!("stopped {place}: {missing}; nothing was written")
+}
+
 /// The JSON object of a command whose files other than the project were rejected.
 pub fn files_json(command: &str, project_sha256: Option<&str>, refusal: &Refusal) -> String {
     refusal_body(Some(command), project_sha256, refusal_rows(refusal))

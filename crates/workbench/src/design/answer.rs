@@ -8,7 +8,7 @@ use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::verification::PlantPoint;
 
 use super::AuditedController;
-use super::{Explanation, ProjectDesign};
+use super::{DesignPart, Explanation, ProjectDesign};
 use super::{limits, manual, pressure_feedback_object, relaxed, structures};
 use super::{objective_key, part_key, status_key, structure_key};
 use crate::answer::{Json, Object};
@@ -36,7 +36,7 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
             .with("worst_margin_db", starts.margins_db)
             .with("objective_db", starts.objectives_db)
     });
-    let no_machine = match view.stopped {
+    let no_machine = match view.unfinished.contains(&DesignPart::Trial) {
         true => "the design was stopped before it was tried in the nonlinear simulation",
         false => "the project describes a plant and no machine",
     };
@@ -46,6 +46,7 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
     };
     Ok(Object::new()
         .with("status", status_key(view))
+        .with("unfinished", view.unfinished.iter().map(|part| part.key()).collect::<Vec<_>>())
         .with("objective", objective)
         .with("seed", view.options.seed)
         .with("controller", factors(side.problem.compensation.feedback()))
@@ -81,8 +82,8 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
 
 /// The reason for the absence of the given controller.
 fn why_not_published(view: &ProjectDesign) -> Option<&'static str> {
-    view.published.is_none().then_some(match view.stopped {
-        true => "the project gives no controller, or the design was stopped before it was audited",
+    view.published.is_none().then_some(match view.unfinished.contains(&DesignPart::GivenController) {
+        true => "the design was stopped before the given controller was audited",
         false => "the project gives no controller",
     })
 }

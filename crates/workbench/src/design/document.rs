@@ -110,8 +110,8 @@ fn in_place_of(view: &ProjectDesign) -> &'static str {
 
 /// How the search ended, what is known whatever a search finds, and the audit of the result.
 pub(crate) fn status(view: &ProjectDesign) -> Document {
-    let mut sentences: Vec<String> =
-        view.explanations.iter().map(|explanation| explanation_words(view, explanation)).collect();
+    let mut sentences = view.unfinished_sentences();
+    sentences.extend(view.explanations.iter().map(|explanation| explanation_words(view, explanation)));
     sentences.extend(summary(&view.designed.view));
     sentences.extend(not_led_sentence(view));
     sentences.extend(view.rounding.iter().flat_map(Rounding::sentences));

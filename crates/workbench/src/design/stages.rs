@@ -5,6 +5,7 @@ use phea_dynamics::frequency::decibels;
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
 use phea_dynamics::watch::Watch;
+use phea_engineering::design::DesignPart;
 use phea_qft::bound::Placement;
 
 use super::answer::factors;
@@ -14,7 +15,7 @@ use crate::answer::{Csv, OutputFile};
 use crate::audit::{self, certificate_of};
 use crate::error::CommandError;
 use crate::project::{Loaded, with_laws, with_line_model, with_pressure_feedback};
-use crate::robust::{DesignFrequency, RobustProblem};
+use crate::robust::{BoundsError, DesignFrequency, RobustProblem};
 use crate::specification::kind_key;
 
 /// How far the drawn frequencies reach beyond the design frequencies.
@@ -48,21 +49,30 @@ pub fn files(loaded: &Loaded, view: &ProjectDesign) -> Vec<OutputFile> {
     named.into_iter().filter_map(file).chain(certificate).collect()
 }
 
-/// Every stage; a design that was stopped has no templates and bounds, which take long to compute.
+/// Every stage; a design that was stopped has no templates and bounds, which take long to compute,
+/// and one that the watch stops while they are computed is noted to have none.
 ///
 /// # Errors
-/// [`CommandError`] for a template that cannot be computed, or a watcher that stops.
+/// [`CommandError`] for a template that cannot be computed.
 pub fn stage_files(
     loaded: &Loaded,
-    view: &ProjectDesign,
+    view: &mut ProjectDesign,
     watch: Watch<'_>,
 ) -> Result<Vec<OutputFile>, CommandError> {
-    let side = &view.designed;
-    let found = if view.stopped { vec![] } else { side.problem.at_design_frequencies(watch)? };
-    let mut files = files(loaded, view);
-    if !view.stopped {
-        files.extend(bound_files(&side.problem, &found));
+    let found = match view.is_stopped() {
+        true => None,
+        false => match view.designed.problem.at_design_frequencies(watch) {
+            Err(BoundsError::Stopped(_)) => None,
+            found => Some(found?),
+        },
+    };
+    if found.is_none() {
+        view.leave(DesignPart::TemplatesAndBounds);
     }
+    let side = &view.designed;
+    let found = found.unwrap_or_default();
+    let mut files = files(loaded, view);
+    files.extend(bound_files(&side.problem, &found));
     files.push(nominal_loop(&side.problem, &found)?);
     files.push(transfer_file("controller.json", side.problem.compensation.feedback()));
     if side.problem.has_prefilter {

@@ -56,7 +56,7 @@ pub(super) fn designed(
     watch: Watch<'_>,
 ) -> Result<Designed, CommandError> {
     let view = match design_project(source, setup, None, watch).map_err(CommandError::from) {
-        Ok(view) if view.stopped => return Err(Stopped.into()),
+        Ok(view) if view.is_stopped() => return Err(Stopped.into()),
         Ok(view) => view,
         Err(CommandError::Design(DesignError::NoController(mut sentences))) => {
             sentences

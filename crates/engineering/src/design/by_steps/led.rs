@@ -268,7 +268,7 @@ impl<'a> LedDesign<'a> {
         };
         // what is far from its limit is looked at where the design has been found
         if told.command_of_steps.as_ref().is_some_and(|command| command.ratio() > COMMAND_NEAR) {
-            found.command_of_steps = command_of_steps(self.setup, &found, self.aimed.plants, depth);
+            found.command_of_steps = command_of_steps((self.setup, &found), self.aimed.plants, depth, watch)?;
         }
         Ok(found)
     }

@@ -79,6 +79,11 @@ impl ScenarioSteps {
         })
     }
 
+    /// True where no scenario has a step.
+    pub(super) fn is_empty(&self) -> bool {
+        self.scenarios.is_empty()
+    }
+
     /// The largest magnitude of the command in any scenario, of this command in a unit step, V.
     pub(in crate::design) fn largest_v(&self, unit: &StepResponse) -> f64 {
         self.peaks(unit).map(|(_, peak)| peak.value_v).fold(0.0, f64::max)

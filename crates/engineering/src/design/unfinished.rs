@@ -1,0 +1,151 @@
+//! What a design that the watch stopped lacks.
+
+use super::{DesignError, ProjectDesign};
+
+/// A part of a design.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DesignPart {
+    /// The search for a controller.
+    Search,
+    /// The search for the largest command that the steps of the scenarios take.
+    CommandOfSteps,
+    /// The trial of the designed controller on the nonlinear rig.
+    Trial,
+    /// The proof of the designed controller.
+    Proof,
+    /// The gain from relaxing each limit that binds.
+    Relaxations,
+    /// The design without samples, for comparison.
+    WithoutSamples,
+    /// The audit of the controller that the project gives.
+    GivenController,
+    /// The design with the plant of a rig that contradicts the first one.
+    Repair,
+    /// Templates and bounds, as files.
+    TemplatesAndBounds,
+}
+
+impl DesignPart {
+    /// All of them, in the order in which a reader misses them.
+    const ALL: [DesignPart; 9] = [
+        DesignPart::Search,
+        DesignPart::CommandOfSteps,
+        DesignPart::Trial,
+        DesignPart::Repair,
+        DesignPart::Proof,
+        DesignPart::Relaxations,
+        DesignPart::WithoutSamples,
+        DesignPart::GivenController,
+        DesignPart::TemplatesAndBounds,
+    ];
+
+    /// The word of a part in JSON.
+    pub fn key(self) -> &'static str {
+        match self {
+            DesignPart::Search => "search",
+            DesignPart::CommandOfSteps => "command_of_steps",
+            DesignPart::Trial => "machine",
+            DesignPart::Proof => "proof",
+            DesignPart::Relaxations => "relaxations",
+            DesignPart::WithoutSamples => "without_samples",
+            DesignPart::GivenController => "published",
+            DesignPart::Repair => "repair",
+            DesignPart::TemplatesAndBounds => "templates_and_bounds",
+        }
+    }
+
+    /// What a stopped design lacks without it, in a sentence.
+    fn sentence(self) -> &'static str {
+        match self {
+            DesignPart::Search => "the search for a controller was not finished: another may be better",
+            DesignPart::CommandOfSteps => {
+                "the largest command that the steps of the scenarios take was not searched for"
+            }
+            DesignPart::Trial => {
+                "no trial on the nonlinear rig was finished: what it does under this controller is not known"
+            }
+            DesignPart::Proof => "nothing is proven of the designed controller",
+            DesignPart::Relaxations => "what relaxing a limit would buy was not computed",
+            DesignPart::WithoutSamples => "the design without samples was not made for comparison",
+            DesignPart::GivenController => "the audit of the given controller was not finished",
+            DesignPart::Repair => {
+                "the repair was not finished: the nonlinear simulation contradicts this controller"
+            }
+            DesignPart::TemplatesAndBounds => "templates and bounds are not among the files",
+        }
+    }
+}
+
+impl ProjectDesign {
+    /// Whether the watch stopped it: then it is the best so far.
+    pub fn is_stopped(&self) -> bool {
+        !self.unfinished.is_empty()
+    }
+
+    /// Notes a part that the watch left unfinished.
+    pub fn leave(&mut self, part: DesignPart) {
+        leave(&mut self.unfinished, part);
+    }
+
+    /// What a stopped design lacks, a sentence each; empty where it was not stopped.
+    pub fn unfinished_sentences(&self) -> Vec<String> {
+        self.unfinished.iter().map(|part| part.sentence().to_string()).collect()
+    }
+}
+
+/// Adds a part that is not listed yet, in the order of [`DesignPart::ALL`].
+fn leave(unfinished: &mut Vec<DesignPart>, part: DesignPart) {
+    unfinished.push(part);
+    let left: Vec<DesignPart> =
+        DesignPart::ALL.into_iter().filter(|known| unfinished.contains(known)).collect();
+    *unfinished = left;
+}
+
+/// A result that follows a design; absent, and noted as unfinished, once the watch has stopped it,
+/// since the design remains.
+pub(super) fn unless_stopped<Found>(
+    unfinished: &mut Vec<DesignPart>,
+    part: DesignPart,
+    find: impl FnOnce() -> Result<Option<Found>, DesignError>,
+) -> Result<Option<Found>, DesignError> {
+    if !unfinished.is_empty() {
+        leave(unfinished, part);
+        return Ok(None);
+    }
+    match find() {
+        Err(DesignError::Stopped(_)) => {
+            leave(unfinished, part);
+            Ok(None)
+        }
+        found => found,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use phea_dynamics::watch::Stopped;
+
+    use super::*;
+
+    /// A part that is stopped is noted, and every part behind it too without being begun; the first
+    /// result remains.
+    #[test]
+    fn what_follows_a_stop_is_not_begun_and_noted() {
+        let mut unfinished = vec![];
+        let first = unless_stopped(&mut unfinished, DesignPart::Search, || Ok(Some(1)));
+        let second =
+            unless_stopped(&mut unfinished, DesignPart::Proof, || Err::<Option<i32>, _>(Stopped.into()));
+        let mut begun = false;
+        let third = unless_stopped(&mut unfinished, DesignPart::Trial, || {
+            begun = true;
+            Ok(Some(3))
+        });
+        assert_eq!([first, second, third], [Ok(Some(1)), Ok(None), Ok(None)]);
+        assert!(!begun);
+        assert_eq!(unfinished, [DesignPart::Trial, DesignPart::Proof]);
+        assert_eq!(
+            unless_stopped(&mut vec![], DesignPart::Proof, || Err::<Option<i32>, _>(DesignError::Admittance)),
+            Err(DesignError::Admittance)
+        );
+    }
+}

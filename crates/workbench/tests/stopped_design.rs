@@ -1,0 +1,74 @@
+//! A design that the watch stops in one of its stages: what was found until then remains, and the
+//! answer lists what it lacks.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use phea_workbench::answer::Answer;
+use phea_workbench::command::{CommandError, Progress, Request, answer_into, stopped_text};
+use serde_json::{Value, json};
+
+use crate::ask::{load, source};
+use crate::command_of_steps::simple_rig;
+
+const REQUEST: Request = Request::Design { seed: None, stages: true, repair: true };
+
+/// The design of a simple rig under a watch that stops it from a stage on, and the stages that it
+/// was told of.
+fn stopped_in(stage: &str) -> (Result<Answer, CommandError>, Vec<&'static str>) {
+    let text = simple_rig();
+    let (rig, _) = text.split_once("[controller]").unwrap();
+    let text = format!("{rig}[design]\nstructure = \"pi\"\n");
+    let mut seen: Vec<&'static str> = Vec::new();
+    let mut watch = |progress: Progress| {
+        if seen.last() != Some(&progress.stage) {
+            seen.push(progress.stage);
+        }
+        !seen.contains(&stage)
+    };
+    let found = answer_into(&source(&text), &load(&text, &[], &[]), &[], &REQUEST, None, &mut watch);
+    (found, seen)
+}
+
+fn names(answer: &Answer) -> Vec<&str> {
+    answer.files.iter().map(|file| file.name.as_str()).collect()
+}
+
+/// Stopped in the trial, in what follows, and in the files alone: each answer has the controller
+/// and lists every part from there on; only a design that lacks nothing is affirmative.
+// ORIGIN: written by hand, the stages in their order
+#[test]
+fn a_stopped_design_lists_what_it_lacks() {
+    let cases = [
+        ("nonlinear simulation", json!(["machine", "relaxations", "templates_and_bounds"])),
+        ("relaxing each limit", json!(["relaxations", "templates_and_bounds"])),
+        ("templates and bounds", json!(["templates_and_bounds"])),
+        ("no stage at all", json!([])),
+    ];
+    for (stage, expected) in cases {
+        let (found, _) = stopped_in(stage);
+        let answer = found.unwrap();
+        let design: Value = serde_json::from_str(&answer.json).unwrap();
+        assert_eq!(design["unfinished"], expected, "{stage}");
+        let is_whole = expected == json!([]);
+        assert_eq!(answer.affirmative, is_whole, "{stage}");
+        assert_eq!(design["status"], if is_whole { "met" } else { "stopped" }, "{stage}");
+        let is_tried = !expected.as_array().unwrap().contains(&json!("machine"));
+        assert_eq!(design["machine"].is_object(), is_tried, "{stage}");
+        assert_eq!(answer.text.contains("no trial on the nonlinear rig was finished"), !is_tried, "{stage}");
+        assert_eq!(answer.text.contains("templates and bounds are not among the files"), !is_whole);
+        let files = names(&answer);
+        assert!(files.contains(&"designed.toml") && files.contains(&"loop.csv"), "{files:?}");
+        assert_eq!(files.contains(&"bounds.csv"), is_whole, "{files:?}");
+    }
+}
+
+/// Stopped before there is a controller, it has no answer: the reason names the stage and what was
+/// not begun.
+#[test]
+fn a_design_that_is_stopped_at_once_says_what_was_not_begun() {
+    let (_, stages) = stopped_in("no stage at all");
+    let first = stages[0];
+    let (found, seen) = stopped_in(first);
+    assert!(matches!(found, Err(CommandError::Stopped(_))) && seen == [first], "{seen:?}");
+    let text = stopped_text(&REQUEST, Some(first));
+    assert!(text.contains(first) && text.contains("no controller") && text.contains("not begun"), "{text}");
+}
