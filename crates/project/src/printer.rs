@@ -57,6 +57,11 @@ impl Printer {
         Printer { open: vec![PrintedTable::default()], named, motion: Motions::default() }
     }
 
+    /// The same for keys of a rig with these motions.
+    pub(crate) fn in_motions(self, motion: Motions) -> Self {
+        Printer { motion, ..self }
+    }
+
     /// What was written since the beginning as one inline table.
     pub(crate) fn finish_inline(self) -> Option<String> {
         self.open.first().and_then(PrintedTable::inline)

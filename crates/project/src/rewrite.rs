@@ -18,7 +18,7 @@ use self::surgery::{KeyValues, replaced};
 use super::listing::keys_of_table;
 use super::printer::Printer;
 use super::visitor::Variants;
-use super::{ChosenLines, DeclaredController, DeclaredPressureFeedback, Prefilter, Transfer};
+use super::{ChosenLines, DeclaredController, DeclaredPressureFeedback, Motions, Prefilter, Transfer};
 
 /// Keys of [controller] and [prefilter] that form a transfer function.
 fn law_keys() -> Vec<&'static str> {
@@ -31,8 +31,8 @@ fn law_keys() -> Vec<&'static str> {
 pub fn with_laws(
     bytes: &[u8],
     settings: &[String],
-    controller: &DeclaredController,
-    prefilter: Option<&Prefilter>,
+    (controller, prefilter): (&DeclaredController, Option<&Prefilter>),
+    motions: Motions,
 ) -> Vec<u8> {
     // a text that was read as a project is UTF-8
     let text = String::from_utf8_lossy(bytes);
@@ -42,7 +42,7 @@ pub fn with_laws(
     let (keys, lines) = match overrides("controller") {
         true => {
             let all = keys_of_table(|listing| DeclaredController::default().visit(listing));
-            (all, controller_lines(controller))
+            (all, controller_lines(controller, motions))
         }
         false => (law_keys(), law_lines(&controller.transfer)),
     };
@@ -67,7 +67,11 @@ pub fn with_pressure_feedback(bytes: &[u8], feedback: Option<&DeclaredPressureFe
     const KEY: &str = "pressure_feedback";
     let text = String::from_utf8_lossy(bytes);
     let only = DeclaredController { pressure_feedback: feedback.copied(), ..DeclaredController::default() };
-    let lines = controller_lines(&only).into_iter().filter(|(key, _)| key == KEY).collect::<KeyValues>();
+    // a pressure has the same unit in every rig
+    let lines = controller_lines(&only, Motions::default())
+        .into_iter()
+        .filter(|(key, _)| key == KEY)
+        .collect::<KeyValues>();
     replaced(&text, "controller", &[KEY], &lines).into_bytes()
 }
 
@@ -92,13 +96,17 @@ fn prefilter_lines(prefilter: &Prefilter) -> KeyValues {
     printer.lines().into_iter().filter(|(key, _)| key != "continuous" || prefilter.continuous).collect()
 }
 
-/// Controller and prefilter as tables of a project file, ready to be pasted into one.
-pub fn snippet(controller: &DeclaredController, prefilter: Option<&Prefilter>) -> String {
+/// Controller and prefilter as tables of the file of a project with these motions, ready to be
+/// pasted into it.
+pub fn snippet(
+    (controller, prefilter): (&DeclaredController, Option<&Prefilter>),
+    motions: Motions,
+) -> String {
     let table = |name: &str, lines: KeyValues| {
         lines.iter().fold(format!("[{name}]\n"), |text, (key, value)| format!("{text}{key} = {value}\n"))
     };
     let prefilter = prefilter.map(|prefilter| table("prefilter", prefilter_lines(prefilter)));
-    [Some(table("controller", controller_lines(controller))), prefilter]
+    [Some(table("controller", controller_lines(controller, motions))), prefilter]
         .into_iter()
         .flatten()
         .collect::<Vec<_>>()
@@ -118,9 +126,9 @@ fn element_lines(transfer: &Transfer) -> Option<(String, String)> {
 }
 
 /// Keys with their default values are left out.
-fn controller_lines(controller: &DeclaredController) -> KeyValues {
+fn controller_lines(controller: &DeclaredController, motions: Motions) -> KeyValues {
     let lines = |mut controller: DeclaredController| {
-        let mut printer = Printer::new(BTreeMap::new());
+        let mut printer = Printer::new(BTreeMap::new()).in_motions(motions);
         controller.visit(&mut printer);
         printer.lines()
     };

@@ -352,3 +352,22 @@ fn areas_come_from_diameters_or_stand_for_themselves() {
     let areas = DeclaredCylinder { piston_areas: Some([2e-3, 1e-3]), ..DeclaredCylinder::default() };
     assert_eq!(areas.effective_areas_m2(), [2e-3, 1e-3]);
 }
+
+const MOTOR: &str = include_str!("valid/motor.toml");
+
+/// The controller of a motor, as it is offered to be pasted, is read in its place as what it was
+/// printed from: torques, gains and speeds have the units of a rig that turns.
+#[test]
+fn what_is_pasted_into_the_project_of_a_motor_is_what_was_printed() {
+    let quantization = "quantization = { command_bits = 12, command_range = [\"-10 V\", \"10 V\"], measurement_bits = 12, \
+                        measurement_range = [\"-500 N.m\", \"500 N.m\"], allowed_force_error = \"2 N.m\" }\n";
+    let text = MOTOR.replace("sample_time = \"1 ms\"\n", &format!("sample_time = \"1 ms\"\n{quantization}"));
+    let project = accept(&text).project;
+    let controller = project.controller.as_ref().expect("a controller");
+    assert!(controller.quantization.is_some());
+    let pasted = project::snippet((controller, None), project.motions());
+    assert!(pasted.contains("500 N.m") && pasted.contains("V.s/rad"), "{pasted}");
+    let (before, rest) = text.split_once("[controller]").expect("a controller");
+    let after = rest.split_once("\n[[scenario]]").expect("a scenario").1;
+    assert_eq!(accept(&format!("{before}{pasted}\n[[scenario]]{after}")).project, project);
+}

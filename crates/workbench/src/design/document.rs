@@ -66,7 +66,7 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
         out.append(trial::document(trial, None));
     }
     if let Some(repair) = &view.repair {
-        out.append(repaired(repair)?);
+        out.append(repaired(loaded, repair)?);
     }
     out.append(super::pressure_feedback(view));
     out.heading("Controller");
@@ -79,7 +79,7 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
         _ => ", though it does not satisfy every specification",
     };
     out.heading(format!("{}{caution}", in_place_of(view)));
-    out.preformatted(snippet(&view.declared_controller, view.declared_prefilter.as_ref()));
+    out.preformatted(pasted(loaded, view));
     out.append(super::structures(view));
     out.append(super::limits(view));
     out.append(costs(view));
@@ -98,6 +98,12 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
         out.line(sentence);
     }
     Ok(out)
+}
+
+/// The tables of a design as its project would have them.
+fn pasted(loaded: &Loaded, view: &ProjectDesign) -> String {
+    let laws = (&view.declared_controller, view.declared_prefilter.as_ref());
+    snippet(laws, loaded.project.motions())
 }
 
 /// The heading of the text of a controller, with the tables that it replaces.
@@ -132,7 +138,7 @@ fn not_led_sentence(view: &ProjectDesign) -> Option<String> {
 
 /// The consequences of the machine's contradiction, with the controllers that come nearest to what
 /// cannot be achieved.
-fn repaired(repair: &Repair) -> Result<Document, LinearError> {
+fn repaired(loaded: &Loaded, repair: &Repair) -> Result<Document, LinearError> {
     let mut out = Document::default();
     out.heading(format!("Repair: {}", repair_words(repair)));
     out.sentences(repair.sentences.iter().cloned());
@@ -140,7 +146,7 @@ fn repaired(repair: &Repair) -> Result<Document, LinearError> {
         out.heading("Nearest controller");
         out.append(laws(&nearest.designed)?);
         out.heading_on_page(in_place_of(nearest));
-        out.preformatted(snippet(&nearest.declared_controller, nearest.declared_prefilter.as_ref()));
+        out.preformatted(pasted(loaded, nearest));
     }
     Ok(out)
 }

@@ -34,7 +34,8 @@ pub fn files(loaded: &Loaded, view: &ProjectDesign) -> Vec<OutputFile> {
     let named = [(DESIGNED_PROJECT, Some(view)), (NEAREST_PROJECT, nearest)];
     let file = |(name, design): (&str, Option<&ProjectDesign>)| {
         let (controller, prefilter) = (&design?.declared_controller, design?.declared_prefilter.as_ref());
-        let bytes = with_laws(&loaded.bytes, &loaded.settings, controller, prefilter);
+        let laws = (controller, prefilter);
+        let bytes = with_laws(&loaded.bytes, &loaded.settings, laws, loaded.project.motions());
         let bytes = match &design?.pressure_feedback {
             Some(_) => with_pressure_feedback(&bytes, controller.pressure_feedback.as_ref()),
             None => bytes,
