@@ -80,7 +80,7 @@ pub(crate) use force_limits::{BeyondReach, ForceLimits, steps_beyond};
 pub use foreseen::{foreseen, unreadable};
 pub use reference_step::{ReferenceStep, SteppedReference, stepped_references};
 pub(crate) use required::concerned;
-pub use required::{NotJudged, ScenarioRequirement, required_of_run};
+pub use required::{NotJudged, ScenarioRequirement, concerns, required_of_run};
 pub use requirement::{RequiredSteps, TimeRequirement, time_requirements};
 pub use run::occurrences;
 pub use wish::{HeldWish, ReachedStep, TrackingWish};

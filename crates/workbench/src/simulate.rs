@@ -16,7 +16,7 @@ pub use phea_engineering::simulate::*;
 pub(crate) use answer::{body, comparison_body, frequency_body};
 pub(crate) use document::{
     adjustment_sentence, cause_words, coarse_sentence, comparison, document, gas_sentence, headline,
-    measured, metrics_row, occurrence_sentences, published, published_row, windows,
+    measured, metrics_row, occurrence_sentences, published, published_row, windows, wish_of,
 };
 pub(crate) use figures::{comparison_files, figure_files, laid_over, pictures, turns};
 pub(crate) use frequency::{

@@ -73,7 +73,7 @@ pub(crate) fn concerned(
 }
 
 /// Whether a window is a step for which the requirement holds.
-fn concerns(one: &TimeRequirement, window: &Window) -> bool {
+pub fn concerns(one: &TimeRequirement, window: &Window) -> bool {
     let Cause::ReferenceStep { from_n, to_n } = window.cause else { return false };
     let is = |stated: Option<f64>, value: f64| {
         stated.is_none_or(|stated| (stated - value).abs() <= SAME * (stated.abs() + to_n.abs()))

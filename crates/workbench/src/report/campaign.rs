@@ -42,6 +42,8 @@ pub(super) struct CampaignChapter {
 /// A step of the reference in a run.
 pub(super) struct CampaignStep {
     pub(super) run: u64,
+    /// Where it begins, and by what.
+    pub(super) window: Window,
     /// Percent of the step.
     pub(super) overshoot_percent: Option<f64>,
     /// s; infinite where it does not settle.
@@ -118,8 +120,9 @@ fn steps(loaded: &Loaded, plan: &Plan, rows: &[Row]) -> Vec<CampaignStep> {
         .filter(|(_, ran)| ran.ended_s.is_none())
         .flat_map(|(run, ran)| ran.metrics.iter().zip(plan.windows()).map(move |own| (run, own)))
         .filter(|(_, (_, window))| matches!(window.cause, Cause::ReferenceStep { .. }))
-        .map(|(run, (numbers, _))| CampaignStep {
+        .map(|(run, (numbers, window))| CampaignStep {
             run,
+            window: *window,
             overshoot_percent: numbers[overshoot],
             settling_time_s: numbers[settling].unwrap_or(f64::INFINITY),
             rise_time_s: numbers[rise].unwrap_or(f64::INFINITY),

@@ -5,8 +5,8 @@ use crate::error::CommandError;
 use crate::project::Project;
 use crate::setup::Setup;
 use crate::simulate::{
-    Cause, DIVERGED, NamedRun, OVERSHOOT, SETTLING, ScenarioRun, SimulateError, TrackingWish, Window,
-    cause_words, cells_of, simulate_project, time_requirements,
+    Cause, DIVERGED, NamedRun, OVERSHOOT, SETTLING, ScenarioRun, SimulateError, TimeRequirement,
+    TrackingWish, Window, cause_words, cells_of, concerns, simulate_project, time_requirements,
 };
 use crate::source::Source;
 use phea_dynamics::watch::{Stopped, Watch};
@@ -20,8 +20,8 @@ pub(super) const DESIGNED: &str = "designed";
 pub(super) struct MachineChapter {
     /// Given and designed controller, if they exist.
     pub(super) sides: Vec<DrivenSide>,
-    /// The wish for a step in time.
-    pub(super) wish: Option<TrackingWish>,
+    /// What is required of a step in time, of the first specification that does so.
+    pub(super) required: Option<TimeRequirement>,
 }
 
 /// The same under one controller.
@@ -58,13 +58,23 @@ pub(super) fn driven(
         }
         sides.push(DrivenSide { name, runs });
     }
-    Ok(Some(MachineChapter {
-        sides,
-        wish: time_requirements(project)?.first().map(|required| required.wish),
-    }))
+    Ok(Some(MachineChapter { sides, required: time_requirements(project)?.first().copied() }))
 }
 
 impl MachineChapter {
+    /// What is required of the steps in a scenario; `None` where it has none that this is about.
+    pub(super) fn wish_of(&self, index: usize) -> Option<&TrackingWish> {
+        self.required_of(index).map(|required| &required.wish)
+    }
+
+    /// The same with the steps that it is about.
+    pub(super) fn required_of(&self, index: usize) -> Option<&TimeRequirement> {
+        let required = self.required.as_ref()?;
+        let windows = self.sides.iter().filter_map(|side| run_of(side, index)).flat_map(|run| &run.windows);
+        let mut windows = windows.map(|(window, _)| window);
+        windows.any(|window| concerns(required, window)).then_some(required)
+    }
+
     /// The runs of a scenario by its index in the file. If a stated command drives the valve, no
     /// controller acts, and there is a single run.
     pub(super) fn of_scenario<'a>(&'a self, index: usize) -> Vec<NamedRun<'a>> {

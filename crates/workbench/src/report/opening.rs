@@ -123,18 +123,18 @@ pub(super) fn opening(contents: &Contents<'_>, nichols: Option<Figure>) -> (Chap
 /// The first scenario that is drawn, of both controllers.
 fn over_time(driven: &MachineChapter) -> Option<Figure> {
     let first = driven.drawn(0);
-    at_a_glance("opening_force", &first, driven.wish.as_ref())
+    at_a_glance("opening_force", &first, driven.wish_of(0))
 }
 
 fn decided(contents: &Contents<'_>, side: &Side<'_>) -> Decided {
     let findings = side.view.map(|view| view.audit.specifications.as_slice()).unwrap_or_default();
-    let wish = contents.driven.and_then(|driven| driven.wish.as_ref());
+    let required = contents.driven.and_then(|driven| driven.required.as_ref());
     Decided {
         verdict: side.view.map(|view| verdict_key(view.verdict())),
         specifications: findings.iter().map(|finding| verdict_key(finding.verdict)).collect(),
         proven: side.is_proven(),
         machine: side.trial.map(|trial| agreement_key(trial.agreement())),
-        wishes_kept: wish.and_then(|wish| side.keeps(wish)),
+        wishes_kept: required.and_then(|required| side.keeps(required)),
     }
 }
 

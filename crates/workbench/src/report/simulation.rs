@@ -9,9 +9,9 @@ use crate::figure::Figure;
 use crate::project::{Project, Scenario};
 use crate::quantity::Units;
 use crate::simulate::{
-    METRICS, Metrics, NamedRun, TrackingWish, Window, adjustment_sentence, cause_words, cells_of, close_ups,
-    coarse_sentence, gas_sentence, headline, measured, measured_together, metrics_row, occurrence_sentences,
-    pictures, published, published_row, together, turns, windows,
+    METRICS, Metrics, NamedRun, TimeRequirement, TrackingWish, Window, adjustment_sentence, cause_words,
+    cells_of, close_ups, coarse_sentence, gas_sentence, headline, measured, measured_together, metrics_row,
+    occurrence_sentences, pictures, published, published_row, together, turns, windows, wish_of,
 };
 
 /// The chapter.
@@ -31,10 +31,10 @@ pub(super) fn chapter(project: &Project, driven: &MachineChapter) -> Chapter {
     out.explanations(any.then(|| "The rig as a whole, simulated: spool with saturation, the flow of each edge, chambers that grow and shrink, friction as declared, load cell and load, under the controller as it is deployed. Peaks and settling times are those of the solution over each step of the integration, so that they do not depend on the rows of the table.".to_string()));
     for (index, declared) in project.scenarios.iter().enumerate() {
         let runs = driven.of_scenario(index);
-        let wish = driven.wish.as_ref();
+        let required = driven.required_of(index);
         if !runs.is_empty() {
-            let drawn = drawn(&driven.drawn(index), index + 1, wish);
-            out.append(scenario(&runs, declared, wish, drawn));
+            let drawn = drawn(&driven.drawn(index), index + 1, driven.wish_of(index));
+            out.append(scenario(&runs, declared, required, drawn));
         }
     }
     Chapter::of("simulation", "Simulation of the nonlinear machine", out)
@@ -72,7 +72,7 @@ fn drawn(runs: &[NamedRun<'_>], number: usize, wish: Option<&TrackingWish>) -> V
 fn scenario(
     runs: &[NamedRun<'_>],
     declared: &Scenario,
-    wish: Option<&TrackingWish>,
+    required: Option<&TimeRequirement>,
     figures: Vec<Figure>,
 ) -> Document {
     let mut out = Document::default();
@@ -81,7 +81,7 @@ fn scenario(
     let units = runs.first().map_or(Units::default(), |named| named.run.record.units);
     out.explanations(driving::sentences(declared, units, runs.iter().any(|named| turns(&named.run.record))));
     out.figures(figures);
-    out.append(metrics(runs, declared, wish));
+    out.append(metrics(runs, declared, required));
     let names = runs.iter().map(|named| (Some(named.name).filter(|_| runs.len() > 1), named.run));
     let measured = measured(&names.collect::<Vec<_>>());
     if !measured.is_empty() {
@@ -115,13 +115,13 @@ fn capital(word: &str) -> String {
 }
 
 /// The metrics of each event: a row for each controller, compared with published values.
-fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, wish: Option<&TrackingWish>) -> Document {
+fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, required: Option<&TimeRequirement>) -> Document {
     let mut out = Document::default();
     let Some(first) = runs.first().map(|named| named.run).filter(|first| !first.windows.is_empty()) else {
         return out;
     };
     match runs {
-        [alone] => out.table(windows(alone.run, wish, Some(declared))),
+        [alone] => out.table(windows(alone.run, required, Some(declared))),
         several => {
             let shown = told(several.iter().flat_map(|named| &named.run.windows));
             let band = first.settling_band_percent;
@@ -136,7 +136,7 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, wish: Option<&TrackingWis
                             named.name.to_string(),
                             &shown,
                             (metrics, named.run.record.units),
-                            wish,
+                            wish_of(required, window),
                         ));
                     }
                 }
@@ -147,9 +147,11 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, wish: Option<&TrackingWis
             out.table(rows);
         }
     }
-    let wished = wish.and_then(wished).map_or(String::new(), |words| {
+    let wished = required.and_then(|required| Some((required, wished(&required.wish)?)));
+    let wished = wished.map_or(String::new(), |(required, words)| {
+        let steps = if required.steps.are_stated() { "the required step" } else { "every step" };
         format!(
-            " Wished of every step: {words}; a disc with a tick satisfies it, a square with a cross does not."
+            " Wished of {steps}: {words}; a disc with a tick satisfies it, a square with a cross does not."
         )
     });
     out.explanation(format!(

@@ -14,8 +14,9 @@ use crate::audit::{closed_loop_symbol, frequency_number, frequency_words, meanin
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
 use crate::project::Project;
-use crate::quantity::{RATIO, display};
+use crate::quantity::{DisplayUnit, RATIO, display};
 use crate::robust::RobustProblem;
+use crate::simulate::{RequiredSteps, TimeRequirement};
 use crate::specification::{SpecificationError, wishes};
 
 pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chapter, CommandError> {
@@ -26,7 +27,10 @@ pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chap
     let margins = margins(specifications)?;
     let mut out = Document::default();
     out.explanation("The requirements on the closed loop of every plant. L is the open loop; F, G and P are prefilter, controller and plant.");
-    out.table(Table::new(heads).with(specifications.iter().enumerate().map(row)));
+    let mut rows = Table::new(heads).with(specifications.iter().enumerate().map(row));
+    let steps = problem.in_time.iter().filter(|one| one.limits.is_none());
+    steps.for_each(|one| rows.row(step_row(one, project.units.force)));
+    out.table(rows);
     for (number, specification) in (1..).zip(specifications) {
         spread(&mut out, number, specification);
     }
@@ -55,6 +59,25 @@ fn row(index: usize, name: &str, specification: &Specification) -> [Cell; 5] {
         Cell::Equation(demand(requirement)),
         band.into(),
         frequencies.join(", ").into(),
+    ]
+}
+
+/// A required step, which limits no closed loop and has no design frequencies; as in the tables of
+/// the audit it has no number.
+fn step_row(required: &TimeRequirement, unit: DisplayUnit) -> [Cell; 5] {
+    let RequiredSteps { amplitude_n, initial_force_n } = required.steps;
+    let from = initial_force_n.map_or(String::new(), |force_n| format!(" from {}", unit.text(force_n, 3)));
+    let by = amplitude_n.map_or(String::new(), |size_n| format!(" by {}", unit.text(size_n, 3)));
+    let on_rig = match required.steps.are_stated() {
+        true => format!("; on the nonlinear rig the step{from}{by}"),
+        false => String::new(),
+    };
+    [
+        Cell::empty(),
+        "step: the response to a step of the reference".into(),
+        required.wish.words().into(),
+        format!("every plant{on_rig}").into(),
+        Cell::Missing,
     ]
 }
 

@@ -7,7 +7,8 @@ use super::repetition::{divergence_words, sentences as doubts, work_words};
 use super::required::requirement_sentences;
 use super::{
     AdjustmentWork, BeyondExpansion, Cause, GasRange, Metrics, OUTSIDE_MODEL, Occurrence, Overlay,
-    ScenarioComparison, ScenarioRun, StoppedRun, TrackingWish, UNDETERMINED, Window,
+    ScenarioComparison, ScenarioRun, StoppedRun, TimeRequirement, TrackingWish, UNDETERMINED, Window,
+    concerns,
 };
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
@@ -84,7 +85,11 @@ const RARE: [&str; 2] = ["tracking error peak", "force peak"];
 
 /// The metrics of each event of a run, judged by the wish. Next to published values only metrics
 /// that some event has are shown.
-pub(crate) fn windows(run: &ScenarioRun, wish: Option<&TrackingWish>, declared: Option<&Scenario>) -> Table {
+pub(crate) fn windows(
+    run: &ScenarioRun,
+    required: Option<&TimeRequirement>,
+    declared: Option<&Scenario>,
+) -> Table {
     let cells: Vec<_> = run.windows.iter().map(|(_, metrics)| cells_of(metrics, run.record.units)).collect();
     let always = |name: &str| declared.is_none() && !run.open_loop && !RARE.contains(&name);
     let has = |place: &usize| cells.iter().any(|cells| cells[*place] != Cell::Missing);
@@ -97,12 +102,21 @@ pub(crate) fn windows(run: &ScenarioRun, wish: Option<&TrackingWish>, declared: 
     let units = run.record.units;
     let mut rows = Table::new(std::iter::once("event".to_string()).chain(shown.iter().map(head)));
     for (window, metrics) in &run.windows {
+        let wish = wish_of(required, window);
         rows.row(metrics_row(cause_words(window, units), &shown, (metrics, units), wish));
         if let Some((source, cells)) = declared.and_then(|declared| published(declared, window, units)) {
             rows.row(published_row(source, &shown, cells));
         }
     }
     rows
+}
+
+/// What is required of a window; `None` where the requirement is not about it.
+pub(crate) fn wish_of<'r>(
+    required: Option<&'r TimeRequirement>,
+    window: &Window,
+) -> Option<&'r TrackingWish> {
+    required.filter(|required| concerns(required, window)).map(|required| &required.wish)
 }
 
 /// The metrics of one event, those with a wish marked.

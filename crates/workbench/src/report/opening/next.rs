@@ -19,7 +19,7 @@ use crate::quantity::DisplayUnit;
 use crate::report::design::Designed;
 use crate::report::driven::{DESIGNED, GIVEN};
 use crate::setup::Setup;
-use crate::simulate::TrackingWish;
+use crate::simulate::TimeRequirement;
 use crate::trial::{Agreement, TrialRun};
 
 /// Largest number of sentences.
@@ -247,9 +247,9 @@ fn is_tracking(specification: &DeclaredSpecification) -> bool {
 
 /// A step of the machine that misses the wish, and the response of the tracking limits themselves.
 fn wishes(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
-    let wish: &TrackingWish = contents.driven?.wish.as_ref()?;
+    let required: &TimeRequirement = contents.driven?.required.as_ref()?;
     let missed = |property| {
-        let all = steps(side, wish, property).filter(|all| !all.are_kept())?;
+        let all = steps(side, required, property).filter(|all| !all.are_kept())?;
         Some(all.worst_words())
     };
     let overshoot = missed(StepProperty::Overshoot).map(|words| format!("overshoots by {words}"));

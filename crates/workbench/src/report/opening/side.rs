@@ -9,7 +9,7 @@ use crate::design::LoopFigures;
 use crate::report::campaign::CampaignStep;
 use crate::report::driven::{DESIGNED, GIVEN, MachineChapter};
 use crate::report::judged::Judged;
-use crate::simulate::{ScenarioRun, TrackingWish};
+use crate::simulate::{ScenarioRun, TimeRequirement};
 use crate::trial::Trial;
 
 /// A controller.
@@ -75,9 +75,9 @@ impl Side<'_> {
         self.view.is_some_and(|view| view.verdict() == Verdict::Met)
     }
 
-    /// Whether all steps meet the wish; `None` if none can be judged.
-    pub(super) fn keeps(&self, wish: &TrackingWish) -> Option<bool> {
-        let all = StepProperty::ALL.into_iter().filter_map(|property| steps(self, wish, property));
+    /// Whether all steps that it is about satisfy a requirement; `None` if none can be judged.
+    pub(super) fn keeps(&self, required: &TimeRequirement) -> Option<bool> {
+        let all = StepProperty::ALL.into_iter().filter_map(|property| steps(self, required, property));
         all.map(|steps| steps.are_kept()).reduce(|one, other| one && other)
     }
 

@@ -9,7 +9,9 @@ use phea_dynamics::time_response::{StepBaseline, step_metrics};
 use super::side::Side;
 use crate::answer::significant;
 use crate::audit::{TimeOutcome, WorstStep};
-use crate::simulate::{Metrics, NOT_SETTLED, TrackingWish, cause_words};
+use crate::simulate::{
+    Metrics, NOT_SETTLED, ReachedStep, TimeRequirement, TrackingWish, cause_words, concerns,
+};
 use crate::trial::TrialRun;
 
 /// Which property of a step.
@@ -62,8 +64,10 @@ const ROUNDED: f64 = 1e-6;
 /// Deviation of a linear step that counts as none, percent.
 const ACCURACY_PERCENT: f64 = 0.01;
 
-/// All steps of a controller; `None` where the property is not required or no step has it.
-pub(super) fn steps(side: &Side<'_>, wish: &TrackingWish, property: StepProperty) -> Option<AllSteps> {
+/// All steps of a controller that a requirement is about; `None` where the property is not required
+/// or no step has it.
+pub(super) fn steps(side: &Side<'_>, required: &TimeRequirement, property: StepProperty) -> Option<AllSteps> {
+    let wish = &required.wish;
     let most = match property {
         StepProperty::Overshoot => wish.overshoot_percent?,
         StepProperty::Settling => wish.settling_time_s?,
@@ -76,15 +80,28 @@ pub(super) fn steps(side: &Side<'_>, wish: &TrackingWish, property: StepProperty
             let place = format!("{}, {}", run.name, cause_words(window, run.record.units));
             Some(OneStep { origin: StepOrigin::Scenario, value, place })
         };
-        steps.extend(run.windows.iter().map(|(window, metrics)| (window, metrics)).filter_map(of));
+        let windows = run.windows.iter().map(|(window, metrics)| (window, metrics));
+        steps.extend(windows.filter(|(window, _)| concerns(required, window)).filter_map(of));
     }
-    steps.extend(side.trial.iter().flat_map(|trial| &trial.runs).filter_map(|run| {
-        let value = of_machine(run, wish, property)?;
+    // a requirement with a step of its own is about no other
+    let is_about = |run: &&TrialRun| {
+        let mut numbers = run.requirements.iter().map(|held| held.number);
+        !required.steps.are_stated() || numbers.any(|number| number == required.number)
+    };
+    let runs = side.trial.iter().flat_map(|trial| &trial.runs).filter(is_about);
+    steps.extend(runs.filter_map(|run| {
+        let reached = held(run, required).map(|reached| match property {
+            StepProperty::Overshoot => reached.overshoot_percent,
+            StepProperty::Settling => reached.settling_time_s,
+            StepProperty::Rise => reached.rise_time_s,
+        });
+        let value = reached.or_else(|| of_machine(run, wish, property))?;
         Some(OneStep { origin: StepOrigin::Machine, value, place: run.what.clone() })
     }));
-    let (linear, plants) = of_family(side, property);
+    let (linear, plants) = of_family(side, required.number, property);
     steps.extend(linear);
-    steps.extend(side.campaign.iter().filter_map(|step| {
+    let campaign = side.campaign.iter().filter(|step| concerns(required, &step.window));
+    steps.extend(campaign.filter_map(|step| {
         let value = match property {
             StepProperty::Overshoot => step.overshoot_percent?,
             StepProperty::Settling if step.band_percent == wish.band_percent => step.settling_time_s,
@@ -94,6 +111,13 @@ pub(super) fn steps(side: &Side<'_>, wish: &TrackingWish, property: StepProperty
         Some(OneStep { origin: StepOrigin::Campaign, value, place: format!("campaign, run {}", step.run) })
     }));
     (!steps.is_empty()).then_some(AllSteps { property, most, steps, plants })
+}
+
+/// What the steps of a run that was completed reach of a requirement; `None` where they were not
+/// held against it.
+fn held<'r>(run: &'r TrialRun, required: &TimeRequirement) -> Option<&'r ReachedStep> {
+    let held = run.requirements.iter().find(|held| held.number == required.number)?;
+    Some(&held.reached).filter(|reached| reached.overshoot_percent.is_finite())
 }
 
 fn of_window(metrics: &Metrics, wish: &TrackingWish, property: StepProperty) -> Option<f64> {
@@ -126,10 +150,11 @@ fn of_machine(run: &TrialRun, wish: &TrackingWish, property: StepProperty) -> Op
 }
 
 /// The worst linear step of the family, and of how many.
-fn of_family(side: &Side<'_>, property: StepProperty) -> (Option<OneStep>, usize) {
+fn of_family(side: &Side<'_>, number: usize, property: StepProperty) -> (Option<OneStep>, usize) {
     let Some(view) = side.view else { return (None, 0) };
+    let own = view.in_time.iter().find(|finding| finding.requirement.number == number);
     let Some(TimeOutcome::Searched { plants, overshoot, settling, rise }) =
-        view.in_time.first().map(|finding| &finding.outcome)
+        own.map(|finding| &finding.outcome)
     else {
         return (None, 0);
     };

@@ -113,7 +113,10 @@ fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
         Some(Cell::agreement(trial.agreement()).then(Cell::from(which)))
     }));
     rows.extend(row("every scenario driven to its end", sides, |side| Some(driven(side.runs?))));
-    let Some(wish) = contents.driven.and_then(|driven| driven.wish.as_ref()) else { return rows };
+    let Some(all_required) = contents.driven.and_then(|driven| driven.required.as_ref()) else {
+        return rows;
+    };
+    let wish = &all_required.wish;
     let required = [
         (StepProperty::Overshoot, wish.overshoot_words()),
         (StepProperty::Settling, wish.settling_words()),
@@ -121,7 +124,8 @@ fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
     ];
     for (property, words) in required {
         let Some(words) = words else { continue };
-        let all: Vec<Option<AllSteps>> = sides.iter().map(|side| steps(side, wish, property)).collect();
+        let all: Vec<Option<AllSteps>> =
+            sides.iter().map(|side| steps(side, all_required, property)).collect();
         let counted = all.iter().flatten().next().map(AllSteps::counted).unwrap_or_default();
         let cells: Vec<Cell> = all.iter().map(|all| Cell::from(all.as_ref().map(held))).collect();
         if all.iter().any(Option::is_some) {
