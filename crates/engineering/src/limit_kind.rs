@@ -39,6 +39,13 @@ pub fn limit_key(kind: DesignLimitKind) -> &'static str {
     }
 }
 
+impl DesignLimitKind {
+    /// Whether `[design]` has a key of this name.
+    pub fn has_key(self) -> bool {
+        !matches!(self, DesignLimitKind::FastestPole | DesignLimitKind::RequiredStep)
+    }
+}
+
 /// The unit of a limit at the end of a key: `value_rad_per_s`, `value_s`, or `value` without one.
 pub fn limit_unit_key(kind: DesignLimitKind) -> &'static str {
     match kind {

@@ -20,7 +20,10 @@ use corners::{runs_of_corners, worst_of};
 pub use required::HeldRequirement;
 pub(crate) use rigs::waves_alone;
 pub use rigs::with_waves;
-pub use run::{Agreement, BAND_PERCENT, Leg, StepSize, TrialRun, TrialStep, agreement_key, agreement_word};
+pub use run::{
+    Agreement, BAND_PERCENT, Leg, StepSize, TrialRun, TrialStep, agreement_key, agreement_word,
+    largest_step_words,
+};
 use run::{DrivenSteps, TriedMachine};
 
 use crate::audit::ProjectAudit;
@@ -124,8 +127,10 @@ pub fn tried(
         let Some(driven) = machine.driven(source, &mut within)? else { return Err(Stopped.into()) };
         for mut run in machine.judged(&driven, problem, view) {
             if rig.quarter_wave_rad_per_s.is_some() && run.agreement >= Agreement::Differs {
-                let lumped = lumped(source, &rigs, (&driven, &run, &runs), (problem, view), &mut within)?;
-                run.reason = machine.with_waves_named(&run, lumped.as_ref());
+                let seen = (driven.as_slice(), &run, runs.as_slice());
+                let declared = rigs.first().unwrap_or(rig);
+                let on = (source, [rig, declared]);
+                run.reason = with_cause(on, seen, (problem, view), &mut within)?;
             }
             runs.push(run);
         }
@@ -144,20 +149,35 @@ pub fn tried(
     Ok(Some(trial))
 }
 
-/// The run of the rig as declared, with lumped lines, through the steps of a run with waves in
-/// them: one that was driven already, or another; `None` where there is none.
-fn lumped(
-    source: &dyn Source,
-    rigs: &[rigs::Tried],
+/// The reason of a run with waves in its lines that does not agree, with its cause: the same steps
+/// without the noise of the sensors, and with lumped lines, tell noise from waves.
+fn with_cause(
+    (source, [waves, declared]): (&dyn Source, [&rigs::Tried; 2]),
     (driven, run, runs): (&[DrivenSteps], &TrialRun, &[TrialRun]),
     (problem, view): (&RobustProblem, &ProjectAudit),
     watch: Watch<'_>,
-) -> Result<Option<TrialRun>, TrialError> {
-    let Some(declared) = rigs.first() else { return Ok(None) };
-    let is_same = |one: &&TrialRun| one.machine_name() == declared.what && one.reference_n == run.reference_n;
-    if let Some(known) = runs.iter().find(is_same) {
-        return Ok(Some(known.clone()));
+) -> Result<String, TrialError> {
+    let machine = TriedMachine::of(waves, problem)?;
+    let Some(steps) = driven.iter().find(|steps| steps.size() == run.size) else {
+        return Ok(machine.with_waves_named(run, None));
+    };
+    let mut repeated = |rig: &rigs::Tried| -> Result<TrialRun, TrialError> {
+        let machine = TriedMachine::of(rig, problem)?;
+        let run = machine.repeated(source, steps, (problem, view), &mut *watch)?;
+        Ok(run.ok_or(Stopped)?)
+    };
+    let quiet = [waves, declared].map(rigs::without_noise);
+    let [quiet_waves, quiet_declared] = &quiet;
+    if let Some(rig) = quiet_waves
+        && repeated(rig)?.agreement < Agreement::Differs
+    {
+        return Ok(run::with_noise_named(run));
     }
-    let Some(steps) = driven.iter().find(|steps| steps.size() == run.size) else { return Ok(None) };
-    TriedMachine::of(declared, problem)?.repeated(source, steps, (problem, view), watch)
+    let is_same = |one: &&TrialRun| one.machine_name() == declared.what && one.reference_n == run.reference_n;
+    let known = runs.iter().find(is_same).filter(|_| quiet_declared.is_none());
+    let lumped = match known {
+        Some(known) => known.clone(),
+        None => repeated(quiet_declared.as_ref().unwrap_or(declared))?,
+    };
+    Ok(machine.with_waves_named(run, Some(&lumped)))
 }

@@ -5,7 +5,7 @@ use phea_qft::design::quantization::{LimitCycle, RoundingEffect, RoundingEffects
 use phea_qft::family::Family;
 use phea_qft::verification::PlantPoint;
 
-use crate::quantity::significant;
+use crate::quantity::{DisplayUnit, significant};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
@@ -53,8 +53,9 @@ impl Rounding {
         self.plants.get(index).cloned().unwrap_or(PlantPoint::Measured(index))
     }
 
-    /// In sentences.
-    pub fn sentences(&self) -> Vec<String> {
+    /// In sentences, the output in this unit and the command in V; of a plant without units bare
+    /// numbers.
+    pub fn sentences(&self, unit: Option<DisplayUnit>) -> Vec<String> {
         let effects = match &self.effects {
             Ok(effects) => effects,
             Err(reason) => return vec![format!("the effect of the converters is unknown: {reason}")],
@@ -63,8 +64,13 @@ impl Rounding {
             .each()
             .into_iter()
             .map(|(of, on, effect)| {
-                let [peak, rms] = [effect.peak, effect.rms].map(|size| significant(size, 3));
-                format!("the rounded {of} moves the {on} by {rms} rms, and by {peak} at most (SI)")
+                let shown = |size: f64| match (unit, on) {
+                    (None, _) => significant(size, 3),
+                    (Some(_), "command") => DisplayUnit::VOLT.text(size, 3),
+                    (Some(unit), _) => unit.text(size, 3),
+                };
+                let [peak, rms] = [effect.peak, effect.rms].map(shown);
+                format!("the rounded {of} moves the {on} by {rms} rms, and by {peak} at most")
             })
             .collect();
         sentences.extend(effects.limit_cycle.and_then(|cycle| match cycle {

@@ -143,6 +143,23 @@ pub fn with_waves(project: &Project) -> Option<Project> {
     moved.then_some(other)
 }
 
+/// A machine whose sensors are without noise; `None` where they are so already, and in a continuous
+/// loop, which has none.
+pub(super) fn without_noise(tried: &Tried) -> Option<Tried> {
+    let mut quiet = tried.clone();
+    let controller = quiet.project.controller.as_mut()?;
+    controller.sample_time?;
+    let actuator = quiet.project.actuator.as_mut()?;
+    let noises = [
+        Some(&mut actuator.force_sensor.noise),
+        actuator.velocity_sensor.as_mut().map(|sensor| &mut sensor.noise),
+        controller.pressure_feedback.as_mut().map(|feedback| &mut feedback.noise),
+    ];
+    let is_noisy =
+        noises.into_iter().flatten().fold(false, |is_noisy, noise| std::mem::take(noise) > 0.0 || is_noisy);
+    is_noisy.then_some(quiet)
+}
+
 /// The declared rig with waves: without uncertainty, and without stated parameters that replace
 /// derived ones, which no machine has. `None` if it has no additional waves.
 pub(crate) fn waves_alone(setup: &Setup<'_>) -> Option<Project> {

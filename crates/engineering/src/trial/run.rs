@@ -4,7 +4,7 @@ use super::judge::{Driven, judge, met, not_started};
 use super::prediction::{Prediction, predicted};
 use super::required::{HeldRequirement, held};
 use super::rigs::Tried;
-use super::steps::{CommandLimits, Steps};
+use super::steps::{CommandLimits, REACH, Steps};
 use super::{STAGE, TrialError};
 use crate::audit::ProjectAudit;
 use crate::linear_step::StepResponse;
@@ -44,7 +44,7 @@ pub struct TrialStep {
 pub enum StepSize {
     /// A tenth of the force that the supply can produce.
     Tenth,
-    /// The largest within reach at which the command stays within its limit.
+    /// The largest within reach that meets no limit: see [`largest_step_words`].
     Largest,
     /// As a requirement in time states it.
     Required,
@@ -110,6 +110,14 @@ pub struct TrialRun {
     /// Events on the way, by the names of occurrences: the limit of the command, cavitation, an end
     /// stop.
     pub met: Vec<&'static str>,
+}
+
+/// The size of a step that is called the largest, in words.
+pub fn largest_step_words() -> String {
+    format!(
+        "up to {} % of the force that the supply can produce, the capacity of the force sensor and the limit of the command, whichever is least, and smaller where a run meets a limit all the same",
+        significant(100.0 * REACH, 3)
+    )
 }
 
 /// End of the name of a run with the largest step.
@@ -380,6 +388,11 @@ impl<'a> TriedMachine<'a> {
             damping_wall(&self.tried.project)
         )
     }
+}
+
+/// The reason of a run that agrees without the noise of its sensors.
+pub(super) fn with_noise_named(run: &TrialRun) -> String {
+    format!("{}. The same steps without the noise of the sensors agree: the noise is the cause", run.reason)
 }
 
 impl DrivenSteps {

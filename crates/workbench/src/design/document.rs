@@ -9,7 +9,7 @@ use phea_qft::verification::{PlantPoint, Verdict};
 use super::compared;
 use super::factored;
 use super::relaxed;
-use super::{AuditedController, Explanation, ProjectDesign, Repair, RepairStatus, Rounding};
+use super::{AuditedController, Explanation, ProjectDesign, Repair, RepairStatus};
 use super::{repair_words, status_sentence, structure_words};
 use crate::answer::significant;
 use crate::audit::{self, margin_words, summary};
@@ -120,7 +120,7 @@ pub(crate) fn status(view: &ProjectDesign) -> Document {
     sentences.extend(view.explanations.iter().map(|explanation| explanation_words(view, explanation)));
     sentences.extend(summary(&view.designed.view));
     sentences.extend(not_led_sentence(view));
-    sentences.extend(view.rounding.iter().flat_map(Rounding::sentences));
+    sentences.extend(view.rounding.iter().flat_map(|rounding| rounding.sentences(view.gain_per)));
     let mut out = Document::default();
     let mark = view.designed.view.verdict().into();
     out.verdict(mark, format!("Design: {}", status_sentence(view)), sentences);
@@ -177,7 +177,7 @@ pub(crate) fn costs(view: &ProjectDesign) -> Document {
     out.section("What the specifications cost: the limits that the loop touches", binding);
     if touches {
         out.explanation(format!(
-            "The specifications that come within {BINDING_DB} dB of {touched}, at the design frequencies and where each is worst over its whole band, with the plant that sets it. These cost: relaxed there they may allow a better controller; relaxing any other gains nothing."
+            "The limits over frequency that come within {BINDING_DB} dB of {touched}, at the design frequencies and where each is worst over its whole band, with the plant that sets it. These cost: relaxed there they may allow a better controller; relaxing any other specification over frequency gains nothing. What is required in time and what may be built can cost too."
         ));
     }
     out.sentences(led_sentence(view).filter(|_| !touches));

@@ -27,7 +27,10 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
     let row = |limit: &DesignLimit| {
         [
             limit_words(limit.kind).into(),
-            Cell::Code(format!("design.{}", limit_key(limit.kind))),
+            match limit.kind.has_key() {
+                true => Cell::Code(format!("design.{}", limit_key(limit.kind))),
+                false => Cell::Missing,
+            },
             value_words(view, limit).into(),
             origin_words(limit.origin).into(),
             view.limit_finding(limit.kind)

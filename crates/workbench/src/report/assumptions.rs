@@ -53,7 +53,10 @@ fn first_order(speed: Speed) -> String {
 
 fn supply(actuator: &DeclaredActuator) -> &'static str {
     match actuator.supply.model {
-        SupplyModel::Constant { .. } => {
+        SupplyModel::Constant { flow: Some(_) } => {
+            "Pressures are gauge; tank and supply stay at the declared pressures, whatever the valve takes: `supply.flow` limits the sizing, the speeds of the piston and an operating region, and with `supply.model = \"constant\"` no simulation and no linear plant."
+        }
+        SupplyModel::Constant { flow: None } => {
             "Pressures are gauge; tank and supply stay at the declared pressures, whatever the valve takes."
         }
         SupplyModel::PumpLimited(_) => {

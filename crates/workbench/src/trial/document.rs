@@ -2,7 +2,7 @@
 
 use super::{
     Agreement, BAND_PERCENT, OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, SETTLING_ROOM, StepResponse, StepSize,
-    Trial, TrialRun, TrialStep, agreement_word, percent_words,
+    Trial, TrialRun, TrialStep, agreement_word, largest_step_words, percent_words,
 };
 use crate::document::{Cell, Document, Table};
 use crate::figure::{FamilySteps, Figure, TimeSeries, Words};
@@ -44,8 +44,12 @@ pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Docume
         Agreement::Differs => "differs from the linear loop",
         Agreement::Contradicts => "contradicts the verdict",
     };
+    let first = match trial.runs.iter().any(|run| run.size == StepSize::Required) {
+        true => "by the required step",
+        false => "by a tenth of the force that the supply can produce",
+    };
     out.explanation(format!(
-        "The nonlinear simulation {did}. The nonlinear rig under this controller: steps of the reference there, back and there again, by a tenth of the force that the supply can produce and then as large as the command allows, compared with those of the linear loop. Of the three steps the worst numbers are given; a force within {BAND_PERCENT} % of the step has settled."
+        "The nonlinear simulation {did}. The nonlinear rig under this controller: steps of the reference there, back and there again, {first} and then by the largest step, compared with those of the linear loop. Of the three steps the worst numbers are given; a force within {BAND_PERCENT} % of the step has settled."
     ));
     let settles = format!("settles in ({BAND_PERCENT} %)");
     out.table(
@@ -107,9 +111,7 @@ fn meanings(trial: &Trial) -> Vec<String> {
         ));
     }
     if trial.runs.iter().any(|run| run.size == StepSize::Largest) {
-        told.push(
-            "\"largest step\": as large as the limits of command, supply and force sensor allow".to_string(),
-        );
+        told.push(format!("\"largest step\": {}", largest_step_words()));
     }
     if trial.runs.iter().any(|run| run.remaining_amplitude_n.is_some()) {
         told.push(
