@@ -67,28 +67,30 @@ pub(super) fn answered(recorded: &IdentifyArguments) -> Result<(Answer, Vec<Path
     line.clear();
     let hash = loaded.as_ref().map(|loaded| loaded.sha256.as_str());
     let explain = |message: &str| command::failure_json(Some(NAME), hash, message);
-    let answer = answer.map_err(|error| {
-        if let IdentifyError::Stopped = error {
-            let stage = line.stage().map_or(String::new(), |stage| format!(" in the stage `{stage}`"));
-            let message = format!("stopped{stage}: there is no result yet; nothing was written");
-            return Failure::stopped(&message).with_json(explain(&message));
-        }
-        let text = match &error {
-            IdentifyError::Files(report) => report.render(styled()),
-            other => format!("error: {other}"),
-        };
-        let json = match &error {
-            IdentifyError::Files(report) => command::files_json(NAME, hash, report),
-            other => explain(&other.to_string()),
-        };
-        Failure::wrong_input(text).with_json(json)
-    })?;
+    let answer = answer.map_err(|error| unanswered(&error, line.stage(), hash))?;
     let written = match &recorded.out {
         Some(folder) => write(folder, &answer.files, &inputs)
             .map_err(|message| Failure::not_written(&message).with_json(explain(&message)))?,
         None => vec![],
     };
     Ok((answer, written))
+}
+
+/// Why there is no answer; `stage` is the one that was reported last.
+fn unanswered(error: &IdentifyError, stage: Option<&str>, hash: Option<&str>) -> Failure {
+    let explain = |message: &str| command::failure_json(Some(NAME), hash, message);
+    match error {
+        IdentifyError::Stopped => {
+            let stage = stage.map_or(String::new(), |stage| format!(" in the stage `{stage}`"));
+            let message = format!("stopped{stage}: there is no result yet; nothing was written");
+            Failure::stopped(&message).with_json(explain(&message))
+        }
+        IdentifyError::Files(report) => {
+            let json = command::files_json(NAME, hash, report);
+            Failure::wrong_input(report.render(styled())).with_json(json)
+        }
+        other => Failure::wrong_input(format!("error: {other}")).with_json(explain(&other.to_string())),
+    }
 }
 
 /// The files that must stay; refused where one of those that are written would replace one.

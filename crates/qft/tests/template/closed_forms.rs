@@ -97,8 +97,8 @@ fn two_gains_in_series_are_a_segment_too() {
     }
 }
 
-/// A lag too short to matter bends k/s by 6e-8 degrees at most: the polygons of its faces are as thin
-/// as rounding, and the template is the segment of k alone.
+/// A lag too short to matter bends k/s by 3e-8 degrees at most: the polygons of its faces are as
+/// thin as rounding, and the template is the segment of k alone.
 // ORIGIN: analytic, 1/(w (T w + 1)) beside k/w
 #[test]
 fn a_parameter_that_hardly_moves_the_plant_leaves_a_segment() {

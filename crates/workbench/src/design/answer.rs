@@ -36,10 +36,6 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
             .with("worst_margin_db", starts.margins_db)
             .with("objective_db", starts.objectives_db)
     });
-    let no_machine = match view.unfinished.contains(&DesignPart::Trial) {
-        true => "the design was stopped before it was tried in the nonlinear simulation",
-        false => "the project describes a plant and no machine",
-    };
     let no_repair = match view.agreement() == Agreement::Contradicts {
         true => "it was not asked for",
         false => "no machine contradicts the design",
@@ -76,8 +72,16 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
         .with("conflicts", conflicts(view))
         .each("explanations", &view.explanations, |one| explanation(view, one))
         .maybe("rounding", view.rounding.as_ref().map(|rounding| rounding::row(rounding, &side.view.names)))
-        .known("machine", view.trial.as_ref().map(trial::body), no_machine)
+        .known("machine", view.trial.as_ref().map(trial::body), why_not_tried(view))
         .known("repair", view.repair.as_ref().map(repair::row), no_repair))
+}
+
+/// The reason for the absence of a trial.
+fn why_not_tried(view: &ProjectDesign) -> &'static str {
+    match view.unfinished.contains(&DesignPart::Trial) {
+        true => "the design was stopped before it was tried in the nonlinear simulation",
+        false => "the project describes a plant and no machine",
+    }
 }
 
 /// The reason for the absence of the given controller.
