@@ -20,6 +20,7 @@ use crate::limit_kind::DesignLimitKind;
 use crate::plant_names::PlantNames;
 use crate::quantity::Units;
 use crate::setup::{ControlError, Setup, pressure_noise, velocity_noise};
+use crate::side_by_side::left_behind;
 use crate::simulate::{TimeRequirement, time_requirements};
 use crate::source::Source;
 use crate::specification::{SpecificationError, kind_words, of_rounding, specifications};
@@ -127,6 +128,9 @@ impl From<TemplateError> for BoundsError {
     }
 }
 
+/// Name of the stage.
+const TEMPLATES: &str = "templates and bounds";
+
 /// The robust problem of a project.
 ///
 /// # Errors
@@ -228,6 +232,15 @@ impl RobustProblem {
     /// # Errors
     /// [`BoundsError`], also where the watch stops it.
     pub fn at_design_frequencies(&self, watch: Watch<'_>) -> Result<Vec<DesignFrequency>, BoundsError> {
+        // the union of the polygons of a template may take a minute, in which nothing is asked
+        let problem = self.clone();
+        left_behind(watch, TEMPLATES, move |watch| match problem.templates_and_bounds(watch) {
+            Err(BoundsError::Stopped(stopped)) => Err(stopped),
+            found => Ok(found),
+        })?
+    }
+
+    fn templates_and_bounds(&self, watch: Watch<'_>) -> Result<Vec<DesignFrequency>, BoundsError> {
         let frequencies = self.design_frequencies();
         let options = TemplateOptions::default();
         let mut found = Vec::new();
@@ -235,7 +248,7 @@ impl RobustProblem {
         let share = |done: usize| done as f64 / frequencies.len().max(1) as f64;
         for index in 0..frequencies.len() {
             let own = [index, index + 1].map(share);
-            let watch = &mut part(&mut *watch, "templates and bounds", own);
+            let watch = &mut part(&mut *watch, TEMPLATES, own);
             match templates.next_watched(watch) {
                 // nothing is known beyond a measurement, so there is no template either
                 None | Some(Err(TemplateError::OutOfReach { .. })) => {}

@@ -1,8 +1,8 @@
 //! Independent pieces of work on all cores.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use phea_dynamics::pieces::{WorkPiece, Workers};
@@ -114,6 +114,47 @@ fn own_pieces<'p>(
     }
 }
 
+/// The result of work that may not ask its watch for long, on a thread of its own where there is
+/// more than one core: the calling thread asks instead. Work that is stopped is left behind; it ends
+/// where it asks next, or with the program.
+///
+/// # Errors
+/// [`Stopped`] where the watch answers `false`.
+pub(crate) fn left_behind<T: Send + 'static>(
+    watch: Watch<'_>,
+    stage: &'static str,
+    work: impl FnOnce(Watch<'_>) -> Result<T, Stopped> + Send + 'static,
+) -> Result<T, Stopped> {
+    if all_cores().at_once == 1 {
+        return work(watch);
+    }
+    let (sender, receiver) = channel();
+    let shared = Arc::new((AtomicBool::new(true), AtomicU64::new(0)));
+    let of_work = Arc::clone(&shared);
+    std::thread::spawn(move || {
+        let (goes_on, share) = &*of_work;
+        let found = work(&mut |progress: Progress| {
+            share.store(progress.share.to_bits(), Ordering::Relaxed);
+            goes_on.load(Ordering::Relaxed)
+        });
+        // where no one receives, the work was stopped
+        let _ = sender.send(found);
+    });
+    let (goes_on, share) = &*shared;
+    loop {
+        if !watch(Progress { stage, share: f64::from_bits(share.load(Ordering::Relaxed)) }) {
+            goes_on.store(false, Ordering::Relaxed);
+            return Err(Stopped);
+        }
+        match receiver.recv_timeout(ROUND) {
+            Ok(found) => return found,
+            Err(RecvTimeoutError::Timeout) => {}
+            // the work panicked, and has reported it
+            Err(RecvTimeoutError::Disconnected) => return Err(Stopped),
+        }
+    }
+}
+
 /// The results of two pieces of work: of `first`, on a thread of its own where there is more than
 /// one core, and of `second`, whose progress is reported meanwhile. The first has this fraction of
 /// the progress where it has to be done before.
@@ -164,6 +205,23 @@ mod tests {
         };
         let found = side_by_side(8, "", &mut |_| true, slow_first);
         assert_eq!(found, Ok((0..8).collect()));
+    }
+
+    /// Work that never asks its watch does not keep the caller from stopping.
+    #[test]
+    fn work_that_does_not_ask_is_left_behind() {
+        let (release, wait) = channel::<()>();
+        let work = move |_: Watch<'_>| {
+            // as long as the other end is there
+            let _ = wait.recv();
+            Ok(1)
+        };
+        let several = all_cores().at_once > 1;
+        if several {
+            assert_eq!(left_behind(&mut |_| false, "", work), Err(Stopped));
+        }
+        drop(release);
+        assert_eq!(left_behind(&mut |_| true, "", |_| Ok(2)), Ok(2));
     }
 
     /// The first piece hears of the stop that the watch of the second one answers, and both give

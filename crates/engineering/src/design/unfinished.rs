@@ -77,9 +77,10 @@ impl DesignPart {
 }
 
 impl ProjectDesign {
-    /// Whether the watch stopped it: then it is the best so far.
+    /// Whether the watch stopped it: then it is the best so far. A repair that was stopped leaves
+    /// the first design as it was.
     pub fn is_stopped(&self) -> bool {
-        !self.unfinished.is_empty()
+        self.unfinished.iter().any(|part| *part != DesignPart::Repair)
     }
 
     /// Notes a part that the watch left unfinished.
