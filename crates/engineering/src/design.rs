@@ -278,8 +278,17 @@ impl ProjectDesign {
     /// How far the worst run on the nonlinear rig is from what is required in time: at most 1 where
     /// all reach it, 0 without a run.
     fn worst_run(&self) -> f64 {
-        let runs = self.trial.iter().flat_map(|trial| &trial.runs);
-        runs.map(TrialRun::excess).fold(0.0, f64::max)
+        self.driven().map(TrialRun::excess).fold(0.0, f64::max)
+    }
+
+    /// The same with room for the plants between those that were driven.
+    fn worst_run_with_room(&self) -> f64 {
+        self.driven().map(TrialRun::excess_with_room).fold(0.0, f64::max)
+    }
+
+    /// Every run of the trial.
+    fn driven(&self) -> impl Iterator<Item = &TrialRun> {
+        self.trial.iter().flat_map(|trial| trial.runs.iter().chain(&trial.corners))
     }
 
     /// True where a run on the nonlinear rig misses what is required in time.

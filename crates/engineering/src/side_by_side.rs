@@ -115,8 +115,8 @@ fn own_pieces<'p>(
 }
 
 /// The result of work that may not ask its watch for long, on a thread of its own where there is
-/// more than one core: the calling thread asks instead. Work that is stopped is left behind; it ends
-/// where it asks next, or with the program.
+/// more than one core: the calling thread asks instead. Work that is stopped is left behind; it
+/// ends where it asks next, or with the program.
 ///
 /// # Errors
 /// [`Stopped`] where the watch answers `false`.

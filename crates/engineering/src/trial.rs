@@ -17,6 +17,7 @@ pub use judge::{OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, SETTLING_ROOM, percent_w
 
 pub use crate::linear_step::StepResponse;
 use corners::{runs_of_corners, worst_of};
+pub(crate) use required::BAND_WITH_ROOM;
 pub use required::HeldRequirement;
 pub(crate) use rigs::waves_alone;
 pub use rigs::with_waves;

@@ -404,8 +404,13 @@ fn a_structure_whose_steps_alone_miss_is_missed_in_time() {
 fn run(view: &ProjectDesign, satisfied: &[bool]) -> TrialRun {
     let wish = view.designed.view.in_time[0].requirement.wish;
     let reached = ReachedStep { overshoot_percent: 1.0, settling_time_s: 1.0, rise_time_s: 1.0 };
-    let held =
-        |is_satisfied: &bool| HeldRequirement { number: 3, wish, reached, is_satisfied: *is_satisfied };
+    let held = |is_satisfied: &bool| HeldRequirement {
+        number: 3,
+        wish,
+        reached,
+        reached_with_room: reached,
+        is_satisfied: *is_satisfied,
+    };
     TrialRun {
         what: "the rig as declared".to_string(),
         size: StepSize::Required,

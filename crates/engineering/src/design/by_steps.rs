@@ -33,6 +33,7 @@ use crate::audit::spread_over;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::simulate::TrackingWish;
+use crate::trial::BAND_WITH_ROOM;
 
 /// Most members whose steps are looked at after each search.
 const LOOKED_AT: usize = 12;
@@ -47,7 +48,6 @@ const BAND_SHARE: f64 = 0.8;
 /// The same for steps with what the rig adds to them.
 const OVERSHOOT_SHARE_WITH_RIG: f64 = 0.9;
 const SETTLING_SHARE_WITH_RIG: f64 = 0.97;
-const BAND_SHARE_WITH_RIG: f64 = 0.95;
 /// Least overshoot that is aimed at, percent.
 const LEAST_OVERSHOOT_PERCENT: f64 = 0.3;
 
@@ -205,7 +205,7 @@ fn with_rig(wish: TrackingWish) -> TrackingWish {
         overshoot_percent: wish.overshoot_percent.map(|most| most * OVERSHOOT_SHARE_WITH_RIG),
         settling_time_s: wish.settling_time_s.map(|time_s| time_s * SETTLING_SHARE_WITH_RIG),
         rise_time_s: wish.rise_time_s.map(|time_s| time_s * SETTLING_SHARE_WITH_RIG),
-        band_percent: wish.band_percent * BAND_SHARE_WITH_RIG,
+        band_percent: wish.band_percent * BAND_WITH_ROOM,
         ..wish
     }
 }

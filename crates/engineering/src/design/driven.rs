@@ -28,6 +28,8 @@ use crate::trial::Agreement;
 /// How often the search goes on as long as the nonlinear rig misses what is required.
 const TRIES: usize = 6;
 
+/// How often it goes on where the rig satisfies what is required, and lacks room.
+const TRIES_FOR_ROOM: usize = 4;
 /// A try that brings the worst run nearer by less than this share is one in vain, and so many in
 /// turn are the last.
 const GAIN: f64 = 0.05;
@@ -172,15 +174,18 @@ fn driven(
     // the design that the next one begins from, unless that is the best one
     let mut latest: Option<(DesignRun, ProjectDesign)> = None;
     let mut known = added(&best.1, &[]);
-    let (mut nearest, mut in_vain) = (best.1.worst_run(), 0);
+    let (mut nearest, mut in_vain) = (best.1.worst_run_with_room(), 0);
+    let mut for_room = 0;
     for index in 0..TRIES {
         let share = [index, index + 1].map(|done| 0.25 + 0.75 * done as f64 / TRIES as f64);
         let before = latest.as_ref().unwrap_or(&best);
         // what the rig satisfies and a limit does not, a search with its runs may
         let lacks_a_limit = latest.as_ref().is_some_and(|(_, told)| rank(told).0 > 0);
-        if !misses(&before.1) && !lacks_a_limit || in_vain > IN_VAIN {
+        let suffices = best.1.worst_run() <= 1.0;
+        if !lacks_room(&before.1) && !lacks_a_limit || in_vain > IN_VAIN || for_room >= TRIES_FOR_ROOM {
             break;
         }
+        for_room += usize::from(suffices);
         let from = if in_vain == IN_VAIN { SearchStarts::Others } else { SearchStarts::Nearest };
         let aimed = AimedSteps { added: &known, from, ..aimed };
         match next_design((source, setup), aimed, before, &mut within(&mut *watch, share)) {
@@ -189,9 +194,9 @@ fn driven(
                 if found.1.is_stopped() {
                     best.1.leave(DesignPart::Search);
                 }
-                let gains = found.1.worst_run() < (1.0 - GAIN) * nearest;
-                in_vain = if gains || found.1.worst_run() <= 1.0 { 0 } else { in_vain + 1 };
-                nearest = nearest.min(found.1.worst_run());
+                let gains = found.1.worst_run_with_room() < (1.0 - GAIN) * nearest;
+                in_vain = if gains || found.1.worst_run_with_room() <= 1.0 { 0 } else { in_vain + 1 };
+                nearest = nearest.min(found.1.worst_run_with_room());
                 latest = if is_better(&found.1, &best.1) {
                     best = found;
                     None
@@ -276,6 +281,13 @@ fn misses(told: &ProjectDesign) -> bool {
     is_met && told.misses_on_rig()
 }
 
+/// True where the nonlinear rig misses what is required under a design that is met, or satisfies it
+/// without room for the plants between those that were driven.
+fn lacks_room(told: &ProjectDesign) -> bool {
+    let is_met = told.design.status == DesignStatus::Met && !told.is_stopped();
+    is_met && (told.misses_on_rig() || told.worst_run_with_room() > 1.0)
+}
+
 /// A design with what the rig is known to add to its steps, and its trial; `None` where the steps
 /// of the one before do not lead.
 fn next_design(
@@ -307,7 +319,8 @@ fn with_trial(
 }
 
 /// True where one design is as good as another over frequency, and its worst run is nearer to what
-/// is required.
+/// is required: of two whose runs all satisfy it, with room for the plants between.
 fn is_better(one: &ProjectDesign, other: &ProjectDesign) -> bool {
-    !one.is_stopped() && rank(one).0 <= rank(other).0 && one.worst_run() < other.worst_run()
+    let runs = |told: &ProjectDesign| (told.worst_run().max(1.0), told.worst_run_with_room());
+    !one.is_stopped() && rank(one).0 <= rank(other).0 && runs(one) < runs(other)
 }

@@ -15,9 +15,15 @@ pub struct HeldRequirement {
     pub wish: TrackingWish,
     /// The worst of all steps, each property by itself; infinite where the run ended before.
     pub reached: ReachedStep,
+    /// The same in a band that is narrower by [`BAND_WITH_ROOM`].
+    pub reached_with_room: ReachedStep,
     /// Whether every step satisfies it.
     pub is_satisfied: bool,
 }
+
+/// Share of the band that a design is to keep on the rig: plants between those that are driven come
+/// back a little further.
+pub(crate) const BAND_WITH_ROOM: f64 = 0.9;
 
 /// Every requirement that is part of the verdict and holds for these steps.
 pub(super) fn held(
@@ -27,12 +33,14 @@ pub(super) fn held(
 ) -> Vec<HeldRequirement> {
     let concerned = requirements.iter().filter(|one| one.follows && holds_for(one, required));
     let of = |one: &TimeRequirement| {
-        let legs = Leg::ALL.map(|leg| reached(&one.wish, steps, run, leg));
-        let reached = worst(legs);
+        let of_wish = |wish: &TrackingWish| worst(Leg::ALL.map(|leg| reached(wish, steps, run, leg)));
+        let reached = of_wish(&one.wish);
+        let narrower = BAND_WITH_ROOM * one.wish.band_percent;
         HeldRequirement {
             number: one.number,
             wish: one.wish,
             reached,
+            reached_with_room: of_wish(&TrackingWish { band_percent: narrower, ..one.wish }),
             is_satisfied: one.wish.is_satisfied(&reached),
         }
     };

@@ -155,8 +155,10 @@ pub(super) fn without_noise(tried: &Tried) -> Option<Tried> {
         actuator.velocity_sensor.as_mut().map(|sensor| &mut sensor.noise),
         controller.pressure_feedback.as_mut().map(|feedback| &mut feedback.noise),
     ];
-    let is_noisy =
-        noises.into_iter().flatten().fold(false, |is_noisy, noise| std::mem::take(noise) > 0.0 || is_noisy);
+    let mut is_noisy = false;
+    for noise in noises.into_iter().flatten() {
+        is_noisy |= std::mem::take(noise) > 0.0;
+    }
     is_noisy.then_some(quiet)
 }
 

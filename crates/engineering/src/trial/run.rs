@@ -138,6 +138,12 @@ impl TrialRun {
         self.requirements.iter().map(|held| held.wish.excess(&held.reached)).fold(0.0, f64::max)
     }
 
+    /// The same in a narrower band.
+    pub(crate) fn excess_with_room(&self) -> f64 {
+        let of = |held: &HeldRequirement| held.wish.excess(&held.reached_with_room);
+        self.requirements.iter().map(of).fold(self.excess(), f64::max)
+    }
+
     /// Whether the steps satisfy all that is required of them in time.
     pub fn satisfies(&self) -> bool {
         self.requirements.iter().all(|held| held.is_satisfied)

@@ -36,7 +36,7 @@ fn row(run: &TrialRun) -> Object {
 
 /// The worst of the steps of a run against what is required in time.
 fn held(held: &HeldRequirement) -> Object {
-    let HeldRequirement { number, wish, reached, is_satisfied } = held;
+    let HeldRequirement { number, wish, reached, is_satisfied, .. } = held;
     let required = Object::new()
         .maybe("overshoot_percent", wish.overshoot_percent)
         .maybe("settling_time_s", wish.settling_time_s)
