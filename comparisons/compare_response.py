@@ -4,8 +4,9 @@
 
 A filtered noise with noise in its output, and a multisine that repeats. For the first, SciPy's csd, welch and coherence
 give H1 and the coherence; for the second, NumPy's transform of the averaged periods gives the response. Then the discs of
-95 % of records that do not repeat, in the open and in the closed loop, hold the response of SciPy's discretisation as
-often as they state, and a closed loop without its reference is refused; `response_coverage.py` has more of them.
+95 % of records that do not repeat, in the open and in the closed loop, from its reference or by its controller, hold the
+response of SciPy's discretisation as often as they state, and a closed loop without either, or with a controller of half
+the gain, is refused; `response_coverage.py` has more of them.
 """
 
 import json
@@ -95,11 +96,15 @@ def refused():
     for kind in ["noise", "logarithmic sweep", "stepped sine"]:
         row = response_coverage.counted(PHEA, kind, case, 5)
         assert row["refused"] == 5 and "-1/C" in row["why"], row
+    (case,) = [one for one in response_coverage.CASES if one[0] == "closed, controller times 0.5"]
+    row = response_coverage.counted(PHEA, "noise", case, 5)
+    assert row["refused"] == 5 and "[controller] was not that of the test" in row["why"], row
 
 
 print(f"H1 and coherence of noise: {noise():.1e}; multisine: {multisine():.1e} (relative difference from SciPy and NumPy)")
 for kind in response_records.KINDS[1:]:
     print("95 % discs that hold:", held(kind, "open"))
 for kind in ["noise", "logarithmic sweep", "PRBS"]:
-    print("95 % discs that hold:", held(kind, "closed, reference"))
+    for case in ["closed, reference", "closed, controller"]:
+        print("95 % discs that hold:", held(kind, case))
 refused()

@@ -1,10 +1,11 @@
 """Counts how many discs of 95 % of `phea identify --of response` hold the true response.
 
-    python comparisons/response_coverage.py PHEA [--recordings 200] [--only KIND]
+    python comparisons/response_coverage.py PHEA [--recordings 200] [--only KIND] [--case LOOP]
 
 For each excitation, in the open loop, with noise on the recorded input too, and in the closed loop with and without
-the reference in the file: recordings that gave a response, were refused, or were warned of; discs; the percentage of
-them that hold the truth, over all frequencies and at the worst of ten bands; the median radius over the response.
+the reference in the file, and without it where the project declares the controller, or one of another gain: recordings
+that gave a response, were refused, or were warned of; discs; the percentage of them that hold the truth, over all
+frequencies and at the worst of ten bands; the median radius over the response.
 """
 
 import argparse
@@ -17,25 +18,33 @@ import numpy as np
 
 import response_records as records
 
+# knowledge of the loop: none, its reference, or its controller as a gain times that of the test
+NOTHING, REFERENCE = None, "reference"
 CASES = [
-    ("open", records.OPEN, dict(), False),
-    ("open, noise on both", records.OPEN, dict(input_noise=0.02), False),
-    ("closed, reference", records.CLOSED, dict(output_noise=1.0), True),
-    ("closed, none", records.CLOSED, dict(output_noise=1.0), False),
+    ("open", records.OPEN, dict(), NOTHING),
+    ("open, noise on both", records.OPEN, dict(input_noise=0.02), NOTHING),
+    ("closed, reference", records.CLOSED, dict(output_noise=1.0), REFERENCE),
+    ("closed, none", records.CLOSED, dict(output_noise=1.0), NOTHING),
+    ("closed, controller", records.CLOSED, dict(output_noise=1.0), 1.0),
 ]
+# what is declared as the controller, over that of the test
+CASES += [(f"closed, controller times {gain}", *CASES[-1][1:3], gain) for gain in (0.5, 0.8, 0.95, 1.05, 1.25, 2.0)]
 
 
-def identified(phea, columns, has_reference, folder):
+def identified(phea, columns, known, folder):
     """The member of JSON, or the text of a refusal."""
     path = pathlib.Path(folder) / "record.csv"
     time, reference, given, shown = columns
     table, names = ([time, reference, given, shown], "time_s,set_point,input,output")
-    if not has_reference:
+    if known != REFERENCE:
         table, names = ([time, given, shown], "time_s,input,output")
     np.savetxt(path, np.column_stack(table), "%.10g", ",", header=names, comments="")
-    done = subprocess.run(
-        [phea, "identify", "--of", "response", str(path), "--json"], capture_output=True, text=True
-    )
+    named = [str(path)]
+    if isinstance(known, float):
+        declared = path.with_name("rig.toml")
+        declared.write_text(records.project(known))
+        named = [str(declared)]
+    done = subprocess.run([phea, "identify", "--of", "response", *named, "--json"], capture_output=True, text=True)
     if done.returncode not in (0, 1):
         return None, done.stderr + done.stdout
     (member,) = json.loads(done.stdout)["response"]["members"]
@@ -52,12 +61,12 @@ def errors(member):
 
 
 def counted(phea, kind, case, count):
-    name, loop, how, has_reference = case
+    name, loop, how, known = case
     given, refused, warned, why = [], 0, 0, ""
     with tempfile.TemporaryDirectory() as folder:
         for seed in range(count):
             columns = records.recording(kind, loop, seed, **how)
-            member, text = identified(phea, columns, has_reference, folder)
+            member, text = identified(phea, columns, known, folder)
             if member is None or not member["frequencies"]:
                 refused, why = refused + 1, text
                 continue

@@ -21,6 +21,23 @@ NUMERATOR = NUMERATOR.ravel()
 PROPORTIONAL, INTEGRAL = 0.012, 0.12
 
 
+def project(gain=1.0):
+    """A project whose [controller] is this one, times a gain, and acts in every row."""
+    return f"""schema = 1
+[plant]
+numerator = "40"
+denominator = "0.08*s + 1"
+[controller]
+numerator = "{gain * PROPORTIONAL}*z - {gain * (PROPORTIONAL - INTEGRAL * STEP)}"
+denominator = "z - 1"
+sample_time = "{STEP} s"
+[[identify.response]]
+file = "record.csv"
+loop = "closed"
+controller = "declared"
+"""
+
+
 def truth(frequencies):
     """Response of the held plant from row to row; rad/s."""
     return signal.freqz(NUMERATOR, DENOMINATOR, np.asarray(frequencies) * STEP)[1]

@@ -18,7 +18,7 @@ mod transform;
 pub use blocks::{Blocks, periods, segments};
 pub use distortion::Distortion;
 pub use estimate::{SpectralPoint, disc_radius, least_coherence};
-pub use feedback::feedback;
+pub use feedback::{WithinRow, feedback};
 pub use local::{LOCAL_BLOCKS, local_polynomials};
 pub use period::period;
 pub use transform::Transform;

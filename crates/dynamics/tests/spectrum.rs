@@ -7,7 +7,7 @@ use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::portable::{cos, exp, exp_complex, magnitude, sin};
 use phea_dynamics::random::{normal, stream};
 use phea_dynamics::spectrum::{
-    Transform, feedback, least_coherence, local_polynomials, period, periods, segments,
+    Transform, WithinRow, feedback, least_coherence, local_polynomials, period, periods, segments,
 };
 
 const STEP: f64 = 1e-3;
@@ -334,8 +334,23 @@ fn feedback_is_seen_where_noise_returns() {
     for seed in [1, 11, 21, 31] {
         for late in [0, 1] {
             let [input, output] = closed_loop(seed, 1.0, late);
-            assert!(feedback(&input, &output) > 0.01, "{seed} {late}");
+            assert!(feedback(&input, &output, WithinRow::Possible) > 0.01, "{seed} {late}");
         }
+    }
+}
+
+/// An output that follows the input of its own row is feedback where no plant could be as fast.
+#[test]
+fn an_input_that_is_held_cannot_act_within_its_row() {
+    for seed in 0..4 {
+        let input = noise(500 + seed, 4000);
+        let earlier = std::iter::once(&0.0).chain(&input);
+        let signals = input.iter().zip(earlier).zip(noise(600 + seed, 4000));
+        let output: Vec<f64> = signals.map(|((now, last), noise)| last + 0.5 * now + noise).collect();
+        assert_eq!(feedback(&input, &output, WithinRow::Possible), 0.0, "{seed}");
+        // ORIGIN: analytic, 0.25 of a variance of 1.25
+        let share = feedback(&input, &output, WithinRow::Impossible);
+        assert!((share - 0.2).abs() < 0.04, "{seed}: {share}");
     }
 }
 
@@ -355,7 +370,7 @@ fn an_open_loop_has_no_feedback_whatever_its_input_is() {
                     colour = 0.9 * colour + size * noise;
                     *value += colour;
                 }
-                assert_eq!(feedback(&input, &output), 0.0, "{seed} {size}");
+                assert_eq!(feedback(&input, &output, WithinRow::Possible), 0.0, "{seed} {size}");
             }
         }
     }

@@ -6,18 +6,20 @@
 //!
 //! A periodic input (a multisine, a chirp that is repeated) is averaged over its periods; any other
 //! (noise, a single sweep, a step) is estimated band by band, from the reference where a loop was
-//! closed. One file is one member.
+//! closed, or by its controller. One file is one member.
 
 mod member;
 mod reading;
 mod resampled;
 mod spacing;
+mod test_controller;
 
 pub use member::{Averaging, LeftOut, ResponseMember, Unusable};
-pub use reading::{ReferenceSignal, SampledPair, sampled_pairs};
+pub use reading::{ReferenceSignal, ReferenceSource, SampledPair, sampled_pairs};
 pub use resampled::Resampled;
 pub(crate) use resampled::{EvenRows, even_rows, interpolated, is_software_timed};
 pub use spacing::{RowSpacing, UNEVEN, time_step};
+pub use test_controller::TestController;
 
 use phea_dynamics::watch::{Watch, tell};
 

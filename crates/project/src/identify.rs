@@ -268,6 +268,15 @@ pub struct RecordedResponse {
     pub columns: [Option<RecordedColumn>; 5],
     /// The loop during the test; absent: it is tested for feedback.
     pub recorded_loop: Option<RecordedLoop>,
+    /// The controller of a closed loop; absent: it is not known.
+    pub recorded_controller: Option<RecordedController>,
+}
+
+/// The controller that acted while a record was made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RecordedController {
+    /// The one of `[controller]`.
+    Declared,
 }
 
 /// The loop around the plant while a record was made.
@@ -382,6 +391,9 @@ impl RecordedResponse {
         let words = &[("open", Some(RecordedLoop::Open)), ("closed", Some(RecordedLoop::Closed))];
         let doc = "The loop while the record was made; absent: closed where the file has a reference, otherwise tested for feedback.";
         v.choice(plain("loop", doc), words, &mut self.recorded_loop, false);
+        let words = &[("declared", Some(RecordedController::Declared))];
+        let doc = "The controller of a closed loop whose reference was not recorded: `declared`, that of [controller]; absent: not known.";
+        v.choice(plain("controller", doc), words, &mut self.recorded_controller, false);
         for (signal, column) in ResponseSignal::ALL.into_iter().zip(&mut self.columns) {
             v.table(plain(signal.name(), signal.doc()), column, RecordedColumn::visit);
         }

@@ -67,6 +67,7 @@ pub(super) fn project(project: &Project, reader: &mut Reader<'_>) {
     if let Some(identified) = &project.identify {
         identify::identify(identified, &mut check);
         identify::in_use(project, identified, &mut check);
+        identify::controllers_of_tests(project, identified, &mut check);
     }
     alternative::alternatives(&project.alternatives, &mut check);
     alternative::load_cases(project, &mut check);

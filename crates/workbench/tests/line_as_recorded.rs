@@ -199,6 +199,7 @@ pub(crate) fn response(known: &KnownLine, [speed, end_share]: [f64; 2], seed: u6
         output,
         reference: None,
         recorded_loop: None,
+        controller: None,
         resampled: None,
     })
 }

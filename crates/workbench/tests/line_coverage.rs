@@ -128,6 +128,7 @@ pub(crate) fn record(run: &LineRun) -> LineRecord {
         LineSeries::FrequencyResponse => LineRecord::Response(SampledPair {
             reference: None,
             recorded_loop: None,
+            controller: None,
             resampled: None,
             file,
             signals: ["flow", "pressure"],

@@ -370,6 +370,82 @@ fn the_project_may_state_the_loop() {
     assert_eq!(member(&stated("open").unwrap())["method"], "local_polynomials");
 }
 
+/// The answer on a record of a closed loop whose reference it lacks, with this `[controller]`.
+fn by_controller(signals: &[Vec<f64>; 4], controller: &str) -> Result<Answer, IdentifyError> {
+    let [times, _, inputs, outputs] = signals;
+    let project = format!(
+        "schema = 1\n[plant]\nnumerator = \"1000\"\ndenominator = \"0.1*s + 1\"\n[controller]\n{controller}\n[[identify.response]]\nfile = \"shaken.csv\"\ncontroller = \"declared\"\n"
+    );
+    let text = table("time_s,command_v,force_n", [times, inputs, outputs]);
+    let source = Memory::default().with("rig.toml", project).with("shaken.csv", text);
+    let loaded = project::read(&source, "rig.toml", &[], &[]).unwrap_or_else(|report| panic!("{report}"));
+    response_watched(&source, Some(&loaded), &ResponseRequest::default(), &mut |_| true)
+}
+
+/// By a controller that is a gain, the reference that was not recorded is the one that was.
+#[test]
+fn a_declared_controller_takes_the_place_of_the_reference() {
+    let law =
+        |gain: f64| format!("elements = [{{ kind = \"gain\", value = {gain} }}]\nsample_time = \"1 ms\"");
+    let signals = closed_loop(20_000, 300.0);
+    let found = member(&by_controller(&signals, &law(0.004)).unwrap());
+    assert_eq!((&found["controller"], &found["reference"]), (&"declared".into(), &Value::Null), "{found}");
+    let recorded =
+        member(&identified(&with_reference(&signals), None, &ResponseSettings::default()).unwrap());
+    let (found, recorded) = (points(&found), points(&recorded));
+    assert!(found.len() > 20 && found.len() == recorded.len());
+    for ((frequency, response, radius), (same, expected, expected_radius)) in found.iter().zip(&recorded) {
+        assert_eq!(frequency, same);
+        assert!(magnitude(response / expected - 1.0) < 1e-9 && (radius / expected_radius - 1.0).abs() < 1e-9);
+    }
+    for moves in [0.0, 20.0] {
+        let half = by_controller(&closed_loop(20_000, moves), &law(0.002));
+        ask::refused(half, &["[controller] was not that of the test", "y + u/C"]);
+    }
+    let still = closed_loop(20_000, 0.0);
+    ask::refused(by_controller(&still, &law(0.004)), &["nothing moved the loop from outside"]);
+    let limited = format!("{}\nsaturation = \"1 V\"", law(0.004));
+    ask::refused(by_controller(&signals, &limited), &["`command` is at the limit of [controller] in"]);
+}
+
+/// A controller that integrates, acts in every fourth row and two rows late: the discs hold the
+/// plant from row to row.
+#[test]
+fn a_declared_controller_has_its_samples_and_its_delay() {
+    let mut state = stream(6, 0);
+    let decay = (-0.01_f64).exp();
+    let [mut times, mut references, mut inputs, mut outputs] = [const { Vec::new() }; 4];
+    let (mut reference, mut disturbance, mut moved) = (0.0, 0.0, 0.0);
+    let (mut integral, mut wanted) = (0.0, vec![0.0; 2]);
+    for row in 0..20_000 {
+        reference = 0.95 * reference + 400.0 * normal(&mut state);
+        disturbance = 0.98 * disturbance + 8.0 * normal(&mut state);
+        let force: f64 = moved + disturbance;
+        let last = wanted.last().copied().unwrap();
+        wanted.push(if row % 4 == 0 { 0.002 * (reference - force) + integral } else { last });
+        if row % 4 == 0 {
+            integral += 0.04 * 4e-3 * (reference - force);
+        }
+        let command = wanted[row];
+        times.push(row as f64 * 1e-3);
+        references.push(reference);
+        inputs.push(command);
+        outputs.push(force);
+        moved = decay * moved + 1000.0 * (1.0 - decay) * command;
+    }
+    let law = "numerator = \"0.002*z - 0.00184\"\ndenominator = \"z - 1\"\nsample_time = \"4 ms\"\ndelay = \"2 ms\"";
+    let found = member(&by_controller(&[times, references, inputs, outputs], law).unwrap());
+    let (mut held, mut all) = (0, 0);
+    for (frequency, response, radius) in points(&found) {
+        let shift = exp_complex(Complex64::new(0.0, frequency * 1e-3));
+        held += usize::from(magnitude(response - 1000.0 * (1.0 - decay) / (shift - decay)) <= radius);
+        all += 1;
+    }
+    // ORIGIN: analytic, 99.8 % of a binomial distribution: 3.1 standard deviations
+    let expected = 0.95 * f64::from(all);
+    assert!(all > 20 && held as f64 > expected - 3.1 * (0.05 * expected).sqrt(), "{held} of {all}");
+}
+
 /// Rows that come early and late throughout are moved to even ones, which is said.
 #[test]
 fn uneven_rows_are_moved_and_said_to_be() {

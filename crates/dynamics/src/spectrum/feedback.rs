@@ -15,6 +15,16 @@ const SIGNIFICANT: f64 = 4.0;
 /// The same for a single column: once in a hundred thousand.
 const SIGNIFICANT_ROW: f64 = 20.0;
 
+/// Effect of an input on the output of its own row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WithinRow {
+    /// The input changes between the rows, so that the output may follow it within a row.
+    Possible,
+    /// The input is held from row to row, so that the output can follow it one row later at the
+    /// earliest.
+    Impossible,
+}
+
 /// The share of an output's innovation that its input follows: 0 in an open loop.
 ///
 /// ```text
@@ -25,15 +35,16 @@ const SIGNIFICANT_ROW: f64 = 20.0;
 /// nothing: c = 0, whatever the input (Sims 1972; with the past of the output, Geweke, Meese and
 /// Dent 1983). Under feedback it does. A controller that answers within the row in which it reads
 /// the output is seen in b_0, which then has the sign of the feedback, opposite to the sum of all
-/// other b. Both count where they are no chance and explain more than a hundredth. The larger of
-/// the two shares is returned. Noise of less than a millionth of the output's power, and records
-/// of fewer than 200 rows, are not tested.
+/// other b; where the input cannot act within its row, b_0 shows feedback whatever its sign. Both
+/// count where they are no chance and explain more than a hundredth. The larger of the two shares
+/// is returned. Noise of less than a millionth of the output's power, and records of fewer than 200
+/// rows, are not tested.
 ///
 /// # Example
 /// An input that nothing moves but the noise of the output, by an integral controller.
 /// ```
 /// use phea_dynamics::random::{normal, stream};
-/// use phea_dynamics::spectrum::feedback;
+/// use phea_dynamics::spectrum::{WithinRow, feedback};
 /// let mut state = stream(1, 0);
 /// let (mut input, mut output, mut x, mut noise) = (vec![], vec![], vec![0.0], 0.0);
 /// for n in 0..2000 {
@@ -42,12 +53,12 @@ const SIGNIFICANT_ROW: f64 = 20.0;
 ///     input.push(input.last().unwrap_or(&0.0) - 0.1 * output[n]);
 ///     x.push(0.5 * x[n] + 0.5 * input[n]);
 /// }
-/// assert!(feedback(&input, &output) > 0.1);
+/// assert!(feedback(&input, &output, WithinRow::Possible) > 0.1);
 /// // the same input, and other noise
 /// let other: Vec<f64> = x.iter().map(|x| x + normal(&mut state)).collect();
-/// assert_eq!(feedback(&input, &other), 0.0);
+/// assert_eq!(feedback(&input, &other, WithinRow::Possible), 0.0);
 /// ```
-pub fn feedback(input: &[f64], output: &[f64]) -> f64 {
+pub fn feedback(input: &[f64], output: &[f64], within_row: WithinRow) -> f64 {
     let count = input.len().min(output.len()).min(ROWS);
     if count < 200 {
         return 0.0;
@@ -81,7 +92,7 @@ pub fn feedback(input: &[f64], output: &[f64]) -> f64 {
     let now = shifted(input, PAST);
     let mut new = now.clone();
     take_out(&basis, &mut new);
-    let is_against = product(&new, &innovation) * sum < 0.0;
+    let is_against = within_row == WithinRow::Impossible || product(&new, &innovation) * sum < 0.0;
     let in_row = explained(&mut basis, &mut innovation, vec![now], SIGNIFICANT_ROW);
     let future = (1..=FUTURE).map(|ahead| shifted(input, PAST + ahead)).collect();
     let later = explained(&mut basis, &mut innovation, future, SIGNIFICANT);

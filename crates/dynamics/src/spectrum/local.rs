@@ -45,11 +45,12 @@ const ROUNDING: f64 = 1e-18;
 /// ```
 ///
 /// with the noise covariance s of q degrees of freedom and p = sum |R|^2 of what only g_0
-/// explains. The excitation is p per line, zero where noise alone would move the input as much as
-/// the reference does in one of 10,000 cases. The coherence takes the noise of the neighbouring
-/// bands: by its own a band would be chosen because chance left little in it, and its disc be too
-/// small. Bands are 6 % wide from 217 lines on and are halved where the halves leave significantly
-/// less unexplained. Signals are sampled in steps of `time_step` seconds.
+/// explains. The excitation is |g_0u|^2 p per line, the power by which the reference moves the
+/// input; it is zero where noise alone would move the input as much in one of 10,000 cases. The
+/// coherence takes the noise of the neighbouring bands: by its own a band would be chosen because
+/// chance left little in it, and its disc be too small. Bands are 6 % wide from 217 lines on and
+/// are halved where the halves leave significantly less unexplained. Signals are sampled in steps
+/// of `time_step` seconds.
 ///
 /// # Example
 /// An output of three times the input, whatever else the record began and ends with.
@@ -214,7 +215,7 @@ impl LineBand {
         rest.max(0.0) / self.freedom()
     }
 
-    /// The excitation of the point is the power of the reference per line.
+    /// The excitation of the point is the power per line by which the reference moves the input.
     fn point(&self, spacing: f64, neighbours: [Option<&LineBand>; 2]) -> SpectralPoint {
         let freedom = self.freedom();
         let [output, input] = self.gains;
@@ -229,7 +230,7 @@ impl LineBand {
         let squared = scale * (moved * noise - scale * determinant) / (left * left);
         let middle = (output * input.conj() - scale * cross) / left;
         let is_moved = moved * self.power > fisher(freedom, BY_CHANCE) * of_input;
-        let excitation = if is_moved { self.power / self.lines } else { 0.0 };
+        let excitation = if is_moved { moved * self.power / self.lines } else { 0.0 };
         let signal = response.norm_sqr() * moved * self.power / self.lines;
         let around: Vec<f64> = neighbours.into_iter().flatten().map(|band| band.noise(response)).collect();
         let usual = if around.is_empty() { noise } else { around.iter().sum::<f64>() / around.len() as f64 };

@@ -65,6 +65,38 @@ impl Transform {
         let samples: Vec<Complex64> = samples.iter().map(|value| Complex64::new(*value, 0.0)).collect();
         self.of(&samples)
     }
+
+    /// Output of a linear system for a real signal, as if the signal repeated. `response` is that
+    /// of the system, at an angle in radians per sample. The mean of the signal is discarded: there
+    /// the response of an integrator is infinite.
+    ///
+    /// # Example
+    /// A delay of one sample.
+    /// ```
+    /// use num_complex::Complex64;
+    /// use phea_dynamics::portable::exp_complex;
+    /// use phea_dynamics::spectrum::Transform;
+    /// let delay = |angle: f64| exp_complex(Complex64::new(0.0, -angle));
+    /// let delayed = Transform::new(4).filtered(&[0.0, 3.0, -1.0, -2.0], &delay);
+    /// for (value, expected) in delayed.iter().zip([-2.0, 0.0, 3.0, -1.0]) {
+    ///     assert!((value - expected).abs() < 1e-14);
+    /// }
+    /// ```
+    pub fn filtered(&self, samples: &[f64], response: &dyn Fn(f64) -> Complex64) -> Vec<f64> {
+        let count = self.length;
+        let mut lines = self.of_real(samples);
+        for (index, line) in lines.iter_mut().enumerate() {
+            let from_end = count - index;
+            let angle = 2.0 * PI * index.min(from_end) as f64 / count as f64;
+            *line = match index {
+                0 => Complex64::ZERO,
+                _ if index == from_end => *line * response(angle).re,
+                _ if index < from_end => (*line * response(angle)).conj(),
+                _ => (*line * response(angle).conj()).conj(),
+            };
+        }
+        self.of(&lines).into_iter().map(|value| value.re / count as f64).collect()
+    }
 }
 
 /// A transform whose length is a power of two.

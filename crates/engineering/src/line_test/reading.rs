@@ -121,6 +121,7 @@ fn response(file: &str, rows: EvenRows) -> Option<LineRecord> {
         reference: None,
         // the supply and the line move each other: no controller is needed for that
         recorded_loop: Some(RecordedLoop::Open),
+        controller: None,
         resampled: rows.resampled,
     }))
 }

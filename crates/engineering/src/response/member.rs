@@ -1,9 +1,9 @@
 use phea_dynamics::spectrum::{
-    Distortion, LOCAL_BLOCKS, SpectralPoint, feedback, least_coherence, local_polynomials, period, periods,
-    segments,
+    Distortion, LOCAL_BLOCKS, SpectralPoint, WithinRow, feedback, least_coherence, local_polynomials, period,
+    periods, segments,
 };
 
-use super::{ReferenceSignal, Resampled, ResponseSettings, SampledPair};
+use super::{ReferenceSignal, ReferenceSource, Resampled, ResponseSettings, SampledPair};
 use crate::project::RecordedLoop;
 
 /// How the blocks of a record were made.
@@ -49,8 +49,8 @@ pub struct ResponseMember {
     pub time_step: f64,
     /// How the blocks were made.
     pub method: Averaging,
-    /// The column from which the response of a closed loop follows.
-    pub reference: Option<&'static str>,
+    /// From what the response of a closed loop follows.
+    pub reference: Option<ReferenceSource>,
     /// What the output has at lines of the period that the input does not excite.
     pub distortion: Distortion,
     /// Where the rows were not even.
@@ -93,13 +93,16 @@ pub(super) fn member(record: &SampledPair, settings: &ResponseSettings) -> Resul
         return Err(format!("{file}: the input never moves, so that it excites nothing"));
     }
     let settling = settings.settling.map(steps);
-    let reference = reference_of(record);
-    let moving = reference.map_or(&record.input, |reference| &reference.values);
+    let recorded = reference_of(record);
+    let moving = recorded.map_or(&record.input, |reference| &reference.values);
     let found = match (settings.period, settings.segment) {
         (Some(stated), _) => Some(whole_steps(record, stated)?),
         (None, Some(_)) => None,
         (None, None) => period(moving.get(settling.unwrap_or(0)..).unwrap_or_default()),
     };
+    let controller = record.controller.as_ref().filter(|_| found.is_none() && recorded.is_none());
+    let calculated = controller.map(|controller| controller.reference(record)).transpose()?;
+    let reference = recorded.or(calculated.as_ref());
     if found.is_none() && reference.is_none() {
         loop_is_open(record)?;
     }
@@ -110,6 +113,11 @@ pub(super) fn member(record: &SampledPair, settings: &ResponseSettings) -> Resul
         }
         (None, _) => of_bands(record, reference, settling.unwrap_or(0))?,
     };
+    for point in &mut estimated.points {
+        if controller.is_some_and(|controller| controller.is_negative_inverse(point, record.time_step)) {
+            point.excitation = 0.0;
+        }
+    }
     if let Some(resampled) = record.resampled {
         estimated.points.retain(|point| point.frequency <= resampled.highest());
     }
@@ -125,7 +133,7 @@ pub(super) fn member(record: &SampledPair, settings: &ResponseSettings) -> Resul
         rows: record.input.len(),
         time_step: record.time_step,
         method: estimated.method,
-        reference: reference.map(|reference| reference.name),
+        reference: reference.map(|reference| reference.source),
         distortion: estimated.distortion,
         resampled: record.resampled,
         least_coherence: least,
@@ -151,14 +159,14 @@ fn reference_of(record: &SampledPair) -> Option<&ReferenceSignal> {
 /// the negative inverse of the controller.
 fn loop_is_open(record: &SampledPair) -> Result<(), String> {
     let SampledPair { file, signals: [input, output], .. } = record;
-    let cure = "record the reference in a column `reference`, `excitation` or `set_point`, or make the reference periodic";
+    let cure = "record the reference in a column `reference`, `excitation` or `set_point`, make the reference periodic, or, where [controller] of the project is that of the test, state `controller = \"declared\"` in its [[identify.response]]";
     let why = format!("`{output}` over `{input}` tends to the negative inverse of the controller, -1/C");
     match record.recorded_loop {
         Some(RecordedLoop::Open) => Ok(()),
         Some(RecordedLoop::Closed) => {
             Err(format!("{file}: the loop was closed, and no column says what moved it: {why}; {cure}"))
         }
-        None => match feedback(&record.input, &record.output) {
+        None => match feedback(&record.input, &record.output, WithinRow::Possible) {
             share if share > 0.0 => Err(format!(
                 "{file}: the loop was closed during the test: `{input}` follows the noise of `{output}` ({:.0} % of its innovation), so that {why}; {cure}. Where no controller acted, state `loop = \"open\"` in its [[identify.response]]",
                 100.0 * share
@@ -213,7 +221,7 @@ fn of_bands(
     let [input, output] = [&record.input, &record.output].map(|signal| later(signal));
     let reference = reference.map_or_else(|| input.clone(), |one| later(&one.values));
     let points = local_polynomials(&reference, [&input, &output], record.time_step);
-    if points.is_empty() {
+    if points.is_empty() && (record.controller.is_none() || settling > 0) {
         return Err(format!("{}: {} rows are too few for a frequency response", record.file, input.len()));
     }
     let length = input.len() as f64 * record.time_step;
@@ -247,14 +255,18 @@ fn no_points(
     least: f64,
 ) -> String {
     let file = &record.file;
-    match reference {
-        Some(reference) if left_out.iter().all(|one| one.reason == Unusable::NotExcited) => format!(
-            "{file}: the column `{}` moves the input at no frequency more than noise does",
-            reference.name
+    let moving = reference.map(|reference| match reference.source {
+        ReferenceSource::Column(name) => format!("the column `{name}`"),
+        ReferenceSource::Controller => {
+            "the reference that is calculated with [controller], y + u/C,".to_string()
+        }
+    });
+    match moving {
+        Some(moving) if left_out.iter().all(|one| one.reason == Unusable::NotExcited) => format!(
+            "{file}: {moving} moves the input at no frequency more than noise does: nothing moved the loop from outside"
         ),
-        Some(reference) => format!(
-            "{file}: at no frequency is noise small against what the column `{}` moves: the squared coherence is below {least:.2}; move the reference more, or longer",
-            reference.name
+        Some(moving) => format!(
+            "{file}: at no frequency is noise small against what {moving} moves: the squared coherence is below {least:.2}; move the reference more, or longer"
         ),
         None => format!(
             "{file}: at no frequency does the output depend on the input with a squared coherence of {least:.2}"

@@ -1,3 +1,4 @@
+use super::TestController;
 use super::resampled::{EvenRows, Resampled, even_rows};
 use crate::identify::IdentifyError;
 use crate::project::{Findings, RecordedLoop, RecordedResponse, ResponseSignal};
@@ -24,6 +25,8 @@ pub struct SampledPair {
     pub reference: Option<ReferenceSignal>,
     /// The loop during the test, where the project states it.
     pub recorded_loop: Option<RecordedLoop>,
+    /// The controller of a closed loop, where the project declares it.
+    pub controller: Option<Box<TestController>>,
     /// Where the rows were not even.
     pub resampled: Option<Resampled>,
 }
@@ -31,8 +34,8 @@ pub struct SampledPair {
 /// A reference, or an excitation that is added to the command, of a closed loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceSignal {
-    /// What the column is called.
-    pub name: &'static str,
+    /// Its origin.
+    pub source: ReferenceSource,
     /// Its samples, in SI.
     pub values: Vec<f64>,
 }
@@ -51,6 +54,15 @@ fn reference_in(
         (!is_blank)
             .then(|| (measurand.name, table.all_numbers(&[column], findings).pop().unwrap_or_default()))
     })
+}
+
+/// Origin of the signal that moves a closed loop from outside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReferenceSource {
+    /// The column of this name.
+    Column(&'static str),
+    /// Calculated from command and force by the controller of the test.
+    Controller,
 }
 
 impl ReferenceSignal {
@@ -145,9 +157,10 @@ fn pair(declared: &RecordedResponse, bytes: Vec<u8>, findings: &mut Findings) ->
         output: signals.next()?,
         reference: name
             .zip(signals.next())
-            .map(|(name, values)| ReferenceSignal { name, values })
+            .map(|(name, values)| ReferenceSignal { source: ReferenceSource::Column(name), values })
             .filter(ReferenceSignal::moves),
         recorded_loop: declared.recorded_loop,
+        controller: None,
         resampled,
     })
 }

@@ -2,8 +2,8 @@
 
 use super::Check;
 use crate::{
-    Accuracy, IdentifiedUse, Identify, Project, RecordedColumn, RecordedTest, ResponseSignal, StaticTest,
-    TestSignal,
+    Accuracy, IdentifiedUse, Identify, Project, RecordedColumn, RecordedLoop, RecordedTest, ResponseSignal,
+    StaticTest, TestSignal,
 };
 use phea_quantity::{self as quantity, Dimension, RATIO};
 
@@ -30,6 +30,44 @@ pub(super) fn identify(identify: &Identify, check: &mut Check<'_, '_>) {
             if let Some(unit) = column.as_ref().and_then(|column| column.unit.as_deref()) {
                 unit_of(unit, signal.dimension(), &path, check);
             }
+        }
+    }
+}
+
+/// A test under the declared controller needs one, whose command follows from the force alone.
+pub(super) fn controllers_of_tests(project: &Project, identify: &Identify, check: &mut Check<'_, '_>) {
+    for (index, recorded) in identify.responses.iter().enumerate() {
+        let path = format!("identify.response[{index}].controller");
+        if recorded.recorded_controller.is_none() || check.refused("controller") {
+            continue;
+        }
+        if recorded.recorded_loop == Some(RecordedLoop::Open) {
+            check.error(&path, "no controller acts in an open loop: `loop` contradicts it");
+        }
+        let declared = project.controller.as_ref().filter(|controller| controller.has_law());
+        let Some(declared) = declared else {
+            let is_attempted = |key: &&str| check.declared(&format!("controller.{key}"));
+            if ["numerator", "denominator", "gain", "elements"].iter().any(is_attempted) {
+                continue;
+            }
+            let help = "state the transfer function of the test, with its `sample_time`, in [controller]";
+            check.error_with_help(&path, "[controller] declares no transfer function", help);
+            continue;
+        };
+        let others = [
+            ("pressure_feedback", "the pressures of the chambers", declared.pressure_feedback.is_some()),
+            (
+                "load_velocity_feed_forward",
+                "the velocity of the load",
+                declared.load_velocity_feed_forward.is_some(),
+            ),
+            ("impedance", "the position of the load", declared.impedance.is_some()),
+        ];
+        for (key, signal, _) in others.into_iter().filter(|(_, _, is_stated)| *is_stated) {
+            let message = format!(
+                "with controller.{key} the command also follows {signal}, which the record does not have"
+            );
+            check.error_with_help(&path, message, "record the reference of the loop");
         }
     }
 }

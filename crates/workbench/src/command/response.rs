@@ -2,8 +2,8 @@
 
 use crate::answer::{Answer, picture_files};
 use crate::identify::IdentifyError;
-use crate::project::{Loaded, RecordedResponse};
-use crate::response::{self, Compared, ResponseSettings, members, sampled_pairs};
+use crate::project::{Loaded, RecordedController, RecordedResponse};
+use crate::response::{self, Compared, ResponseSettings, TestController, members, sampled_pairs};
 use crate::setup::Setup;
 use crate::source::Source;
 
@@ -55,7 +55,17 @@ pub fn response_watched(
             "there is no record: name a file for each member, or declare it in [[identify.response]]";
         return Err(IdentifyError::Data(message.to_string()));
     }
-    let records = sampled_pairs(source, &files)?;
+    let mut records = sampled_pairs(source, &files)?;
+    let by_controller =
+        |one: &RecordedResponse| one.recorded_controller == Some(RecordedController::Declared);
+    if let Some(loaded) = loaded.filter(|_| files.iter().any(by_controller)) {
+        let controller = TestController::declared(&loaded.project)
+            .map_err(|error| IdentifyError::Data(error.to_string()))?
+            .map(Box::new);
+        for (record, _) in records.iter_mut().zip(&files).filter(|(_, file)| by_controller(file)) {
+            record.controller.clone_from(&controller);
+        }
+    }
     let found = members(&records, &asked.settings, watch)?;
     let rig = loaded
         .filter(|loaded| loaded.project.actuator.is_some())

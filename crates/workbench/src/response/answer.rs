@@ -2,7 +2,7 @@ use phea_dynamics::portable::{argument, log10, magnitude};
 use phea_dynamics::spectrum::LOCAL_BLOCKS;
 use serde::Serialize;
 
-use super::{Averaging, Compared, LeftOut, Unusable, because};
+use super::{Averaging, Compared, LeftOut, ReferenceSource, Unusable, because};
 use crate::answer::{self, Number};
 use crate::project::Loaded;
 
@@ -31,6 +31,8 @@ struct AnsweredResponse<'a> {
     method: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     reference: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    controller: Option<&'static str>,
     block_s: f64,
     blocks: usize,
     independent_blocks: Number,
@@ -127,7 +129,11 @@ fn member(compared: &Compared) -> AnsweredResponse<'_> {
         rows: found.rows,
         time_step_s: found.time_step,
         method,
-        reference: found.reference,
+        reference: match found.reference {
+            Some(ReferenceSource::Column(name)) => Some(name),
+            _ => None,
+        },
+        controller: (found.reference == Some(ReferenceSource::Controller)).then_some("declared"),
         block_s,
         blocks,
         independent_blocks: Number(independent),

@@ -1,6 +1,6 @@
 use phea_dynamics::portable::{argument, log10, magnitude};
 
-use super::{Averaging, Compared, LeftOut, ResponseMember, Unusable};
+use super::{Averaging, Compared, LeftOut, ReferenceSource, ResponseMember, Unusable};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
@@ -53,7 +53,11 @@ fn blocks(member: &ResponseMember) -> Vec<String> {
         }
         Averaging::LocalPolynomials { bands, .. } => format!(
             "{rows}: the {} does not repeat; {bands} bands of the whole record have a response, a transient and noise of their own.",
-            member.reference.map_or("input", |name| name)
+            match member.reference {
+                Some(ReferenceSource::Column(name)) => name,
+                Some(ReferenceSource::Controller) => "reference",
+                None => "input",
+            }
         ),
         Averaging::Segments { length, count, independent } => format!(
             "{rows}: the input does not repeat; {count} segments of {} s with a Hann window overlap by half and count as {} without overlap.",
@@ -61,8 +65,10 @@ fn blocks(member: &ResponseMember) -> Vec<String> {
             significant(independent, 3)
         ),
     };
-    let of_loop = member.reference.map(|name| {
-        format!("The loop is taken as closed: the response follows from `{name}`, in which noise that returns through the controller has no part.")
+    let [input, output] = member.signals;
+    let of_loop = member.reference.map(|source| match source {
+        ReferenceSource::Column(name) => format!("The loop is taken as closed: the response follows from `{name}`, in which noise that returns through the controller has no part."),
+        ReferenceSource::Controller => format!("The loop is taken as closed by the declared [controller]: the response follows from the reference that is calculated with it, y + u/C of `{output}` and `{input}`, in which noise that returns through the controller has no part."),
     });
     [Some(how), of_loop].into_iter().flatten().collect()
 }

@@ -1,6 +1,6 @@
 use phea_dynamics::portable::{argument, log10, magnitude};
 
-use super::{Averaging, Compared};
+use super::{Averaging, Compared, ReferenceSource};
 use crate::answer::{Csv, OutputFile, significant};
 use crate::quantity::DisplayUnit;
 
@@ -40,7 +40,13 @@ fn table(compared: &Compared) -> Csv {
     let method = match member.method {
         Averaging::Periods { period, count } => format!("{count} periods of {} s", significant(period, 6)),
         Averaging::LocalPolynomials { length, bands } => {
-            let from = member.reference.map_or(String::new(), |name| format!(", from the {name}"));
+            let from = match member.reference {
+                Some(ReferenceSource::Column(name)) => format!(", from the {name}"),
+                Some(ReferenceSource::Controller) => {
+                    ", from the reference by the declared controller".to_string()
+                }
+                None => String::new(),
+            };
             format!("local polynomials over {bands} bands of {} s{from}", significant(length, 6))
         }
         Averaging::Segments { length, count, .. } => {
