@@ -8,6 +8,7 @@
 //! ```
 
 mod blocks;
+mod comparison;
 mod distortion;
 mod estimate;
 mod feedback;
@@ -16,6 +17,7 @@ mod period;
 mod transform;
 
 pub use blocks::{Blocks, periods, segments};
+pub use comparison::{ResponsePair, pairs};
 pub use distortion::Distortion;
 pub use estimate::{SpectralPoint, disc_radius, least_coherence};
 pub use feedback::{WithinRow, feedback};

@@ -8,12 +8,14 @@
 //! (noise, a single sweep, a step) is estimated band by band, from the reference where a loop was
 //! closed, or by its controller. One file is one member.
 
+mod levels;
 mod member;
 mod reading;
 mod resampled;
 mod spacing;
 mod test_controller;
 
+pub use levels::{FALSE_ALARM, LevelComparison, LevelDifference, compare_levels};
 pub use member::{Averaging, LeftOut, ResponseMember, Unusable};
 pub use reading::{ReferenceSignal, ReferenceSource, SampledPair, sampled_pairs};
 pub use resampled::Resampled;

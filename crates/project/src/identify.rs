@@ -270,6 +270,8 @@ pub struct RecordedResponse {
     pub recorded_loop: Option<RecordedLoop>,
     /// The controller of a closed loop; absent: it is not known.
     pub recorded_controller: Option<RecordedController>,
+    /// Name of the operating point; absent: the record is not compared with others.
+    pub operating_point: Option<String>,
 }
 
 /// The controller that acted while a record was made.
@@ -394,6 +396,8 @@ impl RecordedResponse {
         let words = &[("declared", Some(RecordedController::Declared))];
         let doc = "The controller of a closed loop whose reference was not recorded: `declared`, that of [controller]; absent: not known.";
         v.choice(plain("controller", doc), words, &mut self.recorded_controller, false);
+        let doc = "A name of the operating point, such as \"70 bar, middle of the stroke\": records of one name that differ in amplitude are compared; absent: not compared.";
+        v.text(plain("operating_point", doc), &mut self.operating_point, false);
         for (signal, column) in ResponseSignal::ALL.into_iter().zip(&mut self.columns) {
             v.table(plain(signal.name(), signal.doc()), column, RecordedColumn::visit);
         }

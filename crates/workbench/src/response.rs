@@ -5,6 +5,7 @@ mod answer;
 mod document;
 mod figures;
 mod files;
+mod levels;
 
 pub use phea_engineering::response::*;
 

@@ -82,6 +82,7 @@ mod report_simulation;
 mod report_typeset;
 mod required_step;
 mod response_identification;
+mod response_levels;
 mod rest;
 mod rising_progress;
 mod runs_alike;

@@ -200,6 +200,7 @@ pub(crate) fn response(known: &KnownLine, [speed, end_share]: [f64; 2], seed: u6
         reference: None,
         recorded_loop: None,
         controller: None,
+        operating_point: None,
         resampled: None,
     })
 }

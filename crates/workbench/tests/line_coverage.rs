@@ -129,6 +129,7 @@ pub(crate) fn record(run: &LineRun) -> LineRecord {
             reference: None,
             recorded_loop: None,
             controller: None,
+            operating_point: None,
             resampled: None,
             file,
             signals: ["flow", "pressure"],

@@ -207,6 +207,7 @@ impl Blocks {
             coherence: if coherence.is_finite() { coherence.min(1.0) } else { 0.0 },
             deviation,
             radius: disc_radius(deviation, independent),
+            freedom: independent - 1.0,
             excitation: power,
         };
         (point, scatter)

@@ -16,12 +16,14 @@ pub struct SpectralPoint {
     pub deviation: f64,
     /// Radius of the disc around the response that holds the truth with 95 % confidence.
     pub radius: f64,
+    /// Complex degrees of freedom q of the deviation: the radius is that of F(2, 2 q).
+    pub freedom: f64,
     /// Power of the input at this frequency, over that at the strongest one.
     pub excitation: f64,
 }
 
 /// What lies outside the disc.
-const OUTSIDE: f64 = 0.05;
+pub(super) const OUTSIDE: f64 = 0.05;
 
 /// Radius of the disc that holds the truth with 95 % confidence, from the standard deviation of an
 /// estimate that rests on this many independent blocks.

@@ -242,6 +242,7 @@ impl LineBand {
             coherence: if coherence.is_finite() { coherence } else { 0.0 },
             deviation: (noise / (self.power * moved)).sqrt(),
             radius: if left > 0.0 { squared.max(0.0).sqrt() + apart } else { f64::INFINITY },
+            freedom,
             excitation,
         }
     }

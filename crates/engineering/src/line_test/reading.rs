@@ -122,6 +122,7 @@ fn response(file: &str, rows: EvenRows) -> Option<LineRecord> {
         // the supply and the line move each other: no controller is needed for that
         recorded_loop: Some(RecordedLoop::Open),
         controller: None,
+        operating_point: None,
         resampled: rows.resampled,
     }))
 }

@@ -47,6 +47,10 @@ pub struct ResponseMember {
     pub rows: usize,
     /// s between rows.
     pub time_step: f64,
+    /// The operating point of the test, where the project names it.
+    pub operating_point: Option<String>,
+    /// Root mean square of the input around its mean.
+    pub input_rms: f64,
     /// How the blocks were made.
     pub method: Averaging,
     /// From what the response of a closed loop follows.
@@ -132,6 +136,8 @@ pub(super) fn member(record: &SampledPair, settings: &ResponseSettings) -> Resul
         units: record.units,
         rows: record.input.len(),
         time_step: record.time_step,
+        operating_point: record.operating_point.clone(),
+        input_rms: (power(&record.input) / record.input.len().max(1) as f64).sqrt(),
         method: estimated.method,
         reference: reference.map(|reference| reference.source),
         distortion: estimated.distortion,
@@ -140,6 +146,12 @@ pub(super) fn member(record: &SampledPair, settings: &ResponseSettings) -> Resul
         points,
         left_out,
     })
+}
+
+/// Sum of squares around the mean.
+pub(super) fn power(signal: &[f64]) -> f64 {
+    let mean = signal.iter().sum::<f64>() / signal.len().max(1) as f64;
+    signal.iter().map(|value| (value - mean) * (value - mean)).sum()
 }
 
 /// What a record shows before anything is left out.

@@ -27,6 +27,8 @@ pub struct SampledPair {
     pub recorded_loop: Option<RecordedLoop>,
     /// The controller of a closed loop, where the project declares it.
     pub controller: Option<Box<TestController>>,
+    /// The operating point of the test, where the project names it.
+    pub operating_point: Option<String>,
     /// Where the rows were not even.
     pub resampled: Option<Resampled>,
 }
@@ -161,6 +163,7 @@ fn pair(declared: &RecordedResponse, bytes: Vec<u8>, findings: &mut Findings) ->
             .filter(ReferenceSignal::moves),
         recorded_loop: declared.recorded_loop,
         controller: None,
+        operating_point: declared.operating_point.clone(),
         resampled,
     })
 }

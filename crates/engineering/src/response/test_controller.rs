@@ -3,6 +3,7 @@ use phea_dynamics::portable::{exp_complex, magnitude};
 use phea_dynamics::spectrum::{SpectralPoint, Transform, WithinRow, feedback};
 use phea_qft::closed_loop::Compensation;
 
+use super::member::power;
 use super::{ReferenceSignal, ReferenceSource, SampledPair};
 use crate::project::Project;
 use crate::setup::{ControlError, Setup};
@@ -109,12 +110,6 @@ impl TestController {
             _ => Ok(ReferenceSignal { source: ReferenceSource::Controller, values }),
         }
     }
-}
-
-/// Sum of squares around the mean.
-fn power(signal: &[f64]) -> f64 {
-    let mean = signal.iter().sum::<f64>() / signal.len().max(1) as f64;
-    signal.iter().map(|value| (value - mean) * (value - mean)).sum()
 }
 
 /// exp(-j angle).

@@ -3,7 +3,9 @@
 use crate::answer::{Answer, picture_files};
 use crate::identify::IdentifyError;
 use crate::project::{Loaded, RecordedController, RecordedResponse};
-use crate::response::{self, Compared, ResponseSettings, TestController, members, sampled_pairs};
+use crate::response::{
+    self, Compared, ResponseSettings, TestController, compare_levels, members, sampled_pairs,
+};
 use crate::setup::Setup;
 use crate::source::Source;
 
@@ -67,6 +69,7 @@ pub fn response_watched(
         }
     }
     let found = members(&records, &asked.settings, watch)?;
+    let comparisons = compare_levels(&found);
     let rig = loaded
         .filter(|loaded| loaded.project.actuator.is_some())
         .map(|loaded| Setup::rig_of(&loaded.project))
@@ -77,8 +80,8 @@ pub fn response_watched(
     let pictures = picture_files(&drawn);
     let files = response::files(&found).into_iter().chain(pictures).collect();
     Ok(Answer {
-        text: response::document(&found).text(),
-        json: response::json(loaded, &found),
+        text: response::document(&found, &comparisons).text(),
+        json: response::json(loaded, &found, &comparisons),
         files,
         affirmative: true,
     })

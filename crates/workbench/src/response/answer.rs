@@ -2,7 +2,8 @@ use phea_dynamics::portable::{argument, log10, magnitude};
 use phea_dynamics::spectrum::LOCAL_BLOCKS;
 use serde::Serialize;
 
-use super::{Averaging, Compared, LeftOut, ReferenceSource, Unusable, because};
+use super::levels::{ComparedLevels, answered};
+use super::{Averaging, Compared, LeftOut, LevelComparison, ReferenceSource, Unusable, because};
 use crate::answer::{self, Number};
 use crate::project::Loaded;
 
@@ -18,6 +19,8 @@ struct ResponsesBody<'a> {
 #[derive(Serialize)]
 struct RecordedResponses<'a> {
     members: Vec<AnsweredResponse<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    comparisons: Vec<ComparedLevels<'a>>,
 }
 
 #[derive(Serialize)]
@@ -28,6 +31,9 @@ struct AnsweredResponse<'a> {
     unit: String,
     rows: usize,
     time_step_s: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    operating_point: Option<&'a str>,
+    input_rms: Number,
     method: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     reference: Option<&'static str>,
@@ -87,13 +93,16 @@ struct BesidePlant {
 }
 
 /// The JSON object of `identify --of response`.
-pub fn json(loaded: Option<&Loaded>, found: &[Compared]) -> String {
+pub fn json(loaded: Option<&Loaded>, found: &[Compared], comparisons: &[LevelComparison]) -> String {
     let body = ResponsesBody {
         schema: answer::SCHEMA,
         version: env!("CARGO_PKG_VERSION"),
         command: "identify",
         project_sha256: loaded.map(|loaded| loaded.sha256.as_str()),
-        response: RecordedResponses { members: found.iter().map(member).collect() },
+        response: RecordedResponses {
+            members: found.iter().map(member).collect(),
+            comparisons: comparisons.iter().map(|one| answered(one, found)).collect(),
+        },
     };
     // every number that may not exist is one of `Number` or `Option`
     serde_json::to_string_pretty(&body).unwrap_or_default()
@@ -128,6 +137,8 @@ fn member(compared: &Compared) -> AnsweredResponse<'_> {
         unit: format!("{}/{}", found.units[1], found.units[0]),
         rows: found.rows,
         time_step_s: found.time_step,
+        operating_point: found.operating_point.as_deref(),
+        input_rms: Number(found.input_rms),
         method,
         reference: match found.reference {
             Some(ReferenceSource::Column(name)) => Some(name),

@@ -1,6 +1,8 @@
 use phea_dynamics::portable::{argument, log10, magnitude};
 
-use super::{Averaging, Compared, LeftOut, ReferenceSource, ResponseMember, Unusable};
+use super::{
+    Averaging, Compared, LeftOut, LevelComparison, ReferenceSource, ResponseMember, Unusable, levels,
+};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
@@ -8,8 +10,9 @@ use crate::quantity::DisplayUnit;
 /// Rows of a table for people; all of them are in the files.
 const SHOWN: usize = 16;
 
-/// A section for each record: how it was taken apart, the response, and what was left out.
-pub(crate) fn document(found: &[Compared]) -> Document {
+/// A section for each record: how it was taken apart, the response, and what was left out; and one
+/// for each comparison of two.
+pub(crate) fn document(found: &[Compared], comparisons: &[LevelComparison]) -> Document {
     let mut out = Document::default();
     for compared in found {
         let member = &compared.member;
@@ -37,6 +40,7 @@ pub(crate) fn document(found: &[Compared]) -> Document {
         out.sentences(agreement(compared));
         out.sentences(compared.warnings().into_iter().map(|warning| format!("{warning}.")));
     }
+    out.append(levels::document(comparisons, found));
     out
 }
 

@@ -6,10 +6,21 @@ use crate::figure::{EstimatedResponse, Figure, FrequencySeries, Words};
 
 /// A Bode diagram of each member.
 pub(crate) fn pictures(found: &[Compared]) -> Vec<Figure> {
-    found.iter().enumerate().map(|(index, compared)| picture(compared, &stem(found, index))).collect()
+    let picture = |(index, compared): (usize, &Compared)| {
+        let others = found.iter().filter(|other| is_compared(compared, other)).collect();
+        picture(compared, others, &stem(found, index))
+    };
+    found.iter().enumerate().map(picture).collect()
 }
 
-fn picture(compared: &Compared, stem: &str) -> Figure {
+/// True for another record at the same operating point.
+fn is_compared(one: &Compared, other: &Compared) -> bool {
+    let [one, other] = [&one.member, &other.member];
+    let is_at_one_point = one.operating_point.is_some() && one.operating_point == other.operating_point;
+    is_at_one_point && one.signals == other.signals && one.file != other.file
+}
+
+fn picture(compared: &Compared, others: Vec<&Compared>, stem: &str) -> Figure {
     let member = &compared.member;
     let [input, output] = member.signals;
     let frequencies: Vec<f64> = member.points.iter().map(|point| point.frequency).collect();
@@ -19,6 +30,11 @@ fn picture(compared: &Compared, stem: &str) -> Figure {
         response,
     };
     let model = compared.plant.clone().map(|plant| series("linear plant of the project", plant));
+    let other = |other: &Compared| FrequencySeries {
+        name: other.member.file.clone(),
+        frequencies_rad_per_s: other.member.points.iter().map(|point| point.frequency).collect(),
+        response: other.member.points.iter().map(|point| point.response).collect(),
+    };
     let caption = "Each point is a frequency of the record; the band around it holds the truth with 95 % confidence. Points below the dotted line of the coherence are left out.";
     let title = format!("{}: {output} over {input}", member.file);
     let chart = EstimatedResponse {
@@ -28,7 +44,7 @@ fn picture(compared: &Compared, stem: &str) -> Figure {
         radii: member.points.iter().map(|point| point.radius).collect(),
         coherence: member.points.iter().map(|point| point.coherence).collect(),
         least_coherence: member.least_coherence,
-        models: model.into_iter().collect(),
+        models: model.into_iter().chain(others.into_iter().map(other)).collect(),
     };
     chart.draw(&Words::new(format!("{stem}.response"), title, caption))
 }
