@@ -82,6 +82,9 @@ pub const NEAREST_PROJECT: &str = "nearest.toml";
 /// Name of the file with the proof for the designed controller.
 pub const DESIGNED_CERTIFICATE: &str = "designed_certificate.json";
 
+/// Ratio to what is required beyond which a step that is later in a narrower band lacks room.
+const LATE_WITHOUT_ROOM: f64 = 1.1;
+
 /// A design, and the given controller for comparison.
 #[derive(Clone, Debug)]
 pub struct ProjectDesign {
@@ -291,9 +294,26 @@ impl ProjectDesign {
         self.trial.iter().flat_map(|trial| trial.runs.iter().chain(&trial.corners))
     }
 
-    /// True where a run on the nonlinear rig misses what is required in time.
+    /// True where a run on the nonlinear rig misses what is required in time, or all satisfy it
+    /// with no room for the plants between those that were driven.
     pub fn misses_on_rig(&self) -> bool {
-        self.trial.as_ref().is_some_and(|trial| trial.satisfies() == Some(false))
+        self.trial.as_ref().is_some_and(|trial| trial.satisfies() == Some(false)) || self.lacks_room_on_rig()
+    }
+
+    /// True where every run on the nonlinear rig satisfies what is required in time, and one comes
+    /// back so near to the edge of its band that in nine tenths of it it is later by a tenth.
+    fn lacks_room_on_rig(&self) -> bool {
+        self.worst_run() <= 1.0 && self.worst_run_with_room() > LATE_WITHOUT_ROOM
+    }
+
+    /// What the nonlinear rig misses of what is required in time, in words.
+    pub fn missed_on_rig_words(&self) -> &'static str {
+        match self.lacks_room_on_rig() {
+            true => {
+                "the nonlinear rig satisfies what is required in time without room: a run comes back to the edge of its band so late that plants between those that were driven may leave it"
+            }
+            false => "the nonlinear rig misses what is required in time",
+        }
     }
 
     /// Whether the designed controller satisfies every specification and keeps every limit.

@@ -182,7 +182,7 @@ fn driven(
         // what the rig satisfies and a limit does not, a search with its runs may
         let lacks_a_limit = latest.as_ref().is_some_and(|(_, told)| rank(told).0 > 0);
         let suffices = best.1.worst_run() <= 1.0;
-        if !lacks_room(&before.1) && !lacks_a_limit || in_vain > IN_VAIN || for_room >= TRIES_FOR_ROOM {
+        if !misses(&before.1) && !lacks_a_limit || in_vain > IN_VAIN || for_room >= TRIES_FOR_ROOM {
             break;
         }
         for_room += usize::from(suffices);
@@ -275,17 +275,11 @@ fn agrees_as_well(one: &ProjectDesign, other: &ProjectDesign) -> bool {
     one.agreement() <= other.agreement().max(Agreement::AgreesButForSettling)
 }
 
-/// True where the nonlinear rig misses what is required under a design that is met.
+/// True where the nonlinear rig misses what is required under a design that is met, or satisfies it
+/// without room for the plants between those that were driven.
 fn misses(told: &ProjectDesign) -> bool {
     let is_met = told.design.status == DesignStatus::Met && !told.is_stopped();
     is_met && told.misses_on_rig()
-}
-
-/// True where the nonlinear rig misses what is required under a design that is met, or satisfies it
-/// without room for the plants between those that were driven.
-fn lacks_room(told: &ProjectDesign) -> bool {
-    let is_met = told.design.status == DesignStatus::Met && !told.is_stopped();
-    is_met && (told.misses_on_rig() || told.worst_run_with_room() > 1.0)
 }
 
 /// A design with what the rig is known to add to its steps, and its trial; `None` where the steps

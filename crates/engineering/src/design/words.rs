@@ -45,8 +45,7 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
                 .to_string()
         }
         DesignStatus::Met if view.misses_on_rig() => {
-            "not met: the controller satisfies every specification, and the nonlinear rig misses what is required in time"
-                .to_string()
+            format!("not met: the controller satisfies every specification, and {}", view.missed_on_rig_words())
         }
         DesignStatus::Met if view.exceeded_prefilter_gain().is_some() => {
             "not met: the controller satisfies every specification, and its prefilter amplifies by more than `design.prefilter_gain` allows: it commands in advance what the loop does not do"

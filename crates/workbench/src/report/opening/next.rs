@@ -155,7 +155,8 @@ fn designed_words(view: &ProjectDesign, given_is_met: bool) -> String {
             "do not use the designed one (`{DESIGNED_PROJECT}`) before the nonlinear simulation agrees: it satisfies every specification over the family, and the simulation contradicts it; `phea design` goes on from there with the plant that does, or states what cannot be achieved"
         ),
         DesignStatus::Met if view.misses_on_rig() => format!(
-            "do not use the designed one (`{DESIGNED_PROJECT}`) unchanged: it satisfies every specification, and the nonlinear rig under it misses what is required in time; state the step that the rig must make (`amplitude`), allow more time, or add poles (`design.maximum_order`)"
+            "do not use the designed one (`{DESIGNED_PROJECT}`) unchanged: it satisfies every specification, and {}; state the step that the rig must make (`amplitude`), allow more time, or add poles (`design.maximum_order`)",
+            view.missed_on_rig_words()
         ),
         DesignStatus::Met if given_is_met => {
             format!("keep it, or take the designed one of `{DESIGNED_PROJECT}` where its numbers are better")
