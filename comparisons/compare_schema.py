@@ -57,7 +57,7 @@ UNSEEN = {
         specification_limit_empty specification_limit_missing specification_margin_delay specification_margin_kind
         specification_margin_mixed specification_margin_numerator specification_response_given specification_response_kind
         specification_response_parts specification_tracking
-        identify_use_measured identify_use_without_recordings cross_port_half
+        identify_use_measured identify_use_without_recordings identify_controller_without_law cross_port_half
     """.split(),
 }
 

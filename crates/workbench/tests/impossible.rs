@@ -166,6 +166,14 @@ fn a_step_beyond_the_stall_force_or_the_sensor() {
     let key = "specification[0].amplitude";
     assert_begins(to, 47.1, 47.2, key, &["goes to 47.2 kN", "stalls at 47.12 kN", "150 bar"]);
     assert_begins(to, 47.1, 48.1, key, &["48.1 kN"]);
+    // beyond the declared supply too: what is reached is that of the lowest
+    assert_begins(
+        to,
+        47.1,
+        60.0,
+        key,
+        &["at a supply of 160 bar", "stalls at 50.27 kN", "stay within 47.12 kN"],
+    );
     let sensor = said(&to(48.1));
     let beyond = |one: &Value| one["sentence"].as_str().unwrap().contains("`capacity` of 48 kN");
     assert!(sensor.iter().any(beyond), "{sensor:?}");

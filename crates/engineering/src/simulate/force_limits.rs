@@ -84,6 +84,7 @@ impl<'a> ForceLimits<'a> {
     pub(crate) fn beyond(&self, force_n: f64) -> Vec<(String, String)> {
         let text = |value: f64| display(value, self.project.motion().dimension(&FORCE), 4);
         let (sign, side) = if force_n < 0.0 { (-1.0, 0) } else { (1.0, 1) };
+        let reached = text(self.greatest(force_n).0);
         let mut found = Vec::new();
         let exceeds = |(_, stall): &&(f64, [f64; 2])| sign * force_n > sign * stall[side];
         // the declared supply comes first: the lowest of the family adds nothing to it
@@ -94,14 +95,14 @@ impl<'a> ForceLimits<'a> {
                 format!(
                     "and at a supply of {pressure} the piston stalls at {stalls}: no controller reaches it"
                 ),
-                format!("stay within {stalls}, raise the supply pressure, or take a larger actuator"),
+                format!("stay within {reached}, raise the supply pressure, or take a larger actuator"),
             ));
         }
         if let Some(capacity) = self.capacity.filter(|capacity| sign * force_n > *capacity) {
             let capacity = text(capacity);
             found.push((
                 format!("beyond the sensor's `capacity` of {capacity}"),
-                format!("stay within {capacity}, or take a sensor of more capacity"),
+                format!("stay within {reached}, or take a sensor of more capacity"),
             ));
         }
         found

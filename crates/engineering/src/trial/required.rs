@@ -15,7 +15,7 @@ pub struct HeldRequirement {
     pub wish: TrackingWish,
     /// The worst of all steps, each property by itself; infinite where the run ended before.
     pub reached: ReachedStep,
-    /// The same in a band that is narrower by [`BAND_WITH_ROOM`].
+    /// The same in nine tenths of the band.
     pub reached_with_room: ReachedStep,
     /// Whether every step satisfies it.
     pub is_satisfied: bool,
