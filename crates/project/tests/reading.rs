@@ -356,7 +356,7 @@ fn areas_come_from_diameters_or_stand_for_themselves() {
 const MOTOR: &str = include_str!("valid/motor.toml");
 
 /// The controller of a motor, as it is offered to be pasted, is read in its place as what it was
-/// printed from: torques, gains and speeds have the units of a rig that turns.
+/// printed from: torques have the units of a rig that turns.
 #[test]
 fn what_is_pasted_into_the_project_of_a_motor_is_what_was_printed() {
     let quantization = "quantization = { command_bits = 12, command_range = [\"-10 V\", \"10 V\"], measurement_bits = 12, \
@@ -366,7 +366,7 @@ fn what_is_pasted_into_the_project_of_a_motor_is_what_was_printed() {
     let controller = project.controller.as_ref().expect("a controller");
     assert!(controller.quantization.is_some());
     let pasted = project::snippet((controller, None), project.motions());
-    assert!(pasted.contains("500 N.m") && pasted.contains("V.s/rad"), "{pasted}");
+    assert!(pasted.contains("\"500 N.m\"") && pasted.contains("\"2 N.m\""), "{pasted}");
     let (before, rest) = text.split_once("[controller]").expect("a controller");
     let after = rest.split_once("\n[[scenario]]").expect("a scenario").1;
     assert_eq!(accept(&format!("{before}{pasted}\n[[scenario]]{after}")).project, project);

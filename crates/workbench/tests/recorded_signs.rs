@@ -251,12 +251,14 @@ fn a_flow_that_the_declared_valve_does_not_pass_is_named_with_its_unit() {
     let [positive, negative] = [path(3.2e-7, 3.85e-7), path(2.0e-7, 2.5e-7)];
     let known = Known::of(&load(HOSE, &[], &[]).project);
     let read = |factor: f64| {
-        let mut text = String::from("time_s,command_v,supply_pressure_bar,flow_l_per_min\n");
+        let mut text = String::from(
+            "time_s,command_v,supply_pressure_bar,pressure_a_bar,pressure_b_bar,flow_l_per_min\n",
+        );
         for row in 0..ROWS {
             let command = 3.0 * (TAU * row as f64 / ROWS as f64).sin();
             let path = if command > 0.0 { positive } else { negative };
             let flow = path * command.abs() / 10.0 * 70e5_f64.sqrt() * 6e4;
-            writeln!(text, "{row},{command:.6},70,{:.6}", factor * flow).unwrap();
+            writeln!(text, "{row},{command:.6},70,35,35,{:.6}", factor * flow).unwrap();
         }
         let source = Memory::default().with("flow.csv", text);
         recordings(&source, &[RecordedTest::of("flow.csv")], &known)
