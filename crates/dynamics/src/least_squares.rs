@@ -118,7 +118,7 @@ const SCALE_ROUNDS: usize = 30;
 /// ```
 ///
 /// # Example
-/// Of plain squares the scale is the root mean square, and half of each residual's loss is left.
+/// The scale of plain squares is the root mean square, and half of each residual's loss is left.
 /// ```
 /// use phea_dynamics::least_squares::negative_log_likelihood;
 /// let found = negative_log_likelihood(&[3.0, -3.0, 3.0], 0.0, f64::INFINITY);

@@ -100,7 +100,7 @@ pub struct ProjectDesign {
     pub minimum_delay_margin_s: f64,
     /// Whether the designed loop tolerates it, regardless of the specifications.
     pub tolerates_its_delay: bool,
-    /// What the watch left unfinished: then it is the best so far.
+    /// The parts that the watch left unfinished; with any, it is the best design so far.
     pub unfinished: Vec<DesignPart>,
     /// The designed controller with its audit.
     pub designed: AuditedController,
@@ -306,7 +306,7 @@ impl ProjectDesign {
         self.worst_run() <= 1.0 && self.worst_run_with_room() > LATE_WITHOUT_ROOM
     }
 
-    /// What the nonlinear rig misses of what is required in time, in words.
+    /// The failure of the nonlinear rig to do what is required in time, in words.
     pub fn missed_on_rig_words(&self) -> &'static str {
         match self.lacks_room_on_rig() {
             true => {

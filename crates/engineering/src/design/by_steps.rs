@@ -37,8 +37,8 @@ use crate::trial::BAND_WITH_ROOM;
 
 /// Most members whose steps are looked at after each search.
 const LOOKED_AT: usize = 12;
-/// What a search by steps may lack to what it aims at, where a trial on the nonlinear rig tells
-/// more than another start, dB.
+/// Shortfall of a search by steps up to which a trial on the nonlinear rig tells more than another
+/// start, dB.
 const NEARLY_DB: f64 = 0.05;
 /// Shares of what is required that the search keeps for linear steps, since the nonlinear rig takes
 /// some of it.

@@ -120,7 +120,7 @@ struct CommandSearch<'a> {
     of: ScenarioSteps,
     visited: Vec<UnitCommand>,
     watch: Watch<'a>,
-    /// Whether the watch stopped it.
+    /// True where the watch stopped it.
     is_stopped: bool,
 }
 
@@ -161,7 +161,7 @@ pub(super) fn command_of_steps(
 /// unfinished where the watch stops it.
 ///
 /// # Errors
-/// None but those of the watch of another part.
+/// None today: a search that the watch stops is noted.
 pub(super) fn with_command_of_steps(
     (setup, told): (&Setup<'_>, ProjectDesign),
     plants: &SteppedPlants,

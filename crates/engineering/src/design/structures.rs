@@ -51,7 +51,7 @@ pub struct ReachedStructure {
     /// audit, of others those of members spread over the family; absent where no prefilter was
     /// fitted.
     pub steps: Option<ReachedStep>,
-    /// Whether it was tried on the nonlinear rig, and a run misses what is required in time.
+    /// True where it was tried on the nonlinear rig, and a run misses what is required in time.
     pub misses_on_rig: bool,
 }
 

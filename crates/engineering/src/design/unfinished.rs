@@ -1,9 +1,9 @@
-//! What a design that the watch stopped lacks.
+//! The parts that a design lacks where the watch stopped it.
 
 use super::{DesignError, ProjectDesign};
 
-/// A part of a design.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A part of a design, in the order in which a reader misses them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum DesignPart {
     /// The search for a controller.
     Search,
@@ -11,6 +11,8 @@ pub enum DesignPart {
     CommandOfSteps,
     /// The trial of the designed controller on the nonlinear rig.
     Trial,
+    /// The design with the plant of a rig that contradicts the first one.
+    Repair,
     /// The proof of the designed controller.
     Proof,
     /// The gain from relaxing each limit that binds.
@@ -19,26 +21,11 @@ pub enum DesignPart {
     WithoutSamples,
     /// The audit of the controller that the project gives.
     GivenController,
-    /// The design with the plant of a rig that contradicts the first one.
-    Repair,
     /// Templates and bounds, as files.
     TemplatesAndBounds,
 }
 
 impl DesignPart {
-    /// All of them, in the order in which a reader misses them.
-    const ALL: [DesignPart; 9] = [
-        DesignPart::Search,
-        DesignPart::CommandOfSteps,
-        DesignPart::Trial,
-        DesignPart::Repair,
-        DesignPart::Proof,
-        DesignPart::Relaxations,
-        DesignPart::WithoutSamples,
-        DesignPart::GivenController,
-        DesignPart::TemplatesAndBounds,
-    ];
-
     /// The word of a part in JSON.
     pub fn key(self) -> &'static str {
         match self {
@@ -54,7 +41,7 @@ impl DesignPart {
         }
     }
 
-    /// What a stopped design lacks without it, in a sentence.
+    /// The sentence on a stopped design without it.
     fn sentence(self) -> &'static str {
         match self {
             DesignPart::Search => "the search for a controller was not finished: another may be better",
@@ -77,8 +64,8 @@ impl DesignPart {
 }
 
 impl ProjectDesign {
-    /// Whether the watch stopped it: then it is the best so far. A repair that was stopped leaves
-    /// the first design as it was.
+    /// True where the watch stopped it: then it is the best so far. A repair that was stopped
+    /// leaves the first design as it was.
     pub fn is_stopped(&self) -> bool {
         self.unfinished.iter().any(|part| *part != DesignPart::Repair)
     }
@@ -94,12 +81,11 @@ impl ProjectDesign {
     }
 }
 
-/// Adds a part that is not listed yet, in the order of [`DesignPart::ALL`].
+/// Adds a part that is not listed yet, in its place.
 fn leave(unfinished: &mut Vec<DesignPart>, part: DesignPart) {
     unfinished.push(part);
-    let left: Vec<DesignPart> =
-        DesignPart::ALL.into_iter().filter(|known| unfinished.contains(known)).collect();
-    *unfinished = left;
+    unfinished.sort_unstable();
+    unfinished.dedup();
 }
 
 /// A result that follows a design; absent, and noted as unfinished, once the watch has stopped it,

@@ -62,7 +62,7 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
     }
     let missed_on_rig = view.structures.iter().any(|one| one.misses_on_rig);
     out.sentences(missed_on_rig.then(|| {
-        "nonlinear runs missed: it satisfies every specification, a run of it on the nonlinear rig missed what is required in time, and the search went on from there".to_string()
+        "nonlinear runs missed: it satisfies every specification, a run of it on the nonlinear rig missed what is required in time or left no room, and the search went on from there".to_string()
     }));
     let way = limit_words(DesignLimitKind::RequiredStep);
     let is_led = view.structures.iter().any(|one| one.binding.as_deref() == Some(way));

@@ -65,9 +65,7 @@ impl LedDesign<'_> {
         let beside = is_near.then(|| (design.clone(), SearchReach::Beside));
         beside.into_iter().chain(std::iter::once((design.clone(), SearchReach::Anywhere)))
     }
-}
 
-impl LedDesign<'_> {
     /// The structures that are shorter than that of a design, and were given up for the limits on
     /// the way to its step alone, the simplest first.
     pub(super) fn simpler(&self, told: &ProjectDesign, run: &DesignRun) -> Result<Vec<Design>, DesignError> {
