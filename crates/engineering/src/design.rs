@@ -58,12 +58,13 @@ use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{
     Design, DesignOptions, DesignOutcome, DesignProblem, DesignStatus, PrefilterChoice, reshaped,
 };
-use phea_qft::loop_shaping::Shaping;
 use phea_qft::verification::Verdict;
 
+use self::by_steps::LedSearch;
 use self::deployable::{limited, split};
 use self::driven::found_and_tried;
 use crate::audit::{ProjectAudit, audit_problem, audit_request, caveat_of_rig, try_to_prove, unexamined_rig};
+use crate::impossible::impossible_steps;
 use crate::project::{self, Project};
 use crate::quantity::{self, DisplayUnit};
 use crate::robust::{RobustProblem, robust_problem};
@@ -356,8 +357,8 @@ pub fn design_and_repair(
 /// Designs a controller for the project, after the audit of the one that it gives.
 ///
 /// # Errors
-/// [`DesignError`] for a project without a specification, a part of it that is not a transfer
-/// function, a family that cannot be built, or a watch that stops it before anything was found.
+/// [`DesignError`] for a project without a specification, a required step that no controller makes
+/// on the rig, a part that is not a transfer function, a family that cannot be built, or a watch that stops it before anything was found.
 pub fn design_project(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -377,9 +378,8 @@ struct DesignRun {
     aimed: RobustProblem,
     problem: DesignProblem,
     outcome: DesignOutcome,
-    /// The limits and samples of the search by which the design was led by its steps; absent where
-    /// it was not.
-    led: Option<Shaping>,
+    /// The search in which the design was led by its steps; absent where it was not.
+    led: Option<LedSearch>,
 }
 
 /// The design with its problem: the project as it is given, and with the pressure feedback that is
@@ -402,6 +402,10 @@ fn designed(
         true => given.clone(),
         false => robust_problem(source, setup)?,
     };
+    let impossible = impossible_steps(setup, &as_designed);
+    if !impossible.is_empty() {
+        return Err(DesignError::ImpossibleSteps(impossible));
+    }
     let limits = design_limits(setup, &as_designed);
     let nothing_asks = asked::nothing_asks(&as_designed);
     let limited = limited(&as_designed, &limits);

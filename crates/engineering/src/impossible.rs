@@ -45,6 +45,13 @@ pub fn impossibilities(source: &dyn Source, setup: &Setup<'_>) -> Result<Vec<Lat
     Ok(found)
 }
 
+/// Steps that the project requires and that no controller makes on its rig: those of
+/// [`impossibilities`] that a search would not find.
+pub(crate) fn impossible_steps(setup: &Setup<'_>, problem: &RobustProblem) -> Vec<LateError> {
+    let few = few_plants(&problem.family);
+    [in_time::findings(setup, problem), on_rig::findings(setup, problem, &few)].concat()
+}
+
 /// What a few plants forbid.
 fn of_plants(setup: &Setup<'_>, problem: &RobustProblem, family: Family) -> Vec<LateError> {
     let few = DesignProblem { family, ..design_problem(setup, problem) };

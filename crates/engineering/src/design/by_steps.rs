@@ -18,7 +18,7 @@ use phea_dynamics::watch::{Watch, within};
 use phea_qft::design::LoopDesignError;
 use phea_qft::design::quantization::CoefficientFormat;
 use phea_qft::family::Family;
-use phea_qft::loop_shaping::Samples;
+use phea_qft::loop_shaping::{Samples, Shaping};
 
 use self::led::{AuditedStep, BegunDesign, LedDesign};
 pub(super) use self::plants::SteppedPlants;
@@ -134,8 +134,13 @@ pub(super) fn simpler(
     for (index, start) in starts.into_iter().enumerate() {
         let share = [index, index + 1].map(|done| done as f64 / count);
         let mut watch = within(&mut *watch, share);
-        let begun = led.begun(start, told, SearchReach::Anywhere, &mut watch)?;
-        let Some(begun) = begun.filter(|begun| begun.least_db >= 0.0) else { continue };
+        let suffices = |begun: &BegunDesign<'_>| begun.least_db >= 0.0;
+        let begun = led.begun(start.clone(), told, SearchReach::Anywhere, &mut watch)?;
+        let begun = match begun.filter(suffices) {
+            None => led.with_less_room().begun(start, told, SearchReach::Anywhere, &mut watch)?,
+            begun => begun,
+        };
+        let Some(begun) = begun.filter(suffices) else { continue };
         let found = led.agreed(begun, None, told, &mut watch)?.filter(AuditedStep::is_reached);
         let Some(found) = found else { continue };
         if !structures::earns_its_poles(run, told, &found.told)? {
@@ -180,7 +185,8 @@ fn led<'a>(
     let samples = Samples::new(&problem, samples.plants(), &samples.frequencies_rad_per_s())
         .map_err(LoopDesignError::from)?;
     let looked_at = spread_over(family, LOOKED_AT);
-    Ok(Some(LedDesign { setup, aimed, looked_at, problem, samples, required }))
+    let room = run.led.as_ref().map_or(StepRoom::Usual, |led| led.room);
+    Ok(Some(LedDesign { setup, aimed, looked_at, problem, samples, required, room }))
 }
 
 /// A design that was led, in place of the one before it.
@@ -189,14 +195,40 @@ fn taken(
     added: &[AddedByRig],
     (run, told): (&DesignRun, &ProjectDesign),
 ) -> Result<(DesignRun, ProjectDesign), DesignError> {
-    let AuditedStep { told: mut best, least, shaping, .. } = found;
+    let AuditedStep { told: mut best, least, search, .. } = found;
     best.structures = structures::led(run, told, &best, least)?;
     best.explanations = told.explanations.clone();
     best.led_by = if added.is_empty() { LedBy::LinearSteps } else { LedBy::NonlinearRuns };
     let mut outcome = run.outcome.clone();
     outcome.design = Some(best.design.clone());
     let (aimed, problem) = (run.aimed.clone(), run.problem.clone());
-    Ok((DesignRun { aimed, problem, outcome, led: Some(shaping) }, *best))
+    Ok((DesignRun { aimed, problem, outcome, led: Some(search) }, *best))
+}
+
+/// The search in which a design was led by its steps.
+pub(super) struct LedSearch {
+    /// Its limits and samples.
+    shaping: Shaping,
+    room: StepRoom,
+}
+
+/// Part of what is required that a search keeps for what the nonlinear rig adds to linear steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum StepRoom {
+    /// As much as rigs commonly add.
+    Usual,
+    /// As little as it keeps once it knows what the rig adds.
+    Little,
+}
+
+impl StepRoom {
+    /// The requirement that is aimed at.
+    fn of(self, wish: TrackingWish) -> TrackingWish {
+        match self {
+            StepRoom::Usual => with_room(wish),
+            StepRoom::Little => with_rig(wish),
+        }
+    }
 }
 
 /// The requirement of steps with what the rig adds to them.

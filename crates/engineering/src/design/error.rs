@@ -3,6 +3,7 @@
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::watch::Stopped;
 
+use crate::project::LateError;
 use crate::robust::RobustError;
 use crate::setup::ControlError;
 use crate::trial::TrialError;
@@ -24,6 +25,9 @@ pub enum DesignError {
     /// The search found no controller; with what was known of the problem.
     #[error("the search ended without a controller{}", .0.iter().map(|one| format!("; {one}")).collect::<String>())]
     NoController(Vec<String>),
+    /// Required steps that no controller makes on the rig.
+    #[error("{}", .0.iter().map(|one| format!("{}: {}", one.message, one.help)).collect::<Vec<_>>().join("; "))]
+    ImpossibleSteps(Vec<LateError>),
     /// A part of the problem cannot be searched with.
     #[error(transparent)]
     Search(#[from] phea_qft::design::LoopDesignError),

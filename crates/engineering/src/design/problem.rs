@@ -59,7 +59,10 @@ pub fn design_options(
         }
         StructureChoice::Named(name) => ControllerChoice::Named { name, earned_per_pole_db },
         StructureChoice::Free => ControllerChoice::Grow { maximum_order },
-        StructureChoice::Any => ControllerChoice::Any { maximum_order, from: None, earned_per_pole_db },
+        StructureChoice::Any => {
+            let with_gain_alone = given.design_limits.contains(&DesignLimitKind::RequiredStep);
+            ControllerChoice::Any { maximum_order, from: None, with_gain_alone, earned_per_pole_db }
+        }
     };
     Ok(DesignOptions {
         objective: design.objective,

@@ -83,6 +83,7 @@ pub(super) fn led(
         ending: if led.is_met() { StructureEnding::Met } else { StructureEnding::Missed },
         law: Some(design.law.clone()),
         least,
+        binding: vec![],
         reached_db: noise_gain_db(run, led),
     };
     let own = reached_by(run, led, &own)?;

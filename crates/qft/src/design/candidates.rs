@@ -84,6 +84,8 @@ pub(super) struct Ground {
     sign: f64,
     corner: [f64; 2],
     gain: [f64; 2],
+    /// The same of a controller without an integrator.
+    gain_alone: [f64; 2],
     poles: PoleRange,
 }
 
@@ -97,17 +99,19 @@ impl Ground {
         // pole there
         let integrators = usize::try_from(wanted - low.plant_type.max(0)).unwrap_or(0);
         let corner = [(BELOW_LOWEST * span[0]).max(BELOW_HIGHEST * span[1]), ABOVE * span[1]];
+        let along = logarithmic_grid(span[0], span[1] * ABOVE.sqrt(), 30).unwrap_or_default();
         // With k = w^integrators / |P(jw)| the loop of unit corners crosses over at w.
-        let crossover = |frequency: &f64| {
-            let plant = portable::magnitude(low.response(problem, *frequency)?);
-            let gain = portable::exp(integrators as f64 * portable::ln(*frequency)) / plant;
-            (gain.is_finite() && gain > 0.0).then_some([gain, gain])
+        let gains = |integrators: usize| {
+            let crossover = |frequency: &f64| {
+                let plant = portable::magnitude(low.response(problem, *frequency)?);
+                let gain = portable::exp(integrators as f64 * portable::ln(*frequency)) / plant;
+                (gain.is_finite() && gain > 0.0).then_some([gain, gain])
+            };
+            let [least, greatest] = along.iter().filter_map(crossover).reduce(joined).unwrap_or([1.0, 1.0]);
+            [least / GAIN_ROOM, greatest * GAIN_ROOM]
         };
-        let along = logarithmic_grid(span[0], span[1] * ABOVE.sqrt(), 30);
-        let gains = along.unwrap_or_default().iter().filter_map(crossover).reduce(joined);
-        let gains = gains.unwrap_or([1.0, 1.0]);
-        let gain = [gains[0] / GAIN_ROOM, gains[1] * GAIN_ROOM];
-        Ground { integrators, sign: low.sign, corner, gain, poles: PoleRange::default() }
+        let [gain, gain_alone] = [integrators, 0].map(gains);
+        Ground { integrators, sign: low.sign, corner, gain, gain_alone, poles: PoleRange::default() }
     }
 
     /// The same with poles in this range.
@@ -137,6 +141,11 @@ impl Ground {
         let mut points: Vec<Vec<f64>> = simpler.iter().flat_map(at).flatten().collect();
         points.dedup();
         points
+    }
+
+    /// The structure of a gain alone.
+    pub(super) fn gain_alone(&self) -> Structure {
+        Structure { sign: self.sign, gain: self.gain_alone, parts: vec![] }
     }
 
     /// The structure of these parts.

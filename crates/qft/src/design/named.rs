@@ -48,7 +48,9 @@ pub(super) fn is_named(order: usize, zeros: usize, integrators: usize) -> bool {
 /// ```
 pub fn name_of(structure: &Structure) -> Option<NamedStructure> {
     use StructureFactor::{Fixed, Notch, RealPole, RealZero, ZeroPair};
-    let (integrator, behind) = structure.parts.split_first()?;
+    let Some((integrator, behind)) = structure.parts.split_first() else {
+        return Some(NamedStructure::Proportional);
+    };
     if !matches!(integrator, Fixed(Element::Integrator)) {
         return None;
     }
@@ -80,7 +82,7 @@ pub(super) fn named_structure(name: NamedStructure, ground: &Ground) -> Structur
     let zero_pair =
         StructureFactor::ZeroPair { natural_frequency: of_zeros, damping_ratio: PID_DAMPING_RATIOS };
     let behind = match name {
-        NamedStructure::Proportional => return ground.with_gain(vec![]),
+        NamedStructure::Proportional => return ground.gain_alone(),
         NamedStructure::Integral => vec![],
         NamedStructure::ProportionalIntegral => vec![zero],
         NamedStructure::PiLowPass => vec![zero, pole],

@@ -72,9 +72,10 @@ pub(super) fn structures_to_try(
         ControllerChoice::Given(_) => vec![WaitingStructure::Given],
         ControllerChoice::Named { name, .. } => vec![WaitingStructure::Named(name)],
         ControllerChoice::Grow { maximum_order } => growing(maximum_order, ground, sampled).collect(),
-        ControllerChoice::Any { maximum_order, from, .. } => {
+        ControllerChoice::Any { maximum_order, from, with_gain_alone, .. } => {
             let is_shorter = |name: &NamedStructure| from.is_some_and(|from| *name != from);
-            let named = named(maximum_order, ground).skip_while(is_shorter).map(WaitingStructure::Named);
+            let named = named(maximum_order, ground, with_gain_alone);
+            let named = named.skip_while(is_shorter).map(WaitingStructure::Named);
             let is_new = |one: &WaitingStructure| match *one {
                 WaitingStructure::Free { order, zeros } => !is_named(order, zeros, ground.integrators),
                 WaitingStructure::Given | WaitingStructure::Named(_) => true,
@@ -89,12 +90,17 @@ pub(super) fn structures_to_try(
 }
 
 /// The names that suit the problem: a gain where the specifications require no integrator, those
-/// with one where they require one.
-fn named(maximum_order: usize, ground: &Ground) -> impl Iterator<Item = NamedStructure> {
+/// with one where they require one, behind a gain alone where that is tried too.
+fn named(
+    maximum_order: usize,
+    ground: &Ground,
+    with_gain_alone: bool,
+) -> impl Iterator<Item = NamedStructure> + use<> {
     let integrators = ground.integrators;
     NamedStructure::ALL.into_iter().filter(move |name| {
-        let own = usize::from(*name != NamedStructure::Proportional);
-        own == integrators && name.order() <= maximum_order
+        let is_gain = *name == NamedStructure::Proportional;
+        let suits = usize::from(!is_gain) == integrators || is_gain && with_gain_alone;
+        suits && name.order() <= maximum_order
     })
 }
 
@@ -104,14 +110,14 @@ pub(super) fn longer(
     choice: &ControllerChoice,
     ground: &Ground,
 ) -> VecDeque<WaitingStructure> {
-    let ControllerChoice::Any { maximum_order, earned_per_pole_db, .. } = *choice else {
+    let ControllerChoice::Any { maximum_order, earned_per_pole_db, with_gain_alone, .. } = *choice else {
         return VecDeque::new();
     };
     if !earned_per_pole_db.is_finite() {
         return VecDeque::new();
     }
-    let most = (name.order() + FURTHER_POLES).min(maximum_order);
-    let behind = named(most, ground).skip_while(|one| *one != name).skip(1);
+    let most = (name.order().max(ground.integrators) + FURTHER_POLES).min(maximum_order);
+    let behind = named(most, ground, with_gain_alone).skip_while(|one| *one != name).skip(1);
     behind.filter(|one| one.order() >= name.order()).map(WaitingStructure::Named).collect()
 }
 

@@ -1,9 +1,11 @@
 //! What each structure reached.
 
+use std::collections::BTreeSet;
+
 use phea_dynamics::controller::Controller;
 
-use super::NamedStructure;
 use super::attempt::{Attempt, AttemptEnding};
+use super::{BINDING_DB, NamedStructure};
 use crate::loop_shaping::{SampledMargin, Structure};
 
 /// How the trial of a structure ended.
@@ -38,6 +40,8 @@ pub struct TriedStructure {
     pub law: Option<Controller>,
     /// The least margin of the plants and frequencies that it was searched with: what binds.
     pub least: Option<SampledMargin>,
+    /// The specifications whose least margins are within [`BINDING_DB`](super::BINDING_DB) of it.
+    pub binding: Vec<usize>,
     /// What a longer structure is compared by, dB, the less the better: see
     /// [`ControllerChoice::Any`](super::ControllerChoice::Any).
     pub reached_db: Option<f64>,
@@ -54,14 +58,18 @@ impl TriedStructure {
         };
         let has_margins = !attempt.x().is_empty() && ending != StructureEnding::NotStabilised;
         let margins = if has_margins { attempt.shaping().margins(attempt.x()) } else { vec![] };
+        let least = margins.iter().min_by(|one, other| one.margin_db.total_cmp(&other.margin_db)).cloned();
+        let most_db = least.as_ref().map_or(f64::NEG_INFINITY, |least| least.margin_db + BINDING_DB);
+        let binding = margins.iter().filter(|one| one.margin_db <= most_db).map(|one| one.specification);
         TriedStructure {
+            binding: Vec::from_iter(BTreeSet::from_iter(binding)),
+            least,
             name,
             structure: attempt.structure().clone(),
             prefilter: attempt.shaping().prefilter().cloned(),
             free_numbers: attempt.x().to_vec(),
             ending,
             law: (!attempt.x().is_empty()).then(|| attempt.shaping().controller(attempt.x())),
-            least: margins.into_iter().min_by(|one, other| one.margin_db.total_cmp(&other.margin_db)),
             reached_db: if has_margins { attempt.reached_db() } else { None },
         }
     }

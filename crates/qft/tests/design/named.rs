@@ -52,7 +52,8 @@ fn resonance(corner: f64) -> DesignProblem {
 
 fn any(earned_per_pole_db: f64) -> DesignOptions {
     let none = Structure { sign: 1.0, gain: [1.0, 1.0], parts: vec![] };
-    let controller = ControllerChoice::Any { maximum_order: 4, from: None, earned_per_pole_db };
+    let controller =
+        ControllerChoice::Any { maximum_order: 4, from: None, with_gain_alone: false, earned_per_pole_db };
     DesignOptions { controller, ..least_gain(none, 1) }
 }
 

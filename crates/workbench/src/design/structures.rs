@@ -12,6 +12,9 @@ use crate::audit::NominalMargins;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
 
+/// Ending of a structure that was not worth its poles beside another one than that which is taken.
+const GIVEN_UP: &str = "given up";
+
 /// A table of the structures; empty where none has a name.
 pub(crate) fn document(view: &ProjectDesign) -> Document {
     let mut out = Document::default();
@@ -63,6 +66,10 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
     let missed_on_rig = view.structures.iter().any(|one| one.misses_on_rig);
     out.sentences(missed_on_rig.then(|| {
         "nonlinear runs missed: it satisfies every specification, a run of it on the nonlinear rig missed what is required in time or left no room, and the search went on from there".to_string()
+    }));
+    let is_given_up = |one: &ReachedStructure| ending_words(view, one) == GIVEN_UP;
+    out.sentences(view.structures.iter().any(is_given_up).then(|| {
+        "given up: it was not worth its poles beside the structure that the search over frequency found first, and was not led by its steps; it may be worth them beside the one that is taken, and `design.structure` designs it".to_string()
     }));
     let way = limit_words(DesignLimitKind::RequiredStep);
     let is_led = view.structures.iter().any(|one| one.binding.as_deref() == Some(way));
@@ -212,9 +219,30 @@ fn misses_in_time(view: &ProjectDesign, one: &ReachedStructure) -> bool {
     is_missed && one.ending == StructureEnding::Met
 }
 
-/// True where a structure has no more poles than the one that is taken.
-fn is_as_long(view: &ProjectDesign, one: &ReachedStructure) -> bool {
-    view.structures.iter().any(|other| other.is_chosen && other.order >= one.order)
+/// A structure beside the one that is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Beside {
+    /// It is shorter, or one of both is not known by a number.
+    Open,
+    /// It gains nothing.
+    NotBetter,
+    /// It gains less than its further poles must.
+    NotWorthItsPoles,
+    /// It gains as much as its further poles must.
+    WorthItsPoles,
+}
+
+/// The gain of a structure over the one that is taken, by what both are compared by.
+fn beside_taken(view: &ProjectDesign, one: &ReachedStructure) -> Beside {
+    let taken = view.structures.iter().find(|other| other.is_chosen && other.order <= one.order);
+    let Some((taken, earned_db)) = taken.zip(earned_per_pole_db(view)) else { return Beside::Open };
+    let Some((own_db, taken_db)) = one.compared_db.zip(taken.compared_db) else { return Beside::Open };
+    let further = (one.order - taken.order).max(1) as f64;
+    match taken_db - own_db {
+        gained_db if gained_db >= earned_db * further => Beside::WorthItsPoles,
+        gained_db if gained_db > 0.0 && one.order > taken.order => Beside::NotWorthItsPoles,
+        _ => Beside::NotBetter,
+    }
 }
 
 fn ending_words(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
@@ -223,11 +251,18 @@ fn ending_words(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
         _ if misses_in_time(view, one) => "steps missed",
         _ if one.misses_on_rig => "nonlinear runs missed",
         StructureEnding::Met if one.is_chosen => "met, taken",
-        StructureEnding::Met => "met",
         StructureEnding::Missed if one.is_chosen => "missed, nearest",
         StructureEnding::Missed => "missed",
-        StructureEnding::NotEarned if is_as_long(view, one) => "not better",
-        StructureEnding::NotEarned => "not worth its poles",
+        ending @ (StructureEnding::Met | StructureEnding::NotEarned) => {
+            match (ending, beside_taken(view, one)) {
+                (StructureEnding::Met, Beside::Open | Beside::WorthItsPoles) => "met",
+                (StructureEnding::Met, Beside::NotBetter) => "met, not better",
+                (StructureEnding::Met, Beside::NotWorthItsPoles) => "met, not worth its poles",
+                (_, Beside::NotBetter) => "not better",
+                (_, Beside::NotWorthItsPoles) => "not worth its poles",
+                (_, Beside::Open | Beside::WorthItsPoles) => GIVEN_UP,
+            }
+        }
         StructureEnding::NotConverged => "not converged",
         StructureEnding::NotStabilised => "not stabilised",
     }

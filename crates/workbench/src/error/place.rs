@@ -21,6 +21,7 @@ pub(super) fn late(error: &CommandError, project: &Project) -> Vec<LateError> {
     }
     match error {
         CommandError::Specification(error) => vec![error.at()],
+        CommandError::Design(DesignError::ImpossibleSteps(found)) => found.clone(),
         CommandError::Rig(error)
         | CommandError::Family(ProjectFamilyError::Rig(error))
         | CommandError::Sizing(SizingError::Rig(error))

@@ -21,7 +21,7 @@ use crate::design::{
 use crate::document::{Document, StatusMark};
 use crate::error::CommandError;
 use crate::figure::Figure;
-use crate::project::{Loaded, Project};
+use crate::project::{LateError, Loaded, Project};
 use crate::robust::DesignFrequency;
 use crate::setup::Setup;
 use crate::source::Source;
@@ -39,6 +39,8 @@ pub(super) enum Designed {
     Found(Box<FoundDesign>),
     /// Why there is none, in sentences.
     Nothing(Vec<String>),
+    /// Required steps that no controller makes on the rig, in sentences.
+    Impossible(Vec<String>),
 }
 
 /// A design with the results that the chapter compares it with.
@@ -63,6 +65,10 @@ pub(super) fn designed(
                 .insert(0, "the search ended without a controller that makes every plant stable".to_string());
             return Ok(Designed::Nothing(sentences));
         }
+        Err(CommandError::Design(DesignError::ImpossibleSteps(found))) => {
+            let sentence = |one: &LateError| format!("{}: {}", one.message, one.help);
+            return Ok(Designed::Impossible(found.iter().map(sentence).collect()));
+        }
         Err(CommandError::Design(error)) => return Ok(Designed::Nothing(vec![error.to_string()])),
         Err(error) => return Err(error),
     };
@@ -74,7 +80,7 @@ impl Designed {
     pub(super) fn found(&self) -> Option<&ProjectDesign> {
         match self {
             Designed::Found(found) => Some(&found.view),
-            Designed::Nothing(_) => None,
+            Designed::Nothing(_) | Designed::Impossible(_) => None,
         }
     }
 
@@ -116,7 +122,7 @@ impl Designed {
     pub(super) fn trial(&self) -> Option<&Trial> {
         match self {
             Designed::Found(found) => found.view.trial.as_ref(),
-            Designed::Nothing(_) => None,
+            Designed::Nothing(_) | Designed::Impossible(_) => None,
         }
     }
 
@@ -124,7 +130,7 @@ impl Designed {
     pub(super) fn files(&self, loaded: &Loaded) -> Vec<OutputFile> {
         match self {
             Designed::Found(found) => files(loaded, &found.view),
-            Designed::Nothing(_) => vec![],
+            Designed::Nothing(_) | Designed::Impossible(_) => vec![],
         }
     }
 
@@ -135,7 +141,7 @@ impl Designed {
     pub(super) fn chapter(&self) -> Result<Chapter, CommandError> {
         match self {
             Designed::Found(design) => chapter(design),
-            Designed::Nothing(sentences) => {
+            Designed::Nothing(sentences) | Designed::Impossible(sentences) => {
                 let mut out = Document::default();
                 out.verdict(StatusMark::Bad, "No controller was designed", sentences.clone());
                 Ok(Chapter::of(ANCHOR, TITLE, out))

@@ -9,7 +9,7 @@ use phea_qft::loop_shaping::{Aim, DescentOptions, SampledMargin, Samples, Search
 
 use super::shaping::{RESERVE_DB, StepShaping, StepWishes};
 use super::starts::SearchReach;
-use super::{AimedSteps, NEARLY_DB, with_rig, with_room};
+use super::{AimedSteps, LedSearch, NEARLY_DB, StepRoom, with_rig};
 use crate::audit::audit_request;
 use crate::design::command_of_steps::{CommandDepth, ScenarioSteps, command_of_steps};
 use crate::design::search::rank;
@@ -46,7 +46,7 @@ const DESCENT_STEPS: usize = 12;
 pub(super) struct AuditedStep {
     pub(super) told: Box<ProjectDesign>,
     start: Design,
-    pub(super) shaping: Shaping,
+    pub(super) search: LedSearch,
     free_numbers: Vec<f64>,
     /// How it was audited.
     audit: AuditDepth,
@@ -88,6 +88,8 @@ pub(super) struct LedDesign<'a> {
     pub(super) problem: DesignProblem,
     pub(super) samples: Samples,
     pub(super) required: TrackingWish,
+    /// What it keeps for the rig.
+    pub(super) room: StepRoom,
 }
 
 /// A design whose steps were led once, before any audit.
@@ -100,6 +102,13 @@ pub(super) struct BegunDesign<'a> {
 }
 
 impl<'a> LedDesign<'a> {
+    /// The same with little room for what the rig adds to the steps.
+    pub(super) fn with_less_room(&self) -> LedDesign<'a> {
+        let (looked_at, problem, samples) =
+            (self.looked_at.clone(), self.problem.clone(), self.samples.clone());
+        LedDesign { looked_at, problem, samples, room: StepRoom::Little, ..*self }
+    }
+
     /// The first search from a start; `None` where its loop is not stable.
     pub(super) fn begun(
         &self,
@@ -111,7 +120,7 @@ impl<'a> LedDesign<'a> {
         let structures = (start.structure.clone(), start.prefilter.clone());
         let shaping = Shaping::new(structures.0, structures.1, told.options.objective, self.samples.clone())?;
         let wishes = StepWishes {
-            linear: with_room(self.aimed.aim.wish(self.required)),
+            linear: self.room.of(self.aimed.aim.wish(self.required)),
             with_rig: with_rig(self.required),
         };
         let added = (wishes, self.aimed.added.to_vec());
@@ -218,7 +227,7 @@ impl<'a> LedDesign<'a> {
             least: search.least_of_limits(free_numbers),
             told: Box::new(moved),
             start: start.clone(),
-            shaping: search.shaping.clone(),
+            search: LedSearch { shaping: search.shaping.clone(), room: self.room },
             free_numbers: free_numbers.to_vec(),
             audit: depth,
         };
@@ -236,7 +245,7 @@ impl<'a> LedDesign<'a> {
             return Ok(found);
         }
         let at = (&found.start, told, found.free_numbers.as_slice());
-        let told = self.audited(&found.shaping, at, AuditDepth::Whole, watch)?;
+        let told = self.audited(&found.search.shaping, at, AuditDepth::Whole, watch)?;
         Ok(AuditedStep { told: Box::new(told), audit: AuditDepth::Whole, ..found })
     }
 

@@ -1,11 +1,11 @@
 //! Designs from which searches by steps begin.
 
-use phea_qft::design::{Design, StructureEnding, TriedStructure};
-use phea_qft::loop_shaping::SampledMargin;
+use phea_qft::design::{Design, NamedStructure, StructureEnding, TriedStructure};
 
 use super::SearchStarts;
 use super::led::LedDesign;
-use crate::design::{DesignError, DesignRun, ProjectDesign};
+use crate::design::deployable::limit_value;
+use crate::design::{DesignError, DesignLimitKind, DesignRun, ProjectDesign};
 
 /// Structures that it begins from.
 const STARTS: usize = 4;
@@ -14,6 +14,8 @@ const STARTS: usize = 4;
 const NEARLY_DB: f64 = 0.3;
 /// Ratio of the worst run to what is required up to which a search looks beside a design first.
 const NEAR: f64 = 1.6;
+/// Greatest gain of the prefilter of a gain alone where the design limits none.
+const UNLIMITED_GAIN: f64 = 10.0;
 
 /// How far a search goes from where it begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,7 +50,7 @@ impl LedDesign<'_> {
             SearchStarts::Nearest => (0, nearest),
             SearchStarts::Others => (nearest, STARTS),
         };
-        let others = others.into_iter().skip(skipped).take(most).map(|tried| begun_from(tried, design));
+        let others = others.into_iter().skip(skipped).take(most).map(|tried| begun_from(tried, told));
         let others = others.map(|start| (start, SearchReach::Anywhere));
         let starts: Vec<(Design, SearchReach)> = match self.aimed.from {
             SearchStarts::Others => others.collect(),
@@ -66,25 +68,31 @@ impl LedDesign<'_> {
         beside.into_iter().chain(std::iter::once((design.clone(), SearchReach::Anywhere)))
     }
 
-    /// The structures that are shorter than that of a design, and were given up for the limits on
-    /// the way to its step alone, the simplest first.
+    /// The structures that are shorter than that of a design, and satisfy the limits over frequency
+    /// or miss those on the way to its step alone, the simplest first.
     pub(super) fn simpler(&self, told: &ProjectDesign, run: &DesignRun) -> Result<Vec<Design>, DesignError> {
         let own = told.design.structure.order()?;
         let given = run.aimed.specifications.len() - run.aimed.design_limits.len();
-        let leads = |margin: &SampledMargin| {
-            let limit = margin.specification.checked_sub(given);
+        let leads = |specification: &usize| {
+            let limit = specification.checked_sub(given);
             limit.and_then(|limit| run.aimed.design_limits.get(limit)).is_some_and(|kind| kind.is_led_to())
         };
         let mut shorter: Vec<(usize, &TriedStructure)> = Vec::new();
         for tried in run.outcome.tried() {
             let order = tried.structure.order()?;
-            let misses = tried.ending == StructureEnding::Missed && tried.least.as_ref().is_some_and(leads);
-            if order < own && misses && !tried.free_numbers.is_empty() {
+            let is_near = match tried.ending {
+                StructureEnding::Met => true,
+                StructureEnding::Missed => tried.binding.iter().any(leads),
+                StructureEnding::NotEarned
+                | StructureEnding::NotConverged
+                | StructureEnding::NotStabilised => false,
+            };
+            if order < own && is_near && !tried.free_numbers.is_empty() {
                 shorter.push((order, tried));
             }
         }
         shorter.sort_by_key(|(order, tried)| (*order, tried.structure.dimension()));
-        Ok(shorter.into_iter().map(|(_, tried)| begun_from(tried, &told.design)).collect())
+        Ok(shorter.into_iter().map(|(_, tried)| begun_from(tried, told)).collect())
     }
 }
 
@@ -100,17 +108,25 @@ fn in_order<One>(mut others: Vec<One>, of: impl Fn(&One) -> (f64, usize)) -> Vec
     others
 }
 
-/// A structure as it was found, behind the prefilter of a design where it has none.
-fn begun_from(tried: &TriedStructure, design: &Design) -> Design {
+/// A structure as it was found, behind the prefilter of a design where it has none. A gain alone
+/// leaves |T(0)| < 1, so that the prefilter of a design with an integrator gets a gain that is free.
+fn begun_from(tried: &TriedStructure, told: &ProjectDesign) -> Design {
+    let design = &told.design;
     let mut free_numbers = tried.free_numbers.clone();
-    let prefilter = match &tried.prefilter {
-        Some(prefilter) => Some(prefilter.clone()),
-        None => {
-            let own = design.free_numbers.get(design.structure.dimension()..);
-            free_numbers.extend_from_slice(own.unwrap_or_default());
-            design.prefilter.clone()
+    let mut prefilter = tried.prefilter.clone();
+    if prefilter.is_none() {
+        let own = design.free_numbers.get(design.structure.dimension()..).unwrap_or_default();
+        prefilter = design.prefilter.clone();
+        if let Some(prefilter) = &mut prefilter
+            && tried.name == Some(NamedStructure::Proportional)
+            && prefilter.gain == [1.0, 1.0]
+        {
+            let most = limit_value(&told.limits, DesignLimitKind::PrefilterGain);
+            prefilter.gain = [1.0, most.unwrap_or(UNLIMITED_GAIN).max(1.0)];
+            free_numbers.push(0.0);
         }
-    };
+        free_numbers.extend_from_slice(own);
+    }
     let structure = tried.structure.clone();
     Design { structure, prefilter, free_numbers, name: tried.name, ..design.clone() }
 }

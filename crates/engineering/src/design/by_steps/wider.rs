@@ -4,7 +4,7 @@ use phea_qft::loop_shaping::{Aim, Structure};
 use phea_qft::specification::Specification;
 
 use super::shaping::{RESERVE_DB, StepShaping, StepWishes};
-use super::{AimedSteps, DesignError, led, with_rig, with_room};
+use super::{AimedSteps, DesignError, led, with_rig};
 use crate::design::command_of_steps::ScenarioSteps;
 use crate::design::{DesignRun, ProjectDesign};
 use crate::setup::Setup;
@@ -19,11 +19,11 @@ pub(in crate::design) fn last_step_search<'a>(
     aimed: AimedSteps<'a>,
     (run, told): (&DesignRun, &ProjectDesign),
 ) -> Result<Option<LastStepSearch<'a>>, DesignError> {
-    let (Some(shaping), Some(led)) = (&run.led, led(setup, aimed, (run, told))?) else { return Ok(None) };
-    let wishes =
-        StepWishes { linear: with_room(aimed.aim.wish(led.required)), with_rig: with_rig(led.required) };
+    let (Some(search), Some(led)) = (&run.led, led(setup, aimed, (run, told))?) else { return Ok(None) };
+    let linear = search.room.of(aimed.aim.wish(led.required));
+    let wishes = StepWishes { linear, with_rig: with_rig(led.required) };
     let added = (wishes, aimed.added.to_vec());
-    let search = StepShaping::new(shaping.clone(), added, led.problem.sensor.clone(), aimed.plants);
+    let search = StepShaping::new(search.shaping.clone(), added, led.problem.sensor.clone(), aimed.plants);
     let mut search = search.with_commands(ScenarioSteps::of(setup, told));
     search.take_worst(&told.design)?;
     search.take_steps(told)?;

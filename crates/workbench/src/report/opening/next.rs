@@ -68,6 +68,12 @@ fn controller(contents: &Contents<'_>, sides: &[Side<'_>]) -> Option<String> {
             let why = sentences.last().map(String::as_str).unwrap_or_default();
             format!("ease the specifications or shrink the family, no controller was found: {why}")
         }
+        (Some(Designed::Impossible(sentences)), None) => {
+            format!(
+                "change what is required or the rig, no controller makes the step: {}",
+                sentences.join("; ")
+            )
+        }
         _ if given.is_some_and(|side| side.view.is_some_and(is_violated)) => {
             "add `[design]` to the project, and `phea design` looks for one that holds".to_string()
         }
