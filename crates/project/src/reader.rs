@@ -248,6 +248,13 @@ impl<'a> Reader<'a> {
         self.refused.iter().chain(&self.unclear).any(|known| root(known) == root(name))
     }
 
+    /// A number inside of a table of this name, the one to design with where there is one.
+    fn number_inside(&self, name: &str) -> Option<&String> {
+        let inside = format!("{name}.");
+        let nominal = self.named.get_key_value(&format!("{name}.nominal"));
+        nominal.map(|(path, _)| path).or_else(|| self.named.keys().find(|path| path.starts_with(&inside)))
+    }
+
     /// How to write a name with dots in it, if it was parsed as nested tables.
     fn quoted(&self, key: Key, entry: &Entry) -> Option<String> {
         let (mut name, mut node) = (entry.key.clone(), &entry.node);

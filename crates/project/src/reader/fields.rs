@@ -382,13 +382,15 @@ impl Visitor for Reader<'_> {
                 let near = nearest(&entry.key, self.named.keys().map(String::as_str));
                 let is_count = self.counts.contains(&entry.key);
                 let quoted = self.quoted(key, entry);
-                let help =
-                    quoted.or(near.filter(|_| !is_count).map(|name| format!("did you mean `{name}`?")));
-                let message = if is_count {
-                    format!("`{}` is a whole number: only quantities vary", entry.key)
-                } else {
-                    format!("`{}` is not a number of this project", entry.key)
+                let inside = self.number_inside(&entry.key).filter(|_| quoted.is_none());
+                let message = match inside {
+                    _ if is_count => format!("`{}` is a whole number: only quantities vary", entry.key),
+                    Some(_) => format!("`{}` holds several numbers in this project, not one", entry.key),
+                    None => format!("`{}` is not a number of this project", entry.key),
                 };
+                let inside = inside.map(|name| format!("name one of them, such as `{name}`"));
+                let near = near.filter(|_| !is_count).map(|name| format!("did you mean `{name}`?"));
+                let help = quoted.or(inside).or(near);
                 self.findings.push(RawFinding::error(entry.key_place, message).maybe_help(help));
                 continue;
             };
@@ -412,8 +414,13 @@ impl Visitor for Reader<'_> {
                     continue;
                 }
                 let near = nearest(&entry.key, self.named.keys().map(String::as_str));
-                let message = format!("`{}` is not a {} of this project", entry.key, key.name);
-                let help = near.map(|name| format!("did you mean `{name}`?"));
+                let inside = self.number_inside(&entry.key);
+                let message = match inside {
+                    Some(_) => format!("`{}` holds several numbers in this project, not one", entry.key),
+                    None => format!("`{}` is not a {} of this project", entry.key, key.name),
+                };
+                let inside = inside.map(|name| format!("name one of them, such as `{name}`"));
+                let help = inside.or(near.map(|name| format!("did you mean `{name}`?")));
                 self.findings.push(RawFinding::error(entry.key_place, message).maybe_help(help));
                 continue;
             };
