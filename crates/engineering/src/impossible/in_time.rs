@@ -9,19 +9,26 @@ use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::simulate::TimeRequirement;
 
-/// The force does not move before the dead time between reference and force has passed, nor on the
-/// rig before a wave has come through the shorter line: no step settles before.
-pub(super) fn findings(setup: &Setup<'_>, problem: &RobustProblem) -> Vec<LateError> {
+/// The times that pass before the force moves, s, each with its name: the dead time between
+/// reference and force, and on the rig the run of a wave through the shorter line.
+fn still(setup: &Setup<'_>, problem: &RobustProblem) -> [(f64, &'static str); 4] {
     let dead_time = LoopDeadTime::of(problem);
-    let delay_s = problem.compensation.delay_s();
-    let wave_s = wave_s(setup).unwrap_or(0.0);
-    let parts = [
-        (delay_s, "the delay of the controller"),
+    [
+        (problem.compensation.delay_s(), "the delay of the controller"),
         (dead_time.controller_s, "the dead time of its transfer function"),
         (dead_time.plant_s[1], "the dead time of the plant"),
-        (wave_s, "the time of a wave through the shorter line"),
-    ];
-    let total_s: f64 = parts.iter().map(|(time_s, _)| time_s).sum();
+        (wave_s(setup).unwrap_or(0.0), "the time of a wave through the shorter line"),
+    ]
+}
+
+/// The sum of the times that pass before the force moves, s.
+pub(super) fn still_s(setup: &Setup<'_>, problem: &RobustProblem) -> f64 {
+    still(setup, problem).iter().map(|(time_s, _)| time_s).sum()
+}
+
+/// No step settles before the force has moved.
+pub(super) fn findings(setup: &Setup<'_>, problem: &RobustProblem) -> Vec<LateError> {
+    let (parts, total_s) = (still(setup, problem), still_s(setup, problem));
     let words = parts.iter().filter(|(time_s, _)| *time_s > 0.0);
     let words: Vec<String> = words.map(|(time_s, name)| format!("{} {name}", text(*time_s))).collect();
     let of = |requirement: &TimeRequirement| {
@@ -36,10 +43,20 @@ pub(super) fn findings(setup: &Setup<'_>, problem: &RobustProblem) -> Vec<LateEr
                 text(total_s),
                 words.join(", ")
             ),
-            help: format!("require more than {}, or shorten the delay", text(total_s)),
+            help: format!("require more than {}, or shorten {}", text(total_s), what(&parts)),
         })
     };
     problem.in_time.iter().filter_map(of).collect()
+}
+
+/// What can be shortened: `the line`, `the delay`.
+fn what(parts: &[(f64, &str); 4]) -> &'static str {
+    let [.., (wave_s, _)] = parts;
+    match (parts[..3].iter().any(|(time_s, _)| *time_s > 0.0), *wave_s > 0.0) {
+        (false, true) => "the line",
+        (true, true) => "the delay or the line",
+        (_, false) => "the delay",
+    }
 }
 
 fn text(time_s: f64) -> String {

@@ -13,7 +13,9 @@ use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::time_response::{step_response, uniform_times};
 use phea_dynamics::uncertain_plant::UncertainPlant;
 use phea_qft::family::Family;
+use phea_qft::verification::PlantPoint;
 
+use super::in_time::still_s;
 use crate::project::{LateError, Project};
 use crate::quantity::{DisplayUnit, FORCE, display, significant};
 use crate::robust::RobustProblem;
@@ -24,13 +26,16 @@ use crate::simulate::{BeyondReach, TimeRequirement, steps_beyond};
 const POINTS: usize = 1000;
 /// What is added to the variation of a response that is known at points, as a share.
 const BETWEEN_POINTS: f64 = 0.02;
+/// Largest ratio of flows for which a larger valve is advised: beyond it time is what is missing.
+const LARGER_VALVE: f64 = 10.0;
 
-/// The steps of a project that its rig does not reach, of these plants of its family.
+/// The steps of a project that its rig does not reach, of these plants of its family. A step that is
+/// required before the force can move at all is found without them.
 pub(super) fn findings(setup: &Setup<'_>, problem: &RobustProblem, few: &Family) -> Vec<LateError> {
     let beyond = steps_beyond(setup, &problem.in_time).into_iter();
     let beyond =
         beyond.map(|BeyondReach { path, sentence, cure }| LateError { path, message: sentence, help: cure });
-    let slow = problem.in_time.iter().filter_map(|required| too_slow(setup, required, few));
+    let slow = problem.in_time.iter().filter_map(|required| too_slow(setup, problem, required, few));
     beyond.chain(slow).collect()
 }
 
@@ -40,32 +45,47 @@ fn force(project: &Project, value: f64) -> String {
 
 /// A step that the valve's whole voltage does not bring into its band in time, of the plant that
 /// does least.
-fn too_slow(setup: &Setup<'_>, required: &TimeRequirement, few: &Family) -> Option<LateError> {
+fn too_slow(
+    setup: &Setup<'_>,
+    problem: &RobustProblem,
+    required: &TimeRequirement,
+    few: &Family,
+) -> Option<LateError> {
     let Family::Uncertain(few) = few else { return None };
     let (amplitude_n, settling_s) = (required.steps.amplitude_n?, required.wish.settling_time_s?);
+    if settling_s <= still_s(setup, problem) {
+        return None;
+    }
     let rig = setup.rig().ok()?;
     let from_n = required.steps.initial_force_n.unwrap_or(rig.point.hydraulic_force);
     let stated = setup.project.controller.as_ref().and_then(|controller| controller.saturation);
     let limit_v = stated.unwrap_or(rig.actuator.components().valve.nominal_voltage);
     let time_s = settling_s - setup.timing.delay_s;
-    let each =
-        few.members().iter().filter_map(|values| reached(few.plant(), values, (time_s, from_n), limit_v));
-    let reached_n = each.reduce(f64::min)?;
+    let each = few.members().iter().filter_map(|values| {
+        reached(few.plant(), values, (time_s, from_n), limit_v).map(|reached_n| (reached_n, values))
+    });
+    let (reached_n, values) = each.min_by(|one, other| one.0.total_cmp(&other.0))?;
+    let plant = problem.names.text(&PlantPoint::Parameters(values.clone()));
+    let plant = if plant.is_empty() { String::new() } else { format!(" ({plant})") };
     let needed_n = (1.0 - required.wish.band_percent / 100.0) * amplitude_n.abs();
     (reached_n < needed_n).then(|| LateError {
         path: format!("specification[{}].settling_time", required.number - 1),
         message: format!(
-            "[[specification]] {}, `settling_time`: within {} V the valve moves the linear plant by {} of the {} of the step in {}",
+            "[[specification]] {}, `settling_time`: with at most {} V at the valve the slowest linear plant{plant} moves by {} of the {} of the step in {}",
             required.number,
             significant(limit_v, 3),
             force(setup.project, reached_n),
             force(setup.project, amplitude_n.abs()),
             DisplayUnit::MILLISECOND.text(settling_s, 3),
         ),
-        help: format!(
-            "require a smaller `amplitude` or more time, or take a valve with {} times the flow",
-            significant(needed_n / reached_n, 2)
-        ),
+        help: match needed_n / reached_n {
+            ratio if ratio <= LARGER_VALVE => format!(
+                "require a smaller `amplitude` or more time, or take a valve with {} times the flow",
+                significant(ratio, 2)
+            ),
+            _ => "require more time or a much smaller `amplitude`: no larger valve makes up for the time that is missing"
+                .to_string(),
+        },
     })
 }
 
