@@ -93,6 +93,41 @@ fn settling_is_judged_in_the_band_itself_and_to_its_end() {
     }
 }
 
+/// k/s closed settles after ln(50)/k, here forty thousand times as long as is required: the time is
+/// found all the same. A plant of 1/(s + 1) in a loop of gain 1 ends at 0.5, and never settles.
+#[test]
+fn a_loop_far_slower_than_required_has_its_settling_time() {
+    let step = "[[specification]]\nkind = \"step\"\nsettling_time = \"1 ms\"\n";
+    let slow = project(step, "").replace("nominal = 2, minimum = 1,", "nominal = 2, minimum = 0.1,");
+    for timing in ["", "delay = \"1 ms\"\n", "sample_time = \"5 ms\"\n"] {
+        let text = slow.replace("[controller]\n", &format!("[controller]\n{timing}"));
+        let (object, words) = verify(&text);
+        let settled = number(&object, "specifications.0.worst_settling_time_s");
+        assert!((settled / (10.0 * 50.0_f64.ln()) - 1.0).abs() < 2e-3, "{settled}: {words}");
+        assert!(words.contains("settled in 39.1 s"), "{words}");
+    }
+    let (_, words) = verify(&project(step, "").replace("denominator = \"s\"", "denominator = \"s + 1\""));
+    assert!(words.contains("not settled"), "{words}");
+}
+
+/// A rig whose lines have waves is slow by its controller: its settling time is the same whatever is
+/// required, and near that of lumped lines.
+#[test]
+fn a_slow_loop_around_lines_with_waves_has_its_settling_time() {
+    let settled = |time: &str, model: &str| {
+        let text = format!("{}settling_time = \"{time}\"\n", crate::impossible::RIG);
+        let setting = format!("line.model=\"{model}\"");
+        let verify = Request::Verify { proof: false, on_machine: false };
+        let found = ask::json(&text, &[&setting], &[], &verify);
+        number(&found, "specifications.0.worst_settling_time_s")
+    };
+    let waves = ["5 ms", "0.3 s"].map(|time| settled(time, "transmission_line"));
+    // far beyond ten times what is required
+    assert!(waves[0] > 0.1, "{waves:?}");
+    ask::near(waves[0], waves[1], 1e-2);
+    ask::near(waves[0], settled("0.3 s", "lumped"), 5e-2);
+}
+
 /// A step that is required alone is judged like one beside limits, sampled or not.
 #[test]
 fn a_step_needs_no_limit_beside_it() {

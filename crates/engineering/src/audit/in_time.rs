@@ -2,14 +2,15 @@
 //! steps of the linear loop. A limit on magnitudes does not bound a response in time, so a loop
 //! within the limits may still miss the requirement.
 
-use phea_dynamics::time_response::{StepBaseline, TimeResponseError, step_metrics};
+use phea_dynamics::portable;
+use phea_dynamics::time_response::{StepBaseline, StepMetrics, TimeResponseError, step_metrics};
 use phea_qft::closed_loop::Member;
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::{Audit, PlantPoint, SpecificationFinding, Verdict};
 
 use super::margins::{corners, spread};
-use crate::linear_step::linear_step;
+use crate::linear_step::{KnownResponses, StepResponse, StepSignal, linear_step_knowing};
 use crate::robust::RobustProblem;
 use crate::simulate::{ReachedStep, TimeRequirement, TrackingWish};
 
@@ -31,8 +32,8 @@ pub enum TimeOutcome {
         plants: usize,
         /// The most overshoot, percent of the step; `None` where none is required.
         overshoot: Option<WorstStep>,
-        /// The longest settling time, s, infinite where a step does not settle within the time
-        /// that was computed; likewise.
+        /// The longest settling time, s, infinite where a step does not settle, or not within the
+        /// time that was computed; likewise.
         settling: Option<WorstStep>,
         /// The longest rise from 10 to 90 percent, s, infinite where a step does not rise within
         /// the time that was computed; likewise.
@@ -79,7 +80,12 @@ const SOON: f64 = 2.0;
 /// often: every plant is stable.
 const SETTLED_BY: f64 = 0.5;
 const LONGER: f64 = 4.0;
-const EXTENSIONS: usize = 3;
+const EXTENSIONS: i32 = 3;
+/// The same of a step that has not settled at all, though it ends in its band: the loop may be far
+/// slower than what is required.
+const EXTENSIONS_UNSETTLED: i32 = 7;
+/// Frequency that stands for zero, at which integrators have no response, rad/s.
+const AT_REST: f64 = 1e-9;
 /// Most members of a family whose steps are computed; of plants without polynomials, whose steps
 /// cost a hundred times as much.
 const MEMBERS: usize = 150;
@@ -237,29 +243,38 @@ impl StepSearch<'_> {
     fn step(&self, values: &[f64]) -> Result<[f64; 3], TimeResponseError> {
         let compensation = &self.problem.compensation;
         let member = compensation.member_of(self.family.plant(), values)?;
-        let band = self.wish.band_percent;
-        let within = |duration_s: f64| {
-            let response = linear_step(&member, compensation, duration_s, POINTS)?;
-            step_metrics(&response.times_s, &response.values, StepBaseline::unit(), band)
+        let known = KnownResponses::default();
+        let within = |duration_s: f64, points: usize| {
+            let signal = (&member, StepSignal::Output);
+            let StepResponse { times_s, values } =
+                linear_step_knowing(signal, compensation, (duration_s, points), &known)?;
+            step_metrics(&times_s, &values, StepBaseline::unit(), self.wish.band_percent)
         };
+        let is_responding = matches!(member, Member::Responding { .. });
         let mut duration_s = SETTLING_TIMES * self.wish.horizon_s;
-        let mut metrics = within(duration_s)?;
+        let mut metrics = within(duration_s, POINTS)?;
         let mut overshoot_percent = metrics.overshoot_percent;
-        let extensions = if matches!(member, Member::Responding { .. }) { 0 } else { EXTENSIONS };
-        for _ in 0..extensions {
-            // a late swing may leave the band once more
-            if metrics.settling.time_s().is_some_and(|time_s| time_s < SETTLED_BY * duration_s) {
+        for extension in 0..EXTENSIONS_UNSETTLED {
+            let is_long = is_responding || extension >= EXTENSIONS;
+            let is_enough = match metrics.settling.time_s() {
+                None => is_long && !(self.lacks(&metrics) && self.ends_in_band(&member)),
+                // a late swing may leave the band once more
+                Some(time_s) => is_long || time_s < SETTLED_BY * duration_s,
+            };
+            if is_enough {
                 break;
             }
             duration_s *= LONGER;
-            metrics = within(duration_s)?;
+            // the integral over time needs points as dense as before
+            let denser = if is_responding { LONGER.powi(extension + 1) } else { 1.0 };
+            metrics = within(duration_s, (denser * POINTS as f64) as usize)?;
             overshoot_percent = overshoot_percent.max(metrics.overshoot_percent);
         }
         let mut times_s = [metrics.settling.time_s(), metrics.rise_time_10_90_s];
         if matches!(member, Member::Continuous { .. }) {
             // the peak of a fast swing lies between the points of a long response
             let soon_s = SOON * self.wish.horizon_s;
-            let soon = within(soon_s)?;
+            let soon = within(soon_s, POINTS)?;
             overshoot_percent = overshoot_percent.max(soon.overshoot_percent);
             let finer = [soon.settling.time_s(), soon.rise_time_10_90_s];
             for (time_s, finer) in times_s.iter_mut().zip(finer) {
@@ -268,6 +283,24 @@ impl StepSearch<'_> {
         }
         let [settling_s, rise_s] = times_s.map(|time_s| time_s.unwrap_or(f64::INFINITY));
         Ok([overshoot_percent, settling_s, rise_s])
+    }
+
+    /// Whether a time that is required is not known yet.
+    fn lacks(&self, metrics: &StepMetrics) -> bool {
+        let TrackingWish { settling_time_s, rise_time_s, .. } = self.wish;
+        settling_time_s.is_some() && metrics.settling.time_s().is_none()
+            || rise_time_s.is_some() && metrics.rise_time_10_90_s.is_none()
+    }
+
+    /// Whether the response to a step comes to rest within the band; true where that is unknown.
+    fn ends_in_band(&self, member: &Member) -> bool {
+        let response = self.problem.response(member, AT_REST);
+        let at_rest = response.map(|found| {
+            let forward = found.controller * found.plant;
+            found.prefilter * forward / (1.0 + forward * found.sensor)
+        });
+        let is_within = |at_rest| 100.0 * portable::magnitude(at_rest - 1.0) <= self.wish.band_percent;
+        at_rest.is_none_or(is_within)
     }
 
     /// The same, kept.
