@@ -39,6 +39,14 @@ fn assert_begins(of: impl Fn(f64) -> String, possible: f64, impossible: f64, key
     assert!(own["line"].as_u64().unwrap() > 0);
 }
 
+/// A step beyond the rig is told once by `check`, with its line.
+#[test]
+fn a_step_beyond_the_stall_force_is_told_once() {
+    let text = rig("settling_time = \"5 s\"\namplitude = \"60 kN\"\n");
+    let words = crate::ask::answer(&text, &[], &[], &Request::Check).text;
+    assert_eq!(words.matches("the piston stalls at").count(), 1, "{words}");
+}
+
 /// S + T = 1: limits of 0.5 on |T| and of less than 0.5 on |S| leave no loop.
 #[test]
 fn limits_of_s_and_t_that_add_up_to_less_than_one() {

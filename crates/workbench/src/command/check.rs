@@ -41,8 +41,8 @@ pub(super) fn check(
     let wishes = wishes(&loaded.project)?;
     let visited = visited_box(&setup)?;
     let of_loops = impossible.iter().map(Impossible::sentence);
-    let told: Vec<String> =
-        told_first(&setup).into_iter().chain(of_loops).chain(of_alternatives).chain(of_scenarios).collect();
+    let told = told_first(&setup, &impossible).into_iter().chain(of_loops);
+    let told: Vec<String> = told.chain(of_alternatives).chain(of_scenarios).collect();
     let mut document = Document::default();
     document.warnings(told.clone());
     if !derived.is_empty() {
@@ -84,11 +84,14 @@ fn scenarios(source: &dyn Source, loaded: &Loaded, setup: &Setup<'_>) -> Result<
 
 /// Effects that no verdict on the linear loop includes, and parameters of the rig outside its own
 /// family.
-fn told_first(setup: &Setup<'_>) -> Vec<String> {
+fn told_first(setup: &Setup<'_>, impossible: &[Impossible]) -> Vec<String> {
     let outside = setup
         .outside()
         .map(|(_, words)| format!("the family does not contain the rig as it is derived ({words})"));
-    outside.into_iter().chain(caveats(setup).into_iter().map(|caveat| caveat.sentence)).collect()
+    // a required step beyond the rig is among the impossible requirements, with its line
+    let is_new = |sentence: &String| !impossible.iter().any(|one| one.is_stated_by(sentence));
+    let of_loop = caveats(setup).into_iter().map(|caveat| caveat.sentence).filter(is_new);
+    outside.into_iter().chain(of_loop).collect()
 }
 
 /// A project without an actuator has only its family, which must be valid.

@@ -35,6 +35,11 @@ impl Impossible {
         format!("{} (line {}): {}", self.at.message, self.line, self.at.help)
     }
 
+    /// Whether a sentence begins with what is impossible.
+    pub(super) fn is_stated_by(&self, sentence: &str) -> bool {
+        sentence.starts_with(&self.at.message)
+    }
+
     /// The key, what is impossible, and what would satisfy it.
     pub(super) fn object(&self) -> Object {
         Object::new()
