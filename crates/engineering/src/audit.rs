@@ -45,7 +45,7 @@ use crate::caveat::Caveat;
 use crate::limit_kind::JudgedLimits;
 use crate::plant_names::PlantNames;
 use crate::quantity::DisplayUnit;
-use crate::robust::{LINES_IN_MOTION, RobustError, RobustProblem, robust_problem};
+use crate::robust::{LINES_IN_MOTION, RobustError, RobustProblem, numbered, robust_problem};
 use crate::setup::Setup;
 use crate::side_by_side::{all_cores, both};
 use crate::source::Source;
@@ -145,6 +145,8 @@ pub struct ProjectAudit {
     pub names: PlantNames,
     /// What each specification is called.
     pub specification_names: Vec<String>,
+    /// The number in the file, from 1, of each that is declared there; the others come after them.
+    pub specification_numbers: Vec<usize>,
     /// Number of plants of the family.
     pub members: usize,
     /// Whether everything between them belongs to the family.
@@ -270,6 +272,7 @@ impl ProjectAudit {
             audit,
             names: problem.names.clone(),
             specification_names: problem.specification_names.clone(),
+            specification_numbers: problem.specification_numbers.clone(),
             members: match family {
                 Family::Uncertain(family) => family.members().len(),
                 Family::Measured(family) => family.plants().len(),
@@ -332,9 +335,14 @@ impl ProjectAudit {
         self.without_polynomials == Some(LINES_IN_MOTION)
     }
 
-    /// A specification by its number, from 1, and name.
+    /// The number of a specification in the file, from 1; `None` for one that is not declared there.
+    pub fn number_of(&self, index: usize) -> Option<usize> {
+        self.specification_numbers.get(index).copied()
+    }
+
+    /// A specification by its number in the file, where it has one, and name.
     pub fn numbered(&self, index: usize) -> String {
-        format!("{} {}", index + 1, self.name_of(index))
+        numbered(self.number_of(index), self.name_of(index))
     }
 
     /// Which plants were audited, in a sentence.

@@ -82,7 +82,7 @@ fn few_plants(family: &Family) -> Family {
 
 /// A finding at the key of the first specification that it concerns, with the plant.
 fn stated(project: &Project, problem: &RobustProblem, finding: &Finding) -> LateError {
-    let explanation = Explanation::of(finding);
+    let explanation = Explanation::of(finding, &|index| problem.stated(index));
     let plant = explanation.plants.first().map(|plant| problem.names.text(plant));
     let plant = plant.filter(|text| !text.is_empty()).map_or(String::new(), |text| format!(" ({text})"));
     let path = match explanation.specifications.first() {
@@ -90,7 +90,7 @@ fn stated(project: &Project, problem: &RobustProblem, finding: &Finding) -> Late
         None if matches!(finding, Finding::DelayMargin { .. }) => "design.minimum_delay_margin".to_string(),
         None => "uncertainty".to_string(),
     };
-    LateError { path, message: format!("{}{plant}", explanation.sentence), help: cure(project, finding) }
+    LateError { path, message: format!("{}{plant}", explanation.sentence), help: cure(problem, finding) }
 }
 
 /// The key of a limit on a closed loop, by its index.
@@ -101,16 +101,15 @@ fn key_of(project: &Project, index: usize) -> Option<String> {
 }
 
 /// What would satisfy it.
-fn cure(project: &Project, finding: &Finding) -> String {
-    let number = |index: usize| closed_loops(project).nth(index).map_or(index + 1, |(number, ..)| number);
+fn cure(problem: &RobustProblem, finding: &Finding) -> String {
     match finding {
         Finding::SumBelowOne { frequency_rad_per_s, sensitivity, complementary, .. } => {
             let at = significant(*frequency_rad_per_s, 3);
             format!(
-                "at {at} rad/s raise the limit of specification {} until |S| may be {}, or that of {} until |T| may be {}, or end the `band` of one of them before",
-                number(sensitivity.specification),
+                "at {at} rad/s raise the limit of {} until |S| may be {}, or that of {} until |T| may be {}, or end the `band` of one of them before",
+                problem.stated(sensitivity.specification),
                 significant(1.0 - complementary.limit, 3),
-                number(complementary.specification),
+                problem.stated(complementary.specification),
                 significant(1.0 - sensitivity.limit, 3)
             )
         }

@@ -16,14 +16,14 @@ use phea_qft::verification::PlantPoint;
 
 use crate::caveat::{Caveat, caveats};
 use crate::family::{ProjectFamilyError, family};
-use crate::limit_kind::DesignLimitKind;
+use crate::limit_kind::{DesignLimitKind, limit_key};
 use crate::plant_names::PlantNames;
 use crate::quantity::Units;
 use crate::setup::{ControlError, Setup, pressure_noise, velocity_noise};
 use crate::side_by_side::left_behind;
 use crate::simulate::{TimeRequirement, time_requirements};
 use crate::source::Source;
-use crate::specification::{SpecificationError, kind_words, of_rounding, specifications};
+use crate::specification::{SpecificationError, closed_loops, kind_words, of_rounding, specifications};
 use phea_dynamics::watch::{Stopped, Watch, part};
 
 /// A family of plants within a loop, and the specifications of the loop.
@@ -43,6 +43,8 @@ pub struct RobustProblem {
     pub specifications: Vec<Specification>,
     /// The name of each: its kind, or the signal that is rounded.
     pub specification_names: Vec<String>,
+    /// The number in the file, from 1, of each that is declared there; the others come after them.
+    pub specification_numbers: Vec<usize>,
     /// The last of the specifications where they are limits of a design: which, in their order.
     pub design_limits: Vec<DesignLimitKind>,
     /// Requirements in time: of specifications of their own, then of limits of tracking.
@@ -159,6 +161,7 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
         has_prefilter: setup.prefilter.is_some(),
         specifications,
         specification_names,
+        specification_numbers: closed_loops(setup.project).map(|(number, ..)| number).collect(),
         design_limits: vec![],
         in_time: time_requirements(setup.project)?,
         rig_outside: match setup.outside() {
@@ -214,10 +217,37 @@ fn named_specifications(
     Ok((specifications, names))
 }
 
+/// `2 tracking`; the name alone of a specification that is not declared.
+pub(crate) fn numbered(number: Option<usize>, name: &str) -> String {
+    number.map_or_else(|| name.to_string(), |number| format!("{number} {name}"))
+}
+
 impl RobustProblem {
     /// What a specification is called.
     pub fn name_of(&self, index: usize) -> &str {
         self.specification_names.get(index).map_or("", String::as_str)
+    }
+
+    /// The number of a specification in the file, from 1; `None` for one that is not declared there.
+    pub fn number_of(&self, index: usize) -> Option<usize> {
+        self.specification_numbers.get(index).copied()
+    }
+
+    /// A specification by its number in the file, where it has one, and name.
+    pub fn numbered(&self, index: usize) -> String {
+        numbered(self.number_of(index), self.name_of(index))
+    }
+
+    /// A specification as a sentence names it: that of the file by its table and number, a limit of
+    /// the design by its key.
+    pub fn stated(&self, index: usize) -> String {
+        let own = self.specifications.len() - self.design_limits.len();
+        let limit = index.checked_sub(own).and_then(|limit| self.design_limits.get(limit));
+        match (self.number_of(index), limit) {
+            (Some(number), _) => format!("[[specification]] {number} ({})", self.name_of(index)),
+            (None, Some(kind)) if kind.has_key() => format!("the limit `design.{}`", limit_key(*kind)),
+            (None, _) => format!("the limit on the {}", self.name_of(index)),
+        }
     }
 
     /// Every frequency at which a bound is drawn, rad/s, increasing.

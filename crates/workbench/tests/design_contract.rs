@@ -177,7 +177,7 @@ fn allowed_errors_of_the_converters_are_specifications() {
         }
     }
     let text = answer(CONVERTED, &[command], &[], &Request::Verify { proof: false, on_machine: false }).text;
-    assert!(text.contains("3 command error of the rounded measurement"), "{text}");
+    assert!(text.contains("\n  command error of the rounded measurement is"), "{text}");
 }
 
 /// The law of an answer is the one whose coefficients the computer keeps, and its verification is
@@ -201,7 +201,8 @@ fn two_limits_that_no_loop_keeps_together_are_explained() {
     let project = project::read(&source, "mistake.toml", &[], &[]).unwrap().project;
     let given = robust_problem(&source, &Setup::new(&project).unwrap()).unwrap();
     let findings = diagnose(&design_problem(&Setup::new(&project).unwrap(), &given));
-    let found: Vec<Explanation> = findings.iter().map(Explanation::of).collect();
+    let found: Vec<Explanation> =
+        findings.iter().map(|one| Explanation::of(one, &|index| given.stated(index))).collect();
     let impossible = found.iter().find(|one| one.is_impossible && one.specifications == [0, 1]).unwrap();
     // |S| <= w/|jw + 30| up to 10 rad/s and |T| <= 5/|jw + 5| from 8 rad/s: both hold there alone
     assert!((8.0..=10.0).contains(&impossible.frequency_rad_per_s.unwrap()), "{impossible:?}");

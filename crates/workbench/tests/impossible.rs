@@ -39,6 +39,17 @@ fn assert_begins(of: impl Fn(f64) -> String, possible: f64, impossible: f64, key
     assert!(own["line"].as_u64().unwrap() > 0);
 }
 
+/// A sentence on two specifications names them as the file does.
+#[test]
+fn specifications_in_conflict_are_named_by_their_tables() {
+    let step = "[[specification]]\nkind = \"step\"\nsettling_time = \"10 s\"\n".to_string();
+    let both = [step, limit("sensitivity", "0.4", "[1, 2]"), limit("robust_stability", "0.5", "[1, 2]")];
+    let found = said(&project("s + 1", "0 s", &both.concat()));
+    let words = format!("{found:?}");
+    let named = "[[specification]] 2 (sensitivity) and [[specification]] 3 (robust stability) together";
+    assert!(words.contains(named) && words.contains("raise the limit of [[specification]] 2"), "{words}");
+}
+
 /// A step beyond the rig is told once by `check`, with its line.
 #[test]
 fn a_step_beyond_the_stall_force_is_told_once() {

@@ -250,10 +250,10 @@ fn a_certificate_is_compared_with_a_project() {
         assert!(found.contains(&what), "{settings:?}: {found}");
     }
     let specified = [
-        (COMPARED.replace("limit = 1.6", "limit = 1.59"), "the limit of specification 1"),
-        (COMPARED.replace("upper = 1.5", "upper = 1.49"), "the limit of specification 2"),
-        (COMPARED.replace("\"0.4\"", "\"0.41\""), "the lower limit of specification 2"),
-        (COMPARED.replace("band = [0, 10]", "band = [0, 11]"), "the lower limit of specification 2"),
+        (COMPARED.replace("limit = 1.6", "limit = 1.59"), "the limit of [[specification]] 1"),
+        (COMPARED.replace("upper = 1.5", "upper = 1.49"), "the limit of [[specification]] 2"),
+        (COMPARED.replace("\"0.4\"", "\"0.41\""), "the lower limit of [[specification]] 2"),
+        (COMPARED.replace("band = [0, 10]", "band = [0, 11]"), "the lower limit of [[specification]] 2"),
     ];
     for (project, what) in specified {
         let found = compared(&project, &[]);

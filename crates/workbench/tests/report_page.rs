@@ -248,14 +248,17 @@ fn limits_that_cross_are_told() {
     );
     let chapter = demands(&plain_report(&project).html);
     for words in [
-        "No loop satisfies specification 1: from 0 rad/s on its lower limit is above its upper one, by 20.0 dB towards zero",
-        "specification 2 stays stable while its gain grows without bound or falls to a share of 0.500 (-6.02 dB)",
+        "No loop satisfies [[specification]] 1 (tracking): from 0 rad/s on its lower limit is above its upper one, by 20.0 dB towards zero",
+        "[[specification]] 2 (sensitivity) stays stable while its gain grows without bound or falls to a share of 0.500 (-6.02 dB)",
         "|G/(1+L)| ≤ |3·10-9 s/(s2 + 4)|",
         "|L/(1+L)| ≤ table of 2 points from 1 to 10 rad/s",
     ] {
         assert!(chapter.contains(words), "{words}: {chapter}");
     }
-    assert!(!chapter.contains("specification 3 stays"), "its band does not hold every frequency: {chapter}");
+    assert!(
+        !chapter.contains("[[specification]] 3 (sensitivity) stays"),
+        "its band does not hold every frequency: {chapter}"
+    );
     assert!(!chapter.contains("Tracking limits in time"), "nothing was wished: {chapter}");
 }
 

@@ -128,6 +128,28 @@ fn a_slow_loop_around_lines_with_waves_has_its_settling_time() {
     ask::near(waves[0], settled("0.3 s", "lumped"), 5e-2);
 }
 
+/// The number of a specification is that of the file, whatever is declared before it.
+#[test]
+fn specifications_have_their_numbers_in_the_file() {
+    let step = "[[specification]]\nkind = \"step\"\nsettling_time = \"5 s\"\n";
+    let text = project(&format!("{step}{STABILITY}band = [0, inf]\n"), "");
+    let (_, words) = verify(&text);
+    for part in ["1 step is met", "2 robust stability is met", " 2  robust stability", " 1  step"] {
+        assert!(words.contains(part), "{part} is missing in {words}");
+    }
+    assert!(!words.contains("1 robust stability"), "{words}");
+    let page = report(&text).html;
+    let (_, chapter) = page.split_once("<section id=\"specifications\">").unwrap();
+    let part = "satisfies [[specification]] 2 (robust stability) stays stable";
+    assert!(chapter.contains(part), "{chapter}");
+}
+
+fn report(text: &str) -> phea_workbench::report::Report {
+    let loaded = ask::load(text, &[], &[]);
+    let setup = phea_workbench::setup::Setup::new(&loaded.project).unwrap();
+    phea_workbench::report::report(&ask::source(text), &loaded, &setup, None, &mut |_| true).unwrap()
+}
+
 /// A step that is required alone is judged like one beside limits, sampled or not.
 #[test]
 fn a_step_needs_no_limit_beside_it() {

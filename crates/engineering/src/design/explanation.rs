@@ -23,10 +23,10 @@ pub struct Explanation {
 }
 
 impl Explanation {
-    /// Of what a diagnosis found.
-    pub fn of(finding: &Finding) -> Explanation {
+    /// What a diagnosis found, with the name of each specification by its index.
+    pub fn of(finding: &Finding, name_of: &dyn Fn(usize) -> String) -> Explanation {
         Explanation {
-            sentence: words::FindingWords(finding).to_string(),
+            sentence: words::FindingWords { finding, name_of }.to_string(),
             is_impossible: finding.severity() == FindingSeverity::Impossible,
             frequency_rad_per_s: frequency(finding),
             plants: plants(finding),

@@ -15,7 +15,6 @@ use super::{
     DesignError, DesignPart, DesignRun, Explanation, ProjectDesign, ReachedStructure, proven, structures,
 };
 use crate::audit::TimeFinding;
-use crate::limit_kind::limit_words;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 
@@ -133,7 +132,7 @@ fn searched(
     let run = DesignRun { aimed: aimed.clone(), problem, outcome, led: None };
     let (run, proven) = proven::proven((setup, aimed), run, &options, watch)?;
     let DesignRun { problem, outcome, .. } = &run;
-    let explained = |finding: &Finding| explained(finding, aimed);
+    let explained = |finding: &Finding| Explanation::of(finding, &|index| aimed.stated(index));
     let explanations = outcome.findings.iter().map(explained).collect::<Vec<_>>();
     let Some(design) = outcome.design.clone() else {
         if outcome.stopped {
@@ -154,17 +153,4 @@ fn searched(
     told = told.met_where_it_is(known);
     told.structures = structures::reached(&run, &told)?;
     Ok((run, ProjectDesign { unfinished, explanations, ..told }))
-}
-
-/// A finding in words, which say where a number is that of a limit of the design.
-fn explained(finding: &Finding, aimed: &RobustProblem) -> Explanation {
-    let own = aimed.specifications.len() - aimed.design_limits.len();
-    let mut found = Explanation::of(finding);
-    for specification in found.specifications.clone() {
-        if let Some(kind) = specification.checked_sub(own).and_then(|limit| aimed.design_limits.get(limit)) {
-            let words = format!("; {} is a limit of the design: {}", specification + 1, limit_words(*kind));
-            found.sentence.push_str(&words);
-        }
-    }
-    found
 }

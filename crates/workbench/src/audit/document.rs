@@ -101,7 +101,7 @@ fn specifications(view: &ProjectAudit) -> Table {
     ]);
     for (index, finding) in view.audit.specifications.iter().enumerate() {
         let mut row = vec![
-            Cell::count(index + 1),
+            view.number_of(index).map_or_else(Cell::empty, Cell::count),
             view.name_of(index).into(),
             closed_loop_symbol(&finding.requirement).into(),
             Cell::verdict(finding.verdict),
@@ -121,7 +121,8 @@ fn specifications(view: &ProjectAudit) -> Table {
     }
     for finding in view.in_time.iter().filter(|finding| finding.requirement.limits.is_none()) {
         let verdict = Cell::verdict(finding.verdict().unwrap_or(Verdict::NotProven));
-        let [number, margin, place, design, at] = [(); 5].map(|()| Cell::empty());
+        let number = Cell::count(finding.requirement.number);
+        let [margin, place, design, at] = [(); 4].map(|()| Cell::empty());
         rows.row([number, "step".into(), "y(t)".into(), verdict, margin, place, design, at]);
     }
     rows
@@ -205,8 +206,9 @@ fn worst_plants(view: &ProjectAudit) -> Vec<(String, Vec<String>)> {
         })
     };
     let in_time = view.in_time.iter().filter(|finding| finding.requirement.limits.is_none());
-    let of_step =
-        in_time.filter_map(|finding| Some(("step".to_string(), view.names.cells(&finding.nearest()?.plant))));
+    let of_step = in_time.filter_map(|finding| {
+        Some((format!("{} step", finding.requirement.number), view.names.cells(&finding.nearest()?.plant)))
+    });
     findings.filter_map(of).flatten().chain(of_step).collect()
 }
 

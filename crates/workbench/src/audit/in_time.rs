@@ -13,7 +13,7 @@ use crate::answer::significant;
 pub(crate) fn sentence(view: &ProjectAudit, finding: &TimeFinding) -> String {
     let name = match finding.requirement.limits {
         Some(index) => format!("{} in time", view.numbered(index)),
-        None => "step".to_string(),
+        None => format!("{} step", finding.requirement.number),
     };
     let required = finding.requirement.wish.words();
     let (plants, worst) = match &finding.outcome {

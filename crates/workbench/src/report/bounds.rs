@@ -72,7 +72,7 @@ fn specification_figures(problem: &RobustProblem, found: &[DesignFrequency]) -> 
             .collect();
         let requirement = &specification.requirement;
         let name = format!("bounds_{}_{}", index + 1, kind_key(requirement));
-        let title = format!("Bounds of specification {}, {}", index + 1, problem.name_of(index));
+        let title = format!("Bounds of {}", problem.stated(index));
         let caption = format!(
             "Where the nominal loop may not be, so that every plant satisfies the limit of {}; ticks point to the forbidden side.",
             closed_loop_symbol(requirement)
@@ -225,7 +225,8 @@ fn placement(problem: &RobustProblem, placement: &Placement) -> Cell {
 }
 
 fn named(problem: &RobustProblem, index: usize) -> String {
-    format!("{} ({})", index + 1, problem.name_of(index))
+    let name = problem.name_of(index);
+    problem.number_of(index).map_or_else(|| name.to_string(), |number| format!("{number} ({name})"))
 }
 
 /// Frequencies at which no loop can satisfy the specifications, and the conflicting ones.

@@ -8,6 +8,7 @@ use phea_qft::closed_loop::Member;
 use phea_qft::specification::{Limit, Requirement, Specification};
 use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
+use super::specifications::titled;
 use crate::answer::significant;
 use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_words};
 use crate::figure::{FamilyEnvelope, FamilyMagnitude, Figure, MagnitudeCurve, MagnitudeMark, Words};
@@ -149,7 +150,7 @@ pub(super) fn figures(problem: &RobustProblem, view: &ProjectAudit) -> Result<Ve
 fn figure(family: &[LoopFamily<'_>; 1], index: usize, specification: &Specification) -> Option<Figure> {
     let (mut chart, by_spread) = magnitudes(family, index, specification)?;
     let requirement = &specification.requirement;
-    let number = index + 1;
+    let problem = family[0].problem;
     let (title, caption) = if by_spread {
         chart.members.clear();
         let caption = "The greatest over the least |T| of the members, which no prefilter changes, and the upper over the lower limit.";
@@ -162,10 +163,10 @@ fn figure(family: &[LoopFamily<'_>; 1], index: usize, specification: &Specificat
             chart.members.len(),
             if chart.lower_limit.is_some() { " and the least" } else { "" }
         );
-        (family[0].problem.name_of(index), caption)
+        (problem.name_of(index), caption)
     };
-    let name = format!("audit_{number}_{}", kind_key(requirement));
-    Some(chart.draw(&Words::new(name, format!("Specification {number}, {title}"), caption)))
+    let name = format!("audit_{}_{}", index + 1, kind_key(requirement));
+    Some(chart.draw(&Words::new(name, titled(problem.number_of(index), title), caption)))
 }
 
 /// Keeps some of the curves, and the last, which is that of the worst plant.

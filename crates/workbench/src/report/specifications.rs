@@ -21,18 +21,18 @@ use crate::specification::{SpecificationError, wishes};
 
 pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chapter, CommandError> {
     let specifications = &problem.specifications;
-    let row = |(index, one)| row(index, problem.name_of(index), one);
+    let row = |(index, one)| row(problem.number_of(index), problem.name_of(index), one);
     let heads = ["", "specification", "demand", "where it must hold", "design frequencies (rad/s)"];
     let wishes = wishes(project)?;
-    let margins = margins(specifications)?;
+    let margins = margins(problem)?;
     let mut out = Document::default();
     out.explanation("The requirements on the closed loop of every plant. L is the open loop; F, G and P are prefilter, controller and plant.");
     let mut rows = Table::new(heads).with(specifications.iter().enumerate().map(row));
     let steps = problem.in_time.iter().filter(|one| one.limits.is_none());
     steps.for_each(|one| rows.row(step_row(one, project.units.force)));
     out.table(rows);
-    for (number, specification) in (1..).zip(specifications) {
-        spread(&mut out, number, specification);
+    for (index, specification) in specifications.iter().enumerate() {
+        spread(&mut out, &problem.stated(index), specification);
     }
     if !wishes.is_empty() {
         out.heading("Tracking limits in time");
@@ -45,7 +45,7 @@ pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chap
     Ok(Chapter::of("specifications", "Specifications", out))
 }
 
-fn row(index: usize, name: &str, specification: &Specification) -> [Cell; 5] {
+fn row(number: Option<usize>, name: &str, specification: &Specification) -> [Cell; 5] {
     let requirement = &specification.requirement;
     let band = match specification.band_rad_per_s {
         [0.0, f64::INFINITY] => "every frequency".to_string(),
@@ -54,7 +54,7 @@ fn row(index: usize, name: &str, specification: &Specification) -> [Cell; 5] {
     let frequencies: Vec<String> =
         specification.frequencies_rad_per_s.iter().map(|frequency| frequency_number(*frequency)).collect();
     [
-        Cell::count(index + 1),
+        number.map_or_else(Cell::empty, Cell::count),
         format!("{name}: {}", meaning(requirement)).into(),
         Cell::Equation(demand(requirement)),
         band.into(),
@@ -62,8 +62,7 @@ fn row(index: usize, name: &str, specification: &Specification) -> [Cell; 5] {
     ]
 }
 
-/// A required step, which limits no closed loop and has no design frequencies; as in the tables of
-/// the audit it has no number.
+/// A required step, which limits no closed loop and has no design frequencies.
 fn step_row(required: &TimeRequirement, unit: DisplayUnit) -> [Cell; 5] {
     let RequiredSteps { amplitude_n, initial_force_n } = required.steps;
     let from = initial_force_n.map_or(String::new(), |force_n| format!(" from {}", unit.text(force_n, 3)));
@@ -73,12 +72,18 @@ fn step_row(required: &TimeRequirement, unit: DisplayUnit) -> [Cell; 5] {
         false => String::new(),
     };
     [
-        Cell::empty(),
+        Cell::count(required.number),
         "step: the response to a step of the reference".into(),
         required.wish.words().into(),
         format!("every plant{on_rig}").into(),
         Cell::Missing,
     ]
+}
+
+/// The title of a figure: `Specification 2, tracking`, or the name alone of one that is not in the
+/// file.
+pub(super) fn titled(number: Option<usize>, name: &str) -> String {
+    number.map_or_else(|| name.to_string(), |number| format!("Specification {number}, {name}"))
 }
 
 pub(super) fn demand(requirement: &Requirement) -> String {
@@ -152,20 +157,20 @@ fn factors(roots: &[Complex64], variable: char) -> Vec<String> {
 }
 
 /// How far apart the limits of tracking are; empty for other kinds.
-fn spread(out: &mut Document, number: usize, specification: &Specification) {
+fn spread(out: &mut Document, name: &str, specification: &Specification) {
     let (Some(lower), upper) = specification.requirement.limits() else { return };
     let decibels = |value: f64| if value.abs() < 5e-4 { "0".to_string() } else { significant(value, 3) };
     match tracking_spread(lower, upper, specification.band_rad_per_s) {
         Ok(spread) => match spread.order {
             LimitOrder::Kept { least_db, frequency_rad_per_s } => out.explanation(format!(
-                "The limits of specification {number} are apart by at least {} dB, {}, and by {} dB at the end of the band.",
+                "The limits of {name} are apart by at least {} dB, {}, and by {} dB at the end of the band.",
                 decibels(least_db),
                 frequency_words(frequency_rad_per_s),
                 decibels(spread.at_end_db)
             )),
             LimitOrder::Crossed { from_rad_per_s, excess_db, frequency_rad_per_s } => {
                 let sentence = format!(
-                    "No loop satisfies specification {number}: from {} rad/s on its lower limit is above its upper one, by {} dB {}",
+                    "No loop satisfies {name}: from {} rad/s on its lower limit is above its upper one, by {} dB {}",
                     frequency_number(from_rad_per_s),
                     decibels(excess_db),
                     frequency_words(frequency_rad_per_s)
@@ -173,29 +178,28 @@ fn spread(out: &mut Document, number: usize, specification: &Specification) {
                 out.verdict(StatusMark::Bad, sentence, vec![]);
             }
         },
-        Err(reason) => {
-            out.explanation(format!("The limits of specification {number} are not compared: {reason}."))
-        }
+        Err(reason) => out.explanation(format!("The limits of {name} are not compared: {reason}.")),
     }
 }
 
 /// A sentence for each constant limit on |L/(1+L)| or |1/(1+L)| that holds at every frequency.
-fn margins(specifications: &[Specification]) -> Result<Vec<String>, SpecificationError> {
+fn margins(problem: &RobustProblem) -> Result<Vec<String>, SpecificationError> {
     let mut sentences = Vec::new();
-    for (number, specification) in (1..).zip(specifications) {
+    for (index, specification) in problem.specifications.iter().enumerate() {
         if specification.band_rad_per_s != [0.0, f64::INFINITY] {
             continue;
         }
         let found = guaranteed_margins(&specification.requirement);
+        let number = problem.number_of(index).unwrap_or(index + 1);
         let refused = |reason| SpecificationError { number, key: "limit", reason };
         if let Some(margins) = found.map_err(|error| refused(error.into()))? {
-            sentences.push(margin_sentence(number, &margins));
+            sentences.push(margin_sentence(&problem.stated(index), &margins));
         }
     }
     Ok(sentences)
 }
 
-fn margin_sentence(number: usize, margins: &GuaranteedMargins) -> String {
+fn margin_sentence(name: &str, margins: &GuaranteedMargins) -> String {
     let factor = |value: f64| {
         format!("{} ({} dB)", significant(value, 3), significant(20.0 * portable::log10(value), 3))
     };
@@ -212,7 +216,7 @@ fn margin_sentence(number: usize, margins: &GuaranteedMargins) -> String {
         angle => format!("the phase margin is at least {}°", significant(angle.to_degrees(), 3)),
     };
     format!(
-        "A stable loop that satisfies specification {number} stays stable while its gain grows {growth} or falls {fall}; {phase}, and L stays at least {} away from -1.",
+        "A stable loop that satisfies {name} stays stable while its gain grows {growth} or falls {fall}; {phase}, and L stays at least {} away from -1.",
         significant(margins.modulus, 3)
     )
 }

@@ -9,20 +9,28 @@ use phea_qft::design::{Constraint, ConstraintPlace, Finding, Party};
 
 use crate::audit::rounded;
 
+/// The names of specifications by their indices.
+type Names<'a> = &'a dyn Fn(usize) -> String;
+
 /// A finding as a sentence.
-pub(super) struct FindingWords<'a>(pub(super) &'a Finding);
+pub(super) struct FindingWords<'a> {
+    pub(super) finding: &'a Finding,
+    /// The name of a specification by its index.
+    pub(super) name_of: Names<'a>,
+}
 
 impl Display for FindingWords<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        match self.0 {
+        let name_of = self.name_of;
+        match self.finding {
             Finding::CrossedLimits { specification, frequency_rad_per_s, lower, upper, relaxation_db } => {
                 write!(
                     f,
-                    "tracking cannot be met: at {} rad/s the lower limit {} of specification {} lies above its upper one {}; {} dB on both \
-                 sides would bring them together",
+                    "tracking cannot be met: at {} rad/s the lower limit {} of {} lies above its upper one {}; {} dB on both sides would \
+                 bring them together",
                     rounded(*frequency_rad_per_s),
                     rounded(*lower),
-                    number(*specification),
+                    name_of(*specification),
                     rounded(*upper),
                     rounded(*relaxation_db)
                 )
@@ -31,19 +39,25 @@ impl Display for FindingWords<'_> {
                 frequency_rad_per_s, sensitivity, complementary, relaxation_db, ..
             } => write!(
                 f,
-                "no loop meets specifications {} and {} together: at {} rad/s they leave |S| <= {} and |T| <= {}, but S + T = 1; {}",
-                number(sensitivity.specification),
-                number(complementary.specification),
+                "no loop meets {} and {} together: at {} rad/s they leave |S| <= {} and |T| <= {}, but S + T = 1; {}",
+                name_of(sensitivity.specification),
+                name_of(complementary.specification),
                 rounded(*frequency_rad_per_s),
                 rounded(sensitivity.limit),
                 rounded(complementary.limit),
                 relaxed(*relaxation_db)
             ),
             Finding::Contradiction { frequency_rad_per_s, phase_rad, gain, parties, relaxation_db } => {
-                contradiction(f, *frequency_rad_per_s, [*phase_rad, *gain], parties, *relaxation_db)
+                contradiction(
+                    f,
+                    *frequency_rad_per_s,
+                    [*phase_rad, *gain],
+                    (parties, name_of),
+                    *relaxation_db,
+                )
             }
             Finding::RightHalfPlane { constraint, relaxation_db } => {
-                constrained(f, constraint)?;
+                constrained(f, constraint, name_of)?;
                 write!(f, "; {}", relaxed(*relaxation_db))
             }
             Finding::ForcedPeak { constraint, peak_db } if constraint.specifications.is_empty() => write!(
@@ -53,7 +67,7 @@ impl Display for FindingWords<'_> {
                 rounded(*peak_db)
             ),
             Finding::ForcedPeak { constraint, peak_db } => {
-                constrained(f, constraint)?;
+                constrained(f, constraint, name_of)?;
                 write!(
                     f,
                     ", unless |S| or |T| rises to {} dB where no specification limits them",
@@ -66,26 +80,26 @@ impl Display for FindingWords<'_> {
             | Finding::DelayMargin { .. }
             | Finding::UnstableController { .. }
             | Finding::OutOfReach { .. }
-            | Finding::StaticGain { .. } => of_the_plants(self.0, f),
+            | Finding::StaticGain { .. } => of_the_plants(self.finding, name_of, f),
         }
     }
 }
 
-fn of_the_plants(finding: &Finding, f: &mut Formatter<'_>) -> Result {
+fn of_the_plants(finding: &Finding, name_of: Names<'_>, f: &mut Formatter<'_>) -> Result {
     match finding {
         Finding::PoleOnTheAxis { frequency_rad_per_s, complementary, .. } => write!(
             f,
-            "the plant has a pole at {} rad/s on the axis, where T = 1: specification {} allows only {}",
+            "the plant has a pole at {} rad/s on the axis, where T = 1: {} allows only {}",
             rounded(*frequency_rad_per_s),
-            number(complementary.specification),
+            name_of(complementary.specification),
             rounded(complementary.limit)
         ),
         Finding::ZeroOnTheAxis { frequency_rad_per_s, limit, .. } => write!(
             f,
-            "the plant passes nothing at {} rad/s, where S = 1 and F T = 0: the limit {} of specification {} cannot be kept",
+            "the plant passes nothing at {} rad/s, where S = 1 and F T = 0: the limit {} of {} cannot be kept",
             rounded(*frequency_rad_per_s),
             rounded(limit.limit),
-            number(limit.specification)
+            name_of(limit.specification)
         ),
         Finding::GainSign { pole_rad_per_s: 0.0, .. } => write!(
             f,
@@ -113,9 +127,9 @@ fn of_the_plants(finding: &Finding, f: &mut Formatter<'_>) -> Result {
         Finding::OutOfReach { specification, frequency_rad_per_s, reach_rad_per_s: [from, to], plant } => {
             write!(
                 f,
-                "the design frequency {} rad/s of specification {} lies outside of {}, {} to {} rad/s: nothing is known there",
+                "the design frequency {} rad/s of {} lies outside of {}, {} to {} rad/s: nothing is known there",
                 rounded(*frequency_rad_per_s),
-                number(*specification),
+                name_of(*specification),
                 if plant.is_some() { "what was measured" } else { "the frequencies of a sampled loop" },
                 rounded(*from),
                 rounded(*to)
@@ -123,8 +137,8 @@ fn of_the_plants(finding: &Finding, f: &mut Formatter<'_>) -> Result {
         }
         Finding::StaticGain { specification, lower, upper } => write!(
             f,
-            "at zero frequency specification {} requires {} to {} of the reference, which excludes 1: the output will not follow it",
-            number(*specification),
+            "at zero frequency {} requires {} to {} of the reference, which excludes 1: the output will not follow it",
+            name_of(*specification),
             rounded(*lower),
             rounded(*upper)
         ),
@@ -132,17 +146,12 @@ fn of_the_plants(finding: &Finding, f: &mut Formatter<'_>) -> Result {
     }
 }
 
-/// Specifications are counted from 1, as a reader counts.
-fn number(specification: usize) -> usize {
-    specification + 1
-}
-
-fn numbers(specifications: &[usize]) -> String {
-    let all: Vec<String> = specifications.iter().map(|index| number(*index).to_string()).collect();
+fn names(specifications: &[usize], name_of: Names<'_>) -> String {
+    let all: Vec<String> = specifications.iter().map(|index| name_of(*index)).collect();
     match all.as_slice() {
         [] => "no specification".to_string(),
-        [one] => format!("specification {one}"),
-        [first @ .., last] => format!("specifications {} and {last}", first.join(", ")),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
 }
 
@@ -158,7 +167,7 @@ fn contradiction(
     f: &mut Formatter<'_>,
     frequency: f64,
     [phase_rad, gain]: [f64; 2],
-    parties: &[Party],
+    (parties, name_of): (&[Party], Names<'_>),
     [low, high]: [f64; 2],
 ) -> Result {
     let specifications: Vec<usize> = parties.iter().map(|party| party.specification).collect();
@@ -169,16 +178,16 @@ fn contradiction(
     write!(
         f,
         ": {} collide, least at {} degrees and a nominal gain of {}; ",
-        numbers(&specifications),
+        names(&specifications, name_of),
         rounded(phase_rad / TAU * 360.0),
         rounded(gain)
     )?;
     write!(f, "every limit would need {} to {} dB more", rounded(low), rounded(high))
 }
 
-fn constrained(f: &mut Formatter<'_>, constraint: &Constraint) -> Result {
+fn constrained(f: &mut Formatter<'_>, constraint: &Constraint, name_of: Names<'_>) -> Result {
     let Constraint { dead_time_s, sensitivity, complementary, crossover_rad_per_s, .. } = constraint;
-    let by = numbers(&constraint.specifications);
+    let by = names(&constraint.specifications, name_of);
     let leave = if constraint.specifications.len() == 1 { "leaves" } else { "leave" };
     let delay = if *dead_time_s > 0.0 {
         format!(", dead time of {} s included", rounded(*dead_time_s))

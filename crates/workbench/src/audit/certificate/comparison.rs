@@ -28,8 +28,7 @@ fn sentence(difference: &CertificateDifference, problem: &RobustProblem) -> Stri
                 CertificateSide::Upper => "limit",
                 CertificateSide::Lower => "lower limit",
             };
-            let name = problem.name_of(*index);
-            format!("the certificate does not claim the {limit} of specification {} ({name})", index + 1)
+            format!("the certificate does not claim the {limit} of {}", problem.stated(*index))
         }
         CertificateDifference::NotStated(_) => {
             "no certificate can be of the loop of this project".to_string()

@@ -4,6 +4,7 @@ use phea_dynamics::linear::LinearError;
 use phea_qft::specification::Requirement;
 
 use super::super::closed_loops::{LoopFamily, magnitudes};
+use super::super::specifications::titled;
 
 use crate::design::ProjectDesign;
 use crate::figure::{FamilyMagnitude, Figure, Words};
@@ -18,8 +19,8 @@ pub(super) fn figures(view: &ProjectDesign) -> Result<Vec<Figure>, LinearError> 
     let specifications = view.designed.problem.specifications.iter().enumerate();
     let figures = specifications.filter_map(|(index, specification)| {
         let (chart, by_spread) = magnitudes(&loops, index, specification)?;
-        let name = view.designed.view.name_of(index);
-        let words = words((index, name), &specification.requirement, &chart, by_spread);
+        let name = titled(view.designed.view.number_of(index), view.designed.view.name_of(index));
+        let words = words((index, &name), &specification.requirement, &chart, by_spread);
         Some(FamilyMagnitude { members: vec![], ..chart }.draw(&words))
     });
     Ok(figures.collect())
@@ -31,7 +32,6 @@ fn words(
     chart: &FamilyMagnitude,
     by_spread: bool,
 ) -> Words {
-    let number = index + 1;
     let quantity = &chart.quantity;
     let whose = if chart.envelopes.len() == 1 { "the designed loop" } else { "both loops" };
     let extremes = match requirement.limits().0 {
@@ -39,6 +39,6 @@ fn words(
         _ => "The greatest",
     };
     let caption = format!("{extremes} {quantity} of the family in {whose}, compared with what is allowed.");
-    let title = format!("Specification {number}, {name}, of {whose}");
-    Words::new(format!("design_{number}_{}", kind_key(requirement)), title, caption)
+    let title = format!("{name}, of {whose}");
+    Words::new(format!("design_{}_{}", index + 1, kind_key(requirement)), title, caption)
 }

@@ -53,7 +53,7 @@ fn figure(
         tightest.join(" ")
     );
     let name = format!("design_{}_prefilter", index + 1);
-    let words = Words::new(name, format!("Prefilter for specification {}", index + 1), caption);
+    let words = Words::new(name, format!("Prefilter for {}", view.designed.problem.stated(index)), caption);
     Ok(Some(prefilter_band(&words, &panels)))
 }
 

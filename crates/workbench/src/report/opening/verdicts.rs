@@ -63,7 +63,7 @@ fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
         Some(Cell::from(word).marked(verdict).then(proven(is_proven)))
     }));
     for (index, specification) in judged.problem.specifications.iter().enumerate() {
-        let name = Cell::from(format!("{} {}, ", index + 1, judged.problem.name_of(index)))
+        let name = Cell::from(format!("{}, ", judged.problem.numbered(index)))
             .then(Cell::Equation(demand(&specification.requirement)));
         rows.extend(row(name, sides, |side| {
             let is_proven = side.proof().and_then(|proof| proof.specifications.get(index));
