@@ -38,7 +38,7 @@ use phea_qft::verification::{SpecificationFinding, Verdict};
 
 use crate::alternatives::Alternatives;
 use crate::answer::{OutputFile, picture_files, significant};
-use crate::audit::{CERTIFICATE_FILE, ProjectAudit, certificate_of, verdict_words};
+use crate::audit::{CERTIFICATE_FILE, ProjectAudit, TimeFinding, certificate_of, verdict_words};
 use crate::derived::{self, derive};
 use crate::error::CommandError;
 use crate::figure::Figure;
@@ -288,17 +288,24 @@ fn rig_part(
     Ok(Some(RigPart { chapters, appendix, facts, no_hose_fits }))
 }
 
-/// The verdict of the audit in a few words.
+/// The verdict of the audit in a few words. A required step counts as a specification, and limits
+/// that follow from a requirement in time count as met where its steps satisfy it too.
 fn audit_words(view: &ProjectAudit) -> String {
-    let kept = |finding: &&SpecificationFinding| finding.verdict == Verdict::Met;
     let findings = &view.audit.specifications;
-    let met = findings.iter().filter(kept).count();
+    let keeps = |(index, finding): &(usize, &SpecificationFinding)| {
+        finding.verdict == Verdict::Met && !view.in_time_of(*index).is_some_and(TimeFinding::violates)
+    };
+    let mut steps: Vec<&TimeFinding> = view.in_time.iter().collect();
+    steps.retain(|finding| finding.requirement.limits.is_none());
+    let satisfied = steps.iter().filter(|finding| finding.verdict() == Some(Verdict::Met)).count();
+    let met = findings.iter().enumerate().filter(keeps).count() + satisfied;
+    let all = findings.len() + steps.len();
     let stable = match view.audit.stability.verdict {
         Verdict::Met => "stable",
         Verdict::Violated => "unstable",
         Verdict::NotProven => "not proven stable",
     };
-    format!("{}: {stable}, {met} of {} specifications met", verdict_words(view.verdict()), findings.len())
+    format!("{}: {stable}, {met} of {all} specifications met", verdict_words(view.verdict()))
 }
 
 impl Report {

@@ -150,6 +150,20 @@ fn report(text: &str) -> phea_workbench::report::Report {
     phea_workbench::report::report(&ask::source(text), &loaded, &setup, None, &mut |_| true).unwrap()
 }
 
+/// A required step counts among the specifications that are met.
+#[test]
+fn a_required_step_is_counted() {
+    for (time, expected) in [
+        ("5 s", "met: stable, 2 of 2 specifications met"),
+        ("1 s", "violated: stable, 1 of 2 specifications met"),
+    ] {
+        let step = format!("[[specification]]\nkind = \"step\"\nsettling_time = \"{time}\"\n");
+        let told = report(&project(&format!("{step}{STABILITY}"), ""));
+        let (_, words) = told.summary.iter().find(|(name, _)| *name == "Audit of the controller").unwrap();
+        assert_eq!(words, expected);
+    }
+}
+
 /// A step that is required alone is judged like one beside limits, sampled or not.
 #[test]
 fn a_step_needs_no_limit_beside_it() {
