@@ -1,9 +1,12 @@
 //! What a diagnosis found, as sentences.
 #![cfg(test)]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use crate::ask::answer;
 use num_complex::Complex64;
 use phea_qft::design::{Constraint, ConstraintPlace, Finding, SharedLimit};
 use phea_qft::verification::PlantPoint;
+use phea_workbench::command::Request;
 use phea_workbench::design::Explanation;
 
 /// The sentences name frequencies, the specifications, and what it would take.
@@ -37,4 +40,44 @@ fn findings_read_as_sentences() {
     for part in ["unstable pole at 2 rad/s", "|T| = 1", "above 2.236 rad/s", "[[specification]] 4"] {
         assert!(text.contains(part), "{text}");
     }
+}
+
+/// A double pole at 1 rad/s under an integrator alone is not stable at any gain.
+const UNSTABLE: &str = r#"schema = 1
+title = "unstable"
+[plant]
+numerator = "k"
+denominator = "s^2 - 2*s + 1"
+[uncertainty]
+k = { nominal = 2, minimum = 1, maximum = 4, points = 3 }
+[design]
+structure = [{ kind = "integrator" }]
+[[specification]]
+kind = "robust_stability"
+limit = 1.3
+frequencies = [0.1, 1, 10]
+"#;
+
+/// A controller that leaves a plant unstable is in no project to be pasted, and what is written says
+/// so above everything; a later design of that project does not keep the words.
+#[test]
+fn a_controller_that_is_not_stable_is_not_to_be_used() {
+    let design = Request::Design { seed: None, stages: false, repair: false };
+    let of = |text: &str| {
+        let told = answer(text, &[], &[], &design);
+        let file = told.files.iter().find(|file| file.name == "designed.toml").unwrap();
+        (told.text.clone(), String::from_utf8(file.bytes.clone()).unwrap())
+    };
+    let (words, file) = of(UNSTABLE);
+    let why = "it does not make every plant of the family stable";
+    assert!(words.contains(&format!("Do not use this controller: {why}")), "{words}");
+    assert!(!words.contains("In the project, in place of"), "{words}");
+    let first = format!("# DO NOT USE THIS CONTROLLER: {why}.\nschema = 1\n");
+    assert!(file.starts_with(&first), "{file}");
+    let (_, again) = of(&file);
+    assert_eq!(again.matches("DO NOT USE").count(), 1, "{again}");
+    let stable = file.replace("s^2 - 2*s + 1", "s + 1").replace("limit = 1.3", "limit = 2");
+    let (words, file) = of(&stable);
+    assert!(words.contains("In the project, in place of [controller]"), "{words}");
+    assert!(file.starts_with("schema = 1\n"), "{file}");
 }

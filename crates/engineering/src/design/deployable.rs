@@ -14,12 +14,13 @@ use phea_dynamics::order::sorted_distinct;
 use phea_qft::design::PoleRange;
 use phea_qft::family::Family;
 use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
-use phea_qft::verification::{Audit, SpecificationFinding};
+use phea_qft::verification::{Audit, SpecificationFinding, Verdict};
 
 use super::ProjectDesign;
 use crate::audit::PrefilterGain;
 use crate::limit_kind::{DesignLimitKind, LimitOrigin, limit_words};
 use crate::project::{DeclaredDesign, UnstatedLimits};
+use crate::quantity::significant;
 use crate::rig::quarter_wave;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
@@ -121,7 +122,25 @@ impl ProjectDesign {
         let largest = PrefilterGain::of_loop(&self.designed.problem.compensation).largest;
         (largest > most).then_some([most, largest])
     }
+
+    /// Why the designed controller must not be used; `None` where it may be.
+    pub fn unusable(&self) -> Option<String> {
+        let view = &self.designed.view;
+        let is_unstable = view.audit.stability.verdict == Verdict::Violated;
+        let stability = is_unstable.then(|| "it does not make every plant of the family stable".to_string());
+        let PrefilterGain { largest, .. } = PrefilterGain::of_loop(&self.designed.problem.compensation);
+        let is_designed = self.declared_prefilter.is_some() && !self.is_met();
+        let amplifies = is_designed && largest > UNUSABLE_PREFILTER_GAIN;
+        let prefilter = amplifies
+            .then(|| format!("its prefilter multiplies the reference by up to {}", significant(largest, 3)));
+        let reasons: Vec<String> = stability.into_iter().chain(prefilter).collect();
+        (!reasons.is_empty()).then(|| reasons.join(", and "))
+    }
 }
+
+/// Gain of a prefilter from which a loop that does not satisfy its specifications is not to be
+/// used, whatever `design.prefilter_gain` allows.
+const UNUSABLE_PREFILTER_GAIN: f64 = 100.0;
 
 /// Where the poles of a designed controller may lie.
 pub(super) fn pole_range(limits: &[DesignLimit]) -> PoleRange {

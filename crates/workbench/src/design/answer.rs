@@ -42,6 +42,7 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
     };
     Ok(Object::new()
         .with("status", status_key(view))
+        .maybe("unusable", view.unusable())
         .with("unfinished", view.unfinished.iter().map(|part| part.key()).collect::<Vec<_>>())
         .with("objective", objective)
         .with("seed", view.options.seed)

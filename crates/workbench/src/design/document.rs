@@ -13,7 +13,7 @@ use super::{AuditedController, Explanation, ProjectDesign, Repair, RepairStatus}
 use super::{repair_words, status_sentence, structure_words};
 use crate::answer::significant;
 use crate::audit::{self, margin_words, summary};
-use crate::document::{Cell, Document, Table};
+use crate::document::{Cell, Document, StatusMark, Table};
 use crate::project::{Loaded, snippet};
 use crate::quantity::DisplayUnit;
 use crate::trial;
@@ -78,8 +78,13 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
         Verdict::NotProven => ", though it is not proven",
         _ => ", though it does not satisfy every specification",
     };
-    out.heading(format!("{}{caution}", in_place_of(view)));
-    out.preformatted(pasted(loaded, view));
+    match view.unusable() {
+        Some(why) => out.verdict(StatusMark::Bad, unusable_words(&why), vec![]),
+        None => {
+            out.heading(format!("{}{caution}", in_place_of(view)));
+            out.preformatted(pasted(loaded, view));
+        }
+    }
     out.append(super::structures(view));
     out.append(super::limits(view));
     out.append(costs(view));
@@ -100,6 +105,11 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
     Ok(out)
 }
 
+/// In place of the tables of a controller that must not be used.
+fn unusable_words(why: &str) -> String {
+    format!("Do not use this controller: {why}. It is not printed as a part of a project.")
+}
+
 /// The tables of a design as its project would have them.
 fn pasted(loaded: &Loaded, view: &ProjectDesign) -> String {
     let laws = (&view.declared_controller, view.declared_prefilter.as_ref());
@@ -117,6 +127,7 @@ fn in_place_of(view: &ProjectDesign) -> &'static str {
 /// How the search ended, what is known whatever a search finds, and the audit of the result.
 pub(crate) fn status(view: &ProjectDesign) -> Document {
     let mut sentences = view.unfinished_sentences();
+    sentences.extend(view.unusable().map(|why| format!("do not use the designed controller: {why}")));
     sentences.extend(view.explanations.iter().map(|explanation| explanation_words(view, explanation)));
     sentences.extend(summary(&view.designed.view));
     sentences.extend(not_led_sentence(view));
@@ -145,8 +156,13 @@ fn repaired(loaded: &Loaded, repair: &Repair) -> Result<Document, LinearError> {
     if let Some(nearest) = repair.nearest() {
         out.heading("Nearest controller");
         out.append(laws(&nearest.designed)?);
-        out.heading_on_page(in_place_of(nearest));
-        out.preformatted(pasted(loaded, nearest));
+        match nearest.unusable() {
+            Some(why) => out.verdict(StatusMark::Bad, unusable_words(&why), vec![]),
+            None => {
+                out.heading_on_page(in_place_of(nearest));
+                out.preformatted(pasted(loaded, nearest));
+            }
+        }
     }
     Ok(out)
 }

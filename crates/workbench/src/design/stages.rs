@@ -44,10 +44,23 @@ pub fn files(loaded: &Loaded, view: &ProjectDesign) -> Vec<OutputFile> {
             Some(chosen) => with_line_model(&bytes, chosen),
             None => bytes,
         };
-        Some(OutputFile::new(name, bytes))
+        Some(OutputFile::new(name, marked(&bytes, design?.unusable())))
     };
     let certificate = certificate_of(loaded, &view.designed.view, DESIGNED_CERTIFICATE);
     named.into_iter().filter_map(file).chain(certificate).collect()
+}
+
+/// First words of the comment above a controller that must not be used.
+const UNUSABLE: &str = "# DO NOT USE THIS CONTROLLER: ";
+
+/// A project under the reason why its controller must not be used, without that of a design before.
+fn marked(bytes: &[u8], unusable: Option<String>) -> Vec<u8> {
+    let mut own = bytes;
+    while own.starts_with(UNUSABLE.as_bytes()) {
+        own = own.iter().position(|byte| *byte == b'\n').map_or(&[], |end| &own[end + 1..]);
+    }
+    let first = unusable.map(|why| format!("{UNUSABLE}{why}.\n").into_bytes()).unwrap_or_default();
+    [first.as_slice(), own].concat()
 }
 
 /// Every stage; a design that was stopped has no templates and bounds, which take long to compute,
