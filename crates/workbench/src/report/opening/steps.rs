@@ -12,7 +12,7 @@ use crate::audit::{TimeOutcome, WorstStep};
 use crate::simulate::{
     Metrics, NOT_SETTLED, ReachedStep, TimeRequirement, TrackingWish, cause_words, concerns,
 };
-use crate::trial::TrialRun;
+use crate::trial::{Trial, TrialRun};
 
 /// Which property of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,7 +88,13 @@ pub(super) fn steps(side: &Side<'_>, required: &TimeRequirement, property: StepP
         let mut numbers = run.requirements.iter().map(|held| held.number);
         !required.steps.are_stated() || numbers.any(|number| number == required.number)
     };
-    let runs = side.trial.iter().flat_map(|trial| &trial.runs).filter(is_about);
+    // the worst of the corners and of the plants inside the box are among the runs already
+    let is_corner = |trial: &Trial, run: &TrialRun| trial.corners.iter().any(|one| one.what == run.what);
+    let runs = side
+        .trial
+        .iter()
+        .flat_map(|trial| trial.runs.iter().filter(|run| !is_corner(trial, run)).chain(&trial.corners));
+    let runs = runs.filter(is_about);
     steps.extend(runs.filter_map(|run| {
         let reached = held(run, required).map(|reached| match property {
             StepProperty::Overshoot => reached.overshoot_percent,
@@ -244,13 +250,25 @@ impl AllSteps {
         told.join("; ")
     }
 
-    /// How many steps are counted.
+    /// How many steps are counted, and which.
     pub(super) fn counted(&self) -> String {
-        // the worst of the family stands for all of its plants
-        let of_family = self.plants.saturating_sub(1);
-        match self.steps.len() + of_family {
+        let origins = [
+            (StepOrigin::Family, "linear"),
+            (StepOrigin::Machine, "on the nonlinear rig and its plants"),
+            (StepOrigin::Scenario, "of the scenarios"),
+            (StepOrigin::Campaign, "of the campaign"),
+        ];
+        let count = |origin: StepOrigin| match origin {
+            // the worst of the family stands for all of its plants
+            StepOrigin::Family => self.plants,
+            _ => self.steps.iter().filter(|step| step.origin == origin).count(),
+        };
+        let counts = origins.map(|(origin, which)| (count(origin), which));
+        let words = counts.iter().filter(|(count, _)| *count > 0);
+        let words: Vec<String> = words.map(|(count, which)| format!("{count} {which}")).collect();
+        match counts.iter().map(|(count, _)| count).sum::<usize>() {
             1 => "the step".to_string(),
-            count => format!("all {count} steps"),
+            count => format!("all {count} steps ({})", words.join(", ")),
         }
     }
 }
