@@ -335,7 +335,7 @@ impl ProjectAudit {
         self.without_polynomials == Some(LINES_IN_MOTION)
     }
 
-    /// The number of a specification in the file, from 1; `None` for one that is not declared there.
+    /// The number of a specification in the file, from 1; `None` for one that is not declared.
     pub fn number_of(&self, index: usize) -> Option<usize> {
         self.specification_numbers.get(index).copied()
     }

@@ -228,7 +228,7 @@ impl RobustProblem {
         self.specification_names.get(index).map_or("", String::as_str)
     }
 
-    /// The number of a specification in the file, from 1; `None` for one that is not declared there.
+    /// The number of a specification in the file, from 1; `None` for one that is not declared.
     pub fn number_of(&self, index: usize) -> Option<usize> {
         self.specification_numbers.get(index).copied()
     }

@@ -91,6 +91,14 @@ struct Hit<'a> {
     entry: Option<&'a crate::catalogue_entry::CatalogueEntry>,
 }
 
+/// A name that stands for several numbers of the project, or for none.
+fn not_one(name: &str, kind: &str, holds_several: bool) -> String {
+    match holds_several {
+        true => format!("`{name}` holds several numbers in this project, not one"),
+        false => format!("`{name}` is not a {kind} of this project"),
+    }
+}
+
 impl<'a> Reader<'a> {
     pub(crate) fn new(
         root: &'a TreeNode,
@@ -248,11 +256,12 @@ impl<'a> Reader<'a> {
         self.refused.iter().chain(&self.unclear).any(|known| root(known) == root(name))
     }
 
-    /// A number inside of a table of this name, the one to design with where there is one.
-    fn number_inside(&self, name: &str) -> Option<&String> {
+    /// Help that names a number in a table of this name, the one to design with where there is one.
+    fn number_inside(&self, name: &str) -> Option<String> {
         let inside = format!("{name}.");
-        let nominal = self.named.get_key_value(&format!("{name}.nominal"));
-        nominal.map(|(path, _)| path).or_else(|| self.named.keys().find(|path| path.starts_with(&inside)))
+        let nominal = self.named.get_key_value(&format!("{name}.nominal")).map(|(path, _)| path);
+        let found = nominal.or_else(|| self.named.keys().find(|path| path.starts_with(&inside)));
+        found.map(|path| format!("name one of them, such as `{path}`"))
     }
 
     /// How to write a name with dots in it, if it was parsed as nested tables.

@@ -58,8 +58,8 @@ limit = 1.3
 frequencies = [0.1, 1, 10]
 "#;
 
-/// A controller that leaves a plant unstable is in no project to be pasted, and what is written says
-/// so above everything; a later design of that project does not keep the words.
+/// A controller that leaves a plant unstable is not printed to be pasted, and its file begins with
+/// the reason; a later design of that project does not keep the words.
 #[test]
 fn a_controller_that_is_not_stable_is_not_to_be_used() {
     let design = Request::Design { seed: None, stages: false, repair: false };

@@ -110,8 +110,8 @@ fn a_loop_far_slower_than_required_has_its_settling_time() {
     assert!(words.contains("not settled"), "{words}");
 }
 
-/// A rig whose lines have waves is slow by its controller: its settling time is the same whatever is
-/// required, and near that of lumped lines.
+/// A rig whose lines have waves is slow by its controller: its settling time is the same whatever
+/// is required, and near that of lumped lines.
 #[test]
 fn a_slow_loop_around_lines_with_waves_has_its_settling_time() {
     let settled = |time: &str, model: &str| {

@@ -29,8 +29,8 @@ const BETWEEN_POINTS: f64 = 0.02;
 /// Largest ratio of flows for which a larger valve is advised: beyond it time is what is missing.
 const LARGER_VALVE: f64 = 10.0;
 
-/// The steps of a project that its rig does not reach, of these plants of its family. A step that is
-/// required before the force can move at all is found without them.
+/// The steps of a project that its rig does not reach, of these plants of its family; without those
+/// that are required before the force can move at all.
 pub(super) fn findings(setup: &Setup<'_>, problem: &RobustProblem, few: &Family) -> Vec<LateError> {
     let beyond = steps_beyond(setup, &problem.in_time).into_iter();
     let beyond =

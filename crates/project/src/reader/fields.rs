@@ -1,6 +1,6 @@
 //! How each description of a table is read.
 
-use super::{Hit, Layer, Reader};
+use super::{Hit, Layer, Reader, not_one};
 use crate::Origin;
 use crate::catalogue_kind::CatalogueKind;
 use crate::formula::Formula;
@@ -383,12 +383,10 @@ impl Visitor for Reader<'_> {
                 let is_count = self.counts.contains(&entry.key);
                 let quoted = self.quoted(key, entry);
                 let inside = self.number_inside(&entry.key).filter(|_| quoted.is_none());
-                let message = match inside {
-                    _ if is_count => format!("`{}` is a whole number: only quantities vary", entry.key),
-                    Some(_) => format!("`{}` holds several numbers in this project, not one", entry.key),
-                    None => format!("`{}` is not a number of this project", entry.key),
+                let message = match is_count {
+                    true => format!("`{}` is a whole number: only quantities vary", entry.key),
+                    false => not_one(&entry.key, "number", inside.is_some()),
                 };
-                let inside = inside.map(|name| format!("name one of them, such as `{name}`"));
                 let near = near.filter(|_| !is_count).map(|name| format!("did you mean `{name}`?"));
                 let help = quoted.or(inside).or(near);
                 self.findings.push(RawFinding::error(entry.key_place, message).maybe_help(help));
@@ -415,11 +413,7 @@ impl Visitor for Reader<'_> {
                 }
                 let near = nearest(&entry.key, self.named.keys().map(String::as_str));
                 let inside = self.number_inside(&entry.key);
-                let message = match inside {
-                    Some(_) => format!("`{}` holds several numbers in this project, not one", entry.key),
-                    None => format!("`{}` is not a {} of this project", entry.key, key.name),
-                };
-                let inside = inside.map(|name| format!("name one of them, such as `{name}`"));
+                let message = not_one(&entry.key, key.name, inside.is_some());
                 let help = inside.or(near.map(|name| format!("did you mean `{name}`?")));
                 self.findings.push(RawFinding::error(entry.key_place, message).maybe_help(help));
                 continue;

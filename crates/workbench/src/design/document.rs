@@ -73,18 +73,7 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
     out.append(laws(&view.designed)?);
     out.append(super::manual(view));
     out.append(side_by_side(view));
-    let caution = match view.designed.view.verdict() {
-        _ if view.is_met() => "",
-        Verdict::NotProven => ", though it is not proven",
-        _ => ", though it does not satisfy every specification",
-    };
-    match view.unusable() {
-        Some(why) => out.verdict(StatusMark::Bad, unusable_words(&why), vec![]),
-        None => {
-            out.heading(format!("{}{caution}", in_place_of(view)));
-            out.preformatted(pasted(loaded, view));
-        }
-    }
+    out.append(in_project(loaded, view));
     out.append(super::structures(view));
     out.append(super::limits(view));
     out.append(costs(view));
@@ -103,6 +92,24 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
         out.line(sentence);
     }
     Ok(out)
+}
+
+/// The controller as a part of a project, if it may be used.
+fn in_project(loaded: &Loaded, view: &ProjectDesign) -> Document {
+    let mut out = Document::default();
+    let caution = match view.designed.view.verdict() {
+        _ if view.is_met() => "",
+        Verdict::NotProven => ", though it is not proven",
+        _ => ", though it does not satisfy every specification",
+    };
+    match view.unusable() {
+        Some(why) => out.verdict(StatusMark::Bad, unusable_words(&why), vec![]),
+        None => {
+            out.heading(format!("{}{caution}", in_place_of(view)));
+            out.preformatted(pasted(loaded, view));
+        }
+    }
+    out
 }
 
 /// In place of the tables of a controller that must not be used.

@@ -21,8 +21,8 @@ pub(super) struct FindingWords<'a> {
 
 impl Display for FindingWords<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        let name_of = self.name_of;
-        match self.finding {
+        let FindingWords { finding, name_of } = *self;
+        match finding {
             Finding::CrossedLimits { specification, frequency_rad_per_s, lower, upper, relaxation_db } => {
                 write!(
                     f,
@@ -57,8 +57,7 @@ impl Display for FindingWords<'_> {
                 )
             }
             Finding::RightHalfPlane { constraint, relaxation_db } => {
-                constrained(f, constraint, name_of)?;
-                write!(f, "; {}", relaxed(*relaxation_db))
+                constrained(f, constraint, name_of).and_then(|()| write!(f, "; {}", relaxed(*relaxation_db)))
             }
             Finding::ForcedPeak { constraint, peak_db } if constraint.specifications.is_empty() => write!(
                 f,
@@ -80,7 +79,7 @@ impl Display for FindingWords<'_> {
             | Finding::DelayMargin { .. }
             | Finding::UnstableController { .. }
             | Finding::OutOfReach { .. }
-            | Finding::StaticGain { .. } => of_the_plants(self.finding, name_of, f),
+            | Finding::StaticGain { .. } => of_the_plants(finding, name_of, f),
         }
     }
 }
