@@ -64,7 +64,6 @@ use self::by_steps::LedSearch;
 use self::deployable::{limited, split};
 use self::driven::found_and_tried;
 use crate::audit::{ProjectAudit, audit_problem, audit_request, caveat_of_rig, try_to_prove, unexamined_rig};
-use crate::impossible::impossible_steps;
 use crate::project::{self, Project};
 use crate::quantity::{self, DisplayUnit};
 use crate::robust::{RobustProblem, robust_problem};
@@ -332,8 +331,7 @@ impl ProjectDesign {
     }
 }
 
-/// Designs a controller for the project and, if the machine contradicts it, continues with the
-/// contradicting plant added.
+/// Designs a controller and, if the machine contradicts it, continues with the contradicting plant.
 ///
 /// # Errors
 /// Those of [`design_project`].
@@ -358,7 +356,8 @@ pub fn design_and_repair(
 ///
 /// # Errors
 /// [`DesignError`] for a project without a specification, a required step that no controller makes
-/// on the rig, a part that is not a transfer function, a family that cannot be built, or a watch that stops it before anything was found.
+/// on the rig, a part that is not a transfer function, a family that cannot be built, or a watch
+/// that stops it before anything was found.
 pub fn design_project(
     source: &dyn Source,
     setup: &Setup<'_>,
@@ -402,10 +401,7 @@ fn designed(
         true => given.clone(),
         false => robust_problem(source, setup)?,
     };
-    let impossible = impossible_steps(setup, &as_designed);
-    if !impossible.is_empty() {
-        return Err(DesignError::ImpossibleSteps(impossible));
-    }
+    error::refuse_impossible_steps(setup, &as_designed)?;
     let limits = design_limits(setup, &as_designed);
     let nothing_asks = asked::nothing_asks(&as_designed);
     let limited = limited(&as_designed, &limits);

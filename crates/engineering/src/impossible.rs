@@ -1,26 +1,18 @@
 //! Requirements that no loop can satisfy, found before any search, each with the key that states
 //! it and what would satisfy it.
 
-mod in_time;
-mod on_rig;
-
 use phea_qft::design::{DesignProblem, Finding, FindingSeverity, diagnose};
-use phea_qft::family::{Extent, Family, UncertainFamily, vertices};
+use phea_qft::family::Family;
 use phea_qft::specification::ClosedLoop;
 
 use crate::design::{Explanation, design_problem};
+use crate::impossible_steps::{few_plants, impossible_steps};
 use crate::project::{LateError, Project};
 use crate::quantity::significant;
 use crate::robust::{RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::source::Source;
 use crate::specification::{SpecificationError, closed_loops, crossed_limits};
-
-/// Plants of a box that are examined: corners, and members.
-const CORNERS: usize = 8;
-const MEMBERS: usize = 8;
-/// Coordinates of a box whose corners are listed.
-const COORDINATES_MAXIMUM: usize = 8;
 
 /// Requirements that no linear loop can satisfy: limits that cross; what a few plants forbid
 /// (the nominal one, some corners, some members), whatever the controller; times shorter than a
@@ -38,18 +30,9 @@ pub fn impossibilities(source: &dyn Source, setup: &Setup<'_>) -> Result<Vec<Lat
         return Ok(found);
     }
     let Ok(problem) = robust_problem(source, setup) else { return Ok(found) };
-    found.extend(in_time::findings(setup, &problem));
-    let few = few_plants(&problem.family);
-    found.extend(on_rig::findings(setup, &problem, &few));
-    found.extend(of_plants(setup, &problem, few));
+    found.extend(impossible_steps(setup, &problem));
+    found.extend(of_plants(setup, &problem, few_plants(&problem.family)));
     Ok(found)
-}
-
-/// Steps that the project requires and that no controller makes on its rig: those of
-/// [`impossibilities`] that a search would not find.
-pub(crate) fn impossible_steps(setup: &Setup<'_>, problem: &RobustProblem) -> Vec<LateError> {
-    let few = few_plants(&problem.family);
-    [in_time::findings(setup, problem), on_rig::findings(setup, problem, &few)].concat()
 }
 
 /// What a few plants forbid.
@@ -60,24 +43,6 @@ fn of_plants(setup: &Setup<'_>, problem: &RobustProblem, family: Family) -> Vec<
     };
     let findings = diagnose(&few);
     findings.iter().filter(|finding| is_new(finding)).map(|one| stated(setup.project, problem, one)).collect()
-}
-
-/// The nominal plant, some corners and some members: what is impossible for these is impossible for
-/// the family.
-fn few_plants(family: &Family) -> Family {
-    let Family::Uncertain(uncertain) = family else { return family.clone() };
-    let strided = |plants: &[Vec<f64>], most: usize| -> Vec<Vec<f64>> {
-        plants.iter().step_by(plants.len().div_ceil(most).max(1)).chain(plants.last()).cloned().collect()
-    };
-    let dimension = uncertain.coordinates().len();
-    let corners = match uncertain.extent() == Extent::Box && (1..=COORDINATES_MAXIMUM).contains(&dimension) {
-        true => vertices(uncertain.plant(), uncertain.coordinates()).unwrap_or_default(),
-        false => vec![],
-    };
-    let members = [strided(&corners, CORNERS), strided(uncertain.members(), MEMBERS)].concat();
-    let plant = uncertain.plant().clone();
-    let few = UncertainFamily::new(plant, vec![], members, Extent::Members);
-    few.map_or_else(|_| family.clone(), Family::Uncertain)
 }
 
 /// A finding at the key of the first specification that it concerns, with the plant.

@@ -29,6 +29,7 @@ mod followed;
 pub mod friction;
 pub mod identify;
 pub mod impossible;
+mod impossible_steps;
 pub mod limit_kind;
 pub mod line_choice;
 pub mod line_test;

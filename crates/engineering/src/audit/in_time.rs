@@ -79,11 +79,13 @@ const SOON: f64 = 2.0;
 /// A step that has not settled in this share of it is computed for longer, by this factor and so
 /// often: every plant is stable.
 const SETTLED_BY: f64 = 0.5;
-const LONGER: f64 = 4.0;
+const LONGER: u16 = 4;
 const EXTENSIONS: i32 = 3;
 /// The same of a step that has not settled at all, though it ends in its band: the loop may be far
 /// slower than what is required.
 const EXTENSIONS_UNSETTLED: i32 = 7;
+/// The same of a plant with waves in its lines, whose points grow with the duration.
+const EXTENSIONS_RESPONDING: i32 = 4;
 /// Frequency that stands for zero, at which integrators have no response, rad/s.
 const AT_REST: f64 = 1e-9;
 /// Most members of a family whose steps are computed; of plants without polynomials, whose steps
@@ -254,7 +256,9 @@ impl StepSearch<'_> {
         let mut duration_s = SETTLING_TIMES * self.wish.horizon_s;
         let mut metrics = within(duration_s, POINTS)?;
         let mut overshoot_percent = metrics.overshoot_percent;
-        for extension in 0..EXTENSIONS_UNSETTLED {
+        let mut points = POINTS;
+        let most = if is_responding { EXTENSIONS_RESPONDING } else { EXTENSIONS_UNSETTLED };
+        for extension in 0..most {
             let is_long = is_responding || extension >= EXTENSIONS;
             let is_enough = match metrics.settling.time_s() {
                 None => is_long && !(self.lacks(&metrics) && self.ends_in_band(&member)),
@@ -264,10 +268,12 @@ impl StepSearch<'_> {
             if is_enough {
                 break;
             }
-            duration_s *= LONGER;
+            duration_s *= f64::from(LONGER);
             // the integral over time needs points as dense as before
-            let denser = if is_responding { LONGER.powi(extension + 1) } else { 1.0 };
-            metrics = within(duration_s, (denser * POINTS as f64) as usize)?;
+            if is_responding {
+                points *= usize::from(LONGER);
+            }
+            metrics = within(duration_s, points)?;
             overshoot_percent = overshoot_percent.max(metrics.overshoot_percent);
         }
         let mut times_s = [metrics.settling.time_s(), metrics.rise_time_10_90_s];

@@ -3,9 +3,10 @@
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::watch::Stopped;
 
+use crate::impossible_steps::impossible_steps;
 use crate::project::LateError;
-use crate::robust::RobustError;
-use crate::setup::ControlError;
+use crate::robust::{RobustError, RobustProblem};
+use crate::setup::{ControlError, Setup};
 use crate::trial::TrialError;
 
 /// Why nothing is designed.
@@ -59,5 +60,13 @@ impl From<TrialError> for DesignError {
             TrialError::Stopped(stopped) => DesignError::Stopped(stopped),
             error => DesignError::Trial(error),
         }
+    }
+}
+
+/// Refuses a project that requires a step that no controller makes on its rig.
+pub(super) fn refuse_impossible_steps(setup: &Setup<'_>, problem: &RobustProblem) -> Result<(), DesignError> {
+    match impossible_steps(setup, problem) {
+        none if none.is_empty() => Ok(()),
+        found => Err(DesignError::ImpossibleSteps(found)),
     }
 }

@@ -221,7 +221,7 @@ fn misses_in_time(view: &ProjectDesign, one: &ReachedStructure) -> bool {
 
 /// A structure beside the one that is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Beside {
+enum BesideTaken {
     /// It is shorter, or one of both is not known by a number.
     Open,
     /// It gains nothing.
@@ -233,15 +233,15 @@ enum Beside {
 }
 
 /// The gain of a structure over the one that is taken, by what both are compared by.
-fn beside_taken(view: &ProjectDesign, one: &ReachedStructure) -> Beside {
+fn beside_taken(view: &ProjectDesign, one: &ReachedStructure) -> BesideTaken {
     let taken = view.structures.iter().find(|other| other.is_chosen && other.order <= one.order);
-    let Some((taken, earned_db)) = taken.zip(earned_per_pole_db(view)) else { return Beside::Open };
-    let Some((own_db, taken_db)) = one.compared_db.zip(taken.compared_db) else { return Beside::Open };
+    let Some((taken, earned_db)) = taken.zip(earned_per_pole_db(view)) else { return BesideTaken::Open };
+    let Some((own_db, taken_db)) = one.compared_db.zip(taken.compared_db) else { return BesideTaken::Open };
     let further = (one.order - taken.order).max(1) as f64;
     match taken_db - own_db {
-        gained_db if gained_db >= earned_db * further => Beside::WorthItsPoles,
-        gained_db if gained_db > 0.0 && one.order > taken.order => Beside::NotWorthItsPoles,
-        _ => Beside::NotBetter,
+        gained_db if gained_db >= earned_db * further => BesideTaken::WorthItsPoles,
+        gained_db if gained_db > 0.0 && one.order > taken.order => BesideTaken::NotWorthItsPoles,
+        _ => BesideTaken::NotBetter,
     }
 }
 
@@ -255,12 +255,12 @@ fn ending_words(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
         StructureEnding::Missed => "missed",
         ending @ (StructureEnding::Met | StructureEnding::NotEarned) => {
             match (ending, beside_taken(view, one)) {
-                (StructureEnding::Met, Beside::Open | Beside::WorthItsPoles) => "met",
-                (StructureEnding::Met, Beside::NotBetter) => "met, not better",
-                (StructureEnding::Met, Beside::NotWorthItsPoles) => "met, not worth its poles",
-                (_, Beside::NotBetter) => "not better",
-                (_, Beside::NotWorthItsPoles) => "not worth its poles",
-                (_, Beside::Open | Beside::WorthItsPoles) => GIVEN_UP,
+                (StructureEnding::Met, BesideTaken::Open | BesideTaken::WorthItsPoles) => "met",
+                (StructureEnding::Met, BesideTaken::NotBetter) => "met, not better",
+                (StructureEnding::Met, BesideTaken::NotWorthItsPoles) => "met, not worth its poles",
+                (_, BesideTaken::NotBetter) => "not better",
+                (_, BesideTaken::NotWorthItsPoles) => "not worth its poles",
+                (_, BesideTaken::Open | BesideTaken::WorthItsPoles) => GIVEN_UP,
             }
         }
         StructureEnding::NotConverged => "not converged",

@@ -109,7 +109,8 @@ fn in_order<One>(mut others: Vec<One>, of: impl Fn(&One) -> (f64, usize)) -> Vec
 }
 
 /// A structure as it was found, behind the prefilter of a design where it has none. A gain alone
-/// leaves |T(0)| < 1, so that the prefilter of a design with an integrator gets a gain that is free.
+/// leaves |T(0)| < 1, so that the prefilter of a design with an integrator gets a gain that is
+/// free.
 fn begun_from(tried: &TriedStructure, told: &ProjectDesign) -> Design {
     let design = &told.design;
     let mut free_numbers = tried.free_numbers.clone();

@@ -1,0 +1,42 @@
+//! Required steps that no controller makes on the rig, each with the key that states it and what
+//! would satisfy it.
+
+mod in_time;
+mod on_rig;
+
+use phea_qft::family::{Extent, Family, UncertainFamily, vertices};
+
+use crate::project::LateError;
+use crate::robust::RobustProblem;
+use crate::setup::Setup;
+
+/// Plants of a box that are examined: corners, and members.
+const CORNERS: usize = 8;
+const MEMBERS: usize = 8;
+/// Coordinates of a box whose corners are listed.
+const COORDINATES_MAXIMUM: usize = 8;
+
+/// Steps that the project requires and that no controller makes on its rig: shorter than a delay,
+/// or beyond what valve, piston or force sensor do. Found before any search.
+pub(crate) fn impossible_steps(setup: &Setup<'_>, problem: &RobustProblem) -> Vec<LateError> {
+    let few = few_plants(&problem.family);
+    [in_time::findings(setup, problem), on_rig::findings(setup, problem, &few)].concat()
+}
+
+/// The nominal plant, some corners and some members: what is impossible for these is impossible for
+/// the family.
+pub(crate) fn few_plants(family: &Family) -> Family {
+    let Family::Uncertain(uncertain) = family else { return family.clone() };
+    let strided = |plants: &[Vec<f64>], most: usize| -> Vec<Vec<f64>> {
+        plants.iter().step_by(plants.len().div_ceil(most).max(1)).chain(plants.last()).cloned().collect()
+    };
+    let dimension = uncertain.coordinates().len();
+    let corners = match uncertain.extent() == Extent::Box && (1..=COORDINATES_MAXIMUM).contains(&dimension) {
+        true => vertices(uncertain.plant(), uncertain.coordinates()).unwrap_or_default(),
+        false => vec![],
+    };
+    let members = [strided(&corners, CORNERS), strided(uncertain.members(), MEMBERS)].concat();
+    let plant = uncertain.plant().clone();
+    let few = UncertainFamily::new(plant, vec![], members, Extent::Members);
+    few.map_or_else(|_| family.clone(), Family::Uncertain)
+}
