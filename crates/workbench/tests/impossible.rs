@@ -3,8 +3,12 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
-use crate::ask::json;
+use crate::ask::{json, load};
 use phea_workbench::command::Request;
+use phea_workbench::design::{DesignError, design_project};
+use phea_workbench::report::report;
+use phea_workbench::setup::Setup;
+use phea_workbench::source::Memory;
 use serde_json::Value;
 
 /// A plant with this denominator and delay, a controller, and specifications.
@@ -201,6 +205,28 @@ fn a_step_beyond_the_stall_force_or_the_sensor() {
         json(&to(most), &[], &[], &verify)["verdict"].as_str().unwrap().to_string()
     };
     assert_eq!((verdict(47.1).as_str(), verdict(47.2).as_str()), ("met", "not_proven"));
+}
+
+/// A step that no controller makes ends `design` with its line before any search, and stands on the
+/// first page of the report.
+#[test]
+fn an_impossible_step_ends_a_design_at_once() {
+    let to = |most: f64| {
+        let step =
+            format!("settling_time = \"5 s\"\ninitial_force = \"8 kN\"\namplitude = \"{} kN\"\n", most - 8.0);
+        rig(&format!("{step}[design]\nmaximum_order = 1\n"))
+    };
+    let loaded = load(&to(47.2), &[], &[]);
+    let setup = Setup::new(&loaded.project).unwrap();
+    let mut stages = 0;
+    let refused = design_project(&Memory::default(), &setup, None, &mut |_| {
+        stages += 1;
+        true
+    });
+    let Err(DesignError::ImpossibleSteps(found)) = refused else { panic!("{refused:?}") };
+    assert_eq!((found.len(), found[0].path.as_str(), stages), (1, "specification[0].amplitude", 0));
+    let page = report(&Memory::default(), &loaded, &setup, None, &mut |_| true).unwrap().html;
+    assert!(page.contains("no controller makes the step") && page.contains("stalls at 47.12 kN"));
 }
 
 /// The valve moves the force by at most U V(t): far less than 20 kN in 2 ms, and more in 1 s.

@@ -81,6 +81,32 @@ fn any_takes_the_shortest_that_is_met() {
     }
 }
 
+/// The names that were tried, in turn.
+fn names(outcome: &DesignOutcome) -> Vec<NamedStructure> {
+    outcome.tried().iter().filter_map(|one| one.name).collect()
+}
+
+/// Errors that are to vanish with w need an integrator, so that a gain alone is missed at low
+/// frequency; it is tried first where this is requested.
+#[test]
+fn a_gain_alone_is_tried_before_those_with_an_integrator() {
+    let choice = |with_gain_alone| {
+        let ControllerChoice::Any { maximum_order, from, earned_per_pole_db, .. } = any(6.0).controller
+        else {
+            unreachable!()
+        };
+        let controller = ControllerChoice::Any { maximum_order, from, earned_per_pole_db, with_gain_alone };
+        DesignOptions { controller, ..any(6.0) }
+    };
+    let with = outcome(&lag(0.5), &choice(true));
+    let gain = &with.tried()[0];
+    assert_eq!((gain.name, gain.ending), (Some(NamedStructure::Proportional), StructureEnding::Missed));
+    assert!(gain.binding.contains(&1), "{gain:?}");
+    assert_eq!(with.design.clone().unwrap().name, Some(NamedStructure::Integral));
+    let without = names(&outcome(&lag(0.5), &choice(false)));
+    assert_eq!(names(&with), [vec![NamedStructure::Proportional], without].concat());
+}
+
 /// With L = K/(s P(s)) the resonance makes T = x/(1 - x), x = k K/(2 D w): I reaches a margin m of
 /// both limits where K = m corner and x/(1 - x) = 0.5/m, which is 0.995 dB. A low pass before the
 /// resonance reaches more, and takes the place of I where it gains more than a pole must earn.
