@@ -1,6 +1,10 @@
 """Compares `phea identify` with the truth of servovalves whose recordings are made here, by equations that share no code with phea.
 
-    python comparisons/compare_valves.py [--seeds N] [--verified N] [--only WORD] [PHEA]  # or the variable PHEA; without either, what cargo builds
+    python comparisons/compare_valves.py [--seeds N] [--verified N] [--only WORD] [--jobs N] [--kept FILE] [PHEA]
+
+PHEA is also the variable PHEA, or without either what cargo builds. Nearly all of the time is phea's, so that `--jobs` processes share the processors.
+`--kept` names a file to which the answer to each recording is added; a recording whose answer is in it is not made again, so that a long count can be
+stopped and continued.
 
 `valve_records.py` makes the recordings. Of valves that phea's model matches, 95 % of the 95 % intervals must hold the truth, and no misfit may be
 reported; of the others it must be, and `phea verify` of a project that takes its valve from such recordings must not return "met". Cases that need
@@ -9,6 +13,7 @@ what phea lacks today are counted and printed, and nothing is required of them. 
 
 import argparse
 import collections
+import concurrent.futures
 import dataclasses
 import json
 import math
@@ -119,6 +124,14 @@ def project(bench, files):
     return text
 
 
+def interval(path, found):
+    """Value and ends of a coefficient's interval; nothing where it has none."""
+    one = found
+    for key in path.split("."):
+        one = one.get(key) if one else None
+    return [] if one is None or one["confidence_95"] is None else [one["value"], *one["confidence_95"]]
+
+
 class Asked:
     """phea, and what it returned of each case: intervals, misfits, refusals and verdicts."""
 
@@ -138,33 +151,34 @@ class Asked:
             sys.exit(f"{command} ended with {done.returncode}: {done.stderr}")
         return json.loads(done.stdout) if done.returncode < 2 else None
 
-    def case(self, case, index, seed, verified):
+    def answer(self, case, index, seed, verified):
+        """What phea says of one recording: misfit or refusal, the verdict, and of each coefficient the truth, value and interval."""
         files = recordings(case.valve, case.bench, np.random.default_rng([seed, index]))
-        self.sets[case.name] += 1
         with tempfile.TemporaryDirectory() as folder:
             for file, text in {"rig.toml": project(case.bench, files), **files}.items():
                 (pathlib.Path(folder) / file).write_text(text)
             found = self.run("identify", folder, case.bench)
-            if verified:
-                judged = self.run("verify", folder, case.bench)
-                self.verdicts[case.name][judged["verdict"] if judged else "refused"] += 1
+            judged = self.run("verify", folder, case.bench) if verified else None
+        verdict = (judged["verdict"] if judged else "refused") if verified else None
+        given = {"case": case.name, "seed": seed, "refused": found is None, "verdict": verdict}
         if found is None:
-            self.refused[case.name] += 1
-            return
-        self.misfits[case.name] += bool(found["misfits"])
-        for path, truth in truths(case, found["tare_pressure_pa"]).items():
-            self.count(case.name, path, truth, found)
+            return given
+        ends = {path: (truth, *interval(path, found)) for path, truth in truths(case, found["tare_pressure_pa"]).items()}
+        return given | {"misfit": bool(found["misfits"]), "coefficients": ends}
 
-    def count(self, name, path, truth, found):
-        """Of an interval: whether it holds, and the error over its deviation."""
-        one = found
-        for key in path.split("."):
-            one = one.get(key) if one else None
-        if one is None or one["confidence_95"] is None:
-            self.found[name, path].append((False, math.nan))
+    def count(self, given):
+        """Of each interval: whether it holds, and the error over its deviation."""
+        name = given["case"]
+        self.sets[name] += 1
+        if given["verdict"] is not None:
+            self.verdicts[name][given["verdict"]] += 1
+        if given["refused"]:
+            self.refused[name] += 1
             return
-        low, high = one["confidence_95"]
-        self.found[name, path].append((low <= truth <= high, (one["value"] - truth) * 3.92 / (high - low)))
+        self.misfits[name] += given["misfit"]
+        for path, (truth, *ends) in given["coefficients"].items():
+            value, low, high = ends or (math.nan,) * 3
+            self.found[name, path].append((low <= truth <= high, (value - truth) * 3.92 / (high - low)))
 
     def holding(self, cases, path=None):
         """How many intervals hold, and how many there are."""
@@ -235,27 +249,45 @@ def require_mismatched(asked, cases):
     asked.require(reported >= 0.95 * sets, f"a misfit is reported of {reported} of {sets} recordings that do not match")
 
 
+def answers(asked, cases, given):
+    """The answers to all recordings, seed by seed, those that were kept first."""
+    wanted = [(case, index, seed, seed <= given.verified and (case in MISMATCHED or case is MATCHED[0]))
+              for seed in range(1, given.seeds + 1) for index, case in cases]
+    kept = pathlib.Path(given.kept) if given.kept else None
+    known = [json.loads(line) for line in kept.read_text().splitlines()] if kept and kept.exists() else []
+    known = {(one["case"], one["seed"]): one for one in known}
+    missing = [one for one in wanted if (one[0].name, one[2]) not in known]
+    yield from (known[case.name, seed] for case, _, seed, _ in wanted if (case.name, seed) in known)
+    with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
+        for one in pool.map(lambda arguments: asked.answer(*arguments), missing):
+            if kept:
+                with kept.open("a") as file:
+                    file.write(json.dumps(one) + "\n")
+            yield one
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--seeds", type=int, default=SEEDS)
     parser.add_argument("--verified", type=int, default=1, help="seeds for which `phea verify` is run")
     parser.add_argument("--only", default="", help="a part of the names of the cases that are run")
+    parser.add_argument("--jobs", type=int, default=1, help="recordings at once")
+    parser.add_argument("--kept", help="file of the answers")
     parser.add_argument("phea", nargs="?", default=os.environ.get("PHEA", str(ROOT / "target/debug/phea")))
     given = parser.parse_args()
     asked = Asked(given.phea)
     # the number of a case seeds its noise
     cases = [(index, case) for index, case in [*enumerate(MATCHED), *enumerate(MISMATCHED, 100)] if given.only in case.name]
+    for one in answers(asked, cases, given):
+        asked.count(one)
     matched, mismatched = ([case for _, case in cases if case in group] for group in (MATCHED, MISMATCHED))
     print("| valve | intervals that hold | misfit reported | refused |\n|---|---|---|---|")
-    for index, case in cases:
-        if mismatched and case is mismatched[0]:
-            print("\n| not matched | misfit reported or refused | verdicts |\n|---|---|---|")
-        for seed in range(1, given.seeds + 1):
-            asked.case(case, index, seed, seed <= given.verified and (case in MISMATCHED or case is MATCHED[0]))
-        if case in MATCHED:
-            print_matched(asked, index + 1, case)
-        else:
-            print_mismatched(asked, case)
+    for case in matched:
+        print_matched(asked, MATCHED.index(case) + 1, case)
+    if mismatched:
+        print("\n| not matched | misfit reported or refused | verdicts |\n|---|---|---|")
+    for case in mismatched:
+        print_mismatched(asked, case)
     print_coefficients(asked, matched)
     require_matched(asked, [case for case in matched if case.is_required])
     require_mismatched(asked, mismatched)

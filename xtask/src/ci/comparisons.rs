@@ -98,7 +98,8 @@ pub(super) fn soak(root: &Path) -> Outcome {
         let python = python.to_string_lossy().into_owned();
         SEARCHES.iter().try_for_each(|script| quietly(root, &mut told, &python, &[script]))?;
         let random = quietly(root, &mut told, &python, &[RANDOM_VALVES, "--sets", "50", &phea]);
-        let recorded = [RECORDED_VALVES, "--seeds", "400", "--verified", "20", &phea];
+        let jobs = std::thread::available_parallelism().map_or(1, usize::from).to_string();
+        let recorded = [RECORDED_VALVES, "--seeds", "400", "--verified", "20", "--jobs", &jobs, &phea];
         random.and(quietly(root, &mut told, &python, &recorded))
     });
     print!("{told}");
