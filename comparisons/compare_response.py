@@ -6,7 +6,8 @@ A filtered noise with noise in its output, and a multisine that repeats. For the
 give H1 and the coherence; for the second, NumPy's transform of the averaged periods gives the response. Then the discs of
 95 % of records that do not repeat, in the open and in the closed loop, from its reference or by its controller, hold the
 response of SciPy's discretisation as often as they state, and a closed loop without either, or with a controller of half
-the gain, is refused; `response_coverage.py` has more of them.
+the gain, is refused. Two records of a linear plant at two amplitudes are reported to differ as often as stated, those of a
+plant with a dead band nearly always; `response_coverage.py` has more of them.
 """
 
 import json
@@ -101,6 +102,20 @@ def refused():
     assert row["refused"] == 5 and "[controller] was not that of the test" in row["why"], row
 
 
+def levels(case, count=8):
+    """Records of every excitation at two amplitudes: at most 5 % of those of a linear plant are reported to differ, but for chance."""
+    (case,) = [one for one in response_coverage.LEVELS if one[0] == case]
+    told, compared = np.sum([response_coverage.reported(PHEA, kind, case, count) for kind in response_records.KINDS], axis=0)
+    assert compared == count * len(response_records.KINDS), compared
+    if case[2]:
+        # noise, which mixes all amplitudes of a record, shows a dead band in five of six pairs, the others in all
+        assert told >= 0.9 * compared, f"{case[0]}: {told} of {compared}"
+    else:
+        # 99.9 % of a binomial distribution
+        assert told <= 0.05 * compared + 3.1 * (0.0475 * compared) ** 0.5, f"{case[0]}: {told} of {compared}"
+    return f"{case[0]}: {told} of {compared}"
+
+
 print(f"H1 and coherence of noise: {noise():.1e}; multisine: {multisine():.1e} (relative difference from SciPy and NumPy)")
 for kind in response_records.KINDS[1:]:
     print("95 % discs that hold:", held(kind, "open"))
@@ -108,3 +123,5 @@ for kind in ["noise", "logarithmic sweep", "PRBS"]:
     for case in ["closed, reference", "closed, controller"]:
         print("95 % discs that hold:", held(kind, case))
 refused()
+for case in response_coverage.LEVELS:
+    print("reported to differ:", levels(case[0]))

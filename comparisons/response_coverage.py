@@ -6,6 +6,9 @@ For each excitation, in the open loop, with noise on the recorded input too, and
 the reference in the file, and without it where the project declares the controller, or one of another gain: recordings
 that gave a response, were refused, or were warned of; discs; the percentage of them that hold the truth, over all
 frequencies and at the worst of ten bands; the median radius over the response.
+
+Then pairs of records of one operating point at two amplitudes: how many of them are reported to differ, of the linear plant
+and of one with a dead band.
 """
 
 import argparse
@@ -92,6 +95,34 @@ def counted(phea, kind, case, count):
     )
 
 
+# the amplitudes of two records, and the dead band of the plant
+LEVELS = [("linear, ten times the amplitude", (0.2, 2.0), 0.0), ("linear, twice the amplitude", (0.5, 1.0), 0.0)]
+LEVELS += [("dead band of 0.2, three times the amplitude", (0.5, 1.5), 0.2)]
+
+
+def differ(phea, kind, case, seed):
+    """True where phea reports that the records of two amplitudes differ; None where it compares nothing."""
+    _, amplitudes, dead_band = case
+    with tempfile.TemporaryDirectory() as folder:
+        names = [f"{index}.csv" for index in range(len(amplitudes))]
+        for name, amplitude in zip(names, amplitudes):
+            columns = np.column_stack(records.at_amplitude(kind, seed, amplitude, dead_band))
+            np.savetxt(pathlib.Path(folder) / name, columns, "%.10g", ",", header="time_s,input,output", comments="")
+        declared = pathlib.Path(folder) / "rig.toml"
+        declared.write_text(records.project_of_levels(names))
+        done = subprocess.run([phea, "identify", "--of", "response", str(declared), "--json"], capture_output=True, text=True)
+    assert done.returncode in (0, 1), done.stderr
+    (comparison,) = json.loads(done.stdout)["response"]["comparisons"]
+    assert comparison["false_alarm_probability"] == 0.05, comparison
+    return comparison["differences"] > 0 if comparison["frequencies"] else None
+
+
+def reported(phea, kind, case, count):
+    """How many pairs are reported to differ, and how many are compared."""
+    found = [one for one in (differ(phea, kind, case, seed) for seed in range(count)) if one is not None]
+    return sum(found), len(found)
+
+
 def main():
     reader = argparse.ArgumentParser()
     reader.add_argument("phea")
@@ -112,6 +143,13 @@ def main():
             else:
                 line += f" {row['why'][:160]!r}"
             print(line, flush=True)
+    print("\n| two amplitudes | excitation | reported to differ |\n|---|---|---|")
+    for case in LEVELS:
+        for kind in records.KINDS:
+            if (asked.only and asked.only != kind) or (asked.case and asked.case != case[0]):
+                continue
+            told, compared = reported(asked.phea, kind, case, asked.recordings)
+            print(f"| {case[0]} | {kind} | {told} of {compared} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -38,6 +38,12 @@ controller = "declared"
 """
 
 
+def project_of_levels(files):
+    """A project whose records are those of one operating point."""
+    plant = 'schema = 1\n[plant]\nnumerator = "40"\ndenominator = "0.08*s + 1"\n'
+    return plant + "".join(f'[[identify.response]]\nfile = "{file}"\noperating_point = "middle"\n' for file in files)
+
+
 def truth(frequencies):
     """Response of the held plant from row to row; rad/s."""
     return signal.freqz(NUMERATOR, DENOMINATOR, np.asarray(frequencies) * STEP)[1]
@@ -72,13 +78,26 @@ def excitation(kind, random):
     raise ValueError(kind)
 
 
+def noise(random, size):
+    """Coloured noise of an output."""
+    return signal.lfilter([np.sqrt(1 - 0.9**2)], [1, -0.9], random.normal(size=ROWS + 500))[500:] * size
+
+
+def at_amplitude(kind, seed, amplitude, dead_band=0.0, output_noise=0.5):
+    """Columns time, input and output of the open loop, whose actuator lets nothing through within half of the dead band to either side of zero."""
+    random = np.random.default_rng([KINDS.index(kind), seed, round(1e3 * amplitude)])
+    given = amplitude * excitation(kind, random)
+    passed = np.sign(given) * np.maximum(np.abs(given) - dead_band / 2, 0)
+    return np.arange(ROWS) * STEP, given, signal.lfilter(NUMERATOR, DENOMINATOR, passed) + noise(random, output_noise)
+
+
 def recording(kind, loop, seed, output_noise=0.5, input_noise=0.0):
     """Columns time, reference, input and output. In the closed loop the excitation is added to the reference."""
     random = np.random.default_rng([KINDS.index(kind), seed, loop == CLOSED])
     moved = excitation(kind, random)
-    noise = signal.lfilter([np.sqrt(1 - 0.9**2)], [1, -0.9], random.normal(size=ROWS + 500))[500:] * output_noise
+    disturbed = noise(random, output_noise)
     if loop == OPEN:
-        given, shown = moved, signal.lfilter(NUMERATOR, DENOMINATOR, moved) + noise
+        given, shown = moved, signal.lfilter(NUMERATOR, DENOMINATOR, moved) + disturbed
     else:
         # r -> y, r -> u and noise -> both, of the loop u = C (r - y), C = (Kp + Ki T/(z - 1))
         top = np.array([PROPORTIONAL, INTEGRAL * STEP - PROPORTIONAL])
@@ -88,9 +107,9 @@ def recording(kind, loop, seed, output_noise=0.5, input_noise=0.0):
         assert np.abs(np.roots(around)).max() < 1
         moved = 20 * moved
         of_loop = np.convolve(top, DENOMINATOR)
-        given = signal.lfilter(of_loop, around, moved - noise)
+        given = signal.lfilter(of_loop, around, moved - disturbed)
         shown = signal.lfilter(np.convolve(top, NUMERATOR), around, moved) + signal.lfilter(
-            np.convolve(bottom, DENOMINATOR), around, noise
+            np.convolve(bottom, DENOMINATOR), around, disturbed
         )
     given = given + input_noise * given.std() * random.normal(size=ROWS)
     return np.arange(ROWS) * STEP, moved, given, shown
