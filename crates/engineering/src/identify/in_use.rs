@@ -169,8 +169,8 @@ fn settings(
     settings.extend(others.map(|one| format!("{}={:e}", one.path, one.value)));
     settings.push(format!("valve.leakage_model={model}"));
     settings.push(format!("valve.tare_pressure={:e}", found.tested.tare_reference_drop));
-    let misfit = found.misfits().into_iter().next();
-    settings.extend(misfit.map(|one| format!("valve.misfit={}", found.misfit_in_toml(&one))));
+    let misfit = found.declared_misfit();
+    settings.extend(misfit.map(|one| format!("valve.misfit={}", one.in_toml())));
     let directions: Vec<String> =
         region.iter().flat_map(|region| &region.directions).map(direction).collect();
     if !directions.is_empty() {

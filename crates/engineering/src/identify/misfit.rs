@@ -9,7 +9,8 @@ use phea_dynamics::order::ends;
 
 use super::recording::{SignalKind, TestBranch};
 use super::{Identification, SignalFit};
-use crate::quantity::{VOLTAGE, display, significant};
+use crate::project::DeclaredMisfit;
+use crate::quantity::{VOLTAGE, display};
 
 /// Correlation of neighbouring residuals up to which they are noise: those of recordings that the
 /// model explains reach 0.23.
@@ -88,10 +89,10 @@ impl Identification {
         format!("{signal} of {file}, most while the command {way} from {from} to {to}")
     }
 
-    /// The misfit as the value of `valve.misfit`.
-    pub fn misfit_in_toml(&self, misfit: &Misfit) -> String {
-        let at = self.misfit_at(misfit).replace(['"', '\\'], "/");
-        format!("{{ share = {}, at = \"{at}\" }}", significant(misfit.share, 3))
+    /// The greatest misfit as a project states it: the value of `valve.misfit`.
+    pub fn declared_misfit(&self) -> Option<DeclaredMisfit> {
+        let misfit = self.misfits().into_iter().next()?;
+        Some(DeclaredMisfit { share: misfit.share, at: Some(self.misfit_at(&misfit)) })
     }
 
     /// The part of the branches where the residuals of a signal have the greatest mean.

@@ -391,7 +391,7 @@ pub fn files(found: &Identification) -> Vec<OutputFile> {
         more.push_str(&format!("\n[valve.leakage_shapes]\n{shapes}"));
     }
     let files: Vec<&str> = found.recordings.iter().map(|one| one.file.as_str()).collect();
-    let misfit = found.misfits().first().map(|one| format!("misfit = {}\n", found.misfit_in_toml(one)));
+    let misfit = found.declared_misfit().map(|one| format!("misfit = {}\n", one.in_toml()));
     let misfit = misfit.unwrap_or_default();
     let text = format!(
         "# Identified by phea from {}.\n[valve]\nnominal_voltage = \"{} V\"\ntransition_pressure = \"{} Pa\"\ntare_pressure = \"{} Pa\"\nleakage_model = \"{}\"\n{}{misfit}\n[valve.flow_coefficients]    # m3/(s.Pa^0.5)\n{}\n[valve.leakage_coefficients]\n{}{more}",
