@@ -18,6 +18,7 @@ use super::channels::Channel;
 use super::evidence::{DECISIVE, criteria, independent_share};
 use super::fit::{self, Fit};
 use super::recording::Recording;
+use crate::golden_section::least_between;
 
 /// Fits with other memories at most.
 const PASSES: usize = 6;
@@ -25,7 +26,7 @@ const PASSES: usize = 6;
 /// Change of a memory, over the width of the hysteresis, that changes nothing.
 const SETTLED: f64 = 2e-3;
 
-/// Memories that are tried between both ends, and steps of the section that follows.
+/// Memories that are tried between both ends, and steps of the golden section that follows.
 const TRIED: i32 = 16;
 const SECTIONS: usize = 24;
 
@@ -125,7 +126,8 @@ fn memories(fit: &Fit<'_>) -> Vec<Option<FirstMemory>> {
         let at = |place: i32| half * f64::from(place) / f64::from(TRIED / 2);
         let tried = (-TRIED / 2..=TRIED / 2).map(|place| (place, begun.loss(at(place))));
         let (place, _) = tried.min_by(|one, other| one.1.total_cmp(&other.1))?;
-        let memory = least([at(place - 1).max(-half), at(place + 1).min(half)], |memory| begun.loss(memory));
+        let near = [at(place - 1).max(-half), at(place + 1).min(half)];
+        let memory = least_between(near, SECTIONS, |memory| begun.loss(memory));
         let rows = begun.inputs.len() as f64;
         let gain = 2.0 * share * (begun.loss(0.0) - begun.loss(memory)) - portable::ln(rows.max(1.0));
         (rows > 0.0).then_some(FirstMemory { memory, gain })
@@ -172,13 +174,4 @@ impl<'f> Begun<'f> {
         };
         together.channels.iter().filter(|channel| channel.recording == self.index).map(of_channel).sum()
     }
-}
-
-/// Where a function is least between two ends, by thirds.
-fn least([mut low, mut high]: [f64; 2], of: impl Fn(f64) -> f64) -> f64 {
-    for _ in 0..SECTIONS {
-        let third = (high - low) / 3.0;
-        if of(low + third) < of(high - third) { high -= third } else { low += third }
-    }
-    f64::midpoint(low, high)
 }

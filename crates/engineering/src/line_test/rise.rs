@@ -7,6 +7,7 @@ use phea_hydraulics::fluid::EntrainedAir;
 
 use super::rise_air::AeratedOil;
 use super::rise_noise::{Whitened, whitened};
+use crate::golden_section::least_between;
 
 /// Where a displaced volume is from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -254,18 +255,7 @@ fn fitted(record: &RiseRecord, pressures: [f64; 2], model: RiseModel) -> Option<
     let step = (most - least) / coarse as f64;
     let grid = (0..=coarse).map(|index| least + step * index as f64);
     let best = grid.map(|ratio| (ratio, cost(ratio))).min_by(|one, other| one.1.total_cmp(&other.1))?.0;
-    // golden section between the neighbours of the best
-    let golden = 0.618_033_988_749_895;
-    let [mut low, mut high] = [best - step, best + step];
-    for _ in 0..fine {
-        let [left, right] = [high - golden * (high - low), low + golden * (high - low)];
-        if cost(left) < cost(right) {
-            high = right;
-        } else {
-            low = left;
-        }
-    }
-    let ratio = f64::midpoint(low, high);
+    let ratio = least_between([best - step, best + step], fine, cost);
     let solved = at(ratio)?;
     let of_first = |column: &Vec<f64>| column.first().copied().unwrap_or(0.0);
     let (volume, others) = columns.split_last()?;
