@@ -34,17 +34,19 @@ fn lag_after(text: &str, share: f64) -> f64 {
 /// and nothing is left unexplained.
 #[test]
 fn a_test_after_other_cycles_is_explained() {
-    let files = recorded(&["bench.cycles=2", "bench.duration=\"480 s\""]);
-    let (_, gain) = files.iter().find(|(name, _)| name.starts_with("pressure_gain")).unwrap();
-    for share in [0.1, 0.25, 0.45] {
+    let mut held = 0;
+    // the second is cut just after the command has turned: the lag is still that of the way before
+    for (seed, share) in (1..).zip([0.1, 0.13, 0.25, 0.45]) {
+        let seed = format!("bench.seed={seed}");
+        let files = recorded(&["bench.cycles=2", "bench.duration=\"480 s\"", &seed]);
+        let (_, gain) = files.iter().find(|(name, _)| name.starts_with("pressure_gain")).unwrap();
         let found = identified(&cut(&files, share));
         assert_eq!(found["misfits"].as_array().unwrap().len(), 0, "{share}: {}", found["misfits"]);
         let tests = found["tests"].as_array().unwrap();
         let test = tests.iter().find(|one| one["file"].as_str().unwrap().starts_with("pressure_gain"));
         let told = test.unwrap()["memory_at_start_v"].as_f64().unwrap();
         let lag = lag_after(gain, share);
-        assert!((told - lag).abs() < 8e-3, "{share}: {told} for {lag}");
-        let mut held = 0;
+        assert!((told - lag).abs() < 4e-3, "{share}: {told} for {lag}");
         for (path, truth) in TRUTH {
             let interval = found.pointer(&format!("{path}/confidence_95")).unwrap();
             let [low, high] = [0, 1].map(|end| interval[end].as_f64().unwrap());
@@ -52,8 +54,9 @@ fn a_test_after_other_cycles_is_explained() {
             assert!((truth - middle).abs() < 1.5 * (high - low), "{share} {path}: {truth} {low} {high}");
             held += usize::from((low..=high).contains(&truth));
         }
-        assert!(held >= 9, "{share}: {held} of 12");
     }
+    // ORIGIN: analytic, 48 intervals of 95 %: 41 or more with a probability of 99.8 %
+    assert!(held >= 41, "{held} of 48");
 }
 
 /// A test that begins at rest without memory has none.
