@@ -232,6 +232,36 @@ fn the_pressure_sensitivity_is_that_of_the_dividers() {
     }
 }
 
+/// The flow gain of a valve with an overlap is that beyond it, and is not called that at null: K_c
+/// at null does not follow from it.
+#[test]
+fn the_numbers_of_a_valve_with_lap_say_where_they_are_read() {
+    let overlap = "valve.lap={ positive = 0.003, negative = 0.003 }";
+    let [with, without] = [vec![overlap], vec![]].map(|lap| identified(&[&MEASURED[..], &lap].concat()));
+    let [of_lap, proportional] = [&with, &without].map(|answer| -> Value {
+        let found: Value = serde_json::from_str(&answer.json).unwrap();
+        found["simple_calculations"].clone()
+    });
+    for found in [&of_lap, &proportional] {
+        // ORIGIN: analytic, K_i K_j/sqrt(K_i^2 + K_j^2) sqrt(p_S)/U_n of thesis Table 5.1, edges 3
+        // and 6, and 4 and 5, at 70 bar
+        near(found, "flow_gain_extending_m3_per_s_v", 6.511e-5, 1e-2);
+        near(found, "flow_gain_retracting_m3_per_s_v", 4.132e-5, 1e-2);
+        near(found, "flow_gain_pressure_pa", 7e6, 1e-3);
+        near(found, "leakage_pressure_pa", 7e6, 1e-3);
+        // 3 and 15 % of 10 V
+        assert_eq!(found["flow_gain_commands_v"], serde_json::json!([0.3, 1.5]));
+    }
+    assert!(
+        of_lap["flow_pressure_coefficient"].is_null() && proportional["flow_pressure_coefficient"].is_f64()
+    );
+    for words in ["flow gain beyond the lap K_qU, positive command", "between 300 mV and 1.5 V from null"] {
+        assert!(with.text.contains(words), "{words} is not in\n{}", with.text);
+    }
+    assert!(!with.text.contains("at null K_qU") && !with.text.contains("at null K_c  "), "{}", with.text);
+    assert!(without.text.contains("flow gain at null K_qU, positive command"), "{}", without.text);
+}
+
 /// People read the numbers with their equations and what the thesis prints.
 #[test]
 fn the_table_stands_beside_the_published_numbers() {

@@ -58,6 +58,10 @@ pub struct SimpleCalculations {
     /// dq/dU near null at the usual supply pressure, for positive and negative commands, in m3/(s
     /// V).
     pub flow_gains: [Option<CurveReading>; 2],
+    /// Commands from null, to either side, between which the flow gains are read, in V.
+    pub flow_gain_commands: Option<[f64; 2]>,
+    /// p_S - p_T that they are stated at.
+    pub flow_gain_pressure: f64,
     /// d(p_A - p_B)/dU at null with blocked ports, in Pa/V.
     pub pressure_sensitivity: Option<CurveReading>,
 }
@@ -147,8 +151,9 @@ pub(super) fn simple_calculations(
         }
     }
     let usual_drop = usual_drop(recordings);
-    found.flow_gains =
+    (found.flow_gains, found.flow_gain_commands) =
         gains::flow_gains(recordings, tested, found.null_bias().map(|one| one.value), usual_drop);
+    found.flow_gain_pressure = usual_drop;
     found.pressure_sensitivity = gains::pressure_sensitivity(recordings);
     let both = found.flow_coefficients.into_iter().flatten().collect::<Vec<_>>();
     let mean = CurveReading::mean(&both).filter(|_| both.len() == 2);

@@ -210,7 +210,7 @@ pub fn json(
             .collect(),
         not_told: found.untold.iter().map(untold).collect(),
         joint_region: region.map(body),
-        simple_calculations: numbers::simple_body(&found.simple),
+        simple_calculations: numbers::simple_body(found),
         starts: found.starts[0],
         starts_that_agree: found.starts[1],
         converged: found.has_converged(),

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{COEFFICIENT_NAMES, CurveReading, Identification, NullMethod, NullReading, SimpleCalculations};
+use super::{COEFFICIENT_NAMES, CurveReading, Identification, NullMethod, NullReading};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::DeclaredActuator;
+use crate::quantity::{PRESSURE, VOLTAGE, display};
 
 #[derive(Serialize)]
 pub(super) struct SimpleBody {
@@ -18,6 +19,8 @@ pub(super) struct SimpleBody {
     null_leakage_m3_per_s: Option<f64>,
     leakage_shape: Option<f64>,
     tare_flow_m3_per_s: Option<f64>,
+    /// Drop from supply to tank that leakage and tare flow are read at.
+    leakage_pressure_pa: Option<f64>,
     tare_share: Option<f64>,
     null_bias_v: Option<f64>,
     null_rising_v: Option<f64>,
@@ -27,13 +30,19 @@ pub(super) struct SimpleBody {
     hysteresis_v: Option<f64>,
     flow_gain_extending_m3_per_s_v: Option<f64>,
     flow_gain_retracting_m3_per_s_v: Option<f64>,
+    /// Commands from null between which they are read, to either side.
+    flow_gain_commands_v: Option<[f64; 2]>,
+    /// Drop from supply to tank that they are stated at.
+    flow_gain_pressure_pa: Option<f64>,
     pressure_sensitivity_pa_per_v: Option<f64>,
+    /// None of edges with a lap, whose flow gain at null is not the one that is read.
     flow_pressure_coefficient: Option<f64>,
     /// Intervals of those that have one.
     confidence_95: BTreeMap<&'static str, [f64; 2]>,
 }
 
-pub(super) fn simple_body(found: &SimpleCalculations) -> SimpleBody {
+pub(super) fn simple_body(identified: &Identification) -> SimpleBody {
+    let found = &identified.simple;
     let mut confidence_95 = BTreeMap::new();
     let mut read = |name: &'static str, reading: Option<CurveReading>| {
         confidence_95.extend(reading.and_then(|reading| Some((name, reading.interval?))));
@@ -50,6 +59,7 @@ pub(super) fn simple_body(found: &SimpleCalculations) -> SimpleBody {
         null_leakage_m3_per_s: read("null_leakage_m3_per_s", found.null_leakage),
         leakage_shape: found.leakage_shape,
         tare_flow_m3_per_s: read("tare_flow_m3_per_s", found.tare_flow),
+        leakage_pressure_pa: found.leakage_pressure,
         tare_share: read("tare_share", found.tare_share()),
         null_bias_v: read("null_bias_v", found.null_bias()),
         null_rising_v: read("null_rising_v", rising.map(|null| null.command)),
@@ -58,10 +68,17 @@ pub(super) fn simple_body(found: &SimpleCalculations) -> SimpleBody {
         hysteresis_v: read("hysteresis_v", found.hysteresis()),
         flow_gain_extending_m3_per_s_v: read("flow_gain_extending_m3_per_s_v", gain_extending),
         flow_gain_retracting_m3_per_s_v: read("flow_gain_retracting_m3_per_s_v", gain_retracting),
+        flow_gain_commands_v: found.flow_gain_commands,
+        flow_gain_pressure_pa: found.flow_gain_commands.map(|_| found.flow_gain_pressure),
         pressure_sensitivity_pa_per_v: read("pressure_sensitivity_pa_per_v", found.pressure_sensitivity),
-        flow_pressure_coefficient: read("flow_pressure_coefficient", found.flow_pressure_coefficient()),
+        flow_pressure_coefficient: read("flow_pressure_coefficient", coefficient_at_null(identified)),
         confidence_95,
     }
+}
+
+/// K_c, which is that at null where the flow gain that is read is: of edges without lap.
+fn coefficient_at_null(found: &Identification) -> Option<CurveReading> {
+    found.simple.flow_pressure_coefficient().filter(|_| !found.tested.terms.lap)
 }
 
 /// A line of the table: what it is, its equation, its unit, and what the thesis prints of its
@@ -85,7 +102,7 @@ const VALVE_OF_THESIS: &str = "moog_760_c263a";
 pub(crate) fn tell(found: &Identification, of_thesis: bool, out: &mut Document) {
     let mut headings = vec!["number", "read", "95 % from", "to", "unit", "by"];
     headings.extend(of_thesis.then_some("Ledezma (2019)"));
-    let rows = lines(&found.simple).into_iter().filter_map(|(line, reading)| {
+    let rows = lines(found).into_iter().filter_map(|(line, reading)| {
         let reading = reading?;
         let number = |value: f64| Cell::from(significant(value, 4));
         let ends = reading.interval.map(|ends| ends.map(number));
@@ -107,7 +124,28 @@ pub(crate) fn tell(found: &Identification, of_thesis: bool, out: &mut Document) 
     }
     out.section(if of_thesis { "Numbers of section 5.2" } else { "Numbers read by hand" }, table);
     out.sentences(of_thesis.then(|| "The last column is what the thesis prints of the valve of its rig, a Moog 760 C263-A at 70 bar. Equation 4.12 is corrected: each of two edges takes half the drop. The peak that it states as 1.67 % is of the measured 88 % of the rated flow. The data sheet of that valve allows a tare flow of 42.6 to 65.0 % of the leakage at null.".to_string()));
+    out.sentences(read_at(found));
     out.sentences(null_offset(found));
+}
+
+/// At which pressures and commands the numbers were read.
+fn read_at(found: &Identification) -> Vec<String> {
+    let simple = &found.simple;
+    let bar = |pressure: f64| display(pressure, &PRESSURE, 3);
+    let leakage = simple
+        .leakage_pressure
+        .map(|pressure| format!("Leakage and tare flow are read at {} from supply to tank.", bar(pressure)));
+    let gain = simple.flow_gain_commands.map(|commands| {
+        let [from, to] = commands.map(|command| display(command, &VOLTAGE, 3));
+        let drop = bar(simple.flow_gain_pressure);
+        format!("The flow gain is read between {from} and {to} from null, and stated at {drop} from supply to tank without load.")
+    });
+    let lap = (found.tested.terms.lap && simple.flow_gain_commands.is_some()).then(|| {
+        "The edges have a lap: at null the flow gain is another than beyond it, so that K_c at null does not follow from these numbers; the \
+         coefficients above give both."
+            .to_string()
+    });
+    leakage.into_iter().chain(gain).chain(lap).collect()
 }
 
 /// What a null was read from, in JSON.
@@ -150,8 +188,25 @@ fn null_offset(found: &Identification) -> Option<String> {
     })
 }
 
-fn lines(simple: &SimpleCalculations) -> Vec<(NumberLine, Option<CurveReading>)> {
+/// What both flow gains and the pressure sensitivity are called.
+fn slopes(has_lap: bool) -> [&'static str; 3] {
+    match has_lap {
+        false => [
+            "flow gain at null K_qU, positive command",
+            "flow gain at null K_qU, negative command",
+            "pressure sensitivity at null K_pU",
+        ],
+        true => [
+            "flow gain beyond the lap K_qU, positive command",
+            "flow gain beyond the lap K_qU, negative command",
+            "pressure sensitivity where p_A = p_B, K_pU",
+        ],
+    }
+}
+
+fn lines(found: &Identification) -> Vec<(NumberLine, Option<CurveReading>)> {
     const COEFFICIENT: &str = "m3/(s.Pa^0.5)";
+    let simple = &found.simple;
     let line = |name, equation, unit, thesis| NumberLine { name, equation, unit, thesis };
     let percent = |reading: Option<CurveReading>| {
         reading.map(|one| CurveReading {
@@ -176,9 +231,10 @@ fn lines(simple: &SimpleCalculations) -> Vec<(NumberLine, Option<CurveReading>)>
     let ret = line("flow coefficient K_vp, negative command", "likewise", COEFFICIENT, Some("2.97e-7"));
     let rated = line("flow, share of the rated one", "K_vp sqrt(p_n/2)/q_n", "%", Some("88"));
     let width = line("hysteresis", "U_rising - U_falling", "V", Some("0.128"));
-    let gain = line("flow gain at null K_qU, positive command", "dq/dU", "m3/(s.V)", Some("5.4e-5"));
-    let back = line("flow gain at null K_qU, negative command", "likewise", "m3/(s.V)", Some("5.4e-5"));
-    let sensitivity = line("pressure sensitivity at null K_pU", "d(p_A - p_B)/dU", "Pa/V", None);
+    let [positive, negative, equal] = slopes(found.tested.terms.lap);
+    let gain = line(positive, "dq/dU", "m3/(s.V)", Some("5.4e-5"));
+    let back = line(negative, "likewise", "m3/(s.V)", Some("5.4e-5"));
+    let sensitivity = line(equal, "d(p_A - p_B)/dU", "Pa/V", None);
     let coefficient =
         line("flow-pressure coefficient at null K_c", "K_qU/K_pU", "m3/(s.Pa)", Some("6.42e-13"));
     vec![
@@ -201,6 +257,6 @@ fn lines(simple: &SimpleCalculations) -> Vec<(NumberLine, Option<CurveReading>)>
         (gain, gain_extending),
         (back, gain_retracting),
         (sensitivity, simple.pressure_sensitivity),
-        (coefficient, simple.flow_pressure_coefficient()),
+        (coefficient, coefficient_at_null(found)),
     ]
 }

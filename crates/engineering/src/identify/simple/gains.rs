@@ -23,8 +23,8 @@ const SENSITIVITY_WINDOW: f64 = 0.4;
 /// Fewest rows of either.
 const FEWEST: usize = 12;
 
-/// dq/dU for positive and negative commands at this drop from supply to tank, by the test with the
-/// smallest command that shows both.
+/// dq/dU for positive and negative commands, and the commands from null in V between which it is
+/// read, at this drop from supply to tank, by the test with the smallest command that shows both.
 ///
 /// ```text
 /// K_qU = sqrt(p/2) d/dU (q/sqrt((p_S - p_T - |p_L|)/2))
@@ -34,7 +34,7 @@ pub(super) fn flow_gains(
     tested: &TestedValve,
     null: Option<f64>,
     drop: f64,
-) -> [Option<CurveReading>; 2] {
+) -> ([Option<CurveReading>; 2], Option<[f64; 2]>) {
     let mut metered: Vec<&Recording> =
         recordings.iter().filter(|one| one.circuit == PortCircuit::Connected).collect();
     sort_by_number(&mut metered, |one| largest_command(std::slice::from_ref(*one)));
@@ -46,8 +46,15 @@ pub(super) fn flow_gains(
             CurveReading::mean(&lines).map(|slope| slope.times((drop / 2.0).sqrt()))
         })
     };
-    let found = metered.into_iter().map(of).find(|found| found.iter().all(Option::is_some));
-    found.unwrap_or_default()
+    let mut found = metered.into_iter().map(|one| (of(one), Some(gain_window(one, tested))));
+    found.find(|(gains, _)| gains.iter().all(Option::is_some)).unwrap_or_default()
+}
+
+/// Commands from null in V between which the flow gain is read: away from the reversals, where the
+/// spool has not yet lost what it remembers.
+fn gain_window(recording: &Recording, tested: &TestedValve) -> [f64; 2] {
+    let [least, most] = GAIN_WINDOW.map(|share| share * tested.nominal_voltage);
+    [least, most.min(AWAY * largest_command(std::slice::from_ref(recording)))]
 }
 
 /// Slope of q/sqrt(drop/2) over the command, on one side of null and one way.
@@ -60,9 +67,7 @@ fn branch(
     let kinds = [SignalKind::PortFlow, SignalKind::PortFlowMagnitude];
     let signal = kinds.into_iter().find_map(|kind| recording.signal(kind))?;
     let values = signal.despiked();
-    let [least, most] = GAIN_WINDOW.map(|share| share * tested.nominal_voltage);
-    // away from the reversals, where the spool has not yet lost what it remembers
-    let most = most.min(AWAY * largest_command(std::slice::from_ref(recording)));
+    let [least, most] = gain_window(recording, tested);
     let of_row = |(row, value): (usize, &Option<f64>)| {
         let input = recording.inputs.get(row)?;
         let drop = input.supply.pressure - input.supply.tank_pressure - input.load_pressure.abs();
