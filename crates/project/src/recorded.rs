@@ -57,6 +57,9 @@ pub struct FromRecordings {
     pub numbers: Vec<IdentifiedNumber>,
     /// What they do not determine.
     pub kept: Vec<KeptNumber>,
+    /// Pa, drops from supply to tank at which the tare flow is stated: of the recordings, and as
+    /// declared.
+    pub tare_pressures: [f64; 2],
     /// What they leave uncertain, where it is in use.
     pub family: Option<IdentifiedFamily>,
     /// The same as `path=value` texts that make the project of its file, before the user's.

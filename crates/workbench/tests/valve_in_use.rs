@@ -85,6 +85,25 @@ fn every_number_that_is_used_is_the_truth_of_the_bench() {
     assert_eq!(json["identified"]["files"][0]["sha256"], sha256(&first).as_str());
 }
 
+/// The tare flow goes with the root of the pressure, and the table says at which it holds: here
+/// that of the data sheet, 3000 psi, where the tests were made at 70 bar.
+#[test]
+fn the_tare_flow_has_its_pressure() {
+    let source = source(IDENTIFIED, 4);
+    let answer = command::answer(&source, &read(&source, &[]), &[], &Request::Check).unwrap();
+    let json: Value = serde_json::from_str(&answer.json).unwrap();
+    let values = json["identified"]["values"].as_array().unwrap();
+    let tare = values.iter().find(|one| one["path"] == "valve.tare_flow").unwrap();
+    let pressure = json["identified"]["tare_pressure_pa"].as_f64().unwrap();
+    // ORIGIN: analytic, 3000 psi
+    assert!((pressure / 206.8427e5 - 1.0).abs() < 1e-6, "{pressure}");
+    // ORIGIN: thesis section 5.2.1, 7.55e-6 m3/s at 70 bar
+    let at_seventy = tare["value"].as_f64().unwrap() * (70e5 / pressure).sqrt();
+    assert!((at_seventy / 7.55e-6 - 1.0).abs() < 5e-3, "{at_seventy}");
+    let words = "`valve.tare_flow` is that at 206.8 bar from supply to tank.";
+    assert!(answer.text.contains(words), "{}", answer.text);
+}
+
 /// Port pressures alone determine ratios of the coefficients: the command refuses and says which
 /// are open.
 #[test]

@@ -66,7 +66,11 @@ pub fn in_use(
         deviations: region.deviations,
     });
     let project_sha256 = loaded.sha256.clone();
-    let recorded = FromRecordings { project_sha256, files: hashes, numbers, kept, family, settings };
+    let drop = found.tested.tare_reference_drop;
+    let declared = loaded.project.actuator.as_ref();
+    let tare_pressures = [drop, declared.map_or(drop, |one| one.valve.tare_drop(&one.supply))];
+    let files = hashes;
+    let recorded = FromRecordings { project_sha256, files, numbers, kept, tare_pressures, family, settings };
     Ok(Some(Loaded { sha256, ..read_again(source, loaded, recorded)? }))
 }
 

@@ -31,5 +31,7 @@ pub(crate) fn body_in_use(recorded: &FromRecordings) -> Object {
         .each("kept", &recorded.kept, |one| {
             Object::new().with("path", one.path.as_str()).with("reason", one.reason)
         })
+        .with("tare_pressure_pa", recorded.tare_pressures[0])
+        .with("declared_tare_pressure_pa", recorded.tare_pressures[1])
         .maybe("family", family)
 }

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
-use crate::quantity::DisplayUnit;
+use crate::quantity::{DisplayUnit, PRESSURE, display};
 
 /// What the leakage is, the coefficients with their intervals, what the files hold, how well the
 /// signals are explained, and what the data do not determine.
@@ -47,6 +47,8 @@ pub(crate) fn tell_coefficients(found: &Identification, out: &mut Document) {
         "By hand: the calculations of Ledezma (2019), section 5.2, which take the edges as equal."
             .to_string(),
     ]);
+    let tare_pressure = display(found.tested.tare_reference_drop, &PRESSURE, 4);
+    out.sentences([format!("`tare_flow` is that at {tare_pressure} from supply to tank (`tare_pressure`).")]);
     out.sentences(found.bootstrap.as_ref().map(bootstrap));
     out.sentences(found.oil.as_ref().map(warm_oil));
 }

@@ -4,6 +4,7 @@ use super::COVERAGE;
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::{FromRecordings, IdentifiedFamily, Loaded};
+use crate::quantity::{PRESSURE, display};
 
 /// What precedes the answer of every command; nothing where recordings gave nothing.
 pub(crate) fn in_use_above(loaded: &Loaded) -> Document {
@@ -34,8 +35,18 @@ pub(crate) fn tell_in_use(recorded: &FromRecordings, out: &mut Document) {
         ]
     });
     out.table(Table::new(headings).with(rows));
+    out.sentences(tare_pressure(recorded));
     let kept = recorded.kept.iter().map(|one| format!("{} stays as declared: {}.", one.path, one.reason));
     out.sentences(kept.chain(recorded.family.as_ref().map(family)));
+}
+
+/// The pressures at which the tare flow holds, in a sentence.
+fn tare_pressure(recorded: &FromRecordings) -> Option<String> {
+    let tare = recorded.numbers.iter().find(|one| one.path == "valve.tare_flow")?;
+    let [identified, declared] = recorded.tare_pressures.map(|drop| display(drop, &PRESSURE, 4));
+    let other = tare.declared.filter(|_| declared != identified);
+    let other = other.map_or(String::new(), |_| format!(", the declared one that at {declared}"));
+    Some(format!("`valve.tare_flow` is that at {identified} from supply to tank{other}."))
 }
 
 /// What the recordings leave uncertain, in a sentence.
