@@ -1,5 +1,7 @@
 //! What static tests of a valve would show for other coefficients, with derivatives.
 
+use std::borrow::Cow;
+
 use phea_dynamics::scalar::{Dual, Parameters, Scalar};
 
 use super::ports::KnownPorts;
@@ -193,7 +195,7 @@ impl TestedValve {
         let valve = self.servovalve(coefficients);
         let openings = openings(coefficients, inputs);
         let one = |(input, opening): (&TestInput, f64)| {
-            let valve = input.oil.valve(&valve);
+            let valve = valve_in(&valve, input.oil);
             let found = match circuit {
                 PortCircuit::Blocked => blocked_ports(&valve, &input.supply, opening),
                 PortCircuit::Connected => {
@@ -253,7 +255,7 @@ impl TestedValve {
                 transition_pressure: self.transition_pressure,
                 pressures: [known.pressure_a, known.pressure_b],
             };
-            let valve = input.oil.valve(&valve);
+            let valve = valve_in(&valve, input.oil);
             let edges = edge_conductances(&valve, opening).to_array();
             let [pressure_a, pressure_b, supply_flow, port_flow] = Sensitive::local(&ports, edges);
             let supply = input.supply.convert(&mut Sensitive::from);
@@ -285,6 +287,12 @@ impl TestedValve {
             transition_pressure: S::from(self.transition_pressure),
         }
     }
+}
+
+/// The valve as this oil flows through it: the valve itself where it is stated at this oil. A copy
+/// of it with derivatives, row by row, takes a fifth of an identification.
+fn valve_in<S: Scalar>(valve: &Servovalve<S>, oil: WarmOil) -> Cow<'_, Servovalve<S>> {
+    if oil == WarmOil::STATED { Cow::Borrowed(valve) } else { Cow::Owned(oil.valve(valve)) }
 }
 
 /// Position of the edges in V row by row.
