@@ -74,6 +74,8 @@ def draw(number):
         "bench.flow_meter.pressure_drop": f"{0 if chance(0.3) else spread(0.3, 8)} bar",
         "bench.seed": number + 1,
     }
+    spool = np.random.default_rng([6, number])
+    set_ |= {"valve.natural_frequency": f"{spool.uniform(100, 1000)} rad/s", "valve.damping_ratio": spool.uniform(0.5, 1.2)}
     if chance(0.5):
         set_["bench.pump_flow"] = f"{spread(3, 12)} L/min"
     if chance(0.3):
@@ -113,6 +115,7 @@ class Fit:
     def __init__(self, found, settings):
         value = lambda text: float(text.split()[0])
         tank = value(settings["supply.tank_pressure"]) * BAR
+        delay = 2 * settings["valve.damping_ratio"] / value(settings["valve.natural_frequency"])
         self.valve = {
             "nominal_voltage": NOMINAL,
             "transition": value(settings["valve.transition_pressure"]),
@@ -127,6 +130,7 @@ class Fit:
             both = all(port is not None for port in ports)
             self.tests[path] = {
                 "command": table["command_v"],
+                "lag": delay * np.diff(table["command_v"], prepend=0) / np.diff(table["time_s"], prepend=-1),
                 "supply": table["supply_pressure_bar"] * BAR,
                 "tank": tank,
                 "load": (ports[0] - ports[1]) * BAR if both else np.zeros_like(table["command_v"]),

@@ -103,8 +103,9 @@ def solved(edges, half, supply, tank, transition):
 
 
 def shown(test, numbers, valve):
-    """All signals of a test: a dictionary of `command`, `supply`, `tank`, `load` over its rows, and whether ports are `joined`."""
-    u = openings(test["command"], numbers[10], numbers[11]) / valve["nominal_voltage"]
+    """All signals of a test: a dictionary of `command`, how far the spool is behind it, `lag`, `supply`, `tank`, `load` over its rows, and whether
+    ports are `joined`."""
+    u = (openings(test["command"], numbers[10], numbers[11]) - test["lag"]) / valve["nominal_voltage"]
     edges = [np.asarray(edge) for edge in conductances(u, numbers, valve["one_curve"])]
     supply, tank, transition = test["supply"], test["tank"], valve["transition"]
     nothing = np.zeros_like(supply)

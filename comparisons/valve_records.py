@@ -69,7 +69,8 @@ class Bench:
     zero_error: float = 0.0        # bound of the transducer's at port A
     sag: float = 0.0               # Pa by which the supply falls for each m3/s, not recorded
     delay: float = 0.0             # of the flow meter's reading over the period
-    spool_lag: float = 0.0         # s, 2 xi/omega of (4.1): all that a slow command shows of it
+    frequency: float = 1099.0      # rad/s, of the spool, and its damping ratio
+    damping: float = 0.9
     cycled: bool = False           # the lag at the first row is anywhere in the hysteresis, not zero
     gain_b: float = 1.0            # of the reading at port B
 
@@ -87,7 +88,8 @@ def position(valve, bench, times, amplitude, random):
     lag, last = np.zeros_like(command), half * random.uniform(-1, 1) if bench.cycled else 0.0
     for start, end, begun, reached in zip(corners, corners[1:], ends, ends[1:]):
         toward = math.copysign(half, reached - begun)
-        behind = bench.spool_lag * (reached - begun) / (end - start)
+        # (4.1) along a ramp: omega^2 (U_C - U) = 2 xi omega dU/dt
+        behind = 2 * bench.damping / bench.frequency * (reached - begun) / (end - start)
         inside = (times >= start) & (times <= end)
         lag[inside] = behind + toward + (last - toward) * np.exp(-np.abs(command[inside] - begun) / (2 * half))
         last = toward + (last - toward) * math.exp(-abs(reached - begun) / (2 * half))

@@ -18,7 +18,7 @@ pub use reversals::ReversalReading;
 
 use phea_dynamics::random::stream;
 use phea_dynamics::watch::{Stopped, Watch, tell};
-use phea_hydraulics::servovalve::{OilLaw, SlowSpool, SpoolImperfection, TestStand, WarmOil};
+use phea_hydraulics::servovalve::{OilLaw, SlowSpool, SpoolImperfection, TestStand, WarmOil, ramp_delay};
 
 use self::command_path::CommandPath;
 pub(crate) use self::instrument::Instruments;
@@ -271,13 +271,17 @@ fn record(
     let meter = meter_of(series, settings);
     let circuit = series.test().circuit();
     let stand = TestStand { meter_coefficient: meter_coefficient(&meter), ..*stand };
+    let delay = ramp_delay(stand.valve.natural_frequency, stand.valve.damping_ratio);
+    let mut before = 0.0;
     for index in 0..rows {
         if index % 64 == 0 {
             tell(watch, series.name(), index, rows)?;
         }
         let time = index as f64 * settings.sample_time;
         let command = instruments.command(nominal_voltage * path.at(time / settings.duration));
-        let opening = spool.slow_opening(&mut memory, command);
+        let lag = delay * (command - before) / settings.sample_time;
+        before = command;
+        let opening = spool.slow_opening(&mut memory, command) - lag;
         let oil = settings.oil_temperature.map(|oil| oil_at(&oil, time / settings.duration));
         let warm = oil.map_or(stand, |(_, oil)| TestStand {
             valve: oil.valve(&stand.valve),
@@ -307,10 +311,21 @@ fn record(
         });
     }
     if let Some(reversals) = settings.reversals.filter(|_| series == BenchSeries::Reversals) {
-        let recorded: Vec<f64> = found.rows.iter().map(|row| row.command).collect();
-        let commands = followed(&recorded, roughness(&recorded)).into_iter();
-        let rows = commands.zip(&found.rows).map(|(command, row)| (command, row.flow.abs()));
-        found.reversals = reversals::read(&rows.collect::<Vec<_>>(), &reversals, nominal_voltage, watch)?;
+        let rows = opened(&found.rows, delay / settings.sample_time);
+        found.reversals = reversals::read(&rows, &reversals, nominal_voltage, watch)?;
     }
     Ok(found)
+}
+
+/// Where the spool is on its way, without the noise of the command's record, and the flow; the
+/// spool is so many rows late.
+fn opened(rows: &[BenchRow], late: f64) -> Vec<(f64, f64)> {
+    let recorded: Vec<f64> = rows.iter().map(|row| row.command).collect();
+    let mut before = 0.0;
+    let followed = followed(&recorded, roughness(&recorded)).into_iter().map(|command| {
+        let position = command - late * (command - before);
+        before = command;
+        position
+    });
+    followed.zip(rows).map(|(position, row)| (position, row.flow.abs())).collect()
 }

@@ -45,7 +45,7 @@ pub use warm::TestOil;
 use phea_dynamics::least_squares::Ending;
 use phea_dynamics::watch::{Stopped, Watch};
 use phea_hydraulics::servovalve::{
-    LeakageModel, OilLaw, STATIC_COEFFICIENTS, StaticCoefficients, TestedValve, ValveTerms,
+    LeakageModel, OilLaw, STATIC_COEFFICIENTS, StaticCoefficients, TestedValve, ValveTerms, ramp_delay,
 };
 
 use self::fit::Fit;
@@ -79,6 +79,8 @@ pub const COEFFICIENT_NAMES: [(&str, &str); STATIC_COEFFICIENTS] = [
 pub struct Known {
     /// V, command of full opening.
     pub nominal_voltage: f64,
+    /// s, by which the spool follows a steady ramp late; 0 where its dynamics are not known.
+    pub spool_delay: f64,
     /// Pa, drop below which an edge's flow is laminar.
     pub transition_pressure: f64,
     /// Pa, used if a file has no column for it.
@@ -104,6 +106,7 @@ impl Default for Known {
     fn default() -> Known {
         Known {
             nominal_voltage: 10.0,
+            spool_delay: 0.0,
             transition_pressure: 1e3,
             supply_pressure: None,
             tank_pressure: 0.0,
@@ -132,6 +135,7 @@ impl Known {
             rated_flow: valve.flow.rating().map(|rated| [rated.flow, rated.pressure_drop]),
             path_coefficients: Some(path_coefficients(&valve.flow)),
             nominal_voltage: valve.nominal_voltage,
+            spool_delay: ramp_delay(valve.natural_frequency, valve.damping_ratio),
             transition_pressure: valve.transition_pressure,
             supply_pressure: Some(actuator.supply.pressure),
             tank_pressure: actuator.supply.tank_pressure,

@@ -28,7 +28,7 @@ pub use identification::{
 pub use oil_temperature::{OilLaw, WarmOil};
 pub use opening::{LeakageShape, OpeningLaw, OpeningShape, Openings};
 pub use ports::{PortState, blocked_ports, connected_ports};
-pub use slow_motion::SlowSpool;
+pub use slow_motion::{SlowSpool, ramp_delay};
 pub use spool::{SpoolImperfection, SpoolState};
 pub use tare::tare_flow;
 pub use test_stand::{StandState, TestStand};

@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
-use phea_dynamics::portable::sin;
+use phea_dynamics::portable::{exp, sin};
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::contact::Contact;
@@ -19,7 +19,7 @@ use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 use phea_hydraulics::reference_rig::{
     benchmark_components, components, cylinder, hose_line, measured_spool, pipe_line, stopped, valve,
 };
-use phea_hydraulics::servovalve::{SpoolImperfection, SpoolState};
+use phea_hydraulics::servovalve::{SlowSpool, SpoolImperfection, SpoolState, ramp_delay};
 use phea_hydraulics::stiffness::{StiffnessModel, compliance_at};
 
 /// Classical Runge-Kutta step of rates that depend on time.
@@ -152,6 +152,29 @@ fn a_slow_cycle_finds_null_at_bias_and_half_width() {
             .collect();
         let [rising, falling] = crossings[..] else { panic!("{crossings:?}") };
         assert!((falling + 0.05).abs() < 2e-3 && (rising - 0.078).abs() < 2e-3, "{crossings:?}");
+    }
+}
+
+/// A slow test and the machine have the same opening: that of the memories less the lag of the
+/// spool behind a command that goes on steadily. The memories of the machine follow the late spool:
+/// next to a reversal that changes the opening by up to twice the lag.
+#[test]
+fn the_machine_is_as_late_as_a_slow_test_says() {
+    let spool = measured_spool();
+    let track = spool_run(&spool, 12.0, |time| 0.6 * triangle(time / 8.0));
+    let mut memory = SlowSpool::at(0.0);
+    let rate = 4.0 * 0.6 / 8.0;
+    let valve = valve();
+    let lag = rate * ramp_delay(valve.natural_frequency, valve.damping_ratio);
+    for pair in track.windows(2) {
+        let ([_, before, _], [time, command, opening]) = (pair[0], pair[1]);
+        let late = spool.slow_opening(&mut memory, command) - (command - before).signum() * lag;
+        let begun = if time < 2.0 { time } else { (time - 2.0).rem_euclid(4.0) };
+        let left = 2.0 * exp(-rate * begun / 0.128) + 1e-3;
+        // ten time constants of the spool
+        if begun > 0.02 {
+            assert!((opening - late).abs() < left * lag, "{time}: {opening} for {late}, lag {lag}");
+        }
     }
 }
 

@@ -4,6 +4,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
+use std::f64::consts::TAU;
+
 use crate::ask::{HOSE, answer, json, load};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{IdentifyError, IdentifyRequest, Request, identify_watched};
@@ -84,6 +86,34 @@ fn without_noise_the_valve_is_found_to_what_the_converters_leave() {
         assert!((value / truth - 1.0).abs() < 1e-6, "{path} {value}");
     }
     assert_eq!(found["converged"], true);
+}
+
+/// A slow spool lags behind its command by 2 xi/w times the rate, as hysteresis does. With the
+/// spool of the project that is counted; with another one it is taken for hysteresis, by twice the
+/// lag.
+#[test]
+fn the_lag_of_the_spool_is_no_hysteresis() {
+    let slow = ["valve.natural_frequency=\"30 Hz\"", "valve.damping_ratio=0.9"];
+    let files = recorded(&slow);
+    let source =
+        files.iter().fold(Memory::default(), |source, (name, text)| source.with(name, text.as_str()));
+    let of = |settings: &[&str]| -> (f64, f64) {
+        let asked =
+            identify_watched(&source, Some(&load(HOSE, settings, &[])), &files_of(&files), &mut |_| true);
+        let found: Value =
+            serde_json::from_str(&asked.unwrap_or_else(|error| panic!("{error}")).json).unwrap();
+        let [low, high] = interval(&found, "/hysteresis_v").unwrap();
+        (f64::midpoint(low, high) - 0.128, 0.5 * (high - low))
+    };
+    let (error, half) = of(&slow);
+    // 5.9 deviations
+    assert!(error.abs() < 3.0 * half, "{error} V at {half}");
+    let (error, half) = of(&["valve.natural_frequency=\"1000 Hz\"", "valve.damping_ratio=0.9"]);
+    // ORIGIN: analytic, twice (2 xi/w - 2 xi/w_wrong) times the greatest rate of a sine over 240 s,
+    // of 0.5 V where the pressures are measured and of 3 V in the other tests
+    let widened = [0.5, 3.0].map(|amplitude| 2.0 * (1.8 / 188.5 - 1.8 / 6283.2) * amplitude * TAU / 240.0);
+    assert!((widened[0]..widened[1]).contains(&(error + half)), "{error} V for {widened:?}");
+    assert!(error > 2.0 * half, "{error} V at {half}");
 }
 
 #[test]

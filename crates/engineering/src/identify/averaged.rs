@@ -37,10 +37,11 @@ pub(super) fn averaged(recording: &Recording) -> Recording {
     let loads = of_inputs(|input| input.load_pressure);
     let densities = of_inputs(|input| input.oil.density_ratio).into_iter();
     let viscosities = of_inputs(|input| input.oil.viscosity_ratio);
+    let lags = of_inputs(|input| input.lag);
     let oils = densities
         .zip(viscosities)
         .map(|(density_ratio, viscosity_ratio)| WarmOil { density_ratio, viscosity_ratio });
-    let inputs = commands.zip(supplies).zip(tanks).zip(loads).zip(oils);
+    let inputs = commands.zip(supplies).zip(tanks).zip(loads).zip(oils).zip(lags);
     let signals = recording.signals.iter().map(|signal| RecordedSignal {
         kind: signal.kind,
         values: blocks.iter().map(|block| inner_mean(signal.values.get(block.clone())?)).collect(),
@@ -53,7 +54,7 @@ pub(super) fn averaged(recording: &Recording) -> Recording {
         command_roughness: recording.command_roughness,
         times: these(&recording.times),
         inputs: inputs
-            .map(|(((((command, followed_command), pressure), tank_pressure), load_pressure), oil)| {
+            .map(|((((((command, followed_command), pressure), tank_pressure), load_pressure), oil), lag)| {
                 TestInput {
                     command,
                     followed_command,
@@ -61,6 +62,7 @@ pub(super) fn averaged(recording: &Recording) -> Recording {
                     load_pressure,
                     oil,
                     memory,
+                    lag,
                 }
             })
             .collect(),

@@ -118,6 +118,9 @@ pub struct TestInput {
     pub oil: WarmOil,
     /// Lag z of the torque motor's iron in V that the spool brings along to the first row.
     pub memory: f64,
+    /// How far the spool is behind a command that moves, in V: [`super::ramp_delay`] times its
+    /// rate.
+    pub lag: f64,
 }
 
 impl TestInput {
@@ -130,6 +133,7 @@ impl TestInput {
             load_pressure,
             oil: WarmOil::STATED,
             memory: 0.0,
+            lag: 0.0,
         }
     }
 }
@@ -311,7 +315,7 @@ fn openings<S: Scalar>(coefficients: &StaticCoefficients<S>, inputs: &[TestInput
     let one = |input: &TestInput| {
         let followed = S::from(input.followed_command);
         let opening = spool.slow_opening(memory.get_or_insert_with(|| begun(input, followed)), followed);
-        opening + S::from(input.command - input.followed_command)
+        opening + S::from(input.command - input.followed_command - input.lag)
     };
     inputs.iter().map(one).collect()
 }

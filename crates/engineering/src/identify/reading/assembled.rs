@@ -19,6 +19,7 @@ pub(super) fn assembled(
     let [command, supply, tank] =
         [TestSignal::Command, TestSignal::SupplyPressure, TestSignal::TankPressure].map(|one| taken.of(one));
     let (command_roughness, followed) = command.map_or((0.0, Vec::new()), without_noise);
+    let times = taken.of(TestSignal::Time).unwrap_or_default();
     let input = |row: usize| {
         let at = |values: Option<&[f64]>| values.and_then(|values| values.get(row).copied());
         TestInput {
@@ -34,6 +35,7 @@ pub(super) fn assembled(
             },
             oil: WarmOil::STATED,
             memory: 0.0,
+            lag: known.spool_delay * rate(times, &followed, row).unwrap_or(0.0),
         }
     };
     let inputs: Vec<TestInput> = (0..taken.rows()).map(input).collect();
@@ -55,10 +57,7 @@ pub(super) fn assembled(
             );
         }
         PortCircuit::Connected => {
-            let mean = |(a, b): (&[f64], &[f64])| -> Vec<f64> {
-                a.iter().zip(b).map(|(a, b)| f64::midpoint(*a, *b)).collect()
-            };
-            let mean = a.zip(b).map(mean);
+            let mean = a.zip(b).map(means);
             signals.extend(shown(SignalKind::MeanPressure, mean.as_deref()));
             signals.extend(flow.map(port_flow));
         }
@@ -67,12 +66,23 @@ pub(super) fn assembled(
         file: declared.file.clone(),
         circuit,
         command_roughness,
-        times: taken.of(TestSignal::Time).unwrap_or_default().to_vec(),
+        times: times.to_vec(),
         inputs,
         oil_temperature: taken.of(TestSignal::OilTemperature).map(<[f64]>::to_vec),
         accuracies: accuracies(declared, taken),
         signals,
     }
+}
+
+fn means((one, other): (&[f64], &[f64])) -> Vec<f64> {
+    one.iter().zip(other).map(|(one, other)| f64::midpoint(*one, *other)).collect()
+}
+
+/// Rate at which a command came to a row from the row before.
+fn rate(times: &[f64], command: &[f64], row: usize) -> Option<f64> {
+    let before = row.checked_sub(1)?;
+    let difference = |values: &[f64]| Some(values.get(row)? - values.get(before)?);
+    Some(difference(command)? / difference(times)?)
 }
 
 /// The deviation of a command's noise, and the command without it. A record that never goes back by
