@@ -89,6 +89,7 @@ MISMATCHED = [
     thesis("leak from port A to the tank", {"external": 5e-10}),
     thesis("hysteresis that grows with amplitude", {"growing": 3.0}),
     thesis("pressure at B reads 10 % high", gain_b=1.1),
+    thesis("laps 0.3 % apart at both ports", {"uneven": 0.003}),
 ]
 
 

@@ -33,6 +33,7 @@ class Valve:
     saturation: float = 0.0
     clip: float = math.inf         # greatest opening
     external: float = 0.0          # conductance of a leak from port A to the tank
+    uneven: float = 0.0            # what the laps of the edges at port B have more than those at port A
     growing: float = 0.0           # amplitude, in volts, at which the hysteresis is the stated one, if it is proportional to it
 
 
@@ -98,13 +99,14 @@ def position(valve, bench, times, amplitude, random):
 
 def edges(valve, position_, thinner=1.0, lighter=1.0):
     """Conductances of the four edges, (4.2) to (4.9) with the secant of (4.14); warm oil is thinner and lighter."""
-    opened = []
-    for way, lap in zip((1, -1), valve.lap):
+    def opened(way, lap):
         opening = np.maximum(way * position_ - lap, 0.0)
-        opened.append(np.minimum(opening / (1 + valve.saturation * opening), valve.clip))
-    forward, backward = opened
+        return np.minimum(opening / (1 + valve.saturation * opening), valve.clip)
+
+    (forward, backward), uneven = valve.lap, valve.uneven
+    openings = [opened(1, forward), opened(-1, backward), opened(-1, backward + uneven), opened(1, forward + uneven)]
     secant = thinner / np.cosh(np.minimum(valve.shape * np.abs(position_), 300.0))
-    flows = [lighter * k * x for k, x in zip(valve.flow, (forward, backward, backward, forward))]
+    flows = [lighter * k * x for k, x in zip(valve.flow, openings)]
     found = [flow + k * secant for flow, k in zip(flows, valve.leakage)]
     if valve.one_curve:
         for one, other in ((0, 1), (2, 3)):

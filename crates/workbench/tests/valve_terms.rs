@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
 use crate::ask;
-use crate::valve_identification::{TRUTH, identified, recorded, value};
+use crate::valve_identification::{TRUTH, files_of, identified, recorded, try_asked, value};
 use phea_workbench::command::{self, Request};
 use phea_workbench::project;
 use phea_workbench::source::Memory;
@@ -71,6 +71,40 @@ fn leakage_by_edge_is_identified() {
         ("/leakage_shapes/b_to_tank", 90.0),
     ];
     check(&[shapes], &["leakage_by_edge"], &more);
+}
+
+/// Edges of one command that open one after the other: with blocked ports each port shows its own
+/// edges, so that the pressure at A is that of a valve with an overlap and the one at B that of a
+/// valve without. No lap of the model explains both, which is told, with the reason.
+#[test]
+fn laps_that_differ_within_a_pair_are_told() {
+    let lapped = recorded(&["valve.lap={ positive = 0.004, negative = 0.004 }"]);
+    let file = |(name, text): &(String, String)| {
+        let of_lap = &lapped.iter().find(|(other, _)| other == name).unwrap().1;
+        let cells = |line: &str| line.split(',').map(str::to_string).collect::<Vec<String>>();
+        let heading = cells(text.lines().next().unwrap());
+        let place = |wanted: &str| heading.iter().position(|one| one == wanted);
+        let a = place("pressure_a_bar").unwrap();
+        let flow = place("leak_flow_l_per_min");
+        let row = |(own, other): (&str, &str)| {
+            let mut own = cells(own);
+            own[a] = cells(other)[a].clone();
+            // both ports together make the leakage
+            flow.into_iter().for_each(|flow| drop(own.remove(flow)));
+            own.join(",")
+        };
+        (name.clone(), text.lines().zip(of_lap.lines()).map(row).collect::<Vec<_>>().join("\n"))
+    };
+    let blocked = recorded(&[]).into_iter().filter(|(name, _)| !name.starts_with("metering"));
+    let files: Vec<(String, String)> = blocked.collect::<Vec<_>>().iter().map(file).collect();
+    let answer = try_asked(&files, &files_of(&files)).unwrap_or_else(|error| panic!("{error}"));
+    let found: Value = serde_json::from_str(&answer.json).unwrap();
+    assert!(!found["misfits"].as_array().unwrap().is_empty(), "{}", found["signals"]);
+    assert!(taken(&found).contains(&"lap"), "{}", found["terms"]);
+    assert!(answer.text.contains("the laps of the two differ"), "{}", answer.text);
+    // laps that are alike are explained, and nothing is said of others
+    let alike = try_asked(&lapped, &files_of(&lapped)).unwrap_or_else(|error| panic!("{error}"));
+    assert!(!alike.text.contains("the laps of the two differ"), "{}", alike.text);
 }
 
 /// Lap and saturation together are both found, whichever is taken first.

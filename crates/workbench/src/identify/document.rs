@@ -152,7 +152,14 @@ fn terms(found: &Identification) -> Vec<String> {
          do not hold."
             .to_string()
     });
-    taken.chain(left).chain(doubt).collect()
+    let has_lap = found.terms.iter().any(|one| one.taken && one.term == ValveTerm::Lap);
+    let uneven = (is_doubtful && has_lap).then(|| {
+        "The model has one lap for the two edges that a command opens. With blocked ports each port shows its own edges: where the pressures of A \
+         and B change at different commands, the laps of the two differ, and no lap of the model is right; state the valve yourself then, with \
+         `identify.use = \"nothing\"` and an uncertainty that covers both laps."
+            .to_string()
+    });
+    taken.chain(left).chain(doubt).chain(uneven).collect()
 }
 
 fn described(model: LeakageModel) -> &'static str {
@@ -262,6 +269,7 @@ fn remarks(found: &Identification) -> Vec<String> {
     remarks.extend(misfits.iter().map(|one| format!("Misfit: {}.", misfit_in_words(found, one))));
     if !misfits.is_empty() {
         remarks.push("The intervals, those of a bootstrap too, count noise alone: they do not cover what the model does not explain.".to_string());
+        remarks.push("Before these numbers are used, look for what is not in the model: a supply pressure that is not recorded, an instrument that reads late (repeat the test at half the speed), an external leak, a transducer with an error of its gain, a column with wrong values.".to_string());
     }
     remarks
 }
