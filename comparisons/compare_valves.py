@@ -81,6 +81,7 @@ MATCHED = [
     thesis("recorded after cycles", part="memory", cycled=True),
     thesis("slow spool of 30 Hz", part="spool", frequency=188.0),
     thesis("flow that saturates, s = 0.05", {"saturation": 0.05}, part="saturation"),
+    thesis("1 % of the commands recorded wrong", part="commands", lost_commands=0.01),
 ]
 MISMATCHED = [
     thesis("opening clipped at 60 % of the test", {"clip": 0.18}),

@@ -66,6 +66,7 @@ class Bench:
     bits: int = 0
     oil: tuple = ()                # temperature at the start and at the end of each test, and at which the valve is stated
     rough: bool = False            # jitter, gaps and outliers
+    lost_commands: float = 0.0     # share of rows whose recorded command is any of the test's
     gain_error: float = 0.0        # bound of the flow meter's
     zero_error: float = 0.0        # bound of the transducer's at port A
     sag: float = 0.0               # Pa by which the supply falls for each m3/s, not recorded
@@ -197,6 +198,8 @@ def test(valve, bench, kind, amplitude, meter, errors, random):
     pressures = [converted(value + noise(bench.pressure_noise), 100e5, bench.bits)
                  for value in (supply, solved[0] + errors[1], bench.gain_b * solved[1])]
     command = triangle(times, bench.period, volts) + noise(bench.command_noise)
+    lost = random.choice(len(times), round(bench.lost_commands * len(times)), replace=False)
+    command[lost] = random.uniform(-volts, volts, len(lost))
     columns = {"time_s": times, "command_v": converted(command, 2 * NOMINAL, bench.bits)}
     if not bench.sag:
         columns["supply_pressure_bar"] = pressures[0] / BAR

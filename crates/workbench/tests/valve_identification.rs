@@ -135,6 +135,43 @@ fn outliers_are_not_believed() {
     }
 }
 
+/// A command that is recorded wrong in single rows, or in two next to each other, did not move the
+/// valve: such rows are left out, and said so. Without them the numbers are the same as those of
+/// the whole files, within their intervals.
+#[test]
+fn commands_that_stand_out_are_left_out() {
+    let files = recorded(&[]);
+    let spoilt: Vec<(String, String)> = files
+        .iter()
+        .map(|(name, text)| {
+            let rows = text.lines().enumerate().map(|(index, line)| {
+                let mut cells: Vec<String> = line.split(',').map(str::to_string).collect();
+                if index > 0 && (index % 97 == 40 || index % 97 == 41 && index % 2 == 0) {
+                    let command: f64 = cells[1].parse().unwrap();
+                    let wrong = if index % 3 == 0 { 0.0 } else { -0.7 * command + 0.2 };
+                    // as far away as a spike has to be that moves a memory
+                    let far = (wrong - command).abs() > 0.3;
+                    cells[1] = if far { wrong } else { command + 0.4 }.to_string();
+                }
+                cells.join(",")
+            });
+            (name.clone(), rows.collect::<Vec<_>>().join("\n"))
+        })
+        .collect();
+    let [clean, found] = [&files, &spoilt].map(|files| identified(files));
+    assert_eq!(found["misfits"].as_array().unwrap().len(), 0, "{}", found["misfits"]);
+    for (path, _) in TRUTH {
+        let [low, high] = interval(&clean, path).unwrap();
+        let away = (value(&found, path) - value(&clean, path)).abs();
+        assert!(away < 0.5 * (high - low), "{path}: {away} beside {low} to {high}");
+    }
+    let warnings = found["warnings"].as_array().unwrap();
+    let told = |one: &&Value| one["message"].as_str().unwrap().contains("stands out of the rows");
+    assert_eq!(warnings.iter().filter(told).count(), files.len(), "{warnings:?}");
+    let left_out = |found: &Value| found["tests"][0]["rows_left_out"].as_u64().unwrap();
+    assert!(left_out(&clean) == 0 && left_out(&found) >= 4, "{}", found["tests"][0]);
+}
+
 /// A metering test alone passes nothing of the tare flow through its meter, and leakage below what
 /// the meter shows.
 #[test]

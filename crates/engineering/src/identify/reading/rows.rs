@@ -1,11 +1,23 @@
 //! Which rows of a file are used: gaps, duplicates, and the order in time.
 
+use phea_dynamics::order::median;
+
 use super::Taken;
+use crate::followed::roughness;
 use crate::project::{Findings, RawFinding, TestSignal};
 use crate::table::{Column, ColumnNumbers, MeasuredTable, not_increasing};
 
 /// A column with more gaps than this share of the rows is not a record.
 const MOST_GAPS: f64 = 0.5;
+
+/// Rows of a slow command, deviations of its noise, and share of its greatest value, within which
+/// no row stands out.
+const STEPS: f64 = 3.0;
+const ROUGH: f64 = 10.0;
+const LEAST_OUTLIER: f64 = 1e-3;
+
+/// A command of which a greater share of the rows stands out moves like this.
+const MOST_OUTLIERS: f64 = 0.05;
 
 /// Says what is missing, and leaves out the rows that cannot be used: those without an input, and
 /// those that repeat the row before. Times that do not increase are errors.
@@ -49,7 +61,53 @@ pub(super) fn used(
         findings.push(table.warning(gaps, column, &message, findings));
     }
     leave_out_repeated(table, columns, numbers, &mut is_used, findings);
+    leave_out_standing_out(table, columns, numbers, &mut is_used, findings);
     is_used
+}
+
+/// Leaves out rows whose command stands out of those around it: a memory that follows it would have
+/// gone there and back.
+fn leave_out_standing_out(
+    table: &MeasuredTable,
+    columns: &[(TestSignal, Column)],
+    numbers: &ColumnNumbers,
+    is_used: &mut [bool],
+    findings: &mut Findings,
+) {
+    let mut named = columns.iter().zip(&numbers.columns);
+    let Some(((_, column), commands)) = named.find(|((signal, _), _)| *signal == TestSignal::Command) else {
+        return;
+    };
+    let used: Vec<usize> = (0..commands.len()).filter(|row| is_used.get(*row) == Some(&true)).collect();
+    let values: Vec<f64> = used.iter().filter_map(|row| commands.get(*row).copied()).collect();
+    let out: Vec<usize> = standing_out(&values).iter().filter_map(|one| used.get(*one).copied()).collect();
+    if out.is_empty() {
+        return;
+    }
+    out.iter().for_each(|row| is_used.get_mut(*row).into_iter().for_each(|used| *used = false));
+    let message = format!(
+        "`{}` stands out of the rows before and after, and these rows are left out",
+        table.heading(column)
+    );
+    findings.push(table.warning(&out, column, &message, findings));
+}
+
+/// Places at which a slow command is further from the median of five than it moves in three rows,
+/// and than ten deviations of its noise; none where so many are that they are no outliers.
+fn standing_out(command: &[f64]) -> Vec<usize> {
+    let steps = command
+        .windows(2)
+        .map(|pair| pair.iter().rev().copied().reduce(|now, before| now - before).map_or(0.0, f64::abs));
+    let greatest = command.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let noise = ROUGH * roughness(command);
+    let most = (STEPS * median(steps.collect())).max(noise).max(LEAST_OUTLIER * greatest);
+    let around = |place: usize| command.get(place.saturating_sub(2)..(place + 3).min(command.len()));
+    let stands_out = |place: &usize| {
+        let middle = median(around(*place).unwrap_or_default().to_vec());
+        command.get(*place).is_some_and(|value| (value - middle).abs() > most)
+    };
+    let found: Vec<usize> = (0..command.len()).filter(stands_out).collect();
+    if found.len() as f64 > MOST_OUTLIERS * command.len() as f64 { Vec::new() } else { found }
 }
 
 /// Leaves out rows that say what the row before says, and reports times that do not increase.
