@@ -49,7 +49,7 @@ UNSEEN = {
     """.split(),
     "names of the catalogue, of numbers and of parameters": """
         line_unknown_hose valve_unknown_model uncertainty_unknown uncertainty_dimension campaign_linear campaign_whole_number
-        family_replaces velocity_sensor_varied
+        family_replaces velocity_sensor_varied uncertainty_table
     """.split(),
     "one way out of several, and what belongs to it": """
         campaign_forms controller_half controller_no_form controller_two_forms line_model_inherited line_model_keys line_two_kinds

@@ -133,7 +133,9 @@ fn recording(
     if findings.error_count() > before {
         return None;
     }
-    let is_used = rows::used(&table, &columns, &numbers, |signal| is_input(signal, circuit), findings);
+    let plausible_v = plausible::greatest(TestSignal::Command, known.nominal_voltage);
+    let is_used =
+        rows::used(&table, &columns, (&numbers, plausible_v), |signal| is_input(signal, circuit), findings);
     let left_out = is_used.iter().filter(|used| !**used).count() + usize::from(numbers.cut_off.is_some());
     let gaps: Vec<usize> = numbers.gaps.iter().map(Vec::len).collect();
     let used: Vec<usize> =

@@ -28,7 +28,7 @@ const BEYOND_SUPPLY: f64 = 1.25;
 const LEAST_OF_SUPPLY: f64 = 1e-3;
 
 /// The greatest magnitude of a single value, in SI.
-fn greatest(signal: TestSignal, nominal_voltage: f64) -> f64 {
+pub(super) fn greatest(signal: TestSignal, nominal_voltage: f64) -> f64 {
     match signal {
         TestSignal::Time => 1e7,
         TestSignal::Command => BEYOND_NOMINAL * nominal_voltage,

@@ -20,11 +20,12 @@ const LEAST_OUTLIER: f64 = 1e-3;
 const MOST_OUTLIERS: f64 = 0.05;
 
 /// Says what is missing, and leaves out the rows that cannot be used: those without an input, and
-/// those that repeat the row before. Times that do not increase are errors.
+/// those that repeat the row before. Times that do not increase are errors. A command beyond what
+/// is plausible is left in, to be refused.
 pub(super) fn used(
     table: &MeasuredTable,
     columns: &[(TestSignal, Column)],
-    numbers: &ColumnNumbers,
+    (numbers, plausible_v): (&ColumnNumbers, f64),
     is_input: impl Fn(TestSignal) -> bool,
     findings: &mut Findings,
 ) -> Vec<bool> {
@@ -61,7 +62,7 @@ pub(super) fn used(
         findings.push(table.warning(gaps, column, &message, findings));
     }
     leave_out_repeated(table, columns, numbers, &mut is_used, findings);
-    leave_out_standing_out(table, columns, numbers, &mut is_used, findings);
+    leave_out_standing_out(table, columns, (numbers, plausible_v), &mut is_used, findings);
     is_used
 }
 
@@ -70,7 +71,7 @@ pub(super) fn used(
 fn leave_out_standing_out(
     table: &MeasuredTable,
     columns: &[(TestSignal, Column)],
-    numbers: &ColumnNumbers,
+    (numbers, plausible_v): (&ColumnNumbers, f64),
     is_used: &mut [bool],
     findings: &mut Findings,
 ) {
@@ -80,7 +81,9 @@ fn leave_out_standing_out(
     };
     let used: Vec<usize> = (0..commands.len()).filter(|row| is_used.get(*row) == Some(&true)).collect();
     let values: Vec<f64> = used.iter().filter_map(|row| commands.get(*row).copied()).collect();
-    let out: Vec<usize> = standing_out(&values).iter().filter_map(|one| used.get(*one).copied()).collect();
+    let is_plausible = |place: &usize| values.get(*place).is_some_and(|value| value.abs() <= plausible_v);
+    let out = standing_out(&values).into_iter().filter(is_plausible);
+    let out: Vec<usize> = out.filter_map(|one| used.get(one).copied()).collect();
     if out.is_empty() {
         return;
     }
