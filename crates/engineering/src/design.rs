@@ -35,6 +35,7 @@ pub use binding::LedBy;
 pub use command_of_steps::{CommandOfSteps, StepLimit};
 pub use comparison::{compared, gain_at_high_frequency};
 pub use damping::{MissingPlants, PressureFeedbackDesign, with_free_pressure_feedback};
+pub(crate) use deployable::highest_bandwidth;
 pub use deployable::{DesignLimit, LimitFinding, design_limits};
 pub use error::DesignError;
 pub use explanation::Explanation;
@@ -70,20 +71,16 @@ use crate::robust::{RobustProblem, robust_problem};
 use crate::setup::{Setup, is_of_position};
 use crate::side_by_side::{all_cores, both};
 use crate::source::Source;
-use crate::trial::{Agreement, DrivenCorners, Trial, TrialRun, tried};
+use crate::trial::{Agreement, DrivenCorners, Trial, tried};
 use phea_dynamics::watch::{Stopped, Watch, part, within};
 
 /// Name of the file with the project that a design makes.
 pub const DESIGNED_PROJECT: &str = "designed.toml";
-
 /// Name of the file with the project under the nearest controller, where none suffices.
 pub const NEAREST_PROJECT: &str = "nearest.toml";
 
 /// Name of the file with the proof for the designed controller.
 pub const DESIGNED_CERTIFICATE: &str = "designed_certificate.json";
-
-/// Ratio to what is required beyond which a step that is later in a narrower band lacks room.
-const LATE_WITHOUT_ROOM: f64 = 1.1;
 
 /// A design, and the given controller for comparison.
 #[derive(Clone, Debug)]
@@ -281,34 +278,24 @@ impl ProjectDesign {
     /// How far the worst run on the nonlinear rig is from what is required in time: at most 1 where
     /// all reach it, 0 without a run.
     fn worst_run(&self) -> f64 {
-        self.driven().map(TrialRun::excess).fold(0.0, f64::max)
+        self.trial.as_ref().map_or(0.0, Trial::worst_run)
     }
 
     /// The same with room for the plants between those that were driven.
     fn worst_run_with_room(&self) -> f64 {
-        self.driven().map(TrialRun::excess_with_room).fold(0.0, f64::max)
-    }
-
-    /// Every run of the trial.
-    fn driven(&self) -> impl Iterator<Item = &TrialRun> {
-        self.trial.iter().flat_map(|trial| trial.runs.iter().chain(&trial.corners))
+        self.trial.as_ref().map_or(0.0, Trial::worst_run_with_room)
     }
 
     /// True where a run on the nonlinear rig misses what is required in time, or all satisfy it
     /// with no room for the plants between those that were driven.
     pub fn misses_on_rig(&self) -> bool {
-        self.trial.as_ref().is_some_and(|trial| trial.satisfies() == Some(false)) || self.lacks_room_on_rig()
-    }
-
-    /// True where every run on the nonlinear rig satisfies what is required in time, and one comes
-    /// back so near to the edge of its band that in nine tenths of it it is later by a tenth.
-    fn lacks_room_on_rig(&self) -> bool {
-        self.worst_run() <= 1.0 && self.worst_run_with_room() > LATE_WITHOUT_ROOM
+        let misses = |trial: &Trial| trial.satisfies() == Some(false) || trial.lacks_room();
+        self.trial.as_ref().is_some_and(misses)
     }
 
     /// The failure of the nonlinear rig to do what is required in time, in words.
     pub fn missed_on_rig_words(&self) -> &'static str {
-        match self.lacks_room_on_rig() {
+        match self.trial.as_ref().is_some_and(Trial::lacks_room) {
             true => {
                 "the nonlinear rig satisfies what is required in time without room: a run comes back to the edge of its band so late that plants between those that were driven may leave it"
             }

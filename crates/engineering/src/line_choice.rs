@@ -7,7 +7,8 @@
 //!         crossover             of the given loop, the highest of the nominal plant and of plants spread over the family
 //!         ln(100/band)/t_s      bandwidth of a required settling time, 2.2/t_r that of a required rise time
 //!         design frequencies    the highest of limits that require feedback: tracking, sensitivity, disturbance
-//!         highest bandwidth     that a design may have, where there is no controller or one is designed
+//!         highest bandwidth     that a design may have, where there is no controller or one is designed;
+//!                               that which valve, lines and sampling leave, where a design limits none
 //! w_q > 10 w: lumped        else: waves
 //! ```
 //!
@@ -18,7 +19,7 @@
 use phea_dynamics::closed_loop::ClosedLoop;
 
 use crate::audit::highest_crossover;
-use crate::design::{DesignLimitKind, design_limits};
+use crate::design::{DesignLimitKind, design_limits, highest_bandwidth};
 use crate::project::{ChosenLines, Loaded, Project, ReachedBy};
 use crate::rig::{Rig, quarter_wave_of};
 use crate::robust::{RobustProblem, robust_problem};
@@ -100,15 +101,17 @@ fn reach(source: &dyn Source, setup: &Setup<'_>, question: LoopInQuestion) -> Op
     let bandwidth = problem.as_ref().filter(|_| is_designed).and_then(|problem| bandwidth(setup, problem));
     let all = crossover.map(|reached| (reached, ReachedBy::Crossover)).into_iter();
     let all = all.chain(required_times(project)).chain(design_frequencies(project));
-    let all = all.chain(bandwidth.map(|reached| (reached, ReachedBy::HighestBandwidth)));
+    let all = all.chain(bandwidth);
     all.filter(|(reached, _)| *reached > 0.0 && reached.is_finite())
         .max_by(|one, other| one.0.total_cmp(&other.0))
 }
 
-/// The highest bandwidth of a design.
-fn bandwidth(setup: &Setup<'_>, problem: &RobustProblem) -> Option<f64> {
+/// The highest bandwidth of a design; where it is not limited, that which the rig leaves.
+fn bandwidth(setup: &Setup<'_>, problem: &RobustProblem) -> Option<(f64, ReachedBy)> {
     let limits = design_limits(setup, problem);
-    limits.iter().find(|limit| limit.kind == DesignLimitKind::HighestBandwidth).map(|limit| limit.value)
+    let limit = limits.iter().find(|limit| limit.kind == DesignLimitKind::HighestBandwidth);
+    let stated = limit.map(|limit| (limit.value, ReachedBy::HighestBandwidth));
+    stated.or_else(|| Some((highest_bandwidth(setup)?.0, ReachedBy::UnlimitedBandwidth)))
 }
 
 /// The bandwidths of lags of first order that settle and rise in the required times.

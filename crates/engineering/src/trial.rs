@@ -82,11 +82,36 @@ pub enum DrivenCorners {
     WhereElseSatisfies,
 }
 
+/// Ratio to what is required beyond which a step in a narrower band lacks room.
+const LATE_WITHOUT_ROOM: f64 = 1.1;
+
 impl Trial {
     /// Whether every run satisfies what is required of it in time; `None` where nothing is.
     pub fn satisfies(&self) -> Option<bool> {
         let required = self.runs.iter().any(|run| !run.requirements.is_empty());
         required.then(|| self.runs.iter().all(TrialRun::satisfies))
+    }
+
+    /// Every run, those at the corners of the box and inside it too.
+    fn all(&self) -> impl Iterator<Item = &TrialRun> {
+        self.runs.iter().chain(&self.corners)
+    }
+
+    /// How far the worst run is from what is required in time: at most 1 where all reach it, 0
+    /// without a run.
+    pub(crate) fn worst_run(&self) -> f64 {
+        self.all().map(TrialRun::excess).fold(0.0, f64::max)
+    }
+
+    /// The same with room for the plants between those that were driven.
+    pub(crate) fn worst_run_with_room(&self) -> f64 {
+        self.all().map(TrialRun::excess_with_room).fold(0.0, f64::max)
+    }
+
+    /// True where every run satisfies what is required in time, and one comes back so near to the
+    /// edge of its band that in nine tenths of it it is later than required by a tenth.
+    pub fn lacks_room(&self) -> bool {
+        self.worst_run() <= 1.0 && self.worst_run_with_room() > LATE_WITHOUT_ROOM
     }
 
     /// The worst of all runs.

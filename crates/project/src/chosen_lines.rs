@@ -42,6 +42,8 @@ pub enum ReachedBy {
     DesignFrequency(usize),
     /// The highest bandwidth that a design may have.
     HighestBandwidth,
+    /// The bandwidth that valve, lines and sampling leave to a design that limits none.
+    UnlimitedBandwidth,
 }
 
 impl Project {

@@ -72,5 +72,8 @@ fn by_words(by: &ReachedBy) -> String {
         ReachedBy::HighestBandwidth => {
             "the highest bandwidth of a design (`design.highest_bandwidth`)".to_string()
         }
+        ReachedBy::UnlimitedBandwidth => {
+            "the bandwidth that valve, lines and sampling leave to a design without `design.highest_bandwidth`".to_string()
+        }
     }
 }

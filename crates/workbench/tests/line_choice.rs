@@ -190,3 +190,14 @@ fn a_quarter_wave_that_limits_the_bandwidth_is_not_compared_with_itself() {
     let stated = sentence(&["design.highest_bandwidth=60"]);
     assert!(stated.contains("within 10 times the 60.0 rad/s"), "{stated}");
 }
+
+/// A design whose bandwidth nothing limits may go as far as it would by default, though nothing
+/// asks for so much.
+#[test]
+fn a_design_without_a_limit_on_its_bandwidth_has_waves_where_the_rig_leaves_it_as_much() {
+    let rig = rig_to_be_designed();
+    let [default, unlimited] = [&[][..], &["design.highest_bandwidth=inf"]].map(|own| chosen(&rig, own));
+    assert_eq!(unlimited["reached_rad_per_s"], default["reached_rad_per_s"]);
+    let found = (&unlimited["model"], &unlimited["reached_by"]);
+    assert_eq!(found, (&"transmission_line".into(), &"unlimited_bandwidth".into()));
+}

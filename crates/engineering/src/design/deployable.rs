@@ -181,7 +181,7 @@ pub(super) fn split(given: &RobustProblem, audit: &Audit) -> (RobustProblem, Aud
 pub type LimitFinding = (DesignLimitKind, SpecificationFinding);
 
 /// The least of what waves in the lines, the servovalve and sampling leave.
-fn highest_bandwidth(setup: &Setup<'_>) -> Option<(f64, LimitOrigin)> {
+pub(crate) fn highest_bandwidth(setup: &Setup<'_>) -> Option<(f64, LimitOrigin)> {
     let rig = setup.rig().ok()?;
     let valve = rig.actuator.components().valve.natural_frequency;
     let sampled = setup.timing.sample_time_s.map(|time_s| BANDWIDTH_SHARE * std::f64::consts::PI / time_s);

@@ -30,7 +30,11 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
     let verdict =
         if view.is_met() { "satisfies every specification" } else { "does not satisfy every specification" };
     if view.is_stopped() {
-        return format!("stopped: this is the best controller found so far, and it {verdict}");
+        let missed = match view.is_met() && view.misses_on_rig() {
+            true => format!(", but {}", view.missed_on_rig_words()),
+            false => String::new(),
+        };
+        return format!("stopped: this is the best controller found so far, and it {verdict}{missed}");
     }
     match &view.design.status {
         DesignStatus::Met if view.designed.view.verdict() == Verdict::NotProven => {
@@ -97,7 +101,8 @@ fn command_words(command: &CommandOfSteps) -> String {
 
 /// True where a design misses what is required in time and nothing else.
 fn keeps_all_but_steps(view: &ProjectDesign) -> bool {
-    view.designed.view.audit.verdict == Verdict::Met && view.designed.view.misses_in_time()
+    let is_met = view.designed.view.audit.verdict == Verdict::Met && view.keeps_its_limits();
+    is_met && view.designed.view.misses_in_time()
 }
 
 /// The word of the outcome of a repair, in JSON.

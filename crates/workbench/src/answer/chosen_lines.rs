@@ -12,10 +12,11 @@ pub(crate) fn body_of_lines(lines: &ChosenLines) -> Object {
         ReachedBy::RequiredTime(_) => "required_time",
         ReachedBy::DesignFrequency(_) => "design_frequency",
         ReachedBy::HighestBandwidth => "highest_bandwidth",
+        ReachedBy::UnlimitedBandwidth => "unlimited_bandwidth",
     };
     let specification = |(_, by): &(f64, ReachedBy)| match by {
         ReachedBy::RequiredTime(number) | ReachedBy::DesignFrequency(number) => Some(*number),
-        ReachedBy::Crossover | ReachedBy::HighestBandwidth => None,
+        ReachedBy::Crossover | ReachedBy::HighestBandwidth | ReachedBy::UnlimitedBandwidth => None,
     };
     let nothing = "neither loop nor requirement reaches a frequency";
     Object::new()

@@ -13,6 +13,10 @@ use crate::answer::{Object, significant};
 use crate::audit::PrefilterGain;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
+use phea_dynamics::portable::magnitude;
+
+/// Ratio up to which a pole is at the limit.
+const SAME: f64 = 1.000001;
 
 /// A table of the limits; empty where there are none.
 pub(crate) fn document(view: &ProjectDesign) -> Document {
@@ -34,6 +38,8 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
             value_words(view, limit).into(),
             origin_words(limit.origin).into(),
             view.limit_finding(limit.kind)
+                // of the gain of a prefilter, a limit on |S| leads the search, and nothing is judged by it
+                .filter(|_| limit.kind != DesignLimitKind::PrefilterGain)
                 .and_then(|found| found.worst.as_ref())
                 .map_or(Cell::Missing, |worst| Cell::margin(worst.margin_db)),
             Cell::from(view.binds(limit).map(|binds| if binds { "binds" } else { "" }.to_string())),
@@ -43,7 +49,22 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
         Table::new(["limit", "key", "value", "from", "least margin", ""]).with(view.limits.iter().map(row)),
     );
     out.sentences(view.command_of_steps.as_ref().map(|command| command_sentence(view, command)));
+    out.sentences(fast_notch(view));
     out
+}
+
+/// A pole of the designed controller beyond the fastest one that is allowed: that of a notch whose
+/// poles are damped so much that they are real.
+fn fast_notch(view: &ProjectDesign) -> Option<String> {
+    let limit = view.limits.iter().find(|limit| limit.kind == DesignLimitKind::FastestPole)?;
+    let law = view.design.law.feedback.transfer_function().ok()?;
+    let fastest = law.poles().iter().map(|pole| magnitude(*pole)).fold(0.0, f64::max);
+    (fastest > SAME * limit.value).then(|| {
+        format!(
+            "a notch is within the fastest pole by its natural frequency: the faster of its two real poles lies at {} rad/s",
+            significant(fastest, 4)
+        )
+    })
 }
 
 /// The largest command of the scenarios' steps, and the largest step that valve, supply and sensor
@@ -77,7 +98,10 @@ fn command_sentence(view: &ProjectDesign, command: &CommandOfSteps) -> String {
     let at_rest = match command.is_at_rest() {
         true => String::new(),
         false => {
-            format!("{} hold the force once it is reached, under any controller; ", volts(command.at_rest_v))
+            format!(
+                "under any controller at most {} hold the force between these steps; ",
+                volts(command.at_rest_v)
+            )
         }
     };
     format!(

@@ -22,7 +22,7 @@ pub(super) fn document(view: &ProjectDesign) -> Document {
     }
     out.heading("What relaxing a limit would buy");
     out.explanation(
-        "The last search, continued from the controller that it found with nothing but this limit wider by a tenth: same structure, same plants and frequencies, without an audit. Another structure may gain more.",
+        "The last search, continued from the controller that it found with nothing but this limit wider by a tenth: same structure, same plants and frequencies, without an audit. It finds a local optimum: another start or structure may gain more.",
     );
     out.sentences(view.relaxations.limits.iter().map(|one| sentence(view, one)));
     out
@@ -76,7 +76,9 @@ fn sentence(view: &ProjectDesign, one: &RelaxedGain) -> String {
         RelaxedLimit::Steps(_) | RelaxedLimit::Design(_) => format!("the {}", name(view, one.limit)),
     };
     let effect = match one.gained_db {
-        gained_db if gained_db < ACCURACY_DB => "would buy nothing: other limits bind too".to_string(),
+        gained_db if gained_db < ACCURACY_DB => {
+            "gains nothing that a search from here finds: other limits bind too".to_string()
+        }
         gained_db => bought(view, gained_db, one.noise_gained_db),
     };
     format!("relaxing {name} {} {effect}", relaxed(view, one.limit))

@@ -249,6 +249,7 @@ fn ending_words(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
     match one.ending {
         _ if misses_in_time(view, one) && one.is_chosen => "steps missed, nearest",
         _ if misses_in_time(view, one) => "steps missed",
+        _ if one.is_chosen && view.misses_on_rig() => "nonlinear runs missed, nearest",
         _ if one.misses_on_rig => "nonlinear runs missed",
         StructureEnding::Met if one.is_chosen => "met, taken",
         StructureEnding::Missed if one.is_chosen => "missed, nearest",
@@ -271,6 +272,7 @@ fn ending_words(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
 fn ending_key(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
     match one.ending {
         _ if misses_in_time(view, one) || one.misses_on_rig => "missed_in_time",
+        StructureEnding::Met if one.is_chosen && view.misses_on_rig() => "missed_in_time",
         StructureEnding::Met => "met",
         StructureEnding::Missed => "missed",
         StructureEnding::NotEarned => "not_earned",

@@ -137,7 +137,11 @@ fn required(trial: &Trial) -> Document {
         ]);
     }
     let verdict = if satisfies { Verdict::Met } else { Verdict::Violated };
-    out.verdict(verdict.into(), format!("Required in time: {}", satisfied_word(satisfies)), vec![]);
+    let without_room = (satisfies && trial.lacks_room()).then(|| {
+        "without room: a run comes back to the edge of its band so late that plants between those that were driven may leave it, so that `phea design` counts it as missed".to_string()
+    });
+    let without_room = Vec::from_iter(without_room);
+    out.verdict(verdict.into(), format!("Required in time: {}", satisfied_word(satisfies)), without_room);
     out.explanation("The worst of the three steps of each run.");
     out.table(rows);
     out.sentences(corners(trial));

@@ -16,9 +16,13 @@ pub(super) fn sentence(sampled: &AuditedController, continuous: &AuditedControll
     let all = "The last column is the design for the continuous loop without delay, sampled and delayed as this loop is.";
     match (continuous.view.audit.verdict, most) {
         (Verdict::Met, _) if continuous.view.misses_in_time() => {
-            format!("{all} It satisfies the limits here too, and misses what is required in time.")
+            format!(
+                "{all} It satisfies every specification over frequency here too, and misses what is required in time."
+            )
         }
-        (Verdict::Met, _) => format!("{all} It holds here too."),
+        (Verdict::Met, _) => {
+            format!("{all} It satisfies every specification here too, without the limits of `[design]`.")
+        }
         (_, Some((name, here, there))) => format!(
             "{all} It does not hold here: its margin of {name} is {}, where the design that takes samples and delay into account has {}.",
             margin_words(there),
