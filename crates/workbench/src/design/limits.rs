@@ -38,7 +38,7 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
             value_words(view, limit).into(),
             origin_words(limit.origin).into(),
             view.limit_finding(limit.kind)
-                // of the gain of a prefilter, a limit on |S| leads the search, and nothing is judged by it
+                // its margin is that of a limit that leads the search
                 .filter(|_| limit.kind != DesignLimitKind::PrefilterGain)
                 .and_then(|found| found.worst.as_ref())
                 .map_or(Cell::Missing, |worst| Cell::margin(worst.margin_db)),
