@@ -317,8 +317,8 @@ fn record(
     Ok(found)
 }
 
-/// Where the spool is on its way, without the noise of the command's record, and the flow; the
-/// spool is so many rows late.
+/// The position of the spool on its way, without the noise of the command's record, and the flow,
+/// of each row; the spool is this many rows late.
 fn opened(rows: &[BenchRow], late: f64) -> Vec<(f64, f64)> {
     let recorded: Vec<f64> = rows.iter().map(|row| row.command).collect();
     let mut before = 0.0;

@@ -3,7 +3,7 @@
 /// Part of an interval that each step leaves, (sqrt(5) - 1)/2.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
-/// Where a function that falls and then rises between two ends is least, by the golden section. The
+/// The minimum of a function that falls and then rises between two ends, by the golden section. The
 /// error is at most half of the ends' distance times 0.618 to the power of the steps.
 pub(crate) fn least_between([mut low, mut high]: [f64; 2], steps: usize, of: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..steps {

@@ -117,3 +117,10 @@ pub struct LateError {
     /// What to do; empty where there is nothing to say.
     pub help: String,
 }
+
+impl LateError {
+    /// The error and its cure in one sentence.
+    pub fn sentence(&self) -> String {
+        format!("{}: {}", self.message, self.help)
+    }
+}

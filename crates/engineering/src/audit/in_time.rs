@@ -80,12 +80,12 @@ const SOON: f64 = 2.0;
 /// often: every plant is stable.
 const SETTLED_BY: f64 = 0.5;
 const LONGER: u16 = 4;
-const EXTENSIONS: i32 = 3;
+const EXTENSIONS: usize = 3;
 /// The same of a step that has not settled at all, though it ends in its band: the loop may be far
 /// slower than what is required.
-const EXTENSIONS_UNSETTLED: i32 = 7;
+const EXTENSIONS_UNSETTLED: usize = 7;
 /// The same of a plant with waves in its lines, whose points grow with the duration.
-const EXTENSIONS_RESPONDING: i32 = 4;
+const EXTENSIONS_RESPONDING: usize = 4;
 /// Frequency that stands for zero, at which integrators have no response, rad/s.
 const AT_REST: f64 = 1e-9;
 /// Most members of a family whose steps are computed; of plants without polynomials, whose steps
@@ -291,14 +291,14 @@ impl StepSearch<'_> {
         Ok([overshoot_percent, settling_s, rise_s])
     }
 
-    /// Whether a time that is required is not known yet.
+    /// True while a time that is required is not known.
     fn lacks(&self, metrics: &StepMetrics) -> bool {
         let TrackingWish { settling_time_s, rise_time_s, .. } = self.wish;
         settling_time_s.is_some() && metrics.settling.time_s().is_none()
             || rise_time_s.is_some() && metrics.rise_time_10_90_s.is_none()
     }
 
-    /// Whether the response to a step comes to rest within the band; true where that is unknown.
+    /// True where the response to a step comes to rest within the band, and where that is unknown.
     fn ends_in_band(&self, member: &Member) -> bool {
         let response = self.problem.response(member, AT_REST);
         let at_rest = response.map(|found| {

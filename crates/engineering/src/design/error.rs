@@ -27,7 +27,7 @@ pub enum DesignError {
     #[error("the search ended without a controller{}", .0.iter().map(|one| format!("; {one}")).collect::<String>())]
     NoController(Vec<String>),
     /// Required steps that no controller makes on the rig.
-    #[error("{}", .0.iter().map(|one| format!("{}: {}", one.message, one.help)).collect::<Vec<_>>().join("; "))]
+    #[error("{}", .0.iter().map(LateError::sentence).collect::<Vec<_>>().join("; "))]
     ImpossibleSteps(Vec<LateError>),
     /// A part of the problem cannot be searched with.
     #[error(transparent)]

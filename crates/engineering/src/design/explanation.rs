@@ -23,7 +23,7 @@ pub struct Explanation {
 }
 
 impl Explanation {
-    /// What a diagnosis found, with the name of each specification by its index.
+    /// A finding of the diagnosis in words, which name each specification by its index.
     pub fn of(finding: &Finding, name_of: &dyn Fn(usize) -> String) -> Explanation {
         Explanation {
             sentence: words::FindingWords { finding, name_of }.to_string(),

@@ -43,14 +43,14 @@ pub(super) fn findings(setup: &Setup<'_>, problem: &RobustProblem) -> Vec<LateEr
                 text(total_s),
                 words.join(", ")
             ),
-            help: format!("require more than {}, or shorten {}", text(total_s), what(&parts)),
+            help: format!("require more than {}, or shorten {}", text(total_s), shortened(&parts)),
         })
     };
     problem.in_time.iter().filter_map(of).collect()
 }
 
-/// What can be shortened: `the line`, `the delay`.
-fn what(parts: &[(f64, &str); 4]) -> &'static str {
+/// The times that can be shortened: `the line`, `the delay`.
+fn shortened(parts: &[(f64, &str); 4]) -> &'static str {
     let [.., (wave_s, _)] = parts;
     match (parts[..3].iter().any(|(time_s, _)| *time_s > 0.0), *wave_s > 0.0) {
         (false, true) => "the line",

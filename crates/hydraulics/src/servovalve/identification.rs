@@ -118,7 +118,7 @@ pub struct TestInput {
     pub oil: WarmOil,
     /// Lag z of the torque motor's iron in V that the spool brings along to the first row.
     pub memory: f64,
-    /// How far the spool is behind a command that moves, in V: [`super::ramp_delay`] times its
+    /// Distance of the spool behind a command that moves, in V: [`super::ramp_delay`] times its
     /// rate.
     pub lag: f64,
 }

@@ -26,7 +26,7 @@ pub enum ControllerChoice {
         maximum_order: usize,
         /// The first name that is tried, where shorter ones are known to fail.
         from: Option<NamedStructure>,
-        /// Whether a gain alone is tried although the specifications require an integrator: they
+        /// True where a gain alone is tried although the specifications require an integrator: they
         /// lead to a step within a band, which a gain alone may reach.
         with_gain_alone: bool,
         /// How much a longer one must gain for each of its further poles to be taken in place of

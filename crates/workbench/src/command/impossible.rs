@@ -35,7 +35,7 @@ impl Impossible {
         format!("{} (line {}): {}", self.at.message, self.line, self.at.help)
     }
 
-    /// Whether a sentence begins with what is impossible.
+    /// True where a sentence begins with this requirement.
     pub(super) fn is_stated_by(&self, sentence: &str) -> bool {
         sentence.starts_with(&self.at.message)
     }

@@ -188,7 +188,7 @@ fn null_offset(found: &Identification) -> Option<String> {
     })
 }
 
-/// What both flow gains and the pressure sensitivity are called.
+/// Names of both flow gains and of the pressure sensitivity.
 fn slopes(has_lap: bool) -> [&'static str; 3] {
     match has_lap {
         false => [

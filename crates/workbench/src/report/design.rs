@@ -66,8 +66,7 @@ pub(super) fn designed(
             return Ok(Designed::Nothing(sentences));
         }
         Err(CommandError::Design(DesignError::ImpossibleSteps(found))) => {
-            let sentence = |one: &LateError| format!("{}: {}", one.message, one.help);
-            return Ok(Designed::Impossible(found.iter().map(sentence).collect()));
+            return Ok(Designed::Impossible(found.iter().map(LateError::sentence).collect()));
         }
         Err(CommandError::Design(error)) => return Ok(Designed::Nothing(vec![error.to_string()])),
         Err(error) => return Err(error),

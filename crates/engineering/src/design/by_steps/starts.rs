@@ -1,5 +1,6 @@
 //! Designs from which searches by steps begin.
 
+use phea_dynamics::portable;
 use phea_qft::design::{Design, NamedStructure, StructureEnding, TriedStructure};
 
 use super::SearchStarts;
@@ -62,10 +63,10 @@ impl LedDesign<'_> {
     /// The design; before it what lies beside it, where its runs on the nonlinear rig miss by
     /// little.
     fn own_starts(&self, told: &ProjectDesign) -> impl Iterator<Item = (Design, SearchReach)> + use<> {
-        let design = &told.design;
+        let design = with_free_gain(told.design.clone(), told);
         let is_near = !self.aimed.added.is_empty() && told.worst_run() <= NEAR;
         let beside = is_near.then(|| (design.clone(), SearchReach::Beside));
-        beside.into_iter().chain(std::iter::once((design.clone(), SearchReach::Anywhere)))
+        beside.into_iter().chain(std::iter::once((design, SearchReach::Anywhere)))
     }
 
     /// The structures that are shorter than that of a design, and satisfy the limits over frequency
@@ -108,28 +109,53 @@ fn in_order<One>(mut others: Vec<One>, of: impl Fn(&One) -> (f64, usize)) -> Vec
     others
 }
 
-/// A structure as it was found, behind the prefilter of a design where it has none. A gain alone
-/// leaves |T(0)| < 1, so that the prefilter of a design with an integrator gets a gain that is
-/// free.
+/// A structure as it was found, behind the prefilter of a design where it has none; a gain alone
+/// with that of the design at its crossover, since the limits on the way to a step drive it as high
+/// as stability lets them.
 fn begun_from(tried: &TriedStructure, told: &ProjectDesign) -> Design {
     let design = &told.design;
     let mut free_numbers = tried.free_numbers.clone();
-    let mut prefilter = tried.prefilter.clone();
-    if prefilter.is_none() {
-        let own = design.free_numbers.get(design.structure.dimension()..).unwrap_or_default();
-        prefilter = design.prefilter.clone();
-        if let Some(prefilter) = &mut prefilter
-            && tried.name == Some(NamedStructure::Proportional)
-            && prefilter.gain == [1.0, 1.0]
-        {
-            let most = limit_value(&told.limits, DesignLimitKind::PrefilterGain);
-            prefilter.gain = [1.0, most.unwrap_or(UNLIMITED_GAIN).max(1.0)];
-            free_numbers.push(0.0);
+    let prefilter = match &tried.prefilter {
+        Some(prefilter) => Some(prefilter.clone()),
+        None => {
+            let own = design.free_numbers.get(design.structure.dimension()..);
+            free_numbers.extend_from_slice(own.unwrap_or_default());
+            design.prefilter.clone()
         }
-        free_numbers.extend_from_slice(own);
+    };
+    if tried.name == Some(NamedStructure::Proportional)
+        && let (Some(own), Some(gain)) = (free_numbers.first_mut(), gain_at_crossover(told))
+    {
+        let [least, greatest] = tried.structure.gain;
+        *own = portable::ln(gain.clamp(least, greatest));
     }
     let structure = tried.structure.clone();
-    Design { structure, prefilter, free_numbers, name: tried.name, ..design.clone() }
+    with_free_gain(Design { structure, prefilter, free_numbers, name: tried.name, ..design.clone() }, told)
+}
+
+/// |G| of a design where its nominal loop crosses over first.
+fn gain_at_crossover(told: &ProjectDesign) -> Option<f64> {
+    let crossover = told.designed.figures.nominal.as_ref()?.crossovers.first_rad_per_s?;
+    let law = told.design.law.feedback.transfer_function().ok()?;
+    Some(portable::magnitude(law.at_frequency(crossover)))
+}
+
+/// A gain alone behind a prefilter whose gain is free, since it leaves |T(0)| < 1 and the search
+/// over frequency keeps that gain near 1; any other structure as it is.
+fn with_free_gain(mut start: Design, told: &ProjectDesign) -> Design {
+    let place = start.structure.dimension().min(start.free_numbers.len());
+    if let Some(prefilter) = &mut start.prefilter
+        && start.name == Some(NamedStructure::Proportional)
+    {
+        let [least, greatest] = prefilter.gain;
+        let most = limit_value(&told.limits, DesignLimitKind::PrefilterGain).unwrap_or(UNLIMITED_GAIN);
+        prefilter.gain = [least.min(1.0), greatest.max(most)];
+        // a number that is not free has no place
+        if least == greatest {
+            start.free_numbers.insert(place, portable::ln(least));
+        }
+    }
+    start
 }
 
 #[cfg(test)]

@@ -98,9 +98,7 @@ fn leave_out_standing_out(
 /// Places at which a slow command is further from the median of five than it moves in three rows,
 /// and than ten deviations of its noise; none where so many are that they are no outliers.
 fn standing_out(command: &[f64]) -> Vec<usize> {
-    let steps = command
-        .windows(2)
-        .map(|pair| pair.iter().rev().copied().reduce(|now, before| now - before).map_or(0.0, f64::abs));
+    let steps = command.iter().zip(command.iter().skip(1)).map(|(before, now)| (now - before).abs());
     let greatest = command.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let noise = ROUGH * roughness(command);
     let most = (STEPS * median(steps.collect())).max(noise).max(LEAST_OUTLIER * greatest);

@@ -250,7 +250,7 @@ impl AllSteps {
         told.join("; ")
     }
 
-    /// How many steps are counted, and which.
+    /// The number of steps that are counted, and their kinds.
     pub(super) fn counted(&self) -> String {
         let origins = [
             (StepOrigin::Family, "linear"),
