@@ -289,12 +289,21 @@ pub struct RunOutput<'a> {
     pub attention: Attention,
     /// Whether a run whose errors may be visible is [`repeated`].
     pub repeats: bool,
+    /// Whether the limits of lines are watched: their pressure, vacuum, flow and vapour.
+    pub line_limits: bool,
 }
 
 impl<'a> RunOutput<'a> {
     /// Samples, and a table where a destination is given.
     pub fn new(samples: bool, table: Option<(&'a dyn Destination, TableFormat)>) -> RunOutput<'a> {
-        RunOutput { samples, table, ledger: false, attention: Attention::Everything, repeats: true }
+        RunOutput {
+            samples,
+            table,
+            ledger: false,
+            attention: Attention::Everything,
+            repeats: true,
+            line_limits: true,
+        }
     }
 }
 

@@ -2,11 +2,12 @@
 //! compared with what the linear loop predicts.
 //!
 //! ```text
-//! project, audit -> rigs::rigs -> Tried { project, plant } -> TriedMachine::driven, at two sizes of the step -> judge -> Run { linear, machine, agreement, reason } -> answer
+//! project, audit -> rigs::rigs -> Tried { project, plant } -> TriedMachine::driven, the first steps and the largest -> judge -> Run { linear, machine, agreement, reason } -> answer
 //! all satisfy what is required -> corners of the box and plants inside -> the worst of them
 //! ```
 
 mod corners;
+mod first_steps;
 mod judge;
 mod prediction;
 mod required;
@@ -17,6 +18,7 @@ pub use judge::{OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, SETTLING_ROOM, percent_w
 
 pub use crate::linear_step::StepResponse;
 use corners::{runs_of_corners, worst_of};
+pub use first_steps::MOST_OF_SCENARIOS;
 pub(crate) use required::BAND_WITH_ROOM;
 pub use required::HeldRequirement;
 pub(crate) use rigs::waves_alone;
@@ -31,10 +33,11 @@ use crate::audit::ProjectAudit;
 use crate::rig::RigError;
 use crate::robust::RobustProblem;
 use crate::setup::{ControlError, Setup};
+use crate::side_by_side::side_by_side;
 use crate::source::Source;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::time_response::TimeResponseError;
-use phea_dynamics::watch::{Progress, Stopped, Watch, within};
+use phea_dynamics::watch::{Stopped, Watch, within};
 
 /// Why a verdict cannot be tried on the machine.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -97,7 +100,7 @@ impl Trial {
         self.runs.iter().chain(&self.corners)
     }
 
-    /// How far the worst run is from what is required in time: at most 1 where all reach it, 0
+    /// The greatest ratio of a run to what is required in time: at most 1 where all reach it, 0
     /// without a run.
     pub(crate) fn worst_run(&self) -> f64 {
         self.all().map(TrialRun::excess).fold(0.0, f64::max)
@@ -139,28 +142,21 @@ pub fn tried(
     let rig = setup.rig()?;
     let (rigs, not_driven) = rigs::rigs(setup, rig, problem, view);
     let count = rigs.len() as f64 + CORNERS_SHARE;
-    let mut runs = Vec::new();
-    let mut declared: Option<Vec<DrivenSteps>> = None;
-    for (index, rig) in rigs.iter().enumerate() {
-        let mut within = |progress: Progress| {
-            watch(Progress { stage: STAGE, share: (index as f64 + progress.share) / count })
-        };
-        let machine = TriedMachine::of(rig, problem)?;
-        if let Some(known) = declared.as_ref().filter(|_| rig.is_declared) {
-            runs.extend(machine.judged(known, problem, view));
-            continue;
-        }
-        let Some(driven) = machine.driven(source, &mut within)? else { return Err(Stopped.into()) };
-        for mut run in machine.judged(&driven, problem, view) {
+    let from = rigs.len() as f64 / count;
+    let all = driven(source, &rigs, problem, &mut within(&mut *watch, [0.0, 0.9 * from]))?;
+    let mut runs: Vec<TrialRun> = Vec::new();
+    for (index, (rig, own)) in rigs.iter().zip(&all).enumerate() {
+        let driven = all.first().filter(|_| rig.is_declared).unwrap_or(own);
+        let share = [index, index + 1].map(|done| from * (0.9 + 0.1 * done as f64 / rigs.len() as f64));
+        for mut run in TriedMachine::of(rig, problem)?.judged(driven, problem, view) {
             if rig.quarter_wave_rad_per_s.is_some() && run.agreement >= Agreement::Differs {
                 let seen = (driven.as_slice(), &run, runs.as_slice());
                 let declared = rigs.first().unwrap_or(rig);
                 let on = (source, [rig, declared]);
-                run.reason = with_cause(on, seen, (problem, view), &mut within)?;
+                run.reason = with_cause(on, seen, (problem, view), &mut within(&mut *watch, share))?;
             }
             runs.push(run);
         }
-        declared.get_or_insert(driven);
     }
     let mut trial = Trial { runs, corners: vec![], not_driven };
     let wanted = match corners {
@@ -168,11 +164,27 @@ pub fn tried(
         DrivenCorners::WhereElseSatisfies => trial.satisfies() == Some(true),
     };
     if wanted {
-        let from = rigs.len() as f64 / count;
         trial.corners = runs_of_corners(source, setup, (problem, view), &mut within(watch, [from, 1.0]))?;
         trial.runs.extend(worst_of(&trial.corners));
     }
     Ok(Some(trial))
+}
+
+/// The steps of each rig; none for one that has the machine of the first, the rig as declared.
+fn driven(
+    source: &dyn Source,
+    rigs: &[rigs::Tried],
+    problem: &RobustProblem,
+    watch: Watch<'_>,
+) -> Result<Vec<Vec<DrivenSteps>>, TrialError> {
+    let steps_of = |index: usize, watch: Watch<'_>| -> Result<Option<Vec<DrivenSteps>>, TrialError> {
+        match rigs.get(index).filter(|rig| !rig.is_declared) {
+            Some(rig) => TriedMachine::of(rig, problem)?.driven(source, watch),
+            None => Ok(Some(vec![])),
+        }
+    };
+    let each = side_by_side(rigs.len(), STAGE, watch, |index, watch| steps_of(index, watch).transpose())?;
+    each.into_iter().collect()
 }
 
 /// The reason of a run with waves in its lines that does not agree, with its cause: the same steps
@@ -184,7 +196,7 @@ fn with_cause(
     watch: Watch<'_>,
 ) -> Result<String, TrialError> {
     let machine = TriedMachine::of(waves, problem)?;
-    let Some(steps) = driven.iter().find(|steps| steps.size() == run.size) else {
+    let Some(steps) = driven.iter().find(|steps| steps.are_of(run)) else {
         return Ok(machine.with_waves_named(run, None));
     };
     let mut repeated = |rig: &rigs::Tried| -> Result<TrialRun, TrialError> {

@@ -262,6 +262,63 @@ fn every_run_is_held_against_the_required_step() {
     }
 }
 
+/// What holds for every step is tried the other way too, and in the steps of the scenarios, each pair
+/// of references once; a step of a size of its own is tried alone.
+#[test]
+fn a_requirement_of_every_step_is_tried_both_ways_and_in_scenarios() {
+    let request = Request::Verify { proof: false, on_machine: true };
+    let scenario = "[[scenario]]\nname = \"pull\"\nduration = \"2 s\"\nreference = [\
+        { at = \"0 s\", force = \"0 N\" }, { at = \"0.5 s\", force = \"-600 N\" }, \
+        { at = \"1 s\", force = \"0 N\" }, { at = \"1.5 s\", force = \"150 N\" }]\n";
+    let of = |step: &str| {
+        let found = answer(&format!("{}{scenario}", rig(step)), &request).0;
+        let runs = found["machine"]["runs"].as_array().unwrap().clone();
+        let is_declared = |run: &Value| run["what"].as_str().unwrap().starts_with("the rig as declared");
+        let runs: Vec<Value> = runs.into_iter().filter(is_declared).collect();
+        runs.into_iter()
+            .map(|run| {
+                let ends = ["0", "1"].map(|end| number(&run["reference_n"], end));
+                assert!(
+                    run["step"] == "largest_unsaturated"
+                        || !run["requirements"].as_array().unwrap().is_empty()
+                );
+                (run["step"].as_str().unwrap().to_string(), ends)
+            })
+            .collect::<Vec<(String, [f64; 2])>>()
+    };
+    let runs = of("settling_time = 30\n");
+    let sizes: Vec<&str> = runs.iter().map(|(size, _)| size.as_str()).collect();
+    assert_eq!(sizes[..2], ["tenth_of_supply_force", "tenth_of_supply_force_reversed"]);
+    let [[from, up], [same, down]] = [runs[0].1, runs[1].1];
+    ask::near(up - from, from - down, 1e-12);
+    let scenarios = runs.iter().filter(|(size, _)| size == "scenario").map(|(_, ends)| *ends);
+    let largest = vec![[0.0, 4000.0], [0.0, -600.0], [0.0, 150.0]];
+    assert_eq!((from, scenarios.collect::<Vec<[f64; 2]>>()), (same, largest));
+    let stated = of("settling_time = 30\namplitude = \"300 N\"\n");
+    assert!(stated.iter().all(|(size, _)| ["required", "largest_unsaturated"].contains(&size.as_str())));
+    // a force before the step alone leaves its direction open
+    let from = of("settling_time = 30\ninitial_force = \"100 N\"\n");
+    let required: Vec<[f64; 2]> =
+        from.iter().filter(|(size, _)| size == "required").map(|(_, ends)| *ends).collect();
+    let [one, other] = required[..] else { panic!("{from:?}") };
+    ask::near(one[1] - 100.0, 100.0 - other[1], 1e-12);
+}
+
+/// A gain alone is tried behind a prefilter of gain 1/T(0), and taken where it satisfies: of k/(s + 1)
+/// with k from 1 to 1.1 a gain of 10 makes |T(0)| from 0.909 to 0.917, well within 5 %.
+#[test]
+fn a_gain_alone_is_taken_where_it_satisfies() {
+    let text = "schema = 1\ntitle = \"lag\"\n[plant]\nnumerator = \"k\"\ndenominator = \"s + 1\"\n\
+        [uncertainty]\nk = { nominal = 1, minimum = 1, maximum = 1.1, points = 3 }\n\
+        [[specification]]\nkind = \"step\"\novershoot_percent = 10\nsettling_time = \"0.5 s\"\n\
+        settling_band_percent = 5\n\
+        [[specification]]\nkind = \"robust_stability\"\nlimit = 1.3\nfrequencies = [1, 10, 100]\n";
+    let (object, words) = answer(text, &Request::Design { seed: None, stages: false, repair: false });
+    let structures = object["structures"].as_array().unwrap();
+    let taken: Vec<&Value> = structures.iter().filter(|one| one["taken"] == true).collect();
+    assert_eq!((&object["status"], taken[0]["words"].as_str()), (&"met".into(), Some("P")), "{words}");
+}
+
 /// Corners of the box are driven where all other runs satisfy what is required, and the worst of
 /// them is told: that of the rigs that are declared as these corners. A step of which nothing is
 /// required has no worst.

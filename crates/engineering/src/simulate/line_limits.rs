@@ -114,6 +114,7 @@ struct LimitsOfWaves {
 }
 
 /// Watches chambers and lines.
+#[derive(Default)]
 pub(crate) struct LineWatch {
     limits: Vec<WatchedLimit>,
     points: Vec<WatchedPoint>,
@@ -123,7 +124,7 @@ pub(crate) struct LineWatch {
 impl LineWatch {
     /// Of both sides of a machine, from these observed states.
     pub(crate) fn of(bench: &ControlledMachine, wanted: &[usize]) -> LineWatch {
-        let mut watch = LineWatch { limits: vec![], points: vec![], waves: vec![] };
+        let mut watch = LineWatch::default();
         for side in [0, 1] {
             watch.side(bench, wanted, side);
             watch.neck(bench, wanted, side);

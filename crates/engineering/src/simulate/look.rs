@@ -151,6 +151,12 @@ impl<'a, 't> Looking<'a, 't> {
         self
     }
 
+    /// The same, without the limits of lines.
+    pub(super) fn without_line_limits(mut self) -> Looking<'a, 't> {
+        self.lines = LineWatch::default();
+        self
+    }
+
     /// The same, with the accounts of oil and energy.
     pub(super) fn accounting(mut self) -> Looking<'a, 't> {
         self.ledger = Some(LedgerWatch::of(self.bench));

@@ -247,6 +247,7 @@ pub(super) fn run<'t>(
     let looking = Looking::new(bench, &samples, (table, looks_per_row), measurements, &full, during);
     let looking = looking.following(output.attention, looks);
     let looking = if output.samples { looking.keeping(looks + 2.0) } else { looking };
+    let looking = if output.line_limits { looking } else { looking.without_line_limits() };
     let mut looking = if output.ledger { looking.accounting() } else { looking };
     let sampler = sampler(&bench.control, &course.waking, &samples, &memory);
     let observer: Watcher<'_> = Box::new(&mut looking);

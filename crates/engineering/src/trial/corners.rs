@@ -39,7 +39,7 @@ pub(super) fn runs_of_corners(
 ) -> Result<Vec<TrialRun>, TrialError> {
     let rigs = rigs(setup, problem, view)?;
     let runs_of = |rig: &Tried, watch: Watch<'_>| -> Result<Option<Vec<TrialRun>>, TrialError> {
-        let machine = TriedMachine::of(rig, problem)?.once();
+        let machine = TriedMachine::of(rig, problem)?.at_corner();
         let Some(driven) = machine.driven(source, watch)? else { return Ok(None) };
         let judged = machine.judged(&driven, problem, view).into_iter();
         Ok(Some(judged.filter(|run| !run.requirements.is_empty()).collect()))

@@ -34,8 +34,8 @@ pub(super) struct Driven<'a> {
     pub(super) run: &'a ScenarioRun,
     pub(super) steps: &'a Steps,
     pub(super) size: StepSize,
-    /// Of each leg.
-    pub(super) legs: [TrialStep; 3],
+    /// Of each leg that was to be driven.
+    pub(super) legs: &'a [(Leg, TrialStep)],
     /// What the linear loop predicts.
     pub(super) linear: Option<TrialStep>,
     /// Whether the linear loop is unstable.
@@ -46,8 +46,8 @@ impl Driven<'_> {
     /// The greatest overshoot and the longest settling time; without one where a step does not
     /// settle.
     pub(super) fn whole(&self) -> TrialStep {
-        let overshoots = self.legs.iter().filter_map(|leg| leg.overshoot_percent);
-        let settled: Option<Vec<f64>> = self.legs.iter().map(|leg| leg.settling_time_s).collect();
+        let overshoots = self.legs.iter().filter_map(|(_, step)| step.overshoot_percent);
+        let settled: Option<Vec<f64>> = self.legs.iter().map(|(_, step)| step.settling_time_s).collect();
         TrialStep {
             overshoot_percent: overshoots.reduce(f64::max),
             settling_time_s: settled.and_then(|times_s| times_s.into_iter().reduce(f64::max)),
@@ -57,7 +57,7 @@ impl Driven<'_> {
     /// The leg that overshoots most, of those that do not settle where there are any; the first of
     /// equals.
     pub(super) fn worst(&self) -> Leg {
-        let any = self.legs.iter().any(|leg| leg.settling_time_s.is_none());
+        let any = self.legs.iter().any(|(_, step)| step.settling_time_s.is_none());
         self.first_most(|leg| match leg.settling_time_s {
             Some(_) if any => f64::NEG_INFINITY,
             _ => leg.overshoot_percent.unwrap_or(0.0),
@@ -65,15 +65,14 @@ impl Driven<'_> {
     }
 
     fn first_most(&self, of: impl Fn(&TrialStep) -> f64) -> Leg {
-        let values = self.legs.each_ref().map(of);
-        let most = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        let legs = Leg::ALL.into_iter().zip(values);
-        legs.into_iter().find(|(_, value)| *value >= most).map_or(Leg::There, |(leg, _)| leg)
+        let values: Vec<(Leg, f64)> = self.legs.iter().map(|(leg, step)| (*leg, of(step))).collect();
+        let most = values.iter().map(|(_, value)| *value).fold(f64::NEG_INFINITY, f64::max);
+        values.iter().find(|(_, value)| *value >= most).map_or(Leg::There, |(leg, _)| *leg)
     }
 
     /// The range of the force at the end of the step after which it moves most, N.
     pub(super) fn remains(&self) -> Option<[f64; 2]> {
-        let ranges = Leg::ALL.into_iter().filter_map(|leg| self.steps.remains(self.run, leg));
+        let ranges = self.steps.driven().filter_map(|leg| self.steps.remains(self.run, leg));
         ranges.reduce(|widest, range| if width(range) > width(widest) { range } else { widest })
     }
 }

@@ -33,7 +33,8 @@ pub(super) fn held(
 ) -> Vec<HeldRequirement> {
     let concerned = requirements.iter().filter(|one| one.follows && holds_for(one, required));
     let of = |one: &TimeRequirement| {
-        let of_wish = |wish: &TrackingWish| worst(Leg::ALL.map(|leg| reached(wish, steps, run, leg)));
+        let of_wish =
+            |wish: &TrackingWish| worst(steps.driven().map(|leg| reached(wish, steps, run, leg)).collect());
         let reached = of_wish(&one.wish);
         let narrower = BAND_WITH_ROOM * one.wish.band_percent;
         HeldRequirement {
@@ -80,7 +81,7 @@ fn reached(wish: &TrackingWish, steps: &Steps, run: &ScenarioRun, leg: Leg) -> R
     }
 }
 
-fn worst(legs: [ReachedStep; 3]) -> ReachedStep {
+fn worst(legs: Vec<ReachedStep>) -> ReachedStep {
     let most = |of: fn(&ReachedStep) -> f64| legs.iter().map(of).fold(0.0, f64::max);
     ReachedStep {
         overshoot_percent: most(|one| one.overshoot_percent),

@@ -1,10 +1,11 @@
 //! One machine driven through steps of its reference, and what came of them.
 
+use super::first_steps::{FirstSteps, RequiredOfSteps};
 use super::judge::{Driven, judge, met, not_started};
 use super::prediction::{Prediction, predicted};
 use super::required::{HeldRequirement, held};
 use super::rigs::Tried;
-use super::steps::{CommandLimits, REACH, Steps};
+use super::steps::{CommandLimits, HeldLegs, REACH, Steps};
 use super::{STAGE, TrialError};
 use crate::audit::ProjectAudit;
 use crate::linear_step::StepResponse;
@@ -15,6 +16,7 @@ use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::simulate::{RequiredSteps, RunOutput, ScenarioRun, SimulateError, simulate_into};
 use crate::source::Source;
+use phea_dynamics::simulation::Attention;
 use phea_dynamics::watch::{Watch, part};
 
 /// How well a machine agrees with its linear loop, best first.
@@ -44,6 +46,10 @@ pub struct TrialStep {
 pub enum StepSize {
     /// A tenth of the force that the supply can produce.
     Tenth,
+    /// The same the other way.
+    Reversed,
+    /// As a scenario of the project makes it.
+    Scenario,
     /// The largest within reach that meets no limit: see [`largest_step_words`].
     Largest,
     /// As a requirement in time states it.
@@ -64,6 +70,11 @@ pub enum Leg {
 impl Leg {
     /// All of them.
     pub const ALL: [Leg; 3] = [Leg::There, Leg::Back, Leg::Again];
+
+    /// Those up to this one.
+    pub(super) fn up_to(last: Leg) -> impl Iterator<Item = Leg> {
+        Leg::ALL.into_iter().take(last as usize + 1)
+    }
 }
 
 /// One machine, driven there, back and there again.
@@ -120,16 +131,27 @@ pub fn largest_step_words() -> String {
     )
 }
 
-/// End of the name of a run with the largest step.
-const LARGEST: &str = ", largest step";
-/// The same where a requirement states the step.
-const REQUIRED: &str = ", required step";
+impl StepSize {
+    const ALL: [StepSize; 5] =
+        [StepSize::Tenth, StepSize::Reversed, StepSize::Scenario, StepSize::Largest, StepSize::Required];
+
+    /// End of the name of a run with such a step.
+    fn ending(self) -> &'static str {
+        match self {
+            StepSize::Tenth => "",
+            StepSize::Reversed => ", the other way",
+            StepSize::Scenario => ", step of a scenario",
+            StepSize::Largest => ", largest step",
+            StepSize::Required => ", required step",
+        }
+    }
+}
 
 impl TrialRun {
     /// The machine, without the size of its steps.
     pub fn machine_name(&self) -> &str {
-        let without = |end: &str| self.what.strip_suffix(end);
-        without(LARGEST).or(without(REQUIRED)).unwrap_or(&self.what)
+        let endings = StepSize::ALL.into_iter().map(StepSize::ending).filter(|ending| !ending.is_empty());
+        endings.into_iter().find_map(|ending| self.what.strip_suffix(ending)).unwrap_or(&self.what)
     }
 
     /// How far the steps are from what is required of them: the largest ratio of what one reaches
@@ -152,8 +174,11 @@ impl TrialRun {
 
 /// Percent of the step within which the force counts as settled.
 pub const BAND_PERCENT: f64 = 2.0;
-/// Duration of a step in settling times of the linear loop, and its bounds in s.
+/// Duration of a step in settling times of the linear loop, at a corner of the box in times that
+/// are required too, and its bounds in s.
 const SETTLING_TIMES: f64 = 5.0;
+const SETTLING_TIMES_AT_CORNERS: f64 = 3.0;
+const REQUIRED_TIMES: f64 = 2.0;
 const HOLD_S: [f64; 2] = [0.5, 20.0];
 /// Ratio of the largest step to the first from which a run of its own is worth its time.
 const WORTH: f64 = 1.25;
@@ -183,31 +208,57 @@ pub(super) struct DrivenSteps {
 pub(super) struct TriedMachine<'a> {
     tried: &'a Tried,
     linear: LinearStep,
-    /// The steps that requirements state.
-    required: Vec<RequiredSteps>,
-    /// Whether runs are repeated at smaller tolerances.
-    repeats: bool,
+    required: RequiredOfSteps,
+    effort: TrialEffort,
+}
+
+/// The work that is spent on a machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum TrialEffort {
+    /// Runs are repeated at smaller tolerances.
+    Repeated,
+    /// Every run once.
+    Once,
+    /// The same, each step held for less long, there and back alone, and no larger steps than
+    /// scenarios make.
+    Corner,
 }
 
 impl<'a> TriedMachine<'a> {
-    /// A machine with its prediction.
+    /// A machine with its prediction; the runs of a plant of the audit are not repeated.
     pub(super) fn of(tried: &'a Tried, problem: &RobustProblem) -> Result<TriedMachine<'a>, TrialError> {
-        let mut required: Vec<RequiredSteps> = Vec::new();
-        for one in problem.in_time.iter().filter(|one| one.steps.are_stated()) {
-            if !required.contains(&one.steps) {
-                required.push(one.steps);
+        let required = RequiredOfSteps::of(&problem.in_time);
+        let effort = if tried.named.is_none() { TrialEffort::Repeated } else { TrialEffort::Once };
+        Ok(TriedMachine { tried, linear: LinearStep::of(tried, problem)?, required, effort })
+    }
+
+    /// The same at a corner of the box.
+    pub(super) fn at_corner(self) -> TriedMachine<'a> {
+        TriedMachine { effort: TrialEffort::Corner, ..self }
+    }
+
+    /// How long each step is held, and the last of them.
+    fn legs(&self) -> HeldLegs {
+        match self.effort {
+            TrialEffort::Repeated | TrialEffort::Once => {
+                HeldLegs { hold_s: self.linear.hold_s(SETTLING_TIMES), last: Leg::Again }
+            }
+            TrialEffort::Corner => {
+                let seen_s = REQUIRED_TIMES * self.required.longest_s;
+                let hold_s = self.linear.hold_s(SETTLING_TIMES_AT_CORNERS).max(seen_s.min(HOLD_S[1]));
+                HeldLegs { hold_s, last: Leg::Back }
             }
         }
-        Ok(TriedMachine { tried, linear: LinearStep::of(tried, problem)?, required, repeats: true })
     }
 
-    /// The same whose runs are not repeated at smaller tolerances.
-    pub(super) fn once(self) -> TriedMachine<'a> {
-        TriedMachine { repeats: false, ..self }
+    /// Whether steps larger than the first ones are driven.
+    fn drives_larger(&self, firsts: &[DrivenSteps]) -> bool {
+        let is_of_scenario = firsts.iter().any(|steps| steps.size == StepSize::Scenario);
+        self.effort != TrialEffort::Corner || self.required.of_every_step && !is_of_scenario
     }
 
-    /// Drives it through the steps that are required, or else by a tenth of its force, then through
-    /// the largest at which nothing saturates; `None` where the watcher stops it.
+    /// Drives it through the first steps, then through the largest at which nothing saturates; `None`
+    /// where the watcher stops it.
     pub(super) fn driven(
         &self,
         source: &dyn Source,
@@ -216,13 +267,9 @@ impl<'a> TriedMachine<'a> {
         let setup = Setup::new(&self.tried.project)?;
         let rig = setup.rig()?;
         let on = (source, &setup);
-        let mut firsts = vec![(StepSize::Tenth, RequiredSteps::default())];
-        if !self.required.is_empty() {
-            firsts = self.required.iter().map(|one| (StepSize::Required, *one)).collect();
-        }
+        let firsts = self.required.first_steps((&self.tried.project, rig), self.legs());
         let (count, mut all) = (firsts.len() as f64, Vec::new());
-        for (index, (size, required)) in firsts.into_iter().enumerate() {
-            let steps = Steps::first(rig, required, self.linear.hold_s());
+        for (index, FirstSteps { size, required, steps }) in firsts.into_iter().enumerate() {
             let share = [index, index + 1].map(|done| 0.3 * done as f64 / count);
             let Some(outcome) = self.driven_by(on, &steps, &mut part(watch, STAGE, share)) else {
                 return Ok(None);
@@ -232,7 +279,7 @@ impl<'a> TriedMachine<'a> {
         let Some(DrivenSteps { outcome: Ok(driven), steps: first, .. }) = all.first() else {
             return Ok(Some(all));
         };
-        if self.is_decided(first, driven) {
+        if self.is_decided(first, driven) || !self.drives_larger(&all) {
             return Ok(Some(all));
         }
         let first = *first;
@@ -276,8 +323,15 @@ impl<'a> TriedMachine<'a> {
         watch: Watch<'_>,
     ) -> Option<TrialOutcome> {
         let once = RunOutput { repeats: false, ..RunOutput::new(true, None) };
-        if !self.repeats {
-            return self.driven_up_to(on, (steps, Leg::Again), once, watch);
+        match self.effort {
+            TrialEffort::Corner => {
+                // no larger step is looked for that a limit of a line could end
+                let line_limits = self.required.of_every_step && self.tried.project.scenarios.is_empty();
+                let as_in_campaigns = RunOutput { attention: Attention::Steps, line_limits, ..once };
+                return self.driven_up_to(on, (steps, steps.legs.last), as_in_campaigns, watch);
+            }
+            TrialEffort::Once => return self.driven_up_to(on, (steps, Leg::Again), once, watch),
+            TrialEffort::Repeated => {}
         }
         let first = self.driven_up_to(on, (steps, Leg::There), once, &mut part(watch, STAGE, [0.0, 0.3]));
         if !matches!(&first, Some(Ok(driven)) if !self.is_decided(steps, driven)) {
@@ -316,11 +370,7 @@ impl<'a> TriedMachine<'a> {
         let size = *size;
         let LinearStep { step: linear, ref response, grows } = self.linear;
         let blank = TrialRun {
-            what: match size {
-                StepSize::Tenth => self.tried.what.clone(),
-                StepSize::Largest => format!("{}{LARGEST}", self.tried.what),
-                StepSize::Required => format!("{}{REQUIRED}", self.tried.what),
-            },
+            what: format!("{}{}", self.tried.what, size.ending()),
             size,
             plant: self.tried.named.clone(),
             status: "not_started",
@@ -346,13 +396,12 @@ impl<'a> TriedMachine<'a> {
                 return TrialRun { agreement, reason, ..blank };
             }
         };
-        let legs = Leg::ALL.map(|leg| steps.step(run, leg));
-        let driven = Driven { run, steps, size, legs, linear, grows };
+        let legs: Vec<(Leg, TrialStep)> = steps.driven().map(|leg| (leg, steps.step(run, leg))).collect();
+        let driven = Driven { run, steps, size, legs: &legs, linear, grows };
         let (agreement, reason) = judge(&driven, problem, view);
         TrialRun {
             status: run.status_word(),
             machine: Some(driven.whole()),
-            legs: Leg::ALL.into_iter().zip(legs).take(run.windows.len()).collect(),
             worst: driven.worst(),
             remaining_amplitude_n: driven.remains().map(|[low, high]| 0.5 * (high - low)),
             requirements: held(&problem.in_time, steps, (*required, run)),
@@ -360,6 +409,7 @@ impl<'a> TriedMachine<'a> {
             agreement,
             reason,
             met: met(run),
+            legs: legs.into_iter().take(run.windows.len()).collect(),
             ..blank
         }
     }
@@ -402,9 +452,9 @@ pub(super) fn with_noise_named(run: &TrialRun) -> String {
 }
 
 impl DrivenSteps {
-    /// How large they are.
-    pub(super) fn size(&self) -> StepSize {
-        self.size
+    /// Whether these are the steps of a run.
+    pub(super) fn are_of(&self, run: &TrialRun) -> bool {
+        self.size == run.size && [self.steps.from_n, self.steps.to_n] == run.reference_n
     }
 }
 
@@ -433,14 +483,14 @@ impl LinearStep {
         })
     }
 
-    /// How long a step is held, s.
-    fn hold_s(&self) -> f64 {
+    /// So many settling times, s, within bounds.
+    fn hold_s(&self, settling_times: f64) -> f64 {
         let [shortest, longest] = HOLD_S;
         let settles_s = match self.step {
             Some(step) => step.settling_time_s.unwrap_or(longest),
             None => shortest,
         };
-        (SETTLING_TIMES * settles_s).clamp(shortest, longest)
+        (settling_times * settles_s).clamp(shortest, longest)
     }
 }
 

@@ -27,26 +27,44 @@ const STANDS_STILL: f64 = 1e-3;
 /// Share of the estimated largest step that is driven first: the machine is not linear.
 const ESTIMATE_SHARE: f64 = 0.95;
 
-/// Three steps between two references, each held equally long.
+/// Steps between two references.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Steps {
     /// N.
     pub(super) from_n: f64,
     /// N.
     pub(super) to_n: f64,
+    pub(super) legs: HeldLegs,
+}
+
+/// How long each step is held, and the last that is driven.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct HeldLegs {
     /// s.
     pub(super) hold_s: f64,
+    pub(super) last: Leg,
 }
 
 impl Steps {
     /// The steps that are stated, or else steps by a tenth of the force that the supply can
     /// produce, from the force of the operating point in the direction with more room.
-    pub(super) fn first(rig: &Rig, required: RequiredSteps, hold_s: f64) -> Steps {
+    pub(super) fn first(rig: &Rig, required: RequiredSteps, legs: HeldLegs) -> Steps {
         let push = push(rig);
         let from_n = required.initial_force_n.unwrap_or(rig.point.hydraulic_force);
         let step = STEP_SHARE * push;
         let towards = if from_n + step <= REACH * push { step } else { -step };
-        Steps { from_n, to_n: from_n + required.amplitude_n.unwrap_or(towards), hold_s }
+        Steps { from_n, to_n: from_n + required.amplitude_n.unwrap_or(towards), legs }
+    }
+
+    /// Steps of the same size the other way; `None` where they reach further than the supply.
+    pub(super) fn reversed(&self, rig: &Rig) -> Option<Steps> {
+        let other = self.scaled(-1.0);
+        (other.to_n.abs() <= REACH * push(rig)).then_some(other)
+    }
+
+    /// Whether they are between the same two references, in either order.
+    pub(super) fn are_between(&self, one_n: f64, other_n: f64) -> bool {
+        [[one_n, other_n], [other_n, one_n]].contains(&[self.from_n, self.to_n])
     }
 
     /// Steps in the same direction, as large as the supply, the force sensor, and the room that a
@@ -64,6 +82,11 @@ impl Steps {
         Steps { to_n: self.from_n + factor * (self.to_n - self.from_n), ..*self }
     }
 
+    /// The steps that are driven.
+    pub(super) fn driven(&self) -> impl Iterator<Item = Leg> + use<> {
+        Leg::up_to(self.legs.last)
+    }
+
     /// Magnitude of a step, N.
     pub(super) fn size(&self) -> f64 {
         (self.to_n - self.from_n).abs()
@@ -73,12 +96,11 @@ impl Steps {
     /// to this one.
     pub(super) fn project(&self, project: &Project, last: Leg) -> Project {
         let at = |at, value| Signal::Step { at, value, published: None };
-        let driven = Leg::ALL.into_iter().take(last as usize + 1);
-        let steps = driven.map(|leg| at(self.begins_s(leg), self.ends(leg)[1]));
+        let steps = Leg::up_to(last).map(|leg| at(self.begins_s(leg), self.ends(leg)[1]));
         let scenario = Scenario {
             name: "step".to_string(),
-            duration: self.begins_s(last) + self.hold_s,
-            output_step: self.hold_s / ROWS,
+            duration: self.begins_s(last) + self.legs.hold_s,
+            output_step: self.legs.hold_s / ROWS,
             reference: std::iter::once(at(0.0, self.from_n)).chain(steps).collect(),
             settling_band_percent: BAND_PERCENT,
             ..Scenario::default()
@@ -87,7 +109,7 @@ impl Steps {
     }
 
     fn begins_s(&self, leg: Leg) -> f64 {
-        BEFORE_S + leg as usize as f64 * self.hold_s
+        BEFORE_S + leg as usize as f64 * self.legs.hold_s
     }
 
     /// The reference after a step, N.
@@ -116,7 +138,7 @@ impl Steps {
 
     /// Whether the force was watched for long enough after it settled.
     pub(super) fn settles_early(&self, settling_time_s: f64) -> bool {
-        stays_settled(settling_time_s, self.hold_s)
+        stays_settled(settling_time_s, self.legs.hold_s)
     }
 
     fn measured(&self, driven: &ScenarioRun, leg: Leg) -> TrialStep {
@@ -141,7 +163,7 @@ impl Steps {
         let (begins_s, held) = (self.begins_s(leg), controlled(driven));
         let rows = driven.record.times_s.iter().zip(held);
         let during = rows
-            .filter(|(time_s, _)| (begins_s..begins_s + self.hold_s).contains(*time_s))
+            .filter(|(time_s, _)| (begins_s..begins_s + self.legs.hold_s).contains(*time_s))
             .map(|(time_s, force)| (time_s - begins_s, (force - from) / (to - from)));
         let (times_s, values) = during.unzip();
         StepResponse { times_s, values }
@@ -154,14 +176,14 @@ impl Steps {
             let range = self.remains(driven, leg);
             range.is_some_and(|[low, high]| high - low < STANDS_STILL * self.size())
         };
-        Leg::ALL.into_iter().filter(unsettled).any(stands)
+        self.driven().filter(unsettled).any(stands)
     }
 
     /// The range of the controlled force at the end of a step, N; `None` if the run ended before.
     pub(super) fn remains(&self, driven: &ScenarioRun, leg: Leg) -> Option<[f64; 2]> {
         let [from, to] = self.ends(leg);
         let StepResponse { times_s, values } = self.response(driven, leg);
-        let late_s = (1.0 - LATE_SHARE) * self.hold_s;
+        let late_s = (1.0 - LATE_SHARE) * self.legs.hold_s;
         let late = times_s.iter().zip(values).filter(|(time_s, _)| **time_s >= late_s);
         let widest = |[low, high]: [f64; 2], value: f64| [low.min(value), high.max(value)];
         let forces = late.map(|(_, value)| from + value * (to - from));

@@ -54,6 +54,8 @@ fn held(held: &HeldRequirement) -> Object {
 fn size_word(size: StepSize) -> &'static str {
     match size {
         StepSize::Tenth => "tenth_of_supply_force",
+        StepSize::Reversed => "tenth_of_supply_force_reversed",
+        StepSize::Scenario => "scenario",
         StepSize::Largest => "largest_unsaturated",
         StepSize::Required => "required",
     }

@@ -1,8 +1,8 @@
 //! The trial of a verdict on the machine, for people.
 
 use super::{
-    Agreement, BAND_PERCENT, OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, SETTLING_ROOM, StepResponse, StepSize,
-    Trial, TrialRun, TrialStep, agreement_word, largest_step_words, percent_words,
+    Agreement, BAND_PERCENT, MOST_OF_SCENARIOS, OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, SETTLING_ROOM,
+    StepResponse, StepSize, Trial, TrialRun, TrialStep, agreement_word, largest_step_words, percent_words,
 };
 use crate::document::{Cell, Document, Table};
 use crate::figure::{FamilySteps, Figure, TimeSeries, Words};
@@ -44,12 +44,9 @@ pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Docume
         Agreement::Differs => "differs from the linear loop",
         Agreement::Contradicts => "contradicts the verdict",
     };
-    let first = match trial.runs.iter().any(|run| run.size == StepSize::Required) {
-        true => "by the required step",
-        false => "by a tenth of the force that the supply can produce",
-    };
     out.explanation(format!(
-        "The nonlinear simulation {did}. The nonlinear rig under this controller: steps of the reference there, back and there again, {first} and then by the largest step, compared with those of the linear loop. Of the three steps the worst numbers are given; a force within {BAND_PERCENT} % of the step has settled."
+        "The nonlinear simulation {did}. The nonlinear rig under this controller: steps of the reference there, back and there again, {}, compared with those of the linear loop. Of the three steps the worst numbers are given; a force within {BAND_PERCENT} % of the step has settled.",
+        steps_words(trial)
     ));
     let settles = format!("settles in ({BAND_PERCENT} %)");
     out.table(
@@ -61,6 +58,21 @@ pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Docume
     out.append(required(trial));
     out.figures(figure_words.and_then(|words| figure(trial, words)));
     out
+}
+
+/// The steps through which machines were driven, in words.
+fn steps_words(trial: &Trial) -> String {
+    let of_scenarios =
+        format!("by the steps of the scenarios (the {MOST_OF_SCENARIOS} largest of other sizes)");
+    let sizes = [
+        (StepSize::Required, "by the required step"),
+        (StepSize::Tenth, "by a tenth of the force that the supply can produce"),
+        (StepSize::Reversed, "by as much the other way"),
+        (StepSize::Scenario, &of_scenarios),
+        (StepSize::Largest, "by the largest step"),
+    ];
+    let driven = sizes.into_iter().filter(|(size, _)| trial.runs.iter().any(|run| run.size == *size));
+    driven.map(|(_, words)| words).collect::<Vec<&str>>().join(", ")
 }
 
 fn cells(run: &TrialRun) -> [Cell; 8] {

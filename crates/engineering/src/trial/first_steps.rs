@@ -1,0 +1,88 @@
+//! The steps through which a machine is driven before the largest: those for which something is
+//! required in time.
+//!
+//! ```text
+//! a requirement that states its step                       -> that step
+//! a requirement of every step, or none                     -> a tenth of the force of the supply
+//! a requirement of every step                              -> the same the other way, and the steps of the scenarios
+//! ```
+
+use super::run::StepSize;
+use super::steps::{HeldLegs, Steps};
+use crate::project::Project;
+use crate::rig::Rig;
+use crate::simulate::{RequiredSteps, TimeRequirement, stepped_references};
+
+/// The most steps of scenarios through which a machine is driven, the largest of them.
+pub const MOST_OF_SCENARIOS: usize = 3;
+
+/// What the requirements in time of a project say of the steps for which they hold.
+#[derive(Clone, Debug)]
+pub(super) struct RequiredOfSteps {
+    /// Steps that are stated, each once.
+    stated: Vec<RequiredSteps>,
+    /// Whether one that is part of the verdict holds for every step.
+    pub(super) of_every_step: bool,
+    /// The longest time to settle or rise that is required, s; zero where none is.
+    pub(super) longest_s: f64,
+}
+
+/// Steps through which a machine is driven, and what they are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FirstSteps {
+    pub(super) size: StepSize,
+    /// What a requirement states of them.
+    pub(super) required: RequiredSteps,
+    pub(super) steps: Steps,
+}
+
+impl RequiredOfSteps {
+    pub(super) fn of(requirements: &[TimeRequirement]) -> RequiredOfSteps {
+        let mut stated: Vec<RequiredSteps> = Vec::new();
+        for one in requirements.iter().filter(|one| one.steps.are_stated()) {
+            if !stated.contains(&one.steps) {
+                stated.push(one.steps);
+            }
+        }
+        let of_every_step = requirements.iter().any(|one| one.follows && !one.steps.are_stated());
+        let wishes = requirements.iter().filter(|one| one.follows).map(|one| one.wish);
+        let times_s = wishes.flat_map(|wish| [wish.settling_time_s, wish.rise_time_s]).flatten();
+        RequiredOfSteps { stated, of_every_step, longest_s: times_s.fold(0.0, f64::max) }
+    }
+
+    /// The steps of a machine.
+    pub(super) fn first_steps(&self, (project, rig): (&Project, &Rig), legs: HeldLegs) -> Vec<FirstSteps> {
+        let mut all: Vec<FirstSteps> = Vec::new();
+        for &required in &self.stated {
+            let steps = Steps::first(rig, required, legs);
+            let of = |steps| FirstSteps { size: StepSize::Required, required, steps };
+            all.push(of(steps));
+            all.extend(steps.reversed(rig).filter(|_| required.amplitude_n.is_none()).map(of));
+        }
+        let of = |size, steps| FirstSteps { size, required: RequiredSteps::default(), steps };
+        let tenth = Steps::first(rig, RequiredSteps::default(), legs);
+        if self.stated.is_empty() || self.of_every_step {
+            all.push(of(StepSize::Tenth, tenth));
+        }
+        if self.of_every_step {
+            all.extend(tenth.reversed(rig).map(|steps| of(StepSize::Reversed, steps)));
+            let scenarios = of_scenarios(project, &all, legs);
+            all.extend(scenarios.into_iter().map(|steps| of(StepSize::Scenario, steps)));
+        }
+        all
+    }
+}
+
+/// The largest steps of the scenarios that are not driven already.
+fn of_scenarios(project: &Project, driven: &[FirstSteps], legs: HeldLegs) -> Vec<Steps> {
+    let mut found: Vec<Steps> = Vec::new();
+    for step in stepped_references(project).into_iter().flat_map(|stepped| stepped.steps) {
+        let mut known = driven.iter().map(|one| &one.steps).chain(&found);
+        if !known.any(|steps| steps.are_between(step.from_n, step.to_n)) {
+            found.push(Steps { from_n: step.from_n, to_n: step.to_n, legs });
+        }
+    }
+    found.sort_by(|one, other| other.size().total_cmp(&one.size()));
+    found.truncate(MOST_OF_SCENARIOS);
+    found
+}
