@@ -125,7 +125,20 @@ pub fn audit_by(problem: &AuditProblem<'_>, workers: Workers, watch: Watch<'_>) 
 /// # }
 /// ```
 pub fn audit_of_known_plants(problem: &AuditProblem<'_>, watch: Watch<'_>) -> Result<Audit, Stopped> {
-    audit_with(problem, (&KeptPlants::default(), AuditEffort::KnownPlants), watch).map(|(audit, _)| audit)
+    audit_of_known_plants_by(problem, Workers::CALLER, watch)
+}
+
+/// The same on the threads of an owner: what is found does not depend on them.
+///
+/// # Errors
+/// [`Stopped`] by the watch.
+pub fn audit_of_known_plants_by(
+    problem: &AuditProblem<'_>,
+    workers: Workers,
+    watch: Watch<'_>,
+) -> Result<Audit, Stopped> {
+    let effort = AuditEffort::KnownPlants;
+    audit_with(problem, (&KeptPlants::of(workers), effort), watch).map(|(audit, _)| audit)
 }
 
 /// The same, given plants of this family that were already sampled in the same loop (with any

@@ -123,7 +123,14 @@ pub(crate) fn report_beside(
     let judged = judged::judged(source, setup, &mut within(&mut *watch, [0.0, 0.6]))?;
     let deployed = judged.as_ref().and_then(Judged::found).map(|view| view.deployed(project));
     let driven = driven::driven(source, setup, deployed.as_ref(), &mut within(&mut *watch, [0.6, 0.75]))?;
-    let campaign = campaign::driven(source, loaded, &mut within(&mut *watch, [0.75, 0.85]))?;
+    // a project without a controller is driven under the designed one
+    let only_designed = deployed.as_ref().filter(|_| !has_law(project));
+    let with_designed = only_designed.map(|deployed| Loaded { project: deployed.clone(), ..loaded.clone() });
+    let campaign = campaign::driven(
+        source,
+        (with_designed.as_ref().unwrap_or(loaded), only_designed.is_some()),
+        &mut within(&mut *watch, [0.75, 0.85]),
+    )?;
     let mut facts = rig.as_ref().map(|rig| rig.facts.clone()).unwrap_or_default();
     let mut results: Facts = driven.iter().flat_map(MachineChapter::facts).collect();
     results.extend(campaign.as_ref().and_then(|campaign| campaign.fact.clone()));
@@ -162,7 +169,7 @@ pub(crate) fn report_beside(
         appendix.push(bounds::chapter(&judged.problem, &judged.bounds, charts.appendix));
         tables = robust_tables(loaded, judged);
     }
-    appendix.push(provenance::chapter(loaded));
+    appendix.push(provenance::chapter(loaded, has_law(project) || deployed.is_some()));
     let page = Page {
         title: &project.title,
         subtitle: subtitle(project),
@@ -179,6 +186,11 @@ pub(crate) fn report_beside(
 
 /// What the sizing procedure needs, or why it does not apply to the rig.
 pub type ProblemOfSizing = Result<SizingProblem, SizingError>;
+
+/// Whether a project gives a controller.
+fn has_law(project: &Project) -> bool {
+    project.controller.as_ref().is_some_and(|controller| controller.has_law())
+}
 
 /// The report in a few numbers: name and text.
 type Facts = Vec<(&'static str, String)>;

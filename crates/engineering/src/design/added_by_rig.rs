@@ -9,7 +9,7 @@
 //! Friction and hysteresis disturb similar loops about equally, and each loop suppresses by 1/(1 +
 //! L) what disturbs it, so that a few trials suffice.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Family, UncertainFamily};
@@ -27,19 +27,26 @@ pub(super) struct AddedByRig {
     /// The difference in each run, as a share of its step.
     pub(super) steps: Vec<StepResponse>,
     /// The loop of the trial.
-    pub(super) around: Rc<Compensation>,
+    pub(super) around: Arc<Compensation>,
 }
 
-/// Differences in the trial of a design, with those of other plants from trials before.
+/// The most runs of a plant whose differences are added.
+const MOST_RUNS: usize = 2;
+
+/// Differences in the trial of a design, of each plant those of the runs that are furthest from what
+/// is required, with those of other plants from trials before.
 pub(super) fn added(told: &ProjectDesign, before: &[AddedByRig]) -> Vec<AddedByRig> {
     let Family::Uncertain(family) = &told.designed.problem.family else { return vec![] };
-    let around = Rc::new(told.designed.problem.compensation.clone());
+    let around = Arc::new(told.designed.problem.compensation.clone());
     let mut all: Vec<AddedByRig> = Vec::new();
-    for run in told.trial.iter().flat_map(|trial| trial.runs.iter().chain(&trial.corners)) {
+    let runs = told.trial.iter().flat_map(|trial| trial.runs.iter().chain(&trial.corners));
+    let mut runs: Vec<&TrialRun> = runs.collect();
+    runs.sort_by(|one, other| other.excess_with_room().total_cmp(&one.excess_with_room()));
+    for run in runs {
         let (Some(values), Some(step)) = (values(family, run), difference(run)) else { continue };
         match all.iter_mut().find(|known| known.values == values) {
             // a plant may be driven both as the worst of the family and as a corner
-            Some(known) if known.steps.contains(&step) => {}
+            Some(known) if known.steps.len() >= MOST_RUNS || known.steps.contains(&step) => {}
             Some(known) => known.steps.push(step),
             None => all.push(AddedByRig { values, steps: vec![step], around: around.clone() }),
         }
@@ -68,6 +75,19 @@ impl StepResponse {
     /// Its values at these times, straight between its own and zero outside of them.
     pub(super) fn at_times(&self, times_s: &[f64]) -> Vec<f64> {
         times_s.iter().map(|time_s| self.at(*time_s)).collect()
+    }
+
+    /// When it first comes to a level, straight between its values, so that the time moves with them;
+    /// `None` where it does not.
+    pub(super) fn first_at(&self, level: f64) -> Option<f64> {
+        let StepResponse { times_s, values } = self;
+        let next = values.iter().position(|value| *value >= level)?;
+        let point = |index: usize| times_s.get(index).copied().zip(values.get(index).copied());
+        let (to_s, high) = point(next)?;
+        match next.checked_sub(1).and_then(point) {
+            Some((from_s, low)) => Some(from_s + (to_s - from_s) * (level - low) / (high - low)),
+            None => Some(to_s),
+        }
     }
 
     fn at(&self, time_s: f64) -> f64 {
@@ -112,6 +132,16 @@ fn difference(run: &TrialRun) -> Option<StepResponse> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// ORIGIN: analytic, a straight line through 0 at 0 s and 0.4 at 2 s reaches 0.1 at 0.5 s.
+    #[test]
+    fn a_level_is_reached_between_two_values() {
+        let step = StepResponse { times_s: vec![0.0, 2.0, 4.0], values: vec![0.0, 0.4, 0.2] };
+        assert_eq!(
+            [0.0, 0.1, 0.4, 0.5].map(|level| step.first_at(level)),
+            [Some(0.0), Some(0.5), Some(2.0), None]
+        );
+    }
 
     /// ORIGIN: analytic, straight lines: 0.1 to 0.3 over 2 s, half-way, and nothing beyond.
     #[test]

@@ -1,8 +1,7 @@
 //! The closed loop around a plant that is known by its response, for computing step responses.
 
-use std::cell::RefCell;
 use std::collections::HashMap;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use num_complex::Complex64;
 use phea_dynamics::frequency::logarithmic_grid;
@@ -29,13 +28,13 @@ const HALVINGS: u32 = 20;
 /// frequencies in rad/s, and its response by the bits of a frequency.
 #[derive(Debug, Default)]
 pub(crate) struct KnownResponses {
-    own: RefCell<Vec<f64>>,
-    by_frequency: RefCell<HashMap<u64, Option<MemberResponse>>>,
+    own: Mutex<Vec<f64>>,
+    by_frequency: Mutex<HashMap<u64, Option<MemberResponse>>>,
 }
 
 impl KnownResponses {
     fn frequencies(&self, plant: &dyn RespondingPlant, range: [f64; 2]) -> Vec<f64> {
-        let mut own = self.own.borrow_mut();
+        let mut own = self.own.lock().unwrap_or_else(PoisonError::into_inner);
         if own.is_empty() {
             *own = tabulated(plant, range, FINE).frequencies_rad_per_s;
         }
@@ -43,7 +42,7 @@ impl KnownResponses {
     }
 
     fn response(&self, member: &Member, frequency: f64) -> Option<MemberResponse> {
-        let mut known = self.by_frequency.borrow_mut();
+        let mut known = self.by_frequency.lock().unwrap_or_else(PoisonError::into_inner);
         *known.entry(frequency.to_bits()).or_insert_with(|| member.response(frequency))
     }
 }

@@ -264,7 +264,8 @@ impl Attempt {
 
     /// The worst margin of its controller over its samples, dB; `None` without a controller.
     pub(super) fn worst_margin_db(&mut self) -> Option<f64> {
-        (!self.x.is_empty()).then(|| self.shaping.judge(&self.x).worst_margin_db)
+        let judgement = (!self.x.is_empty()).then(|| self.shaping.judge(&self.x))?;
+        judgement.stable.then_some(judgement.worst_margin_db)
     }
 
     pub(super) fn rounds(&self) -> &[DesignRound] {

@@ -54,19 +54,24 @@ pub(super) struct CampaignStep {
     pub(super) band_percent: f64,
 }
 
-/// The campaign of a report; `None` for a project without `[campaign]`.
+/// The campaign of a report, under its own controller or the designed one; `None` for a project
+/// without `[campaign]`.
 ///
 /// # Errors
 /// [`CommandError::Stopped`] where the watch stops it.
 pub(super) fn driven(
     source: &dyn Source,
-    loaded: &Loaded,
+    (loaded, is_designed): (&Loaded, bool),
     watch: Watch<'_>,
 ) -> Result<Option<CampaignChapter>, CommandError> {
     if loaded.project.campaign.is_none() {
         return Ok(None);
     }
-    let (anchor, title) = ("campaign", "Campaign: simulations with drawn numbers");
+    let anchor = "campaign";
+    let title = match is_designed {
+        true => "Campaign: simulations with drawn numbers, designed controller",
+        false => "Campaign: simulations with drawn numbers",
+    };
     let asked = loaded.project.campaign.as_ref().and_then(|campaign| campaign.runs).map_or(RUNS, u64::from);
     let mut told = || -> Result<_, CampaignError> {
         let plan = Plan::new(source, loaded, SEED)?;

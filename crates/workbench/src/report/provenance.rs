@@ -7,7 +7,8 @@ use crate::identify::tell_in_use;
 use crate::line_choice;
 use crate::project::{Loaded, Origin, Project};
 
-pub(super) fn chapter(loaded: &Loaded) -> Chapter {
+/// The chapter of a report in which a controller was judged or not.
+pub(super) fn chapter(loaded: &Loaded, is_judged: bool) -> Chapter {
     let catalogue = loaded.provenance.iter().filter_map(|entry| match &entry.origin {
         Origin::Catalogue { name, source } => {
             Some([Cell::Code(entry.path.clone()), name.as_str().into(), source.as_str().into()])
@@ -40,7 +41,7 @@ pub(super) fn chapter(loaded: &Loaded) -> Chapter {
     out.heading("Assumptions");
     out.sentences(loaded.lines.iter().map(line_choice::sentence).chain(assumptions(&loaded.project)));
     out.heading("Not proven here");
-    out.explanation(not_proven(&loaded.project));
+    out.explanation(not_proven(&loaded.project, is_judged));
     Chapter::of("provenance", "Provenance and assumptions", out)
 }
 
@@ -49,9 +50,8 @@ fn paths(loaded: &Loaded, keep: impl Fn(&Origin) -> bool) -> Vec<&str> {
 }
 
 /// What this report does not cover.
-fn not_proven(project: &Project) -> String {
-    let law = project.controller.as_ref().is_some_and(|controller| controller.has_law());
-    match (law && !project.specifications.is_empty(), project.actuator.is_some()) {
+fn not_proven(project: &Project, is_judged: bool) -> String {
+    match (is_judged && !project.specifications.is_empty(), project.actuator.is_some()) {
         (true, true) => {
             "What is not proven of the linear models was searched for, and a search is not a proof. What the nonlinear machine does is shown for the steps and scenarios that were driven, and for no others.".to_string()
         }

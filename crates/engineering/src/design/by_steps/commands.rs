@@ -4,7 +4,7 @@
 //! margin = 20 log10(limit/largest |u|)     of the step of each scenario, at the plants that the audits found worst
 //! ```
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use phea_dynamics::frequency::decibels;
 use phea_qft::closed_loop::Compensation;
@@ -27,7 +27,7 @@ const POINTS: usize = 1000;
 #[derive(Clone, Default)]
 pub(super) struct StepCommands {
     steps: Option<ScenarioSteps>,
-    plants: Vec<Rc<SteppedPlant>>,
+    plants: Vec<Arc<SteppedPlant>>,
 }
 
 impl StepCommands {
@@ -52,7 +52,7 @@ impl StepCommands {
         }
     }
 
-    pub(super) fn take(&mut self, plant: Rc<SteppedPlant>) {
+    pub(super) fn take(&mut self, plant: Arc<SteppedPlant>) {
         self.plants.push(plant);
     }
 
@@ -75,7 +75,7 @@ impl StepCommands {
         beside: &[Option<Compensation>],
         last: usize,
     ) -> Vec<MarginRow> {
-        let row = |(index, plant): (usize, &Rc<SteppedPlant>)| {
+        let row = |(index, plant): (usize, &Arc<SteppedPlant>)| {
             let margin_db = self.margin_db(plant, around);
             let along = |moved: &Option<Compensation>| {
                 moved.as_ref().map_or(0.0, |moved| (self.margin_db(plant, moved) - margin_db) / STEP)

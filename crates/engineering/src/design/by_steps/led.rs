@@ -2,7 +2,7 @@
 
 use phea_dynamics::portable;
 use phea_dynamics::watch::{Watch, part, within};
-use phea_qft::audit::{audit, audit_of_known_plants};
+use phea_qft::audit::{audit_by, audit_of_known_plants_by};
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{Design, DesignProblem, DesignStatus, name_of};
 use phea_qft::loop_shaping::{Aim, DescentOptions, SampledMargin, Samples, SearchProblem, Shaping, descend};
@@ -16,10 +16,11 @@ use crate::design::search::rank;
 use crate::design::{DesignError, ProjectDesign};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
+use crate::side_by_side::all_cores;
 use crate::simulate::TrackingWish;
 
 /// Name of the stage.
-const STAGE: &str = "shaping by the steps";
+pub(super) const STAGE: &str = "shaping by the steps";
 /// How often what an audit finds joins the search.
 const ROUNDS: usize = 5;
 /// A round that brings less than this share is one in vain, and so many in turn are the last.
@@ -88,7 +89,7 @@ pub(super) struct LedDesign<'a> {
     pub(super) problem: DesignProblem,
     pub(super) samples: Samples,
     pub(super) required: TrackingWish,
-    /// What it keeps for the rig.
+    /// The part of it that is kept for the rig.
     pub(super) room: StepRoom,
 }
 
@@ -263,8 +264,8 @@ impl<'a> LedDesign<'a> {
             RobustProblem { compensation, has_controller: true, has_prefilter, ..self.aimed.given.clone() };
         let request = audit_request(&problem, &problem.family);
         let audit = match depth {
-            AuditDepth::KnownPlants => audit_of_known_plants(&request, watch)?,
-            AuditDepth::Whole => audit(&request, watch)?,
+            AuditDepth::KnownPlants => audit_of_known_plants_by(&request, all_cores(), watch)?,
+            AuditDepth::Whole => audit_by(&request, all_cores(), watch)?,
         };
         let status = DesignStatus::NotConverged { rounds: start.rounds.len() };
         let design = Design { status, ..start.clone() };

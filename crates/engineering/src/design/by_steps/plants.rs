@@ -1,7 +1,7 @@
 //! The plants whose steps lead a design, each with what is known of its response.
 
 use std::cell::RefCell;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use phea_dynamics::linear::LinearError;
 use phea_qft::closed_loop::{Compensation, Member};
@@ -20,7 +20,7 @@ pub(in crate::design) struct SteppedPlant {
 /// its step in one loop more.
 #[derive(Default)]
 pub(in crate::design) struct SteppedPlants {
-    plants: RefCell<Vec<Rc<SteppedPlant>>>,
+    plants: RefCell<Vec<Arc<SteppedPlant>>>,
 }
 
 impl SteppedPlant {
@@ -52,14 +52,14 @@ impl SteppedPlants {
         &self,
         values: &[f64],
         (family, around): (&UncertainFamily, &Compensation),
-    ) -> Result<Rc<SteppedPlant>, LinearError> {
+    ) -> Result<Arc<SteppedPlant>, LinearError> {
         let mut plants = self.plants.borrow_mut();
         if let Some(known) = plants.iter().find(|known| known.values == values) {
             return Ok(known.clone());
         }
         let member = around.member_of(family.plant(), values)?;
         let plant = SteppedPlant { values: values.to_vec(), member, known: KnownResponses::default() };
-        let plant = Rc::new(plant);
+        let plant = Arc::new(plant);
         plants.push(plant.clone());
         Ok(plant)
     }

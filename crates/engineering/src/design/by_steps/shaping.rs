@@ -1,9 +1,10 @@
 //! The shaping of a loop by margins of steps beside those of its limits, as a problem of a search.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::time_response::{StepBaseline, step_metrics};
+use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{Design, LoopDesignError};
 use phea_qft::family::Family;
@@ -11,6 +12,7 @@ use phea_qft::loop_shaping::{Judgement, MarginRow, SampledMargin, SearchProblem,
 use phea_qft::verification::PlantPoint;
 
 use super::commands::StepCommands;
+use super::led::STAGE;
 use super::plants::{SteppedPlant, SteppedPlants};
 use crate::audit::TimeOutcome;
 use crate::design::added_by_rig::{AddedByRig, added_to};
@@ -18,6 +20,7 @@ use crate::design::command_of_steps::ScenarioSteps;
 use crate::design::{DesignError, ProjectDesign};
 use crate::linear_step::StepResponse;
 use crate::robust::RobustProblem;
+use crate::side_by_side::side_by_side;
 use crate::simulate::{ReachedStep, TrackingWish};
 
 /// Margin to be left to every limit on a frequency response, dB.
@@ -81,7 +84,7 @@ type PlacedMargin = (usize, StepPlace, f64);
 /// A plant whose steps are rows of the search.
 #[derive(Clone)]
 struct LedPlant {
-    plant: Rc<SteppedPlant>,
+    plant: Arc<SteppedPlant>,
     /// What the rig adds to its steps.
     added: Option<AddedByRig>,
 }
@@ -129,39 +132,13 @@ impl StepShaping<'_> {
         Compensation::new(&self.shaping.controller(x), self.sensor.clone()).ok()
     }
 
-    /// The steps of a plant, that of the linear loop first; `None` where it cannot be computed.
-    fn steps(&self, plant: &LedPlant, around: &Compensation) -> Option<Vec<JudgedStep>> {
-        let duration = (SETTLING_TIMES * self.wishes.linear.horizon_s, POINTS);
-        let linear = plant.plant.step(around, duration)?;
-        let mut steps: Vec<JudgedStep> = Vec::new();
-        if let (Some(added), [first, second, ..]) = (&plant.added, linear.times_s.as_slice()) {
-            let samples = (second - first, linear.times_s.len());
-            let carried = plant.plant.carried([&added.around, around], samples);
-            let with_rig = |added: &StepResponse| {
-                let added = carried.of(&added.at_times(&linear.times_s));
-                let values = linear.values.iter().zip(added).map(|(value, added)| value + added);
-                let response = StepResponse { times_s: linear.times_s.clone(), values: values.collect() };
-                JudgedStep { response, wish: self.wishes.with_rig }
-            };
-            steps.extend(added.steps.iter().map(with_rig));
-        }
-        steps.insert(0, JudgedStep { response: linear, wish: self.wishes.linear });
-        Some(steps)
-    }
-
     /// The least margin of each plant's steps; negative infinity where they cannot be computed.
     fn least_margin(&self, x: &[f64]) -> f64 {
         let Some(around) = self.around(x) else { return f64::NEG_INFINITY };
         let of_commands = self.commands.least_db(&around);
-        self.plants.iter().map(|plant| self.least_of(plant, &around)).fold(of_commands, f64::min)
-    }
-
-    /// The least margin of a plant's steps; negative infinity where they cannot be computed.
-    fn least_of(&self, plant: &LedPlant, around: &Compensation) -> f64 {
-        let least = |steps: Vec<JudgedStep>| {
-            places(&steps).iter().map(|(_, _, margin_db)| *margin_db).fold(f64::INFINITY, f64::min)
-        };
-        self.steps(plant, around).map_or(f64::NEG_INFINITY, least)
+        let wishes = self.wishes;
+        let each = of_each(&self.plants, |plant| wishes.least_of(plant, &around));
+        each.into_iter().fold(of_commands, f64::min)
     }
 
     /// How far the steps with what the rig adds are from what is required: the largest ratio, at
@@ -177,43 +154,13 @@ impl StepShaping<'_> {
                 rise_time_s: metrics.rise_time_10_90_s.unwrap_or(f64::INFINITY),
             }))
         };
-        let worst = |plant: &LedPlant| match self.steps(plant, &around) {
+        let worst = |plant: &LedPlant| match self.wishes.steps(plant, &around) {
             Some(steps) => {
                 steps.iter().skip(1).map(|step| of(step).unwrap_or(f64::INFINITY)).fold(0.0, f64::max)
             }
             None => f64::INFINITY,
         };
         self.plants.iter().map(worst).fold(0.0, f64::max)
-    }
-
-    /// The margins at these places of a plant's steps with their slopes, from the loops beside x.
-    fn rows(
-        &self,
-        index: usize,
-        plant: &LedPlant,
-        places: &[PlacedMargin],
-        beside: &[Option<Compensation>],
-    ) -> Vec<MarginRow> {
-        if places.is_empty() {
-            return vec![];
-        }
-        let moved: Vec<Option<Vec<JudgedStep>>> =
-            beside.iter().map(|around| self.steps(plant, around.as_ref()?)).collect();
-        let row = |(rank, (step, place, margin_db)): (usize, &PlacedMargin)| {
-            let along = |steps: &Option<Vec<JudgedStep>>| {
-                let moved = steps.as_ref().and_then(|steps| steps.get(*step));
-                moved.map_or(0.0, |moved| (moved.margin(*place) - margin_db) / STEP)
-            };
-            MarginRow {
-                sample: usize::MAX - ROWS * index - rank,
-                margin_db: *margin_db,
-                rate: 1.0,
-                slopes: moved.iter().map(along).collect(),
-            }
-        };
-        let is_finite =
-            |row: &MarginRow| row.margin_db.is_finite() && row.slopes.iter().all(|slope| slope.is_finite());
-        places.iter().enumerate().map(row).filter(is_finite).collect()
     }
 
     /// The least margin to a limit of the samples.
@@ -271,7 +218,7 @@ impl StepShaping<'_> {
         let mut missed: Vec<(f64, LedPlant)> = Vec::new();
         for values in plants {
             let Some(plant) = self.unseen(values, problem)? else { continue };
-            let least_db = self.least_of(&plant, &around);
+            let least_db = self.wishes.least_of(&plant, &around);
             if least_db < RESERVE_DB - 1e-3 {
                 missed.push((least_db, plant));
             }
@@ -304,6 +251,73 @@ impl StepShaping<'_> {
     }
 }
 
+impl StepWishes {
+    /// The steps of a plant, that of the linear loop first; `None` where it cannot be computed.
+    fn steps(&self, plant: &LedPlant, around: &Compensation) -> Option<Vec<JudgedStep>> {
+        let duration = (SETTLING_TIMES * self.linear.horizon_s, POINTS);
+        let linear = plant.plant.step(around, duration)?;
+        let mut steps: Vec<JudgedStep> = Vec::new();
+        if let (Some(added), [first, second, ..]) = (&plant.added, linear.times_s.as_slice()) {
+            let samples = (second - first, linear.times_s.len());
+            let carried = plant.plant.carried([&added.around, around], samples);
+            let with_rig = |added: &StepResponse| {
+                let added = carried.of(&added.at_times(&linear.times_s));
+                let values = linear.values.iter().zip(added).map(|(value, added)| value + added);
+                let response = StepResponse { times_s: linear.times_s.clone(), values: values.collect() };
+                JudgedStep { response, wish: self.with_rig }
+            };
+            steps.extend(added.steps.iter().map(with_rig));
+        }
+        steps.insert(0, JudgedStep { response: linear, wish: self.linear });
+        Some(steps)
+    }
+
+    /// The least margin of a plant's steps; negative infinity where they cannot be computed.
+    fn least_of(&self, plant: &LedPlant, around: &Compensation) -> f64 {
+        let least = |steps: Vec<JudgedStep>| {
+            places(&steps).iter().map(|(_, _, margin_db)| *margin_db).fold(f64::INFINITY, f64::min)
+        };
+        self.steps(plant, around).map_or(f64::NEG_INFINITY, least)
+    }
+
+    /// The margins at these places of a plant's steps with their slopes, from the loops beside x.
+    fn rows(
+        &self,
+        index: usize,
+        plant: &LedPlant,
+        places: &[PlacedMargin],
+        beside: &[Option<Compensation>],
+    ) -> Vec<MarginRow> {
+        if places.is_empty() {
+            return vec![];
+        }
+        let moved: Vec<Option<Vec<JudgedStep>>> =
+            beside.iter().map(|around| self.steps(plant, around.as_ref()?)).collect();
+        let row = |(rank, (step, place, margin_db)): (usize, &PlacedMargin)| {
+            let along = |steps: &Option<Vec<JudgedStep>>| {
+                let moved = steps.as_ref().and_then(|steps| steps.get(*step));
+                moved.map_or(0.0, |moved| (moved.margin(*place) - margin_db) / STEP)
+            };
+            MarginRow {
+                sample: usize::MAX - ROWS * index - rank,
+                margin_db: *margin_db,
+                rate: 1.0,
+                slopes: moved.iter().map(along).collect(),
+            }
+        };
+        let is_finite =
+            |row: &MarginRow| row.margin_db.is_finite() && row.slopes.iter().all(|slope| slope.is_finite());
+        places.iter().enumerate().map(row).filter(is_finite).collect()
+    }
+}
+
+/// What is found of each, on all cores.
+fn of_each<One: Sync, Found: Send>(all: &[One], of: impl Fn(&One) -> Found + Sync) -> Vec<Found> {
+    let found = side_by_side(all.len(), STAGE, &mut unwatched, |index, _| all.get(index).map(&of));
+    // nothing stops it
+    found.unwrap_or_default()
+}
+
 impl SearchProblem for StepShaping<'_> {
     fn bounds(&self) -> &[[f64; 2]] {
         &self.bounds
@@ -321,9 +335,9 @@ impl SearchProblem for StepShaping<'_> {
     fn slopes(&mut self, x: &[f64]) -> Slopes {
         let mut slopes = self.shaping.slopes(x);
         let Some(around) = self.around(x) else { return slopes };
-        let of = |plant: &LedPlant| self.steps(plant, &around).map(|steps| places(&steps));
-        let each: Vec<Vec<PlacedMargin>> =
-            self.plants.iter().map(|plant| of(plant).unwrap_or_default()).collect();
+        let wishes = self.wishes;
+        let of = |plant: &LedPlant| wishes.steps(plant, &around).map(|steps| places(&steps));
+        let each = of_each(&self.plants, |plant| of(plant).unwrap_or_default());
         let worst = each.iter().flatten().map(|one| one.2).fold(f64::INFINITY, f64::min);
         let near = worst.max(0.0) + NEAR_DB;
         let beside: Vec<Option<Compensation>> = (0..x.len())
@@ -336,10 +350,13 @@ impl SearchProblem for StepShaping<'_> {
                 self.around(&moved)
             })
             .collect();
-        for (index, (plant, places)) in self.plants.iter().zip(each).enumerate() {
-            let near: Vec<PlacedMargin> = places.into_iter().filter(|one| one.2 <= near).collect();
-            slopes.margins.extend(self.rows(index, plant, &near, &beside));
-        }
+        let placed: Vec<(usize, &LedPlant, Vec<PlacedMargin>)> = (self.plants.iter().zip(each).enumerate())
+            .map(|(index, (plant, places))| {
+                (index, plant, places.into_iter().filter(|one| one.2 <= near).collect())
+            })
+            .collect();
+        let rows = of_each(&placed, |(index, plant, near)| wishes.rows(*index, plant, near, &beside));
+        slopes.margins.extend(rows.into_iter().flatten());
         let last = usize::MAX - ROWS * PLANTS;
         slopes.margins.extend(self.commands.rows(&around, &beside, last));
         slopes
@@ -360,9 +377,9 @@ enum StepPlace {
 impl JudgedStep {
     /// The margin to what is required there, dB of 1 plus the deviation.
     fn margin(&self, place: StepPlace) -> f64 {
-        let JudgedStep { response: StepResponse { times_s, values }, wish } = self;
+        let JudgedStep { response, wish } = self;
         let band = wish.band_percent / 100.0;
-        let value = |sample: usize| values.get(sample).copied().unwrap_or(f64::INFINITY);
+        let value = |sample: usize| response.values.get(sample).copied().unwrap_or(f64::INFINITY);
         match place {
             StepPlace::Over(sample) => {
                 let most = wish.overshoot_percent.unwrap_or(f64::INFINITY);
@@ -370,8 +387,7 @@ impl JudgedStep {
             }
             StepPlace::Late(sample) => DB * (band - (value(sample) - 1.0).abs()),
             StepPlace::Rise => {
-                let reached =
-                    |level: f64| times_s.get(values.iter().position(|value| *value >= level)?).copied();
+                let reached = |level: f64| response.first_at(level);
                 let rise_s = reached(0.1).zip(reached(0.9)).map_or(f64::INFINITY, |(low, high)| high - low);
                 DB * band * (1.0 - rise_s / wish.rise_time_s.unwrap_or(f64::INFINITY))
             }

@@ -20,7 +20,7 @@ use crate::report::design::Designed;
 use crate::report::driven::{DESIGNED, GIVEN};
 use crate::setup::Setup;
 use crate::simulate::TimeRequirement;
-use crate::trial::{Agreement, TrialRun};
+use crate::trial::{Agreement, Trial, TrialRun};
 
 /// Largest number of sentences.
 const MOST: usize = 6;
@@ -221,6 +221,13 @@ fn machine_words(side: &Side<'_>, run: &TrialRun) -> String {
     // the chapter on the machine has the rest: the range of the force, and the time of a wave
     let why = run.reason.split(". The lines are").next().unwrap_or_default();
     let why = why.split(": at the end it swings").next().unwrap_or_default();
+    let satisfies = side.trial.and_then(Trial::satisfies) == Some(true);
+    if satisfies && run.agreement != Agreement::Contradicts {
+        return format!(
+            "Take times from the nonlinear simulation and not from the linear loop: {} satisfies what is required under the {} controller, and {why}.",
+            run.what, side.name
+        );
+    }
     let verdict = match run.agreement {
         Agreement::Contradicts => "the nonlinear simulation contradicts the verdict, ",
         Agreement::Differs | Agreement::AgreesButForSettling | Agreement::Agrees => "",

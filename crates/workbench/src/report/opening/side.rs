@@ -35,12 +35,17 @@ pub(super) fn sides<'a>(
     campaign: &'a [CampaignStep],
 ) -> Vec<Side<'a>> {
     let found = judged.and_then(Judged::found);
+    // a project without a controller of its own is driven under the designed one
+    let (of_given, of_designed): (&[CampaignStep], &[CampaignStep]) = match driven {
+        Some(driven) if driven.runs_of(GIVEN).is_none() && found.is_some() => (&[], campaign),
+        _ => (campaign, &[]),
+    };
     let given = Side {
         name: GIVEN,
         view: judged.and_then(|judged| judged.given.as_ref()),
         trial: judged.and_then(|judged| judged.given_trial.as_ref()),
         runs: driven.and_then(|driven| driven.runs_of(GIVEN)),
-        campaign,
+        campaign: of_given,
         figures: found.and_then(|view| view.published.as_deref()).map(|side| side.figures),
     };
     let designed = Side {
@@ -48,7 +53,7 @@ pub(super) fn sides<'a>(
         view: found.map(|view| &view.designed.view),
         trial: found.and_then(|view| view.trial.as_ref()),
         runs: driven.and_then(|driven| driven.runs_of(DESIGNED)),
-        campaign: &[],
+        campaign: of_designed,
         figures: found.map(|view| view.designed.figures),
     };
     [given, designed].into_iter().filter(|side| side.view.is_some() || side.runs.is_some()).collect()
