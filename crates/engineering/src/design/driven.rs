@@ -91,10 +91,20 @@ pub(super) fn found_and_tried(
         })?;
     }
     let mut unfinished = std::mem::take(&mut told.unfinished);
-    let found = unless_stopped(&mut unfinished, DesignPart::Relaxations, || {
-        relaxations(setup, aimed, (&run, &told), &mut within(watch, [0.97, 1.0])).map(Some)
-    })?;
-    let relaxations = found.unwrap_or_default();
+    let twin = twin.filter(|twin| twin.of == told.design);
+    let is_to_be_found = twin.is_none() && run.problem.timing.sample_time_s.is_some() && !told.is_stopped();
+    let (own_twin, found) = both(
+        &mut within(watch, [0.97, 1.0]),
+        0.5,
+        |watch| is_to_be_found.then(|| continuous_as_sampled((source, setup), &run.problem, &told, watch)),
+        |watch| {
+            unless_stopped(&mut unfinished, DesignPart::Relaxations, || {
+                relaxations(setup, aimed, (&run, &told), watch).map(Some)
+            })
+        },
+    );
+    let relaxations = found?.unwrap_or_default();
+    let twin = own_twin.map(|found| ContinuousTwin { of: told.design.clone(), found }).or(twin);
     Ok((run, ProjectDesign { unfinished, relaxations, ..told }, twin))
 }
 
