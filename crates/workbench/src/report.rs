@@ -51,6 +51,7 @@ use crate::setup::Setup;
 use crate::sizing::{Question, Sizing, SizingError, SizingProblem, size};
 use crate::source::Source;
 
+use campaign::CampaignChapter;
 use chapter::Chapter;
 use driven::MachineChapter;
 use judged::Judged;
@@ -123,14 +124,7 @@ pub(crate) fn report_beside(
     let judged = judged::judged(source, setup, &mut within(&mut *watch, [0.0, 0.6]))?;
     let deployed = judged.as_ref().and_then(Judged::found).map(|view| view.deployed(project));
     let driven = driven::driven(source, setup, deployed.as_ref(), &mut within(&mut *watch, [0.6, 0.75]))?;
-    // a project without a controller is driven under the designed one
-    let only_designed = deployed.as_ref().filter(|_| !has_law(project));
-    let with_designed = only_designed.map(|deployed| Loaded { project: deployed.clone(), ..loaded.clone() });
-    let campaign = campaign::driven(
-        source,
-        (with_designed.as_ref().unwrap_or(loaded), only_designed.is_some()),
-        &mut within(&mut *watch, [0.75, 0.85]),
-    )?;
+    let campaign = campaign_of(source, loaded, deployed.as_ref(), &mut within(&mut *watch, [0.75, 0.85]))?;
     let mut facts = rig.as_ref().map(|rig| rig.facts.clone()).unwrap_or_default();
     let mut results: Facts = driven.iter().flat_map(MachineChapter::facts).collect();
     results.extend(campaign.as_ref().and_then(|campaign| campaign.fact.clone()));
@@ -186,6 +180,22 @@ pub(crate) fn report_beside(
 
 /// What the sizing procedure needs, or why it does not apply to the rig.
 pub type ProblemOfSizing = Result<SizingProblem, SizingError>;
+
+/// The campaign of a project; of one without a controller under the designed one.
+fn campaign_of(
+    source: &dyn Source,
+    loaded: &Loaded,
+    deployed: Option<&Project>,
+    watch: Watch<'_>,
+) -> Result<Option<CampaignChapter>, CommandError> {
+    match deployed.filter(|_| !has_law(&loaded.project)) {
+        None => campaign::driven(source, (loaded, false), watch),
+        Some(deployed) => {
+            let designed = Loaded { project: deployed.clone(), ..loaded.clone() };
+            campaign::driven(source, (&designed, true), watch)
+        }
+    }
+}
 
 /// Whether a project gives a controller.
 fn has_law(project: &Project) -> bool {

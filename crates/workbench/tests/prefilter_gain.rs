@@ -161,3 +161,18 @@ fn a_motor_that_friction_delays_satisfies_what_is_required() {
     assert_eq!(found["machine"]["requirements"], "satisfies", "{:#}", found["machine"]);
     assert_ne!(found["machine"]["verdict"], "contradicts");
 }
+
+/// A gain alone is tried behind a prefilter of gain 1/T(0), and taken where it satisfies: of
+/// k/(s + 1) with k from 1 to 1.1 a gain of 10 makes |T(0)| from 0.909 to 0.917, well within 5 %.
+#[test]
+fn a_gain_alone_is_taken_where_it_satisfies() {
+    let text = "schema = 1\ntitle = \"lag\"\n[plant]\nnumerator = \"k\"\ndenominator = \"s + 1\"\n\
+        [uncertainty]\nk = { nominal = 1, minimum = 1, maximum = 1.1, points = 3 }\n\
+        [[specification]]\nkind = \"step\"\novershoot_percent = 10\nsettling_time = \"0.5 s\"\n\
+        settling_band_percent = 5\n\
+        [[specification]]\nkind = \"robust_stability\"\nlimit = 1.3\nfrequencies = [1, 10, 100]\n";
+    let object = json(text, &[], &[], &Request::Design { seed: None, stages: false, repair: false });
+    let structures = object["structures"].as_array().unwrap();
+    let taken: Vec<&Value> = structures.iter().filter(|one| one["taken"] == true).collect();
+    assert_eq!((&object["status"], taken[0]["words"].as_str()), (&"met".into(), Some("P")), "{object:#}");
+}

@@ -33,8 +33,8 @@ pub(super) struct AddedByRig {
 /// The most runs of a plant whose differences are added.
 const MOST_RUNS: usize = 2;
 
-/// Differences in the trial of a design, of each plant those of the runs that are furthest from what
-/// is required, with those of other plants from trials before.
+/// Differences in the trial of a design, of each plant those of the runs that are furthest from
+/// what is required, with those of other plants from trials before.
 pub(super) fn added(told: &ProjectDesign, before: &[AddedByRig]) -> Vec<AddedByRig> {
     let Family::Uncertain(family) = &told.designed.problem.family else { return vec![] };
     let around = Arc::new(told.designed.problem.compensation.clone());
@@ -77,8 +77,8 @@ impl StepResponse {
         times_s.iter().map(|time_s| self.at(*time_s)).collect()
     }
 
-    /// When it first comes to a level, straight between its values, so that the time moves with them;
-    /// `None` where it does not.
+    /// When it first comes to a level, straight between its values, so that the time moves with
+    /// them; `None` where it does not.
     pub(super) fn first_at(&self, level: f64) -> Option<f64> {
         let StepResponse { times_s, values } = self;
         let next = values.iter().position(|value| *value >= level)?;

@@ -241,8 +241,7 @@ pub(super) fn run<'t>(
     };
     let inputs = inputs(&bench.control, course);
     let drive = InputSchedule { duration_s: scenario.duration, output_step_s: look_s, inputs };
-    let band = scenario.settling_band_percent;
-    let during = (course, band, scenario.duration);
+    let during = (course, scenario.settling_band_percent, scenario.duration);
     let looks = scenario.duration / look_s;
     let looking = Looking::new(bench, &samples, (table, looks_per_row), measurements, &full, during);
     let looking = looking.following(output.attention, looks);
@@ -277,7 +276,7 @@ pub(super) fn run<'t>(
         windows: course.windows.iter().copied().zip(seen.metrics).collect(),
         occurrences,
         outside_model_s,
-        settling_band_percent: band,
+        settling_band_percent: scenario.settling_band_percent,
         measured: seen.measured,
         errors_amplified: amplification.filter(|grown| grown.may_show_errors(plan.tolerance)),
         unfollowed: outcome.unfollowed,

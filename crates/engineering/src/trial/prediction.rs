@@ -5,13 +5,17 @@ use phea_qft::stability::{StabilityStatus, member_stability};
 
 use super::TrialError;
 use super::rigs::Tried;
-use super::run::BAND_PERCENT;
+use super::run::{BAND_PERCENT, TrialStep};
 use crate::linear_step::{StepResponse, linear_step};
 use crate::robust::RobustProblem;
 
 /// Durations that are tried until the response has settled, s, and the points of each.
 const DURATIONS_S: [f64; 4] = [0.5, 2.0, 10.0, 40.0];
 const POINTS: usize = 4000;
+
+/// Bounds of the duration of a step, s.
+const SHORTEST_HOLD_S: f64 = 0.5;
+pub(super) const LONGEST_HOLD_S: f64 = 20.0;
 
 /// The response of the linear loop to a unit step of its reference.
 pub(super) enum Prediction {
@@ -44,4 +48,40 @@ pub(super) fn predicted(tried: &Tried, problem: &RobustProblem) -> Result<Predic
         }
     }
     Ok(found)
+}
+
+/// The linear loop's response to a step.
+pub(super) struct LinearStep {
+    pub(super) step: Option<TrialStep>,
+    pub(super) response: StepResponse,
+    /// Whether it grows without bound.
+    pub(super) grows: bool,
+}
+
+impl LinearStep {
+    pub(super) fn of(tried: &Tried, problem: &RobustProblem) -> Result<LinearStep, TrialError> {
+        Ok(match predicted(tried, problem)? {
+            Prediction::Step(metrics, response) => {
+                let overshoot_percent = Some(metrics.overshoot_percent);
+                let settling_time_s = metrics.settling.time_s();
+                LinearStep {
+                    step: Some(TrialStep { overshoot_percent, settling_time_s }),
+                    response,
+                    grows: false,
+                }
+            }
+            Prediction::Grows => LinearStep { step: None, response: StepResponse::default(), grows: true },
+            Prediction::Unknown => LinearStep { step: None, response: StepResponse::default(), grows: false },
+        })
+    }
+
+    /// So many settling times, s, within bounds.
+    pub(super) fn hold_s(&self, settling_times: f64) -> f64 {
+        let [shortest, longest] = [SHORTEST_HOLD_S, LONGEST_HOLD_S];
+        let settles_s = match self.step {
+            Some(step) => step.settling_time_s.unwrap_or(longest),
+            None => shortest,
+        };
+        (settling_times * settles_s).clamp(shortest, longest)
+    }
 }

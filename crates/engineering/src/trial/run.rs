@@ -2,7 +2,7 @@
 
 use super::first_steps::{FirstSteps, RequiredOfSteps};
 use super::judge::{Driven, judge, met, not_started};
-use super::prediction::{Prediction, predicted};
+use super::prediction::{LONGEST_HOLD_S, LinearStep};
 use super::required::{HeldRequirement, held};
 use super::rigs::Tried;
 use super::steps::{CommandLimits, HeldLegs, REACH, Steps};
@@ -175,11 +175,10 @@ impl TrialRun {
 /// Percent of the step within which the force counts as settled.
 pub const BAND_PERCENT: f64 = 2.0;
 /// Duration of a step in settling times of the linear loop, at a corner of the box in times that
-/// are required too, and its bounds in s.
+/// are required too.
 const SETTLING_TIMES: f64 = 5.0;
 const SETTLING_TIMES_AT_CORNERS: f64 = 3.0;
 const REQUIRED_TIMES: f64 = 2.0;
-const HOLD_S: [f64; 2] = [0.5, 20.0];
 /// Ratio of the largest step to the first from which a run of its own is worth its time.
 const WORTH: f64 = 1.25;
 /// Ratio below which no smaller step is driven.
@@ -245,7 +244,7 @@ impl<'a> TriedMachine<'a> {
             }
             TrialEffort::Corner => {
                 let seen_s = REQUIRED_TIMES * self.required.longest_s;
-                let hold_s = self.linear.hold_s(SETTLING_TIMES_AT_CORNERS).max(seen_s.min(HOLD_S[1]));
+                let hold_s = self.linear.hold_s(SETTLING_TIMES_AT_CORNERS).max(seen_s.min(LONGEST_HOLD_S));
                 HeldLegs { hold_s, last: Leg::Back }
             }
         }
@@ -257,8 +256,8 @@ impl<'a> TriedMachine<'a> {
         self.effort != TrialEffort::Corner || self.required.of_every_step && !is_of_scenario
     }
 
-    /// Drives it through the first steps, then through the largest at which nothing saturates; `None`
-    /// where the watcher stops it.
+    /// Drives it through the first steps, then through the largest at which nothing saturates;
+    /// `None` where the watcher stops it.
     pub(super) fn driven(
         &self,
         source: &dyn Source,
@@ -455,42 +454,6 @@ impl DrivenSteps {
     /// Whether these are the steps of a run.
     pub(super) fn are_of(&self, run: &TrialRun) -> bool {
         self.size == run.size && [self.steps.from_n, self.steps.to_n] == run.reference_n
-    }
-}
-
-/// The linear loop's response to a step.
-struct LinearStep {
-    step: Option<TrialStep>,
-    response: StepResponse,
-    /// Whether it grows without bound.
-    grows: bool,
-}
-
-impl LinearStep {
-    fn of(tried: &Tried, problem: &RobustProblem) -> Result<LinearStep, TrialError> {
-        Ok(match predicted(tried, problem)? {
-            Prediction::Step(metrics, response) => {
-                let overshoot_percent = Some(metrics.overshoot_percent);
-                let settling_time_s = metrics.settling.time_s();
-                LinearStep {
-                    step: Some(TrialStep { overshoot_percent, settling_time_s }),
-                    response,
-                    grows: false,
-                }
-            }
-            Prediction::Grows => LinearStep { step: None, response: StepResponse::default(), grows: true },
-            Prediction::Unknown => LinearStep { step: None, response: StepResponse::default(), grows: false },
-        })
-    }
-
-    /// So many settling times, s, within bounds.
-    fn hold_s(&self, settling_times: f64) -> f64 {
-        let [shortest, longest] = HOLD_S;
-        let settles_s = match self.step {
-            Some(step) => step.settling_time_s.unwrap_or(longest),
-            None => shortest,
-        };
-        (settling_times * settles_s).clamp(shortest, longest)
     }
 }
 

@@ -122,6 +122,18 @@ fn meanings(trial: &Trial) -> Vec<String> {
             "\"agrees but for the settling\": all of this except for the settling time, which is within a factor of {SETTLING_RATIO}"
         ));
     }
+    let others = [
+        (
+            Agreement::Differs,
+            "\"differs\": it settles, and is further from the linear loop than this, or meets a limit on the way",
+        ),
+        (
+            Agreement::Contradicts,
+            "\"contradicts\": it does not settle, ends early, or overshoots by more than the limit on |L/(1+L)| allows, under a verdict that is not violated",
+        ),
+    ];
+    let driven = others.into_iter().filter(|(one, _)| trial.runs.iter().any(|run| run.agreement == *one));
+    told.extend(driven.map(|(_, words)| words.to_string()));
     if trial.runs.iter().any(|run| run.size == StepSize::Largest) {
         told.push(format!("\"largest step\": {}", largest_step_words()));
     }
