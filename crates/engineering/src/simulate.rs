@@ -289,7 +289,7 @@ pub struct RunOutput<'a> {
     pub attention: Attention,
     /// Whether a run whose errors may be visible is [`repeated`].
     pub repeats: bool,
-    /// Whether the limits of lines are watched: their pressure, vacuum, flow and vapour.
+    /// True where the limits of lines are watched: their pressure, vacuum, flow and vapour.
     pub line_limits: bool,
 }
 

@@ -16,12 +16,12 @@ use crate::simulate::{RequiredSteps, TimeRequirement, stepped_references};
 /// The most steps of scenarios through which a machine is driven, the largest of them.
 pub const MOST_OF_SCENARIOS: usize = 3;
 
-/// What the requirements in time of a project say of the steps for which they hold.
+/// The steps for which the requirements in time of a project hold.
 #[derive(Clone, Debug)]
 pub(super) struct RequiredOfSteps {
     /// Steps that are stated, each once.
     stated: Vec<RequiredSteps>,
-    /// Whether one that is part of the verdict holds for every step.
+    /// True where a requirement that is part of the verdict holds for every step.
     pub(super) of_every_step: bool,
     /// The longest time to settle or rise that is required, s; zero where none is.
     pub(super) longest_s: f64,
@@ -31,7 +31,7 @@ pub(super) struct RequiredOfSteps {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FirstSteps {
     pub(super) size: StepSize,
-    /// What a requirement states of them.
+    /// Size and initial force that a requirement states for them.
     pub(super) required: RequiredSteps,
     pub(super) steps: Steps,
 }

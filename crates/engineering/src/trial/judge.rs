@@ -34,7 +34,7 @@ pub(super) struct Driven<'a> {
     pub(super) run: &'a ScenarioRun,
     pub(super) steps: &'a Steps,
     pub(super) size: StepSize,
-    /// Of each leg that was to be driven.
+    /// Each leg that was to be driven, with the properties of its step.
     pub(super) legs: &'a [(Leg, TrialStep)],
     /// What the linear loop predicts.
     pub(super) linear: Option<TrialStep>,

@@ -54,7 +54,7 @@ pub(super) fn predicted(tried: &Tried, problem: &RobustProblem) -> Result<Predic
 pub(super) struct LinearStep {
     pub(super) step: Option<TrialStep>,
     pub(super) response: StepResponse,
-    /// Whether it grows without bound.
+    /// True where it grows without bound.
     pub(super) grows: bool,
 }
 

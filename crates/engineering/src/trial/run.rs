@@ -14,7 +14,9 @@ use crate::project::{LineMotion, Project};
 use crate::quantity::{Units, significant};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
-use crate::simulate::{RequiredSteps, RunOutput, ScenarioRun, SimulateError, simulate_into};
+use crate::simulate::{
+    RequiredSteps, RunOutput, ScenarioRun, SimulateError, simulate_into, stepped_references,
+};
 use crate::source::Source;
 use phea_dynamics::simulation::Attention;
 use phea_dynamics::watch::{Watch, part};
@@ -71,7 +73,7 @@ impl Leg {
     /// All of them.
     pub const ALL: [Leg; 3] = [Leg::There, Leg::Back, Leg::Again];
 
-    /// Those up to this one.
+    /// The steps up to this one.
     pub(super) fn up_to(last: Leg) -> impl Iterator<Item = Leg> {
         Leg::ALL.into_iter().take(last as usize + 1)
     }
@@ -250,10 +252,10 @@ impl<'a> TriedMachine<'a> {
         }
     }
 
-    /// Whether steps larger than the first ones are driven.
-    fn drives_larger(&self, firsts: &[DrivenSteps]) -> bool {
-        let is_of_scenario = firsts.iter().any(|steps| steps.size == StepSize::Scenario);
-        self.effort != TrialEffort::Corner || self.required.of_every_step && !is_of_scenario
+    /// True where steps larger than the first ones are driven.
+    fn drives_larger(&self) -> bool {
+        let has_scenario_steps = !stepped_references(&self.tried.project).is_empty();
+        self.effort != TrialEffort::Corner || self.required.of_every_step && !has_scenario_steps
     }
 
     /// Drives it through the first steps, then through the largest at which nothing saturates;
@@ -278,7 +280,7 @@ impl<'a> TriedMachine<'a> {
         let Some(DrivenSteps { outcome: Ok(driven), steps: first, .. }) = all.first() else {
             return Ok(Some(all));
         };
-        if self.is_decided(first, driven) || !self.drives_larger(&all) {
+        if self.is_decided(first, driven) || !self.drives_larger() {
             return Ok(Some(all));
         }
         let first = *first;
@@ -324,8 +326,8 @@ impl<'a> TriedMachine<'a> {
         let once = RunOutput { repeats: false, ..RunOutput::new(true, None) };
         match self.effort {
             TrialEffort::Corner => {
-                // no larger step is looked for that a limit of a line could end
-                let line_limits = self.required.of_every_step && self.tried.project.scenarios.is_empty();
+                // the limit of a line ends nothing but the search for a larger step
+                let line_limits = self.drives_larger();
                 let as_in_campaigns = RunOutput { attention: Attention::Steps, line_limits, ..once };
                 return self.driven_up_to(on, (steps, steps.legs.last), as_in_campaigns, watch);
             }

@@ -232,7 +232,9 @@ fn figure(trial: &Trial, [name, title]: [&str; 2]) -> Option<Figure> {
         (!times_s.is_empty()).then(|| TimeSeries { name: name.to_string(), times_s, values })
     };
     let nominal = series("linear loop, nominal plant", &first.linear_response);
-    let drawn = runs.iter().filter(|run| run.size != StepSize::Largest || run.agreement != Agreement::Agrees);
+    let is_first = |size| matches!(size, StepSize::Tenth | StepSize::Required);
+    let stands_out = |run: &TrialRun| run.agreement != Agreement::Agrees || !run.satisfies();
+    let drawn = runs.iter().filter(|run| is_first(run.size) || stands_out(run));
     let named = drawn.filter_map(|run| series(&run.what, &run.machine_response)).collect();
     let quantity = "Force, part of the step".to_string();
     let chart = FamilySteps { quantity, nominal, named, ..FamilySteps::default() };
@@ -242,7 +244,7 @@ fn figure(trial: &Trial, [name, title]: [&str; 2]) -> Option<Figure> {
         ""
     };
     let caption = format!(
-        "The worst of three steps of the reference (there, back and there again) on the nonlinear machine: the rig as declared,{waves} and its worst plants made into rigs. A force that leaves the frame is drawn up to there."
+        "The worst of three steps of the reference (there, back and there again) on the nonlinear machine: the rig as declared,{waves} and its worst plants made into rigs; of their other steps those that do not agree with the linear loop or miss what is required. A force that leaves the frame is drawn up to there."
     );
     Some(chart.draw(&Words::new(name, title, caption)))
 }

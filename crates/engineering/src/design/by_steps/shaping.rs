@@ -311,7 +311,7 @@ impl StepWishes {
     }
 }
 
-/// What is found of each, on all cores.
+/// The result for each item in its order, computed on all cores.
 fn of_each<One: Sync, Found: Send>(all: &[One], of: impl Fn(&One) -> Found + Sync) -> Vec<Found> {
     let found = side_by_side(all.len(), STAGE, &mut unwatched, |index, _| all.get(index).map(&of));
     // nothing stops it
