@@ -7,6 +7,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use phea_hydraulics::servovalve::TestInput;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -71,6 +72,11 @@ fn changed(reference: &Recording, said: &str) -> Recording {
     changed
 }
 
+/// The inputs as they were read, without the corners that rows left out make between the others.
+fn read_rows(recording: &Recording) -> Vec<TestInput> {
+    recording.inputs.iter().map(|input| TestInput { turn: None, ..*input }).collect()
+}
+
 fn told(text: &mut String, diagnostics: &[Diagnostic]) {
     for found in diagnostics {
         let severity = if found.severity == Severity::Error { "error" } else { "warning" };
@@ -96,7 +102,7 @@ fn every_kind_of_file_is_read_right_or_refused_with_the_reason() {
             Ok(recorded) => {
                 let recording = &recorded.recordings[0];
                 let wanted = changed(&reference, said);
-                let same = recording.inputs == wanted.inputs && recording.signals == wanted.signals;
+                let same = read_rows(recording) == read_rows(&wanted) && recording.signals == wanted.signals;
                 writeln!(found, "{}", if same { said } else { "reads other numbers" }).unwrap();
                 let unused = recorded.contents[0].unused.join(", ");
                 if !unused.is_empty() {

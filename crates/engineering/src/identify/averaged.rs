@@ -41,6 +41,9 @@ pub(super) fn averaged(recording: &Recording) -> Recording {
     let oils = densities
         .zip(viscosities)
         .map(|(density_ratio, viscosity_ratio)| WarmOil { density_ratio, viscosity_ratio });
+    // a block begins where the command turns
+    let first = |block: &std::ops::Range<usize>| recording.inputs.get(block.start)?.turn;
+    let lags = lags.into_iter().zip(blocks.iter().map(first));
     let inputs = commands.zip(supplies).zip(tanks).zip(loads).zip(oils).zip(lags);
     let signals = recording.signals.iter().map(|signal| RecordedSignal {
         kind: signal.kind,
@@ -54,17 +57,23 @@ pub(super) fn averaged(recording: &Recording) -> Recording {
         command_roughness: recording.command_roughness,
         times: these(&recording.times),
         inputs: inputs
-            .map(|((((((command, followed_command), pressure), tank_pressure), load_pressure), oil), lag)| {
-                TestInput {
-                    command,
-                    followed_command,
-                    supply: Supply { pressure, tank_pressure },
-                    load_pressure,
-                    oil,
-                    memory,
-                    lag,
-                }
-            })
+            .map(
+                |(
+                    (((((command, followed_command), pressure), tank_pressure), load_pressure), oil),
+                    (lag, turn),
+                )| {
+                    TestInput {
+                        command,
+                        followed_command,
+                        turn,
+                        supply: Supply { pressure, tank_pressure },
+                        load_pressure,
+                        oil,
+                        memory,
+                        lag,
+                    }
+                },
+            )
             .collect(),
         oil_temperature: recording.oil_temperature.as_ref().map(these),
         accuracies: recording.accuracies.clone(),

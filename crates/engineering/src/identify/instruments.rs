@@ -147,6 +147,7 @@ fn disturbed(
         TestSignal::Command => found.inputs.iter_mut().for_each(|input| {
             input.command += error.on(input.command);
             input.followed_command += error.on(input.followed_command);
+            input.turn = input.turn.map(|turn| turn + error.on(turn));
         }),
         TestSignal::SupplyPressure => {
             found

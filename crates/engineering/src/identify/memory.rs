@@ -149,7 +149,8 @@ impl<'f> Begun<'f> {
         let mut before = recording.inputs.first().map_or(0.0, |input| input.followed_command);
         let mut way = 0.0;
         let remembers = |input: &&TestInput| {
-            way += (input.followed_command - before).abs();
+            let turn = input.turn.unwrap_or(before);
+            way += (turn - before).abs() + (input.followed_command - turn).abs();
             before = input.followed_command;
             portable::exp(-way / width) > FORGOTTEN
         };

@@ -13,6 +13,7 @@ mod plausible;
 mod polarity;
 mod rated;
 mod rows;
+mod turns;
 
 use phea_dynamics::order::ends;
 use phea_hydraulics::servovalve::PortCircuit;

@@ -110,6 +110,9 @@ pub struct TestInput {
     pub command: f64,
     /// The same without the noise of its record: the memories of the spool follow it.
     pub followed_command: f64,
+    /// The command at which it turned on the way from the row before, in V, where that lies beyond
+    /// both.
+    pub turn: Option<f64>,
     /// Supply and tank pressure.
     pub supply: Supply,
     /// p_A - p_B across the meter, where the ports are joined.
@@ -129,6 +132,7 @@ impl TestInput {
         TestInput {
             command,
             followed_command: command,
+            turn: None,
             supply,
             load_pressure,
             oil: WarmOil::STATED,
@@ -314,7 +318,11 @@ fn openings<S: Scalar>(coefficients: &StaticCoefficients<S>, inputs: &[TestInput
     };
     let one = |input: &TestInput| {
         let followed = S::from(input.followed_command);
-        let opening = spool.slow_opening(memory.get_or_insert_with(|| begun(input, followed)), followed);
+        let memory = memory.get_or_insert_with(|| begun(input, followed));
+        if let Some(turn) = input.turn {
+            spool.slow_opening(memory, S::from(turn));
+        }
+        let opening = spool.slow_opening(memory, followed);
         opening + S::from(input.command - input.followed_command - input.lag)
     };
     inputs.iter().map(one).collect()

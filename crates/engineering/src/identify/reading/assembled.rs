@@ -2,6 +2,7 @@
 
 use phea_hydraulics::servovalve::{PortCircuit, Supply, TestInput, WarmOil};
 
+use super::turns::turns;
 use super::{Known, Taken};
 use crate::followed::{followed, roughness};
 use crate::identify::recording::{RecordedSignal, Recording, SignalKind};
@@ -20,11 +21,13 @@ pub(super) fn assembled(
         [TestSignal::Command, TestSignal::SupplyPressure, TestSignal::TankPressure].map(|one| taken.of(one));
     let (command_roughness, followed) = command.map_or((0.0, Vec::new()), without_noise);
     let times = taken.of(TestSignal::Time).unwrap_or_default();
+    let turns = turns(times, &followed);
     let input = |row: usize| {
         let at = |values: Option<&[f64]>| values.and_then(|values| values.get(row).copied());
         TestInput {
             command: at(command).unwrap_or(0.0),
             followed_command: at(Some(&followed)).unwrap_or(0.0),
+            turn: turns.get(row).copied().flatten(),
             supply: Supply {
                 pressure: at(supply).or(known.supply_pressure).unwrap_or(0.0),
                 tank_pressure: at(tank).unwrap_or(known.tank_pressure),
