@@ -18,6 +18,6 @@ pub(crate) use limits::document as limits;
 pub(crate) use manual::document as manual;
 pub(crate) use pressure_feedback::document as pressure_feedback;
 pub use pressure_feedback::{pressure_feedback_document, pressure_feedback_object};
-pub(crate) use stages::bound_files;
+pub(crate) use stages::{bound_files, drawn};
 pub use stages::{files, stage_files};
 pub(crate) use structures::document as structures;

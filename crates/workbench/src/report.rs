@@ -218,8 +218,8 @@ fn charts(judged: &Judged) -> Result<Charts, CommandError> {
     let given = bounds::chart(problem, bounds, given.as_ref())?;
     let both = designed.as_ref().map(|designed| designed.nichols(bounds)).transpose()?.flatten();
     Ok(match both {
-        Some(both) => Charts { opening: Some(both), appendix: Some(given) },
-        None => Charts { opening: Some(given), appendix: None },
+        Some(both) => Charts { opening: Some(both), appendix: given },
+        None => Charts { opening: given, appendix: None },
     })
 }
 

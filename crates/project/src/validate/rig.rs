@@ -5,6 +5,7 @@ use crate::{
     Component, DeclaredAccumulator, DeclaredActuator, DeclaredCylinder, DeclaredFriction, DeclaredLine,
     DeclaredLines, DeclaredPipe, DeclaredSupply, FrictionLaw, NullLeakage, Project, Pump, SupplyModel, Valve,
 };
+use phea_dynamics::portable;
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE as ATMOSPHERE;
 use phea_hydraulics::servovalve::LeakageModel;
 use phea_hydraulics::stroke::FURTHER_STAGES;
@@ -317,12 +318,19 @@ fn levels(
     let least = bristle_damping * (breakaway - coulomb) / coulomb;
     if viscous < least {
         let unit = check.motion().dimension(&DAMPING).si;
+        let least = rounded_up(least);
         let message = format!(
             "this LuGre friction can give out energy: it is passive for `viscous` of at least {least} {unit} \
              (bristle_damping (static - coulomb)/coulomb; Barabanov and Ortega, 2000)"
         );
         check.warning(&at("viscous", check), message);
     }
+}
+
+/// The next number with three significant digits.
+fn rounded_up(value: f64) -> String {
+    let place = portable::pow(10.0, portable::log10(value).floor() - 2.0);
+    quantity::significant((value / place).ceil() * place, 3)
 }
 
 fn lines(actuator: &DeclaredActuator, lines: &DeclaredLines, check: &mut Check<'_, '_>) {

@@ -188,7 +188,7 @@ fn campaign(project: &Project, campaign: &Campaign, check: &mut Check<'_, '_>) {
             check.error_with_help(&path, message, "leave it out");
         }
         if linear_parameter(&varied.path).is_some() {
-            let message = format!("`{}` does not exist in the nonlinear machine", varied.path);
+            let message = format!("`{}` does not exist in the nonlinear simulation", varied.path);
             check.error_with_help(&path, message, "vary the physical numbers it depends on");
         }
     }

@@ -24,7 +24,7 @@ pub(crate) fn document(derived: &[Derived], units: &WrittenUnits) -> Document {
     let stated = stated(derived);
     if !stated.is_empty() {
         out.heading("Stated by the project and used instead of the derived value");
-        out.explanation("The linear models use these values. Where a stated value and the derived one differ, the nonlinear machine follows the derived one.");
+        out.explanation("The linear models use these values. Where a stated value and the derived one differ, the nonlinear simulation follows the derived one.");
         out.marked(
             stated
                 .into_iter()

@@ -13,6 +13,7 @@ use crate::answer::{Object, significant};
 use crate::audit::PrefilterGain;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::DisplayUnit;
+use phea_dynamics::frequency::decibels;
 use phea_dynamics::portable::magnitude;
 
 /// Ratio up to which a pole is at the limit.
@@ -158,7 +159,14 @@ fn command_object(view: &ProjectDesign, command: &CommandOfSteps) -> Object {
 pub(crate) fn rows(view: &ProjectDesign) -> Vec<Object> {
     let row = |limit: &DesignLimit| {
         let found = view.limit_finding(limit.kind);
-        let margin = found.and_then(|found| found.worst.as_ref()).map(|worst| worst.margin_db);
+        let margin = match limit.kind {
+            // the search is led by a limit on |S| in its place
+            DesignLimitKind::PrefilterGain => {
+                let largest = PrefilterGain::of_loop(&view.designed.problem.compensation).largest;
+                Some(decibels(limit.value / largest))
+            }
+            _ => found.and_then(|found| found.worst.as_ref()).map(|worst| worst.margin_db),
+        };
         Object::new()
             .with("key", limit_key(limit.kind))
             .with(format!("value{}", limit_unit_key(limit.kind)), limit.value)

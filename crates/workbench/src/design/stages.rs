@@ -110,7 +110,9 @@ fn transfer_file(name: &str, function: &TransferFunction) -> OutputFile {
     OutputFile::new(name, factors(function).print())
 }
 
-fn drawn(problem: &RobustProblem) -> Vec<f64> {
+/// The frequencies at which a loop is drawn: around those of the design, or around what a required
+/// step asks for where nothing else is required.
+pub(crate) fn drawn(problem: &RobustProblem) -> Vec<f64> {
     let frequencies = problem.design_frequencies();
     match (frequencies.first(), frequencies.last()) {
         (Some(first), Some(last)) => problem.drawn_frequencies(first * BEYOND[0], last * BEYOND[1]),

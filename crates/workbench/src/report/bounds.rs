@@ -10,6 +10,7 @@ use phea_qft::verification::Verdict;
 use super::chapter::Chapter;
 use crate::answer::significant;
 use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_number};
+use crate::design::drawn;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
 use crate::figure::{
@@ -118,21 +119,32 @@ pub(super) const fn nearest_words(left_out: bool) -> &'static str {
     if left_out { " Bounds: of the five frequencies nearest to a loop." } else { "" }
 }
 
+/// A chart of a loop for which steps alone are required.
+pub(super) const NO_BOUNDS: &str =
+    "The nominal loop around the critical point; nothing is required over frequency that would draw a bound.";
+
+/// The bounds of a chart by their name; none where there are none.
+pub(super) fn group<'a>(name: &str, bounds: &'a [Bound]) -> Vec<BoundGroup<'a>> {
+    let group = BoundGroup { name: name.to_string(), bounds };
+    if bounds.is_empty() { vec![] } else { vec![group] }
+}
+
+/// Why a loop that is met may lie beyond a bound.
+pub(super) const WITHIN_TOLERANCE: &str = " Bounds are drawn without the tolerance of the verdict: where one is steep, a loop that is met within it may lie some decibels beyond.";
+
 /// L0 over the frequencies around those of the design; `None` without a controller or a nominal
 /// plant.
 pub(super) fn nominal_loop(problem: &RobustProblem) -> Result<Option<FrequencySeries>, LinearError> {
     if !problem.has_controller {
         return Ok(None);
     }
-    let frequencies = problem.design_frequencies();
-    let (Some(first), Some(last)) = (frequencies.first(), frequencies.last()) else { return Ok(None) };
     let Some(nominal) = problem.nominal()? else { return Ok(None) };
     let mut series = FrequencySeries {
         name: "nominal loop L0".to_string(),
         frequencies_rad_per_s: vec![],
         response: vec![],
     };
-    for frequency in problem.drawn_frequencies(first / 10.0, last * 30.0) {
+    for frequency in drawn(problem) {
         if let Some(response) = problem.response(&nominal, frequency) {
             series.frequencies_rad_per_s.push(frequency);
             series.response.push(response.open_loop());
@@ -141,7 +153,7 @@ pub(super) fn nominal_loop(problem: &RobustProblem) -> Result<Option<FrequencySe
     Ok(Some(series))
 }
 
-/// The Nichols chart of the given loop, or of the bounds alone.
+/// The Nichols chart of the given loop, or of the bounds alone; `None` where there is neither.
 ///
 /// # Errors
 /// A loop that cannot be computed.
@@ -149,21 +161,28 @@ pub(super) fn chart(
     problem: &RobustProblem,
     found: &[DesignFrequency],
     view: Option<&ProjectAudit>,
-) -> Result<Figure, CommandError> {
+) -> Result<Option<Figure>, CommandError> {
     let nominal = nominal_loop(problem)?;
+    if nominal.is_none() && problem.specifications.is_empty() {
+        return Ok(None);
+    }
     let given = [problem];
     let (bounds, left_out) = nearest_bounds(found, if problem.has_controller { &given } else { &[] });
     let chart = NicholsChart {
         loops: nominal.into_iter().collect(),
         design_frequencies_rad_per_s: problem.design_frequencies(),
-        bounds: vec![BoundGroup { name: "all specifications".to_string(), bounds: &bounds }],
+        bounds: group("all specifications", &bounds),
         templates: &[],
         violations: view.map_or_else(Vec::new, |view| violations(problem, view)),
         contours_db: vec![],
     };
+    if bounds.is_empty() {
+        return Ok(Some(chart.draw(&Words::new("nichols", "Nichols chart of the loop", NO_BOUNDS))));
+    }
     let caption = "The bounds of all specifications together, the nominal loop with its design frequencies, and the plants that violate a specification most: a loop above a bound that is open upwards, and outside closed ones, satisfies all of them at that frequency.";
-    let caption = format!("{caption}{}", nearest_words(left_out));
-    Ok(chart.draw(&Words::new("nichols", "Nichols chart of the loop", caption)))
+    let within = if view.is_some() { WITHIN_TOLERANCE } else { "" };
+    let caption = format!("{caption}{within}{}", nearest_words(left_out));
+    Ok(Some(chart.draw(&Words::new("nichols", "Nichols chart of the loop", caption))))
 }
 
 /// The open loop of each worst plant, where it violates.

@@ -181,7 +181,7 @@ fn document([runs, asked]: [u64; 2], plan: &Plan, summary: &Summary, figures: Ve
     out.explanation("Each column gives the value below which that share of the runs lies; the worst is the value of largest magnitude. Runs without a value are counted next to the name.");
     out.table(metrics(plan, summary));
     out.heading("Linear models that were visited");
-    out.explanation("Stiffness, flow gain and flow-pressure coefficient do not exist in the nonlinear machine: these are those of its linear model at the operating point, for each draw, next to the box for which the controller is judged.");
+    out.explanation("Stiffness, flow gain and flow-pressure coefficient do not exist in the nonlinear simulation: these are those of its linear model at the operating point, for each draw, next to the box for which the controller is judged.");
     out.table(lumps(plan, summary));
     out.sentences(beyond_box(plan));
     worst(&mut out, plan, summary);

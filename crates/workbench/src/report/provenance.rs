@@ -53,12 +53,12 @@ fn paths(loaded: &Loaded, keep: impl Fn(&Origin) -> bool) -> Vec<&str> {
 fn not_proven(project: &Project, is_judged: bool) -> String {
     match (is_judged && !project.specifications.is_empty(), project.actuator.is_some()) {
         (true, true) => {
-            "What is not proven of the linear models was searched for, and a search is not a proof. What the nonlinear machine does is shown for the steps and scenarios that were driven, and for no others.".to_string()
+            "What is not proven of the linear models was searched for, and a search is not a proof. What the nonlinear simulation does is shown for the steps and scenarios that were driven, and for no others.".to_string()
         }
         (true, false) => "What is not proven was searched for, and a search is not a proof.".to_string(),
         (false, true) => {
             let computed = if project.sizing.is_some() { "linear models and a sizing" } else { "linear models" };
-            format!("This report computes nominal {computed}. It does not say that a controller holds for every plant of the declared uncertainty; what the nonlinear machine does is shown for the scenarios that were driven, and for no others.")
+            format!("This report computes nominal {computed}. It does not say that a controller holds for every plant of the declared uncertainty; what the nonlinear simulation does is shown for the scenarios that were driven, and for no others.")
         }
         (false, false) => "No controller was given, and none was judged.".to_string(),
     }

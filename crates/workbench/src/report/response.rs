@@ -24,7 +24,7 @@ pub(super) fn chapter(
         out.explanation("The project gives no controller, so that there is no loop to close.");
         return Chapter::of(anchor, title, out);
     };
-    out.explanation("The nominal plant in a loop with the given controller and prefilter. One linear plant: this proves nothing for the others, or for the nonlinear machine.");
+    out.explanation("The nominal plant in a loop with the given controller and prefilter. One linear plant: this proves nothing for the others, or for the nonlinear simulation.");
     out.left_out(setup);
     match &linear_loop.step {
         Ok(view) => {

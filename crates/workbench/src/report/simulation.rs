@@ -37,7 +37,7 @@ pub(super) fn chapter(project: &Project, driven: &MachineChapter) -> Chapter {
             out.append(scenario(&runs, declared, required, drawn));
         }
     }
-    Chapter::of("simulation", "Simulation of the nonlinear machine", out)
+    Chapter::of("simulation", "Nonlinear simulation", out)
 }
 
 /// The appendix: the signals inside the machine at each event, for each of several controllers.

@@ -59,7 +59,7 @@ pub(crate) fn at_a_glance(name: &str, runs: &[NamedRun<'_>], wish: Option<&Track
     let until = spans().map(|span| span[1]).fold(0.0, f64::max);
     let span = if from < until { [from, until] } else { [0.0, end] };
     let title = format!("Force over time: {}", first.run.name);
-    let caption = format!("The nonlinear machine, {}{}.", whose(runs), of_wish(wish));
+    let caption = format!("The nonlinear simulation, {}{}.", whose(runs), of_wish(wish));
     let mut panels = forces_enlarged(runs, [220.0, 110.0], span, wish);
     panels.extend(errors(runs, span));
     panels.push(commands(runs, 90.0));

@@ -18,16 +18,18 @@ fn headline(trial: &Trial) -> String {
     if agreement != Agreement::AgreesButForSettling {
         return word.to_string();
     }
-    let own_and_linear = |run: &TrialRun| {
+    let both = |run: &TrialRun| {
         let own_s = run.machine.as_ref()?.settling_time_s?;
-        Some((own_s, run.linear.as_ref()?.settling_time_s?))
+        Some((own_s, run.linear.as_ref()?.settling_time_s?, step_words(run)))
     };
-    let apart = |(own_s, linear_s): &(f64, f64)| (own_s / linear_s).max(linear_s / own_s);
-    let furthest = trial.runs.iter().filter_map(own_and_linear);
-    match furthest.max_by(|one, other| apart(one).total_cmp(&apart(other))) {
-        Some((own_s, linear_s)) => {
+    let apart = |own_s: &f64, linear_s: &f64| (own_s / linear_s).max(linear_s / own_s);
+    let furthest = trial.runs.iter().filter_map(both);
+    match furthest.max_by(|(one, of_one, _), (other, of_other, _)| {
+        apart(one, of_one).total_cmp(&apart(other, of_other))
+    }) {
+        Some((own_s, linear_s, step)) => {
             let [own, linear] = [own_s, linear_s].map(|time_s| DisplayUnit::MILLISECOND.text(time_s, 3));
-            format!("{word}: {own} for {linear}")
+            format!("{word}: {own} for the linear {linear} ({BAND_PERCENT} %, {step})")
         }
         None => word.to_string(),
     }
@@ -244,7 +246,7 @@ fn figure(trial: &Trial, [name, title]: [&str; 2]) -> Option<Figure> {
         ""
     };
     let caption = format!(
-        "The worst of three steps of the reference (there, back and there again) on the nonlinear machine: the rig as declared,{waves} and its worst plants made into rigs; of their other steps those that do not agree with the linear loop or miss what is required. A force that leaves the frame is drawn up to there."
+        "The worst of three steps of the reference (there, back and there again) in the nonlinear simulation: of the rig as declared,{waves} and its worst plants made into rigs; of their other steps those that do not agree with the linear loop or miss what is required. A force that leaves the frame is drawn up to there."
     );
     Some(chart.draw(&Words::new(name, title, caption)))
 }

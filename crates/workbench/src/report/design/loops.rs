@@ -3,10 +3,10 @@
 use phea_dynamics::linear::LinearError;
 use phea_qft::bound::Placement;
 
-use super::super::bounds::{nearest_bounds, nearest_words, nominal_loop};
+use super::super::bounds::{NO_BOUNDS, WITHIN_TOLERANCE, group, nearest_bounds, nearest_words, nominal_loop};
 use crate::audit::frequency_number;
 use crate::design::{AuditedController, ProjectDesign};
-use crate::figure::{BoundGroup, Figure, FrequencySeries, NicholsChart, OpenLoopViolation, Words};
+use crate::figure::{Figure, FrequencySeries, NicholsChart, OpenLoopViolation, Words};
 use crate::robust::DesignFrequency;
 
 /// The chart; `None` without a nominal plant.
@@ -29,7 +29,7 @@ pub(super) fn figure(view: &ProjectDesign, found: &[DesignFrequency]) -> Result<
     let chart = NicholsChart {
         loops,
         design_frequencies_rad_per_s: view.designed.problem.design_frequencies(),
-        bounds: vec![BoundGroup { name: "bounds of all specifications".to_string(), bounds: &bounds }],
+        bounds: group("bounds of all specifications", &bounds),
         violations,
         ..NicholsChart::default()
     };
@@ -37,8 +37,11 @@ pub(super) fn figure(view: &ProjectDesign, found: &[DesignFrequency]) -> Result<
         true => ("Nichols chart of the designed loop", "loop"),
         false => ("Nichols chart of both loops", "loops"),
     };
+    if bounds.is_empty() {
+        return Ok(Some(chart.draw(&Words::new("design_nichols", title, NO_BOUNDS))));
+    }
     let caption = format!(
-        "The nominal {whose} among the bounds of all specifications; crossed out where a bound forbids it.{}",
+        "The nominal {whose} among the bounds of all specifications; crossed out where a bound forbids it.{WITHIN_TOLERANCE}{}",
         nearest_words(left_out)
     );
     Ok(Some(chart.draw(&Words::new("design_nichols", title, caption))))
