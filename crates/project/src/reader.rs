@@ -368,9 +368,11 @@ fn unknown_key(entry: &Entry, known: &[KeyEntry], frame: &mut Frame<'_>) -> RawF
     let missing = missing.map_or(String::new(), |name| format!(", and `{name}` is missing"));
     let message = format!("unknown key `{}`{place}{missing}", entry.key);
     let found = RawFinding::error(entry.key_place, message);
+    if let Some(help) = of_one_side(&entry.key, frame) {
+        return found.help(help);
+    }
     let near = near.or_else(|| word_of(&entry.key, &frame.asked));
     match (near, homes.as_slice()) {
-        _ if let Some(help) = of_one_side(&entry.key, frame) => found.help(help),
         (_, [first, ..]) if homes.len() > MOST_TABLES => {
             found.help(format!("it belongs to {} tables, such as {first}", homes.len()))
         }

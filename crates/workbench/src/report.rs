@@ -305,7 +305,9 @@ fn rig_part(
         response::chapter(setup, given.as_ref(), reference(project)),
     ];
     let mut facts = vec![("Load", rig::load_words(actuator)), ("Lines", rig::lines_words(actuator))];
-    facts.extend(summary((&linearization, rig), sizing.as_ref(), problem, given.as_ref()));
+    facts.extend(summary((&linearization, rig), sizing.as_ref(), problem));
+    let lumped = if response::has_waves(project) { " (with lumped lines)" } else { "" };
+    facts.extend(given.as_ref().map(|given| (NOMINAL_LOOP, loop_words(given) + lumped)));
     let no_hose_fits = sizing.is_some_and(|sizing| sizing.best().is_none());
     Ok(Some(RigPart { chapters, appendix, facts, no_hose_fits }))
 }
@@ -360,7 +362,6 @@ fn summary(
     (linearization, rig): (&Linearization, &Rig),
     sizing: Option<&Sizing>,
     problem: Option<&SizingProblem>,
-    given: Option<&LinearLoop>,
 ) -> Vec<(&'static str, String)> {
     let stiffness = linearization.stiffness[0];
     let [words, _] = stiffness_words(linearization.motion, &stiffness);
@@ -387,7 +388,6 @@ fn summary(
         passive.push_str(&format!(", closed loop {}", port(view)));
     }
     facts.push(("Towards the load", passive));
-    facts.extend(given.map(|given| (NOMINAL_LOOP, loop_words(given))));
     facts
 }
 

@@ -5,18 +5,19 @@
 //! ```
 //!
 //! The sum is over the steps of one scenario, r_k the reference from t_k on, and u_0 the command
-//! that holds the rig at the reference r_0 with which it begins. The loop is linear, so that the
+//! that holds a plant at the reference r_0 with which it begins. The loop is linear, so that the
 //! largest step that the valve does follows from w as well.
 
 mod scenario_steps;
 
+use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::watch::{Stopped, Watch, tell};
 use phea_qft::closed_loop::Member;
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::verification::{PlantPoint, Verdict};
 
+use self::scenario_steps::CommandedSteps;
 pub(super) use self::scenario_steps::ScenarioSteps;
-use self::scenario_steps::{CommandedSteps, last};
 use super::by_steps::SteppedPlants;
 use super::{DesignError, DesignPart, ProjectDesign, unless_stopped};
 use crate::audit::{VisitedPlant, visited, worst_beside};
@@ -109,6 +110,8 @@ impl ProjectDesign {
 struct UnitCommand {
     values: Vec<f64>,
     unit: StepResponse,
+    /// What holds 1 N, V/N.
+    held_v_per_n: f64,
     largest_v: f64,
 }
 
@@ -181,6 +184,9 @@ impl CommandSearch<'_> {
     /// The largest command; `None` where a response is not known, and where the watch stops it.
     fn found(&mut self, setup: &Setup<'_>, depth: CommandDepth) -> Option<CommandOfSteps> {
         let family = self.family;
+        if let Some(nominal_v_per_n) = self.held_v_per_n(&family.plant().nominal()) {
+            self.of.beginning_at_each_plant(nominal_v_per_n);
+        }
         for values in visited(family, &self.told.designed.view.audit) {
             self.visit(&values)?;
         }
@@ -232,10 +238,30 @@ impl CommandSearch<'_> {
         if let Some(known) = self.visited.iter().find(|known| known.values == values) {
             return Some(known.largest_v);
         }
-        let unit = self.command(values)?;
-        let largest_v = self.of.largest_v(&unit);
-        self.visited.push(UnitCommand { values: values.to_vec(), unit, largest_v });
+        let command = self.unit_command(values)?;
+        let largest_v = command.largest_v;
+        self.visited.push(command);
         Some(largest_v)
+    }
+
+    fn unit_command(&mut self, values: &[f64]) -> Option<UnitCommand> {
+        let unit = self.command(values)?;
+        let last = unit.values.last().copied().unwrap_or(0.0);
+        let held_v_per_n = self.held_v_per_n(values).unwrap_or(last);
+        let largest_v = self.of.largest_held_v(&unit, held_v_per_n);
+        Some(UnitCommand { values: values.to_vec(), unit, held_v_per_n, largest_v })
+    }
+
+    /// F(0)/P(0), what a plant takes to hold 1 N under a loop with an integrator, V/N; `None` under
+    /// another one.
+    fn held_v_per_n(&self, values: &[f64]) -> Option<f64> {
+        let compensation = &self.told.designed.problem.compensation;
+        let slow = self.family.plant().member(values)?.slow();
+        let [numerator, denominator] =
+            [slow.command.numerator, slow.command.denominator].map(Polynomial::new);
+        let command = TransferFunction::from_polynomials(&numerator, &denominator).ok()?;
+        let held = compensation.prefilter().dc_gain() / command.dc_gain();
+        Some(held).filter(|held| held.is_finite() && compensation.feedback().dc_gain().is_infinite())
     }
 
     /// Follows the worst plants to worse ones between the members.
@@ -257,10 +283,10 @@ impl CommandSearch<'_> {
     /// The scenario, the step and the plant with the largest command.
     fn worst(&self, setup: &Setup<'_>) -> Option<CommandOfSteps> {
         let plant = self.visited.iter().max_by(|one, other| one.largest_v.total_cmp(&other.largest_v))?;
-        let peaks = self.of.peaks(&plant.unit);
+        let peaks = self.of.peaks(&plant.unit, plant.held_v_per_n);
         let (scenario, peak) = peaks.max_by(|(_, one), (_, other)| one.value_v.total_cmp(&other.value_v))?;
         let (largest_step_n, step_limit) = self.largest_step(setup, scenario, &peak.step);
-        let at_rest = self.visited.iter().map(|plant| self.of.at_rest_v(&plant.unit));
+        let at_rest = self.visited.iter().map(|plant| self.of.at_rest_v(plant.held_v_per_n));
         Some(CommandOfSteps {
             scenario: scenario.reference.scenario.clone(),
             step: peak.step,
@@ -286,7 +312,7 @@ impl CommandSearch<'_> {
     ) -> (f64, StepLimit) {
         let direction = step.size_n().signum();
         let room = |plant: &UnitCommand| {
-            let resting_v = scenario.resting_v(step.from_n, last(&plant.unit));
+            let resting_v = scenario.resting_v(step, plant.held_v_per_n);
             let of = |value: &f64| {
                 let rate = direction * value;
                 if rate == 0.0 {
@@ -322,10 +348,7 @@ impl CommandSearch<'_> {
                 let known = self.visited.iter().find(|known| known.values == moved);
                 let largest_v = match known.map(|known| known.largest_v) {
                     Some(known_v) => known_v,
-                    None => {
-                        let command = self.command(&moved)?;
-                        self.of.largest_v(&command)
-                    }
+                    None => self.unit_command(&moved)?.largest_v,
                 };
                 if (largest_v - found.largest_v).abs() > ACCURACY * found.largest_v {
                     moved_by.extend(&coordinate.parameters);

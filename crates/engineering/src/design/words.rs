@@ -5,7 +5,7 @@ use phea_qft::design::{ControllerChoice, DesignStatus, Objective};
 use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::verification::Verdict;
 
-use super::{CommandOfSteps, ProjectDesign, Repair, RepairStatus};
+use super::{CommandOfSteps, DesignPart, ProjectDesign, Repair, RepairStatus};
 use crate::project::{DESIGN_OBJECTIVES, word_of};
 use crate::quantity::significant;
 
@@ -25,16 +25,47 @@ pub fn status_key(view: &ProjectDesign) -> &'static str {
     }
 }
 
+/// The tolerance, where a specification or a limit of the design is met within it alone.
+fn within_tolerance(view: &ProjectDesign) -> String {
+    let limits = view.limit_findings.iter().filter(|(kind, _)| !kind.is_led_to()).map(|(_, found)| found);
+    let all = view.designed.view.audit.specifications.iter().chain(limits);
+    let least = all.filter_map(|found| Some(found.worst.as_ref()?.margin_db)).fold(f64::INFINITY, f64::min);
+    match least < -NO_MARGIN_DB {
+        true => format!(
+            ", one of them or of the limits of [design] by {} dB within the tolerance of {} dB",
+            significant(-least, 2),
+            significant(view.designed.view.audit.tolerance_db, 2)
+        ),
+        false => String::new(),
+    }
+}
+
+/// Margin that is none: the accuracy to which margins are computed, dB.
+const NO_MARGIN_DB: f64 = 5e-3;
+
+fn satisfaction(view: &ProjectDesign) -> &'static str {
+    if view.is_met() { "satisfies every specification" } else { "does not satisfy every specification" }
+}
+
+/// What a stopped design is.
+fn stopped_sentence(view: &ProjectDesign) -> String {
+    let verdict = match view.is_met() {
+        true if view.unfinished.contains(&DesignPart::Trial) => {
+            "satisfies every specification as a linear loop; the nonlinear simulation has not driven it"
+        }
+        _ => satisfaction(view),
+    };
+    let missed = match view.is_met() && view.misses_on_rig() {
+        true => format!(", but {}", view.missed_on_rig_words()),
+        false => String::new(),
+    };
+    format!("stopped: this is the best controller found so far, and it {verdict}{missed}")
+}
+
 /// The same for people, with what it means.
 pub fn status_sentence(view: &ProjectDesign) -> String {
-    let verdict =
-        if view.is_met() { "satisfies every specification" } else { "does not satisfy every specification" };
     if view.is_stopped() {
-        let missed = match view.is_met() && view.misses_on_rig() {
-            true => format!(", but {}", view.missed_on_rig_words()),
-            false => String::new(),
-        };
-        return format!("stopped: this is the best controller found so far, and it {verdict}{missed}");
+        return stopped_sentence(view);
     }
     match &view.design.status {
         DesignStatus::Met if view.designed.view.verdict() == Verdict::NotProven => {
@@ -57,7 +88,7 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
         }
         DesignStatus::Met => match view.exceeded_command() {
             Some(command) => command_words(command),
-            None => "met: the controller satisfies every specification".to_string(),
+            None => format!("met: the controller satisfies every specification{}", within_tolerance(view)),
         },
         DesignStatus::Infeasible(_) if keeps_all_but_steps(view) => format!(
             "infeasible: none of the controllers tried{} makes its steps as they are required; the nearest one keeps all that is required over frequency",
@@ -73,7 +104,8 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
                 .to_string()
         }
         DesignStatus::NotConverged { rounds } => format!(
-            "not converged: after {rounds} rounds of search and audit the audit still finds what the search did not see; the controller {verdict}"
+            "not converged: after {rounds} rounds of search and audit the audit still finds what the search did not see; the controller {}",
+            satisfaction(view)
         ),
         DesignStatus::NotStabilised => {
             format!(

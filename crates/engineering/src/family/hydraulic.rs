@@ -59,7 +59,7 @@ pub(super) fn uncertain_plant(
     let idle = all.find(|(index, _)| expression.is_some_and(|one| !one.depends_on(*index)));
     match idle {
         Some((_, UncertainParameter { name, .. })) => {
-            Err(ProjectFamilyError::Path { path: name.clone(), reason: reason(name) })
+            Err(ProjectFamilyError::Path { path: name.clone(), reason: reason(name, project) })
         }
         None => Ok(recorded),
     }
@@ -282,9 +282,16 @@ pub(super) fn is_linear(name: &str) -> bool {
 }
 
 /// Why a number does not affect the plant.
-fn reason(path: &str) -> String {
-    match LINEAR_PARAMETERS.iter().any(|parameter| parameter.follows_from(path)) {
-        true => "what the project states goes before what would follow from it".to_string(),
+fn reason(path: &str, project: &Project) -> String {
+    if LINEAR_PARAMETERS.iter().any(|parameter| parameter.follows_from(path)) {
+        return "what the project states goes before what would follow from it".to_string();
+    }
+    let mut lines = project.actuator.iter().flat_map(|actuator| [&actuator.line.a, &actuator.line.b]);
+    let is_of_waves = path.starts_with("fluid.") && lines.any(|line| !line.motion.is_lumped());
+    match is_of_waves {
+        true => format!(
+            "it does not enter the linear model but through the waves in the lines, which are those of the declared oil: verify other oils one by one, `--set {path}=...`"
+        ),
         false => "it does not enter the linear model".to_string(),
     }
 }

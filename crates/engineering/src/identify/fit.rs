@@ -192,13 +192,17 @@ fn has_many_rows(recordings: &[Recording]) -> bool {
 }
 
 impl Fit<'_> {
-    /// The same at its minimum, where the search over many rows was cut short.
-    pub(super) fn searched_to_the_end(self, watch: Watch<'_>) -> Result<Self, IdentifyError> {
-        if self.minimum.ending != Ending::OutOfEvaluations || !has_many_rows(self.together.recordings) {
-            return Ok(self);
-        }
-        let minimum = near_minimum(&self.together, &self.minimum.variables, EVALUATIONS, watch)?;
-        Ok(Fit { minimum, ..self })
+    /// The same at its minimum, with the scale of each signal from its residuals there: a search
+    /// that was cut short has those of another model.
+    pub(super) fn searched_to_the_end(mut self, watch: Watch<'_>) -> Result<Self, IdentifyError> {
+        let near = self.minimum.variables.clone();
+        self.minimum = if has_many_rows(self.together.recordings) {
+            self.together.rescale(&near, &self.minimum.linearised.residuals);
+            near_minimum(&self.together, &near, EVALUATIONS, watch)?
+        } else {
+            settled(&mut self.together, &near, watch)?
+        };
+        Ok(self)
     }
 }
 

@@ -190,14 +190,19 @@ fn missed_in_time(machine: &TrialStep, driven: &Driven<'_>, problem: &RobustProb
     Some(format!("it settles in {own}, where {most} is required and the linear loop takes {predicted}"))
 }
 
+/// Range of a force at rest, over its distance from the reference.
+const SWING: f64 = 0.5;
+
 fn unsettled(driven: &Driven<'_>) -> String {
     let force = driven.run.record.units.force;
     let leg = driven.worst();
-    let still =
-        driven.steps.remains(driven.run, leg).filter(|range| width(*range) <= AT_REST * driven.steps.size());
-    if let Some([low, high]) = still {
-        let reference = driven.steps.reference(leg);
-        let off = 100.0 * (0.5 * (low + high) - reference).abs() / driven.steps.size();
+    let reference = driven.steps.reference(leg);
+    let distance = |[low, high]: [f64; 2]| (0.5 * (low + high) - reference).abs();
+    // what swings by less than it is off its reference is noise around a force at rest
+    let is_still =
+        |range: &[f64; 2]| width(*range) <= (AT_REST * driven.steps.size()).max(SWING * distance(*range));
+    if let Some([low, high]) = driven.steps.remains(driven.run, leg).filter(is_still) {
+        let off = 100.0 * distance([low, high]) / driven.steps.size();
         return format!(
             "the force does not settle{}: it comes to rest at {}, {} of the step off its reference",
             leg_words(leg),

@@ -241,7 +241,7 @@ fn tolerance(view: &ProjectAudit) -> String {
     let met = portable::rounded(view.audit.tolerance_db, 3);
     let fitted = match view.has_lines_in_motion() {
         true => {
-            ", but near the resonances of the lines no margin is known to better than about 0.3 dB, the error of their fitted waves"
+            ", but near the resonances of the lines no margin is known to better than about 0.3 dB, the error of their fitted waves. They are waves in the declared oil: a thinner one damps them less, and is verified by `--set fluid.kinematic_viscosity=...`"
         }
         false => "",
     };

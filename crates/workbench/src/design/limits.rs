@@ -38,12 +38,8 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
             },
             value_words(view, limit).into(),
             origin_words(limit.origin).into(),
-            view.limit_finding(limit.kind)
-                // its margin is that of a limit that leads the search
-                .filter(|_| limit.kind != DesignLimitKind::PrefilterGain)
-                .and_then(|found| found.worst.as_ref())
-                .map_or(Cell::Missing, |worst| Cell::margin(worst.margin_db)),
-            Cell::from(view.binds(limit).map(|binds| if binds { "binds" } else { "" }.to_string())),
+            margin_db(view, limit).map_or(Cell::Missing, Cell::margin),
+            if view.binds(limit) == Some(true) { "binds" } else { "" }.into(),
         ]
     };
     out.table(
@@ -155,24 +151,27 @@ fn command_object(view: &ProjectDesign, command: &CommandOfSteps) -> Object {
         .with("moved_by", moved_by.collect::<Vec<&str>>())
 }
 
+/// The least margin of a limit over the family, dB.
+fn margin_db(view: &ProjectDesign, limit: &DesignLimit) -> Option<f64> {
+    match limit.kind {
+        // the search is led by a limit on |S| in its place
+        DesignLimitKind::PrefilterGain => {
+            let largest = PrefilterGain::of_loop(&view.designed.problem.compensation).largest;
+            Some(decibels(limit.value / largest))
+        }
+        _ => view.limit_finding(limit.kind)?.worst.as_ref().map(|worst| worst.margin_db),
+    }
+}
+
 /// The limits in JSON.
 pub(crate) fn rows(view: &ProjectDesign) -> Vec<Object> {
     let row = |limit: &DesignLimit| {
-        let found = view.limit_finding(limit.kind);
-        let margin = match limit.kind {
-            // the search is led by a limit on |S| in its place
-            DesignLimitKind::PrefilterGain => {
-                let largest = PrefilterGain::of_loop(&view.designed.problem.compensation).largest;
-                Some(decibels(limit.value / largest))
-            }
-            _ => found.and_then(|found| found.worst.as_ref()).map(|worst| worst.margin_db),
-        };
         Object::new()
             .with("key", limit_key(limit.kind))
             .with(format!("value{}", limit_unit_key(limit.kind)), limit.value)
             .with("origin", origin_key(limit.origin))
             .with("kept", is_kept(view, limit))
-            .maybe("worst_margin_db", margin)
+            .maybe("worst_margin_db", margin_db(view, limit))
             .maybe("binds", view.binds(limit))
             .maybe("command", command(view, limit.kind).map(|found| command_object(view, found)))
             .maybe("relaxed", relaxed::of_limit(view, limit.kind, limit.value))

@@ -1,6 +1,6 @@
 //! The designed controller in the words of a controller's manual.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use phea_dynamics::controller::NamedStructure;
 use phea_dynamics::frequency::decibels;
@@ -56,7 +56,33 @@ fn remarks(view: &ProjectDesign, words: &ManualLaw) -> Vec<String> {
                 .to_string(),
         );
     }
-    if view.designed.problem.compensation.sample_time_s().is_some() {
+    let integrates = |part: &ManualPart| {
+        matches!(
+            part,
+            ManualPart::Integral { .. }
+                | ManualPart::ProportionalIntegral { .. }
+                | ManualPart::ProportionalIntegralDerivative { .. }
+        )
+    };
+    let follows = view.designed.problem.in_time.iter().any(|required| required.follows);
+    if follows && !words.parts.iter().any(integrates) {
+        all.push(
+            "it has no integral part: at rest the force is off its reference by what the gain of a plant at rest differs from that of the nominal one, and by what friction and the null of the valve make"
+                .to_string(),
+        );
+    }
+    if let Some(sample_time_s) = view.designed.problem.compensation.sample_time_s() {
+        let nyquist = PI / sample_time_s;
+        let is_beyond = |part: &ManualPart| {
+            matches!(part, ManualPart::Lead { zero_rad_per_s: one, pole_rad_per_s: other }
+                | ManualPart::Lag { zero_rad_per_s: one, pole_rad_per_s: other } if one.max(*other) > nyquist)
+        };
+        if words.parts.iter().any(is_beyond) {
+            all.push(format!(
+                "a zero or pole lies beyond the Nyquist frequency, {} rad/s: take the sampled law, no block at this rate has it",
+                significant(nyquist, 4)
+            ));
+        }
         let rule = match view.designed.controller.timing.discretization {
             Discretization::Tustin => "bilinear (Tustin)".to_string(),
             Discretization::PrewarpedTustin { frequency_rad_per_s } => {

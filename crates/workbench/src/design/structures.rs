@@ -28,7 +28,8 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
     let compares_noise = view.options.objective == Objective::LeastHighFrequencyGain;
     let band = view.designed.view.in_time.first().map(|finding| finding.requirement.wish.band_percent);
     let settles = band.map_or("settles in".to_string(), |band| format!("settles in ({band} %)"));
-    let headings = [
+    let rises = requires_rise(view);
+    let mut headings = vec![
         "structure",
         "poles",
         "result",
@@ -41,6 +42,7 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
         "overshoot",
         &settles,
     ];
+    headings.extend(rises.then_some("rises in"));
     out.table(Table::new(headings).with(view.structures.iter().map(|one| row(view, one))));
     out.sentences(sampled_gain(view));
     out.sentences(earned_sentence(view));
@@ -63,20 +65,25 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
             "steps missed: those of the controller that the search over frequency found; the structure alone{named} is led by its steps and may satisfy them"
         )]);
     }
-    let missed_on_rig = view.structures.iter().any(|one| one.misses_on_rig);
+    let missed_on_rig = view.structures.iter().any(|one| misses_on_rig_alone(view, one));
     out.sentences(missed_on_rig.then(|| {
-        "nonlinear runs missed: it satisfies every specification, a run of it on the nonlinear rig missed what is required in time or left no room, and the search went on from there".to_string()
+        "nonlinear runs missed: its linear steps satisfy what is required in time, a run of it on the nonlinear rig missed it or left no room, and the search went on from there".to_string()
     }));
     let is_given_up = |one: &ReachedStructure| ending_words(view, one) == GIVEN_UP;
     out.sentences(view.structures.iter().any(is_given_up).then(|| {
         "given up: it was not worth its poles beside the structure that the search over frequency found first, and was not led by its steps; it may be worth them beside the one that is taken, and `design.structure` designs it".to_string()
     }));
+    out.sentences(way_sentence(view));
+    out
+}
+
+/// The limits of tracking on the way to a required step.
+fn way_sentence(view: &ProjectDesign) -> Option<String> {
     let way = limit_words(DesignLimitKind::RequiredStep);
     let is_led = view.structures.iter().any(|one| one.binding.as_deref() == Some(way));
-    out.sentences(is_led.then(|| {
+    is_led.then(|| {
         format!("the {way} is limits on |F T| that the search over frequency keeps; a design is judged by its steps")
-    }));
-    out
+    })
 }
 
 /// Structures that ended as something else than their name, and loops in which |L| rises above 1
@@ -166,7 +173,11 @@ fn row(view: &ProjectDesign, one: &ReachedStructure) -> Vec<Cell> {
         delay_s => DisplayUnit::MILLISECOND.text(delay_s, 3),
     });
     let [overshoot, settling] = steps(view, one);
-    vec![
+    let rise = requires_rise(view).then(|| {
+        let reached = one.steps.as_ref().map(|steps| steps.rise_time_s);
+        or_missing(reached.map(|time_s| time_words(time_s, "not risen")))
+    });
+    let mut cells = vec![
         words(one).into(),
         Cell::count(one.order),
         ending_words(view, one).into(),
@@ -178,7 +189,20 @@ fn row(view: &ProjectDesign, one: &ReachedStructure) -> Vec<Cell> {
         or_missing(compared),
         or_missing(overshoot),
         or_missing(settling),
-    ]
+    ];
+    cells.extend(rise);
+    cells
+}
+
+/// True where a rise time is required.
+fn requires_rise(view: &ProjectDesign) -> bool {
+    let required = view.designed.view.in_time.first();
+    required.is_some_and(|finding| finding.requirement.wish.rise_time_s.is_some())
+}
+
+/// A time in s; infinite where it never comes to that.
+fn time_words(time_s: f64, never: &str) -> String {
+    if time_s.is_finite() { DisplayUnit::MILLISECOND.text(time_s, 3) } else { never.to_string() }
 }
 
 /// What structures are compared by, in dB; the noise gain |G/(1+L)| has the unit of G.
@@ -196,10 +220,7 @@ fn steps(view: &ProjectDesign, one: &ReachedStructure) -> [Option<String>; 2] {
     let [overshoot, settling] = reached;
     [
         overshoot.map(|percent| format!("{} %", significant(percent, 3))),
-        settling.map(|time_s| match time_s.is_finite() {
-            true => DisplayUnit::MILLISECOND.text(time_s, 3),
-            false => "not settled".to_string(),
-        }),
+        settling.map(|time_s| time_words(time_s, "not settled")),
     ]
 }
 
@@ -212,11 +233,21 @@ fn reached_steps(view: &ProjectDesign, one: &ReachedStructure) -> Option<[Option
     ])
 }
 
-/// True where the steps of a structure that keeps every limit miss what is required in time.
-fn misses_in_time(view: &ProjectDesign, one: &ReachedStructure) -> bool {
+/// True where linear steps of a structure miss what is required in time.
+fn has_late_steps(view: &ProjectDesign, one: &ReachedStructure) -> bool {
     let Some((reached, finding)) = one.steps.zip(view.designed.view.in_time.first()) else { return false };
-    let is_missed = finding.requirement.follows && finding.requirement.wish.excess(&reached) > 1.0;
-    is_missed && one.ending == StructureEnding::Met
+    finding.requirement.follows && finding.requirement.wish.excess(&reached) > 1.0
+}
+
+/// The same of a structure that keeps every limit.
+fn misses_in_time(view: &ProjectDesign, one: &ReachedStructure) -> bool {
+    one.ending == StructureEnding::Met && has_late_steps(view, one)
+}
+
+/// True where a run on the nonlinear rig missed what is required, and the linear steps did not.
+fn misses_on_rig_alone(view: &ProjectDesign, one: &ReachedStructure) -> bool {
+    let misses = one.misses_on_rig || one.is_chosen && view.misses_on_rig();
+    misses && !has_late_steps(view, one)
 }
 
 /// A structure beside the one that is taken.
@@ -246,11 +277,13 @@ fn beside_taken(view: &ProjectDesign, one: &ReachedStructure) -> BesideTaken {
 }
 
 fn ending_words(view: &ProjectDesign, one: &ReachedStructure) -> &'static str {
+    let has_missed_run = one.misses_on_rig || one.is_chosen && view.misses_on_rig();
+    let misses_steps = misses_in_time(view, one) || has_missed_run && has_late_steps(view, one);
     match one.ending {
-        _ if misses_in_time(view, one) && one.is_chosen => "steps missed, nearest",
-        _ if misses_in_time(view, one) => "steps missed",
-        _ if one.is_chosen && view.misses_on_rig() => "nonlinear runs missed, nearest",
-        _ if one.misses_on_rig => "nonlinear runs missed",
+        _ if misses_steps && one.is_chosen => "steps missed, nearest",
+        _ if misses_steps => "steps missed",
+        _ if one.is_chosen && has_missed_run => "nonlinear runs missed, nearest",
+        _ if has_missed_run => "nonlinear runs missed",
         StructureEnding::Met if one.is_chosen => "met, taken",
         StructureEnding::Missed if one.is_chosen => "missed, nearest",
         StructureEnding::Missed => "missed",

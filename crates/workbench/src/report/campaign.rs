@@ -7,7 +7,7 @@ use super::chapter::Chapter;
 use crate::answer::significant;
 use crate::campaign::{
     CampaignError, METRIC_NAMES, Plan, QUANTILES, RequestedRuns, Row, Shard, Spread, Summary, VariedRange,
-    WorstRun, beyond_box, campaign, counted, lumps, metrics, pictures,
+    WorstRun, beyond_box, campaign, counted, lumps, metrics, pictures, requirement,
 };
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
@@ -176,6 +176,7 @@ fn document([runs, asked]: [u64; 2], plan: &Plan, summary: &Summary, figures: Ve
         format!("{} in {}, the first is run {first}.", kind.replace('_', " "), counted(*count))
     });
     out.explanations(refused.into_iter().chain(ended).chain(occurred));
+    out.sentences(summary.requirements.iter().map(requirement));
     out.figures(figures);
     out.heading("Metrics over the runs");
     out.explanation("Each column gives the value below which that share of the runs lies; the worst is the value of largest magnitude. Runs without a value are counted next to the name.");

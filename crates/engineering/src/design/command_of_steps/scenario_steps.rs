@@ -1,8 +1,11 @@
 //! The steps of the scenarios, and the command that they take of one plant.
 //!
 //! ```text
-//! u(t) = u_0 + sum of (r_k - r_(k-1)) w(t - t_k)
+//! u(t) = u_0 + sum of (r_k - r_(k-1)) w(t - t_k),    u_0 of a plant = u_0 of the nominal one * h/h_nominal,    h = w(inf)
 //! ```
+//!
+//! With an integrator in the loop h = F(0)/P(0) is what a plant takes to hold 1 N: leakage and
+//! supply move it as they move what holds the first reference.
 
 use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 
@@ -33,8 +36,11 @@ pub(in crate::design) struct ScenarioSteps {
 #[derive(Clone, Debug)]
 pub(super) struct CommandedSteps {
     pub(super) reference: SteppedReference,
-    /// V.
-    initial_v: f64,
+    /// The commands that hold the declared rig at the references, from that with which it begins
+    /// on, V.
+    held_v: Vec<f64>,
+    /// What the nominal plant takes to hold 1 N, V/N; absent where a plant begins as that does.
+    nominal_v_per_n: Option<f64>,
 }
 
 /// The largest command of a scenario, of one plant.
@@ -62,8 +68,10 @@ impl ScenarioSteps {
         let share = limit_value(&told.limits, DesignLimitKind::CommandOfSteps)?;
         let rig = setup.rig().ok()?;
         let commanded = |reference: SteppedReference| {
-            let initial_v = resting_command(rig, reference.steps.first()?.from_n);
-            Some(CommandedSteps { reference, initial_v })
+            let begins_n = reference.steps.first()?.from_n;
+            let levels = std::iter::once(begins_n).chain(reference.steps.iter().map(|step| step.to_n));
+            let held_v = levels.map(|level_n| resting_command(rig, level_n)).collect();
+            Some(CommandedSteps { reference, held_v, nominal_v_per_n: None })
         };
         let scenarios: Vec<CommandedSteps> =
             stepped_references(setup.project).into_iter().filter_map(commanded).collect();
@@ -79,28 +87,45 @@ impl ScenarioSteps {
         })
     }
 
+    /// The same where each plant begins with its own command, by what the nominal one takes to
+    /// hold 1 N.
+    pub(super) fn beginning_at_each_plant(&mut self, nominal_v_per_n: f64) {
+        for one in &mut self.scenarios {
+            one.nominal_v_per_n = Some(nominal_v_per_n).filter(|nominal| *nominal != 0.0);
+        }
+    }
+
     /// True where no scenario has a step.
     pub(super) fn is_empty(&self) -> bool {
         self.scenarios.is_empty()
     }
 
-    /// The largest magnitude of the command in any scenario, of this command in a unit step, V.
+    /// The largest magnitude of the command in any scenario, of this command in a unit step, whose
+    /// end is what holds 1 N; V.
     pub(in crate::design) fn largest_v(&self, unit: &StepResponse) -> f64 {
-        self.peaks(unit).map(|(_, peak)| peak.value_v).fold(0.0, f64::max)
+        self.largest_held_v(unit, last(unit))
+    }
+
+    /// The same of a plant that takes this to hold 1 N.
+    pub(super) fn largest_held_v(&self, unit: &StepResponse, held_v_per_n: f64) -> f64 {
+        self.peaks(unit, held_v_per_n).map(|(_, peak)| peak.value_v).fold(0.0, f64::max)
     }
 
     /// The largest command of each scenario.
-    pub(super) fn peaks(&self, unit: &StepResponse) -> impl Iterator<Item = (&CommandedSteps, CommandPeak)> {
-        self.scenarios.iter().filter_map(|one| Some((one, one.peak(unit)?)))
+    pub(super) fn peaks(
+        &self,
+        unit: &StepResponse,
+        held_v_per_n: f64,
+    ) -> impl Iterator<Item = (&CommandedSteps, CommandPeak)> {
+        self.scenarios.iter().filter_map(move |one| Some((one, one.peak(unit, held_v_per_n)?)))
     }
 
     /// The largest magnitude of the command at rest, at the beginning of any scenario and between
     /// its steps, V.
-    pub(super) fn at_rest_v(&self, unit: &StepResponse) -> f64 {
-        let last = last(unit);
+    pub(super) fn at_rest_v(&self, held_v_per_n: f64) -> f64 {
         let of = |one: &CommandedSteps| {
-            let levels = one.reference.steps.iter().map(|step| one.resting_v(step.to_n, last).abs());
-            levels.fold(one.initial_v.abs(), f64::max)
+            let largest = one.held_v.iter().map(|held| held.abs()).fold(0.0, f64::max);
+            largest * one.ratio(held_v_per_n)
         };
         self.scenarios.iter().map(of).fold(0.0, f64::max)
     }
@@ -108,8 +133,9 @@ impl ScenarioSteps {
 
 impl CommandedSteps {
     /// The largest command: after every step the sum of all that were made.
-    fn peak(&self, unit: &StepResponse) -> Option<CommandPeak> {
-        let CommandedSteps { reference: SteppedReference { steps, end_s, .. }, initial_v } = self;
+    fn peak(&self, unit: &StepResponse, held_v_per_n: f64) -> Option<CommandPeak> {
+        let SteppedReference { steps, end_s, .. } = &self.reference;
+        let initial_v = self.begins_v(held_v_per_n);
         let first = *steps.first()?;
         let mut peak = CommandPeak { value_v: initial_v.abs(), at_s: first.at_s, step: first };
         for (index, step) in steps.iter().enumerate() {
@@ -130,10 +156,21 @@ impl CommandedSteps {
         Some(peak)
     }
 
-    /// The command at rest under a reference, for this one of a unit step at rest, V.
-    pub(super) fn resting_v(&self, reference_n: f64, last: f64) -> f64 {
-        let begins_n = self.reference.steps.first().map_or(0.0, |step| step.from_n);
-        self.initial_v + (reference_n - begins_n) * last
+    /// The command at rest before this step, of a plant that takes this to hold 1 N; V.
+    pub(super) fn resting_v(&self, before: &ReferenceStep, held_v_per_n: f64) -> f64 {
+        let index = self.reference.steps.iter().position(|step| step == before).unwrap_or(0);
+        self.held_v.get(index).copied().unwrap_or(0.0) * self.ratio(held_v_per_n)
+    }
+
+    /// The command with which the scenario begins, of the same; V.
+    fn begins_v(&self, held_v_per_n: f64) -> f64 {
+        self.held_v.first().copied().unwrap_or(0.0) * self.ratio(held_v_per_n)
+    }
+
+    /// What a plant takes to hold a force, over what the declared rig takes.
+    fn ratio(&self, held_v_per_n: f64) -> f64 {
+        let ratio = self.nominal_v_per_n.map(|nominal| held_v_per_n / nominal);
+        ratio.filter(|ratio| ratio.is_finite() && *ratio > 0.0).unwrap_or(1.0)
     }
 }
 
@@ -150,7 +187,7 @@ fn value_at(response: &StepResponse, time_s: f64) -> f64 {
 }
 
 /// The end of a response.
-pub(super) fn last(response: &StepResponse) -> f64 {
+fn last(response: &StepResponse) -> f64 {
     response.values.last().copied().unwrap_or(0.0)
 }
 
@@ -179,7 +216,8 @@ mod tests {
         };
         let steps = references_n.windows(2).enumerate().map(step).collect();
         let reference = SteppedReference { scenario: "steps".to_string(), steps, end_s: 9.0 };
-        CommandedSteps { reference, initial_v: BEGINS_V }
+        let held_v = references_n.iter().map(|level_n| BEGINS_V + level_n - references_n[0]).collect();
+        CommandedSteps { reference, held_v, nominal_v_per_n: None }
     }
 
     fn assert_near(found: f64, expected: f64) {
@@ -191,17 +229,17 @@ mod tests {
     #[test]
     fn the_command_of_a_scenario_is_the_sum_of_its_steps() {
         let left = exp(-APART_S / TIME_CONSTANT_S);
-        let up = steps(&[10.0, 11.0, 12.0]).peak(&unit()).unwrap();
+        let up = steps(&[10.0, 11.0, 12.0]).peak(&unit(), 1.0).unwrap();
         assert_near(up.value_v, BEGINS_V + (1.0 + left) + 2.0);
         assert_near(up.at_s, 1.0 + APART_S);
         assert_eq!((up.step.from_n, up.step.to_n), (11.0, 12.0));
-        let back = steps(&[10.0, 11.0, 8.0]).peak(&unit()).unwrap();
+        let back = steps(&[10.0, 11.0, 8.0]).peak(&unit(), 1.0).unwrap();
         assert_near(back.value_v, -(BEGINS_V + (1.0 + left) - 6.0));
         // alone the larger of them would take 6 V from rest
-        assert_near(steps(&[11.0, 8.0]).peak(&unit()).unwrap().value_v, 6.0 - BEGINS_V);
+        assert_near(steps(&[11.0, 8.0]).peak(&unit(), 1.0).unwrap().value_v, 6.0 - BEGINS_V);
         // what the first step ends with belongs to it
         let rising = StepResponse { values: vec![0.0, 1.0], times_s: vec![0.0, APART_S] };
-        let there = steps(&[10.0, 14.0, 10.0]).peak(&rising).unwrap();
+        let there = steps(&[10.0, 14.0, 10.0]).peak(&rising, 1.0).unwrap();
         assert_eq!((there.step.from_n, there.step.to_n), (10.0, 14.0));
         assert_near(there.value_v, BEGINS_V + 4.0);
     }
@@ -211,10 +249,23 @@ mod tests {
     fn the_command_at_rest_is_that_of_the_farthest_reference() {
         let monotone = StepResponse { values: vec![0.0, 0.5, 1.0], times_s: vec![0.0, 1.0, 2.0] };
         let one = steps(&[10.0, 13.0, 9.0]);
-        assert_near(one.resting_v(13.0, last(&monotone)), BEGINS_V + 3.0);
+        let [_, down] = one.reference.steps[..] else { panic!() };
+        assert_near(one.resting_v(&down, 1.0), BEGINS_V + 3.0);
         let of = ScenarioSteps { scenarios: vec![one], limit_v: 10.0, duration_s: 2.0 };
-        assert_near(of.at_rest_v(&monotone), BEGINS_V + 3.0);
-        assert!(of.largest_v(&monotone) < of.at_rest_v(&monotone));
+        assert_near(of.at_rest_v(1.0), BEGINS_V + 3.0);
+        assert!(of.largest_v(&monotone) < of.at_rest_v(1.0));
+    }
+
+    /// A plant that takes 1.5 times as much to hold a force takes it at the beginning too.
+    // ORIGIN: analytic
+    #[test]
+    fn a_plant_begins_with_its_own_command() {
+        let other = StepResponse { values: vec![0.0, 1.5], times_s: vec![0.0, 1.0] };
+        let mut of = ScenarioSteps { scenarios: vec![steps(&[10.0, 13.0])], limit_v: 10.0, duration_s: 2.0 };
+        of.beginning_at_each_plant(1.0);
+        assert_near(of.at_rest_v(1.0), BEGINS_V + 3.0);
+        assert_near(of.at_rest_v(1.5), 1.5 * (BEGINS_V + 3.0));
+        assert_near(of.largest_v(&other), 1.5 * (BEGINS_V + 3.0));
     }
 
     #[test]

@@ -75,7 +75,8 @@ fn controller(contents: &Contents<'_>, sides: &[Side<'_>]) -> Option<String> {
             )
         }
         _ if given.is_some_and(|side| side.view.is_some_and(is_violated)) => {
-            "add `[design]` to the project, and `phea design` looks for one that holds".to_string()
+            "add `[design]` to the project, and `phea design` looks for one that holds; where it has found none, it names what to relax"
+                .to_string()
         }
         _ if given.is_some_and(contradicted) => {
             "do not rely on it before the nonlinear simulation, which contradicts the verdict, agrees"
@@ -284,7 +285,7 @@ fn wishes(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
                 format!("What is required in time is missed with the limits of tracking: {worst}")
             }
             Some(view) if view.misses_in_time() => {
-                format!("What is required in time is missed by the linear loop too: {worst}")
+                format!("What is required in time is missed, by the linear loop too; of all steps, {worst}")
             }
             _ if has_tracking => format!(
                 "Tighten the limits of tracking if what is required in time must be met exactly: {worst}"

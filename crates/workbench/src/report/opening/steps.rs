@@ -84,25 +84,25 @@ pub(super) fn steps(side: &Side<'_>, required: &TimeRequirement, property: StepP
         steps.extend(windows.filter(|(window, _)| concerns(required, window)).filter_map(of));
     }
     // a requirement with a step of its own is about no other
-    let is_about = |run: &&TrialRun| {
+    let is_about = |run: &TrialRun| {
         let mut numbers = run.requirements.iter().map(|held| held.number);
         !required.steps.are_stated() || numbers.any(|number| number == required.number)
     };
     // the worst of the corners and of the plants inside the box are among the runs already
     let is_corner = |trial: &Trial, run: &TrialRun| trial.corners.iter().any(|one| one.what == run.what);
-    let runs = side
-        .trial
-        .iter()
-        .flat_map(|trial| trial.runs.iter().filter(|run| !is_corner(trial, run)).chain(&trial.corners));
-    let runs = runs.filter(is_about);
-    steps.extend(runs.filter_map(|run| {
+    let runs = side.trial.iter().flat_map(|trial| {
+        let own = trial.runs.iter().filter(|run| !is_corner(trial, run)).map(|run| (run, run.what.clone()));
+        own.chain(trial.corners.iter().map(|run| (run, corner_words(run))))
+    });
+    let runs = runs.filter(|(run, _)| is_about(run));
+    steps.extend(runs.filter_map(|(run, place)| {
         let reached = held(run, required).map(|reached| match property {
             StepProperty::Overshoot => reached.overshoot_percent,
             StepProperty::Settling => reached.settling_time_s,
             StepProperty::Rise => reached.rise_time_s,
         });
         let value = reached.or_else(|| of_machine(run, wish, property))?;
-        Some(OneStep { origin: StepOrigin::Machine, value, place: run.what.clone() })
+        Some(OneStep { origin: StepOrigin::Machine, value, place })
     }));
     let (linear, plants) = of_family(side, required.number, property);
     steps.extend(linear);
@@ -117,6 +117,14 @@ pub(super) fn steps(side: &Side<'_>, required: &TimeRequirement, property: StepP
         Some(OneStep { origin: StepOrigin::Campaign, value, place: format!("campaign, run {}", step.run) })
     }));
     (!steps.is_empty()).then_some(AllSteps { property, most, steps, plants })
+}
+
+/// A corner of the box, or a plant inside it, by its parameters.
+fn corner_words(run: &TrialRun) -> String {
+    match &run.plant {
+        Some(plant) => format!("nonlinear simulation at {}", plant.words()),
+        None => run.what.clone(),
+    }
 }
 
 /// What the steps of a run that was completed reach of a requirement; `None` where they were not
@@ -246,6 +254,10 @@ impl AllSteps {
                     _ => format!("missed by {above} of {count} {what}"),
                 });
             }
+        }
+        let family = |step: &&OneStep| step.origin == StepOrigin::Family;
+        if self.steps.iter().filter(family).any(|step| self.is_above(step)) {
+            told.push("missed by linear steps of the family".to_string());
         }
         told.join("; ")
     }
