@@ -1,4 +1,4 @@
-//! The nonlinear machine: the whole of the actuator in motion, as a [`Plant`] that a controller
+//! The nonlinear model: the whole of the actuator in motion, as a [`Plant`] that a controller
 //! commands.
 //!
 //! ```text

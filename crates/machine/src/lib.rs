@@ -1,4 +1,4 @@
-//! The nonlinear machine with its source of commands: a continuous controller, a computer that
+//! The nonlinear model with its source of commands: a continuous controller, a computer that
 //! samples, or a stated command.
 //!
 //! ```text
