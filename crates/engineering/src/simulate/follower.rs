@@ -15,8 +15,15 @@ use super::{Metrics, Window};
 /// one of degree four: a sine over a quarter of its period, the longest possible step, to 3e-7 of
 /// its amplitude.
 const PARTS: u32 = 4;
-/// Distance of ends that differ only by rounding, in steps.
+/// Distance of ends that differ only by rounding, in steps; and in units of the last place of the
+/// time, which count in a step that ends where an event was located.
 const SAME: f64 = 1e-9;
+pub(super) const LAST_PLACES: f64 = 16.0;
+
+/// The distance in s of ends that differ only by rounding, of a step that ends here.
+fn rounding_s(start_s: f64, end_s: f64) -> f64 {
+    SAME * (end_s - start_s) + LAST_PLACES * f64::EPSILON * end_s.abs()
+}
 
 /// Where the command comes from.
 pub(super) enum CommandSource<'a> {
@@ -84,7 +91,7 @@ impl<'a> Follower<'a> {
     pub fn follow(&mut self, stretch: &Stretch<'_>) {
         let (start_s, end_s) = (stretch.start_s(), stretch.end_s());
         self.watch(stretch);
-        let rounding_s = SAME * (end_s - start_s);
+        let rounding_s = rounding_s(start_s, end_s);
         while self.tallies.get(self.first).is_some_and(|one| one.window.end_s <= start_s + rounding_s) {
             self.first += 1;
         }
@@ -168,12 +175,13 @@ impl<'a> Follower<'a> {
         let length_s = end_s - start_s;
         for tally in self.tallies.iter_mut().skip(self.first) {
             let span = [tally.window.start_s, tally.window.end_s].map(|time_s| (time_s - start_s) / length_s);
-            let from = if span[0] > SAME { span[0] } else { 0.0 };
-            let until = if span[1] < 1.0 - SAME { span[1] } else { 1.0 };
-            if from >= 1.0 - SAME {
+            let same = rounding_s(start_s, end_s) / length_s;
+            let from = if span[0] > same { span[0] } else { 0.0 };
+            let until = if span[1] < 1.0 - same { span[1] } else { 1.0 };
+            if from >= 1.0 - same {
                 return;
             }
-            if until > SAME {
+            if until > same {
                 tally.pass(passed, [from, until]);
             }
         }

@@ -1,4 +1,4 @@
-//! The frequency response of the nonlinear machine, measured with sines as on a test bench, and
+//! The frequency response of the nonlinear model, measured with sines as on a test bench, and
 //! compared with the linear plant.
 
 mod closed_loop;

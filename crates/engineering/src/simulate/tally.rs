@@ -2,6 +2,7 @@
 
 use phea_dynamics::simulation::Quartic;
 
+use super::follower::LAST_PLACES;
 use super::metrics::{
     ASKED_FOR, BEGUN_BEYOND, MOVES, Measured, NO_MOTION, NO_REFERENCE, NO_STEP, NOT_REACHED, NOT_SETTLED,
     OPEN_LOOP, STANDS_STILL, UNREACHED, stays_settled,
@@ -234,7 +235,7 @@ impl Tally {
         if self.open_loop {
             return Metrics { force_peak_n: Ok(largest), ..commanded(OPEN_LOOP) };
         }
-        let whole = self.followed_until_s >= end_s * (1.0 - 4.0 * f64::EPSILON);
+        let whole = self.followed_until_s >= end_s * (1.0 - 2.0 * LAST_PLACES * f64::EPSILON);
         let at_end = |measured: Measured| if whole { measured } else { Err(UNREACHED) };
         let steady = self.late_error / (STEADY_SHARE * (end_s - start_s));
         let common = Metrics {
