@@ -130,6 +130,7 @@ class Fit:
             both = all(port is not None for port in ports)
             self.tests[path] = {
                 "command": table["command_v"],
+                "corners": valve_model.corners(table["time_s"], table["command_v"]),
                 "lag": delay * np.diff(table["command_v"], prepend=0) / np.diff(table["time_s"], prepend=-1),
                 "supply": table["supply_pressure_bar"] * BAR,
                 "tank": tank,

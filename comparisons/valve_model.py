@@ -23,9 +23,29 @@ def root_and_slope(drop, transition):
     return drop / fourth, (square / 2 + transition**2) / (whole * fourth)
 
 
-def openings(command, bias, width):
-    """Position of the edges over the command's unit: the magnetic lag along each piece that rises or falls."""
-    command = np.asarray(command)
+def corners(times, command):
+    """Rows before which the command turned beyond both neighbours, and where: two straight lines, each through three rows, that meet between them."""
+    rows, values = [], []
+    slope = np.diff(command) / np.diff(times)
+    for row in range(3, len(command) - 2):
+        before, after = slope[row - 3 : row - 1], slope[row : row + 2]
+        straight = all(abs(np.ptp(pair)) <= 0.01 * abs(np.mean(pair)) for pair in (before, after))
+        if not straight or np.mean(before) * np.mean(after) >= 0:
+            continue
+        lines = [np.polyfit(times[part] - times[row], command[part], 1) for part in (slice(row - 3, row), slice(row, row + 3))]
+        at = (lines[1][1] - lines[0][1]) / (lines[0][0] - lines[1][0])
+        value, way = np.polyval(lines[0], at), np.sign(lines[0][0])
+        step = abs(lines[0][0]) * (times[row] - times[row - 1])
+        if min(way * (value - command[row - 1]), way * (value - command[row])) > 1e-6 * step:
+            rows.append(row)
+            values.append(value)
+    return rows, values
+
+
+def openings(command, bias, width, corners):
+    """Position of the edges over the command's unit: the magnetic lag along each piece that rises or falls, on the way over the corners."""
+    recorded = np.asarray(command)
+    command = np.insert(recorded, *corners) if corners[0] else recorded
     moves = np.diff(command, prepend=command[0])
     way = np.sign(moves)
     for index in range(1, len(way)):          # a command that stands changes nothing
@@ -37,7 +57,8 @@ def openings(command, bias, width):
         end = way[piece[0]] * width / 2
         lags.append(end + (lag - end) * np.exp(-travelled / width))
         lag = lags[-1][..., -1:]
-    return command - bias - np.concatenate(lags, axis=-1)
+    inserted = [row + index for index, row in enumerate(corners[0])]
+    return recorded - bias - np.delete(np.concatenate(lags, axis=-1), inserted, axis=-1)
 
 
 def conductances(u, numbers, one_curve):
@@ -103,9 +124,9 @@ def solved(edges, half, supply, tank, transition):
 
 
 def shown(test, numbers, valve):
-    """All signals of a test: a dictionary of `command`, how far the spool is behind it, `lag`, `supply`, `tank`, `load` over its rows, and whether
-    ports are `joined`."""
-    u = (openings(test["command"], numbers[10], numbers[11]) - test["lag"]) / valve["nominal_voltage"]
+    """All signals of a test: a dictionary of `command`, how far the spool is behind it, `lag`, `supply`, `tank`, `load` over its rows, its
+    `corners`, and whether ports are `joined`."""
+    u = (openings(test["command"], numbers[10], numbers[11], test["corners"]) - test["lag"]) / valve["nominal_voltage"]
     edges = [np.asarray(edge) for edge in conductances(u, numbers, valve["one_curve"])]
     supply, tank, transition = test["supply"], test["tank"], valve["transition"]
     nothing = np.zeros_like(supply)
