@@ -2,6 +2,7 @@
 //! `phea_qft`, and their wording.
 
 mod alone;
+mod both_loops;
 mod dead_time;
 mod in_time;
 mod margins;
@@ -153,6 +154,9 @@ pub struct ProjectAudit {
     pub whole_box: bool,
     /// Why its plants have no polynomials; `None` where they have them.
     pub without_polynomials: Option<&'static str>,
+    /// Whether the delay margin is that of the controller and of a pressure feedback together; its
+    /// gain, phase and modulus margins are those of the force loop around that feedback.
+    pub feeds_pressures_back: bool,
     /// s; `None` for a continuous controller.
     pub sample_time_s: Option<f64>,
     /// Delay of the loop, s.
@@ -252,6 +256,9 @@ impl ProjectAudit {
     /// does not contain it.
     pub(crate) fn new(problem: &RobustProblem, mut audit: Audit, of_rig: Option<Caveat>) -> ProjectAudit {
         let RobustProblem { family, compensation, .. } = problem;
+        let of_both_loops = both_loops::least_delay(problem, &audit);
+        let feeds_pressures_back = of_both_loops.is_some();
+        audit.delay_margin = of_both_loops.or(audit.delay_margin);
         let caveats: Vec<Caveat> = of_rig.into_iter().chain(problem.caveats.clone()).collect();
         if audit.verdict == Verdict::Met && caveats.iter().any(|caveat| caveat.unproven) {
             audit.verdict = Verdict::NotProven;
@@ -278,6 +285,7 @@ impl ProjectAudit {
                 Family::Measured(family) => family.plants().len(),
             },
             without_polynomials: problem.without_polynomials,
+            feeds_pressures_back,
             whole_box: matches!(family, Family::Uncertain(family) if family.extent() == Extent::Box),
             sample_time_s: compensation.sample_time_s(),
             delay_s: compensation.delay_s(),

@@ -1,4 +1,4 @@
-//! Monte Carlo campaigns: the nonlinear machine with drawn numbers, many times, through one
+//! Monte Carlo campaigns: the nonlinear model with drawn numbers, many times, through one
 //! scenario.
 //!
 //! ```text

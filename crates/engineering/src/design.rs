@@ -111,7 +111,7 @@ pub struct ProjectDesign {
     /// The effect of the computer's converters on the designed loop; absent where nothing is
     /// rounded.
     pub rounding: Option<Rounding>,
-    /// The trial of the designed controller on the nonlinear machine; absent without a machine, and
+    /// The trial of the designed controller on the nonlinear model; absent without a machine, and
     /// where the design was stopped.
     pub trial: Option<Trial>,
     /// What was done about a machine that contradicts the design; absent where none does, or where

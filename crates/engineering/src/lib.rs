@@ -5,7 +5,7 @@
 //! Project -> setup::Setup { rig, controller, prefilter, sensor, timing }
 //! Setup   -> derived, sizing, linearize                       what follows from the rig
 //! Setup   -> family -> robust::RobustProblem -> audit, shaping, design (-> trial on the machine -> repair)
-//! Setup   -> simulate::ControlledMachine -> simulate, campaign the nonlinear machine
+//! Setup   -> simulate::ControlledMachine -> simulate, campaign the nonlinear model
 //! Setup   -> bench                                            static tests of the valve
 //! Project -> alternatives                                     the same project with other values, judged side by side
 //! files   -> identify                                         the valve that explains recorded tests

@@ -18,6 +18,7 @@ use crate::caveat::{Caveat, caveats};
 use crate::family::{ProjectFamilyError, family};
 use crate::limit_kind::{DesignLimitKind, limit_key};
 use crate::plant_names::PlantNames;
+use crate::project::{DeclaredController, Project};
 use crate::quantity::Units;
 use crate::setup::{ControlError, Setup, pressure_noise, velocity_noise};
 use crate::side_by_side::left_behind;
@@ -31,6 +32,9 @@ use phea_dynamics::watch::{Stopped, Watch, part};
 pub struct RobustProblem {
     /// The plants.
     pub family: Family,
+    /// The same plants without the pressure feedback that a continuous controller closes within
+    /// them; `None` where there is none.
+    pub before_feedback: Option<Family>,
     /// The names of the parameters of a plant.
     pub names: PlantNames,
     /// The loop; with a controller of 1 where none is given.
@@ -155,6 +159,7 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
     Ok(RobustProblem {
         without_polynomials: without_polynomials(setup, &family),
         names: PlantNames::of_family(setup.project, &family),
+        before_feedback: before_feedback(setup, source)?,
         family,
         compensation,
         has_controller: setup.controller.is_some(),
@@ -174,6 +179,17 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
         units: setup.project.units,
         caveats: caveats(setup),
     })
+}
+
+/// The family of a project without its pressure feedback, where a continuous controller closes it.
+fn before_feedback(setup: &Setup<'_>, source: &dyn Source) -> Result<Option<Family>, RobustError> {
+    let Some(controller) = &setup.project.controller else { return Ok(None) };
+    if controller.pressure_feedback.is_none() || setup.timing.sample_time_s.is_some() {
+        return Ok(None);
+    }
+    let controller = DeclaredController { pressure_feedback: None, ..controller.clone() };
+    let without = Project { controller: Some(controller), ..setup.project.clone() };
+    Ok(Some(family(&Setup::new(&without)?, source)?))
 }
 
 /// A margin of minus this much counts as met where the project states no tolerance, dB: no answer

@@ -1,4 +1,4 @@
-//! The nonlinear machine under its controller, driven through the scenarios of a project.
+//! The nonlinear model under its controller, driven through the scenarios of a project.
 
 mod adjusted;
 mod bench;

@@ -272,6 +272,12 @@ impl Compensation {
         Compensation { rate_feed_forward: 0.0, inner_feedback: None, ..self.clone() }
     }
 
+    /// The same loop with no inner signal fed back.
+    #[must_use]
+    pub fn without_inner_feedback(&self) -> Compensation {
+        Compensation { inner_feedback: None, ..self.clone() }
+    }
+
     /// The same loop with another delay.
     pub fn with_delay(&self, delay_s: f64) -> Compensation {
         Compensation { delay_s, ..self.clone() }

@@ -85,7 +85,7 @@ pub enum Request {
     Verify {
         /// Whether it is proven.
         proof: bool,
-        /// Whether it is tried on the nonlinear machine.
+        /// Whether it is tried on the nonlinear model.
         on_machine: bool,
     },
     /// Shaping by hand, elements changed in order.
@@ -104,13 +104,13 @@ pub enum Request {
         /// Whether the design continues if the machine contradicts it.
         repair: bool,
     },
-    /// The nonlinear machine through every scenario, or its frequency response.
+    /// The nonlinear model through every scenario, or its frequency response.
     Simulate(SimulateRequest),
     /// The same scenarios of this project and others side by side.
     Compare,
     /// The project and each of its alternatives: sized, designed, audited and driven.
     Alternatives(AlternativesRequest),
-    /// The nonlinear machine with drawn numbers, many times.
+    /// The nonlinear model with drawn numbers, many times.
     Campaign(CampaignRequest),
     /// Static tests of the servovalve.
     Bench,

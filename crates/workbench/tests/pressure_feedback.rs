@@ -17,6 +17,7 @@ use super::shaken_load;
 
 const BENCHMARK: &str = include_str!("../../../examples/benchmark/closed_loop.toml");
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
+const STRUCTURAL: &str = include_str!("../../../examples/structural/rig.toml");
 
 /// Viscous friction and four equal edges: nothing has a kink, so that derivatives exist at null.
 const SMOOTH: [&str; 3] = [
@@ -204,4 +205,29 @@ fn it_is_part_of_the_family() {
     let (verdict, with) = margin(&["controller.pressure_feedback.gain=0.1 V/bar"]);
     assert_ne!(verdict, Verdict::NotProven);
     assert!((with - plain).abs() > 0.01, "{plain} {with}");
+}
+
+/// The delay that is tolerated delays controller and feedback alike: a little less of it leaves the
+/// family stable, a little more does not, sampled and continuous.
+#[test]
+fn the_delay_margin_is_that_of_both_loops() {
+    let sampled = [
+        "controller.sample_time=1 ms",
+        "controller.delay=1 ms",
+        "controller.pressure_feedback.gain=0.09 V/bar",
+    ];
+    let continuous = ["controller.delay=0 s", "controller.pressure_feedback.gain=0.05 V/bar"];
+    for (settings, delay_s) in [(&sampled[..], 1e-3), (&continuous[..], 0.0)] {
+        let audited = |delay_s: f64| {
+            let delay = format!("controller.delay={delay_s} s");
+            let settings = [settings, &["controller.pressure_feedback.high_pass=60 Hz", &delay]].concat();
+            let project = project_of(STRUCTURAL, &settings);
+            audit_project(&Memory::default(), &Setup::new(&project).unwrap(), &mut |_| true).unwrap().audit
+        };
+        let margin_s = audited(delay_s).delay_margin.expect("a stable family").delay_s;
+        assert!(margin_s > 1e-4 && margin_s < 5e-3, "{margin_s}");
+        let verdict = |share: f64| audited(delay_s + share * margin_s).stability.verdict;
+        assert_eq!(verdict(0.9), Verdict::Met, "{settings:?} {margin_s}");
+        assert_eq!(verdict(1.1), Verdict::Violated, "{settings:?} {margin_s}");
+    }
 }

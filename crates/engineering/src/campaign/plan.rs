@@ -32,7 +32,7 @@ const MARK_LENGTH: usize = 16;
 /// Range of the seeds of the measurement noise of a sampled controller, which are drawn too.
 const SEEDS: f64 = 4e9;
 
-/// A Monte Carlo campaign of the nonlinear machine: a scenario of a project, and the numbers that
+/// A Monte Carlo campaign of the nonlinear model: a scenario of a project, and the numbers that
 /// are drawn for each run.
 ///
 /// # Example

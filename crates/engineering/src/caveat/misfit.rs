@@ -89,7 +89,7 @@ impl UnexplainedPart<'_> {
 }
 
 /// Consequence of a misfit of friction for the machine.
-const IN_RUNS: &str = "runs of the machine have all of this friction, and sticking, settling and residual errors that they show do not contain its misfit";
+const IN_RUNS: &str = "nonlinear runs have all of this friction, and sticking, settling and residual errors that they show do not contain its misfit";
 
 /// True where the viscous friction of the linear plant follows from the identified friction: it is
 /// not where `[linear]` or `[uncertainty]` states it, or the plants were measured.

@@ -191,6 +191,7 @@ fn contradicting_waves(told: &ProjectDesign) -> Option<&TrialRun> {
 fn alone_in_loop(plant: &UncertainPlant, design: &ProjectDesign) -> RobustProblem {
     RobustProblem {
         family: Family::Uncertain(UncertainFamily::of_nominal(plant.clone())),
+        before_feedback: None,
         rig_outside: None,
         caveats: vec![],
         ..design.designed.problem.clone()
@@ -206,8 +207,13 @@ fn family_with_waves(
 ) -> Result<Option<ProjectAudit>, DesignError> {
     let Some(project) = trial::with_waves(setup.project) else { return Ok(None) };
     let Ok(family) = family(&Setup::new(&project)?, source) else { return Ok(None) };
-    let problem =
-        RobustProblem { family, rig_outside: None, caveats: vec![], ..found.designed.problem.clone() };
+    let problem = RobustProblem {
+        family,
+        before_feedback: None,
+        rig_outside: None,
+        caveats: vec![],
+        ..found.designed.problem.clone()
+    };
     Ok(Some(audit_problem(&problem, watch)?))
 }
 

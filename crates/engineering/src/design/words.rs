@@ -8,6 +8,7 @@ use phea_qft::verification::Verdict;
 use super::{CommandOfSteps, DesignPart, ProjectDesign, Repair, RepairStatus};
 use crate::project::{DESIGN_OBJECTIVES, word_of};
 use crate::quantity::significant;
+use crate::robust::DEFAULT_TOLERANCE_DB;
 
 /// The word of a status in JSON.
 pub fn status_key(view: &ProjectDesign) -> &'static str {
@@ -18,6 +19,7 @@ pub fn status_key(view: &ProjectDesign) -> &'static str {
         DesignStatus::Met if view.designed.view.misses_in_time() || view.misses_on_rig() => "missed_in_time",
         DesignStatus::Met if view.exceeded_prefilter_gain().is_some() => "prefilter_amplifies",
         DesignStatus::Met if view.exceeded_command().is_some() => "command_beyond_valve",
+        DesignStatus::Met if !view.tolerates_its_delay => "delay_not_tolerated",
         DesignStatus::Met => "met",
         DesignStatus::Infeasible(_) => "infeasible",
         DesignStatus::NotConverged { .. } => "not_converged",
@@ -25,23 +27,19 @@ pub fn status_key(view: &ProjectDesign) -> &'static str {
     }
 }
 
-/// The tolerance, where a specification or a limit of the design is met within it alone.
+/// The tolerance, where a specification or a limit of the design is met within it alone, and it is
+/// more than what margins are computed to.
 fn within_tolerance(view: &ProjectDesign) -> String {
     let limits = view.limit_findings.iter().filter(|(kind, _)| !kind.is_led_to()).map(|(_, found)| found);
     let all = view.designed.view.audit.specifications.iter().chain(limits);
     let least = all.filter_map(|found| Some(found.worst.as_ref()?.margin_db)).fold(f64::INFINITY, f64::min);
-    match least < -NO_MARGIN_DB {
-        true => format!(
-            ", one of them or of the limits of [design] by {} dB within the tolerance of {} dB",
-            significant(-least, 2),
-            significant(view.designed.view.audit.tolerance_db, 2)
-        ),
+    match least < -DEFAULT_TOLERANCE_DB {
+        true => {
+            format!(" within the tolerance of {} dB", significant(view.designed.view.audit.tolerance_db, 2))
+        }
         false => String::new(),
     }
 }
-
-/// Margin that is none: the accuracy to which margins are computed, dB.
-const NO_MARGIN_DB: f64 = 5e-3;
 
 fn satisfaction(view: &ProjectDesign) -> &'static str {
     if view.is_met() { "satisfies every specification" } else { "does not satisfy every specification" }
@@ -84,6 +82,10 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
         }
         DesignStatus::Met if view.exceeded_prefilter_gain().is_some() => {
             "not met: the controller satisfies every specification, and its prefilter amplifies by more than `design.prefilter_gain` allows: it commands in advance what the loop does not do"
+                .to_string()
+        }
+        DesignStatus::Met if !view.tolerates_its_delay && view.exceeded_command().is_none() => {
+            "not met: the controller satisfies every specification, and the loop, with the pressure feedback in it, tolerates less further delay than `design.minimum_delay_margin` requires: a smaller gain of the feedback leaves more"
                 .to_string()
         }
         DesignStatus::Met => match view.exceeded_command() {

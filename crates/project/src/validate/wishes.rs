@@ -179,7 +179,10 @@ fn campaign(project: &Project, campaign: &Campaign, check: &mut Check<'_, '_>) {
             _ => check.error(&path, format!("`{}` takes `spread`, or `minimum` and `maximum`", varied.path)),
         }
         if varied.path.starts_with("operating_point.") {
-            let message = format!("`{}` is of the linear model, and the machine finds its own", varied.path);
+            let message = format!(
+                "`{}` is of the linear model, and the nonlinear simulation finds its own",
+                varied.path
+            );
             check.error_with_help(&path, message, "vary `start.position` and its like");
         }
         of_one_sensor(&varied.path, &path, check);

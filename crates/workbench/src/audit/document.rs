@@ -74,8 +74,9 @@ fn delay_sentence(view: &ProjectAudit) -> Option<String> {
         return Some("no delay makes a plant unstable".to_string());
     }
     Some(format!(
-        "the loop tolerates {} ms more delay before a plant becomes unstable, {}",
+        "the loop tolerates {} ms more delay{} before a plant becomes unstable, {}",
         DisplayUnit::MILLISECOND.number(margin.delay_s, 3),
+        if view.feeds_pressures_back { ", of controller and pressure feedback alike," } else { "" },
         place_words(margin.frequency_rad_per_s)
     ))
 }

@@ -1,4 +1,4 @@
-//! The chapter on the nonlinear machine: each scenario over time under each controller, and its
+//! The chapter on the nonlinear model: each scenario over time under each controller, and its
 //! metrics compared with wishes, published values and measurements.
 
 use super::chapter::Chapter;

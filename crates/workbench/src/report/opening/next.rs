@@ -240,7 +240,7 @@ fn machine_words(side: &Side<'_>, run: &TrialRun) -> String {
             side.name
         ),
         None if run.plant.is_some() => format!(
-            "Narrow `[uncertainty]`, or take care near {}: simulated as a machine with the {} controller, {verdict}{why}.",
+            "Narrow `[uncertainty]`, or take care near {}: simulated as a rig with the {} controller, {verdict}{why}.",
             run.machine_name(),
             side.name
         ),

@@ -34,7 +34,7 @@ fn diagram(
     response: &MachineResponse,
     (name, title, quantity, unit, model): (&str, &str, &str, &str, &str),
 ) -> Figure {
-    let caption = "Each point is the fundamental of the force, over whole periods of a sine that the nonlinear machine has settled to; \
+    let caption = "Each point is the fundamental of the force, over whole periods of a sine that the nonlinear model has settled to; \
                    below, what it differs by from the linear plant, and its harmonics over the fundamental.";
     let curve = |name: &str, response: &[num_complex::Complex64], frequencies: &[f64]| FrequencySeries {
         name: name.to_string(),
