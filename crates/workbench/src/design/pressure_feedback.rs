@@ -43,7 +43,7 @@ pub fn pressure_feedback_document(found: &PressureFeedbackDesign) -> Document {
     ];
     if let Some([without, with]) = found.least_damping_ratio {
         sentences.push(format!(
-            "the least damping ratio of an oscillation of these plants is {}, without it {}",
+            "the least damping ratio of an oscillation of these plants within a factor of two of that frequency is {}, without it {}",
             significant(with, 3),
             significant(without, 3)
         ));
