@@ -293,6 +293,20 @@ mod tests {
         (Swing { frequency: 40.0, damping: 0.3 }, reference, Window { cause, start_s: 1.0, end_s: 3.0 })
     }
 
+    /// A step of integration that ends at the step of the reference, a thousand millionth of a
+    /// second long, while the window begins one rounding before: the reference of the window is the
+    /// one after the step alone.
+    #[test]
+    fn a_window_that_begins_a_rounding_early_has_its_step() {
+        let (swing, reference, window) = step();
+        let driving = Profile::steps(0.0, &[(1.0 - 1e-9, 1e-9), (1.0, 2e3)]).unwrap();
+        let window = Window { start_s: window.start_s.next_down(), ..window };
+        let found = measured(&swing, [0.0, 0.0], [&driving, &reference], window, f64::INFINITY, 0.1);
+        let expected = 100.0 * portable::exp(-std::f64::consts::PI * 0.3 / (1.0 - 0.09_f64).sqrt());
+        assert!((found.overshoot_percent.unwrap() - expected).abs() < 1e-3, "{found:?}");
+        assert!(found.settling_time_s.is_ok(), "{found:?}");
+    }
+
     /// Closed forms of a step of 2 kN of a mode of 40 rad/s damped by 0.3, however rare the rows.
     #[test]
     fn a_step_is_measured_as_its_closed_form() {
