@@ -8,10 +8,12 @@
 
 mod followed;
 mod numerators;
+mod rational;
 pub mod responding;
 
 use numerators::RateLengths;
 pub use numerators::RateNumerators;
+pub use rational::RationalCoefficients;
 
 use std::sync::Arc;
 
@@ -43,15 +45,6 @@ pub enum Spacing {
     Linear,
     /// By a constant factor; needs a positive lower bound.
     Logarithmic,
-}
-
-/// A quotient of polynomials, highest power first.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RationalCoefficients<S> {
-    /// Numerator coefficients.
-    pub numerator: Vec<S>,
-    /// Denominator coefficients.
-    pub denominator: Vec<S>,
 }
 
 /// One member of an uncertain plant: command to force, load motion to force, dead time of the loop.
@@ -373,16 +366,6 @@ impl PlantMember {
             PlantMember::Rational(plant) => plant.clone(),
             PlantMember::Responding(plant) => plant.slow(),
         }
-    }
-}
-
-impl RationalCoefficients<f64> {
-    /// The quotient at s = j w, by Horner's rule.
-    pub fn at_frequency(&self, frequency_rad_per_s: f64) -> Complex64 {
-        let s = Complex64::new(0.0, frequency_rad_per_s);
-        let polynomial =
-            |coefficients: &[f64]| coefficients.iter().fold(Complex64::new(0.0, 0.0), |sum, &c| sum * s + c);
-        polynomial(&self.numerator) / polynomial(&self.denominator)
     }
 }
 

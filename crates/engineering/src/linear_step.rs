@@ -5,12 +5,11 @@ mod of_responses;
 
 use std::f64::consts::PI;
 
-use phea_dynamics::linear::{LinearError, Polynomial, TransferFunction};
+use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::time_response::{
     TimeResponseError, delayed_loop_step, sampled_loop_step, step_of_frequency_response, step_response,
     uniform_times, weights_of_frequency_response,
 };
-use phea_dynamics::uncertain_plant::PlantCoefficients;
 use phea_qft::closed_loop::{Compensation, Member};
 
 pub(crate) use of_responses::KnownResponses;
@@ -84,7 +83,7 @@ pub(crate) fn linear_step_knowing(
         |sample_time_s: f64| ((duration_s / sample_time_s).ceil() as usize + 1).clamp(10, SAMPLES_MAXIMUM);
     let (times_s, values) = match member {
         Member::Continuous { plant, sensor, .. } => {
-            let path = of_coefficients(plant)?.with_dead_time(plant.dead_time_s)?;
+            let path = plant.command.transfer_function()?.with_dead_time(plant.dead_time_s)?;
             let (forward, back) = match signal {
                 StepSignal::Output => (path.series(feedback)?, sensor.clone()),
                 StepSignal::Command => (feedback.clone(), path.series(sensor)?),
@@ -155,16 +154,11 @@ impl CarriedDisturbance {
     }
 }
 
-/// The command path of a plant without its dead time.
-fn of_coefficients(plant: &PlantCoefficients<f64>) -> Result<TransferFunction, LinearError> {
-    let (numerator, denominator) = (plant.command.numerator.clone(), plant.command.denominator.clone());
-    TransferFunction::from_polynomials(&Polynomial::new(numerator), &Polynomial::new(denominator))
-}
-
 #[cfg(test)]
 mod tests {
     use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
     use phea_dynamics::portable::exp;
+    use phea_dynamics::uncertain_plant::PlantCoefficients;
     use phea_dynamics::uncertain_plant::RationalCoefficients;
 
     use super::*;

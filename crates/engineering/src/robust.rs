@@ -4,7 +4,7 @@
 use num_complex::Complex64;
 use phea_dynamics::controller::Controller;
 use phea_dynamics::frequency::logarithmic_grid;
-use phea_dynamics::linear::{LinearError, Polynomial, TransferFunction};
+use phea_dynamics::linear::LinearError;
 use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::portable;
 use phea_qft::bound::{BoundError, CombinedBound, FrequencyBounds, PhaseGrid, Placement, TemplateFill};
@@ -18,9 +18,8 @@ use crate::caveat::{Caveat, caveats};
 use crate::family::{ProjectFamilyError, family};
 use crate::limit_kind::{DesignLimitKind, limit_key};
 use crate::plant_names::PlantNames;
-use crate::project::{DeclaredController, Project};
 use crate::quantity::Units;
-use crate::setup::{ControlError, Setup, pressure_noise, velocity_noise};
+use crate::setup::{ControlError, Setup, pressure_noise, velocity_noise, with_pressure_feedback};
 use crate::side_by_side::left_behind;
 use crate::simulate::{TimeRequirement, time_requirements};
 use crate::source::Source;
@@ -183,12 +182,11 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
 
 /// The family of a project without its pressure feedback, where a continuous controller closes it.
 fn before_feedback(setup: &Setup<'_>, source: &dyn Source) -> Result<Option<Family>, RobustError> {
-    let Some(controller) = &setup.project.controller else { return Ok(None) };
-    if controller.pressure_feedback.is_none() || setup.timing.sample_time_s.is_some() {
+    let fed_back = setup.project.controller.as_ref().and_then(|controller| controller.pressure_feedback);
+    if fed_back.is_none() || setup.timing.sample_time_s.is_some() {
         return Ok(None);
     }
-    let controller = DeclaredController { pressure_feedback: None, ..controller.clone() };
-    let without = Project { controller: Some(controller), ..setup.project.clone() };
+    let without = with_pressure_feedback(setup.project, None);
     Ok(Some(family(&Setup::new(&without)?, source)?))
 }
 
@@ -412,10 +410,6 @@ const ROOT_WIDTHS: f64 = 12.0;
 
 fn nominal_roots(family: &UncertainFamily) -> Vec<Complex64> {
     let Some(plant) = family.plant().member(&family.plant().nominal()) else { return Vec::new() };
-    let plant = plant.slow().command;
-    let function = TransferFunction::from_polynomials(
-        &Polynomial::new(plant.numerator),
-        &Polynomial::new(plant.denominator),
-    );
+    let function = plant.slow().command.transfer_function();
     function.map_or_else(|_| vec![], |function| [function.zeros(), function.poles()].concat())
 }

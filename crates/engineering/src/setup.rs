@@ -16,7 +16,9 @@ use crate::project::Project;
 use crate::rig::{Rig, RigError, outside};
 
 pub use control::ControlError;
-pub(crate) use control::{element, from_formulas, is_of_position, pressure_noise, velocity_noise};
+pub(crate) use control::{
+    element, from_formulas, is_of_position, pressure_noise, velocity_noise, with_pressure_feedback,
+};
 
 /// The rig of a project with its controller, as values to compute with. A rig with a changed number
 /// is another setup.

@@ -47,6 +47,12 @@ pub enum ReachedBy {
 }
 
 impl Project {
+    /// True where waves travel in a hose or pipe.
+    pub fn has_waves(&self) -> bool {
+        let mut lines = self.actuator.iter().flat_map(|actuator| [&actuator.line.a, &actuator.line.b]);
+        lines.any(|line| line.length().is_some() && line.motion.has_waves())
+    }
+
     /// The hoses and pipes whose project states no model.
     pub fn lines_without_model(&self) -> impl Iterator<Item = &DeclaredLine> {
         let lines = self.actuator.iter().flat_map(|actuator| [&actuator.line.a, &actuator.line.b]);

@@ -129,7 +129,12 @@ impl LineMotion {
         self.word()
     }
 
-    /// Whether the line has one pressure and a wall that does not creep.
+    /// True where waves travel in the line.
+    pub fn has_waves(&self) -> bool {
+        !self.is_lumped() && !matches!(self, LineMotion::Creeping { .. })
+    }
+
+    /// True where the line has one pressure and a wall that does not creep.
     pub fn is_lumped(&self) -> bool {
         matches!(self, LineMotion::Automatic | LineMotion::Lumped)
     }

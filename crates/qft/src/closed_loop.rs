@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Controller, RateSensor, Timing};
-use phea_dynamics::linear::{Discretization, LinearError, Polynomial, TimeDomain, TransferFunction};
+use phea_dynamics::linear::{Discretization, LinearError, TimeDomain, TransferFunction};
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember, RationalCoefficients, UncertainPlant};
@@ -326,10 +326,7 @@ impl Compensation {
         };
         let rate = rate_path(gain, rate_sensor, &plant)?;
         let inner = inner_path(inner_feedback, &plant)?;
-        let rational = TransferFunction::from_polynomials(
-            &Polynomial::new(plant.command.numerator),
-            &Polynomial::new(plant.command.denominator),
-        )?;
+        let rational = plant.command.transfer_function()?;
         // The dead time of the plant acts after the hold; in front of the sensor's own it adds to
         // it.
         let held = |function: TransferFunction| {

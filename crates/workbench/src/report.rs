@@ -306,7 +306,7 @@ fn rig_part(
     ];
     let mut facts = vec![("Load", rig::load_words(actuator)), ("Lines", rig::lines_words(actuator))];
     facts.extend(summary((&linearization, rig), sizing.as_ref(), problem));
-    let lumped = if response::has_waves(project) { " (with lumped lines)" } else { "" };
+    let lumped = if project.has_waves() { " (with lumped lines)" } else { "" };
     facts.extend(given.as_ref().map(|given| (NOMINAL_LOOP, loop_words(given) + lumped)));
     let no_hose_fits = sizing.is_some_and(|sizing| sizing.best().is_none());
     Ok(Some(RigPart { chapters, appendix, facts, no_hose_fits }))

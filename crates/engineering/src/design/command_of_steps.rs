@@ -10,7 +10,6 @@
 
 mod scenario_steps;
 
-use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::watch::{Stopped, Watch, tell};
 use phea_qft::closed_loop::Member;
 use phea_qft::family::{Extent, Family, UncertainFamily};
@@ -110,7 +109,7 @@ impl ProjectDesign {
 struct UnitCommand {
     values: Vec<f64>,
     unit: StepResponse,
-    /// What holds 1 N, V/N.
+    /// Command that holds 1 N, V/N.
     held_v_per_n: f64,
     largest_v: f64,
 }
@@ -252,14 +251,11 @@ impl CommandSearch<'_> {
         Some(UnitCommand { values: values.to_vec(), unit, held_v_per_n, largest_v })
     }
 
-    /// F(0)/P(0), what a plant takes to hold 1 N under a loop with an integrator, V/N; `None` under
-    /// another one.
+    /// F(0)/P(0), the command that holds 1 N at a plant under a loop with an integrator, V/N;
+    /// `None` under another one.
     fn held_v_per_n(&self, values: &[f64]) -> Option<f64> {
         let compensation = &self.told.designed.problem.compensation;
-        let slow = self.family.plant().member(values)?.slow();
-        let [numerator, denominator] =
-            [slow.command.numerator, slow.command.denominator].map(Polynomial::new);
-        let command = TransferFunction::from_polynomials(&numerator, &denominator).ok()?;
+        let command = self.family.plant().member(values)?.slow().command.transfer_function().ok()?;
         let held = compensation.prefilter().dc_gain() / command.dc_gain();
         Some(held).filter(|held| held.is_finite() && compensation.feedback().dc_gain().is_infinite())
     }

@@ -27,7 +27,7 @@ use crate::family::family;
 use crate::limit_kind::DesignLimitKind;
 use crate::project::{DeclaredController, DeclaredPressureFeedback, FeedbackChoice, Project, Transfer};
 use crate::robust::{RobustError, robust_problem};
-use crate::setup::Setup;
+use crate::setup::{Setup, with_pressure_feedback};
 use crate::source::Source;
 use crate::trial;
 
@@ -96,7 +96,7 @@ pub fn with_free_pressure_feedback(
     tell(watch, "pressure feedback", 0, 1)?;
     let declared = project.controller.as_ref().and_then(|controller| controller.pressure_feedback);
     let declared = declared.unwrap_or_default();
-    let plain = with_feedback(project, None);
+    let plain = with_pressure_feedback(project, None);
     let undamped = Setup::new(&plain)?;
     let mut probed = ProbedPlants::new(source, &undamped, &declared)?.complete()?;
     // a lumped line that is stated hides waves from the loop, and none from the pressures
@@ -114,7 +114,7 @@ pub fn with_free_pressure_feedback(
         high_pass: found.feedback.high_pass_rad_per_s,
         ..declared
     };
-    let with = with_feedback(project, Some(declared));
+    let with = with_pressure_feedback(project, Some(declared));
     let found = described((source, &undamped), &with, declared, (&found, &probed))?;
     let found = PressureFeedbackDesign { missing_with_waves, ..found };
     Ok(Some((if found.is_used { with } else { plain }, found)))
@@ -145,12 +145,6 @@ fn described(
         plants: probed.plants.len(),
         missing_with_waves: None,
     })
-}
-
-/// A project with this pressure feedback.
-fn with_feedback(project: &Project, pressure_feedback: Option<DeclaredPressureFeedback>) -> Project {
-    let controller = project.controller.clone().unwrap_or_default();
-    Project { controller: Some(DeclaredController { pressure_feedback, ..controller }), ..project.clone() }
 }
 
 /// The plants with the limits that the design has too.

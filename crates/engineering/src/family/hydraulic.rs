@@ -286,9 +286,7 @@ fn reason(path: &str, project: &Project) -> String {
     if LINEAR_PARAMETERS.iter().any(|parameter| parameter.follows_from(path)) {
         return "what the project states goes before what would follow from it".to_string();
     }
-    let mut lines = project.actuator.iter().flat_map(|actuator| [&actuator.line.a, &actuator.line.b]);
-    let is_of_waves = path.starts_with("fluid.") && lines.any(|line| !line.motion.is_lumped());
-    match is_of_waves {
+    match path.starts_with("fluid.") && project.has_waves() {
         true => format!(
             "it does not enter the linear model but through the waves in the lines, which are those of the declared oil: verify other oils one by one, `--set {path}=...`"
         ),

@@ -26,55 +26,39 @@ pub(super) fn averaged(recording: &Recording) -> Recording {
         let own = values.get(block.clone()).unwrap_or_default();
         own.iter().sum::<f64>() / own.len().max(1) as f64
     };
-    let of_inputs = |of: fn(&TestInput) -> f64| -> Vec<f64> {
-        let all: Vec<f64> = recording.inputs.iter().map(of).collect();
-        blocks.iter().map(|block| mean(&all, block)).collect()
-    };
-    let commands = of_inputs(|input| input.command).into_iter();
-    let commands = commands.zip(of_inputs(|input| input.followed_command));
-    let supplies = of_inputs(|input| input.supply.pressure);
-    let tanks = of_inputs(|input| input.supply.tank_pressure);
-    let loads = of_inputs(|input| input.load_pressure);
-    let densities = of_inputs(|input| input.oil.density_ratio).into_iter();
-    let viscosities = of_inputs(|input| input.oil.viscosity_ratio);
-    let lags = of_inputs(|input| input.lag);
-    let oils = densities
-        .zip(viscosities)
-        .map(|(density_ratio, viscosity_ratio)| WarmOil { density_ratio, viscosity_ratio });
-    // a block begins where the command turns
-    let first = |block: &std::ops::Range<usize>| recording.inputs.get(block.start)?.turn;
-    let lags = lags.into_iter().zip(blocks.iter().map(first));
-    let inputs = commands.zip(supplies).zip(tanks).zip(loads).zip(oils).zip(lags);
     let signals = recording.signals.iter().map(|signal| RecordedSignal {
         kind: signal.kind,
         values: blocks.iter().map(|block| inner_mean(signal.values.get(block.clone())?)).collect(),
     });
     let memory = recording.inputs.first().map_or(0.0, |input| input.memory);
+    let input = |block: &std::ops::Range<usize>| {
+        let own = recording.inputs.get(block.clone()).unwrap_or_default();
+        let mean = |of: fn(&TestInput) -> f64| own.iter().map(of).sum::<f64>() / own.len().max(1) as f64;
+        TestInput {
+            command: mean(|input| input.command),
+            followed_command: mean(|input| input.followed_command),
+            // a block begins where the command turns
+            turn: own.first().and_then(|input| input.turn),
+            supply: Supply {
+                pressure: mean(|input| input.supply.pressure),
+                tank_pressure: mean(|input| input.supply.tank_pressure),
+            },
+            load_pressure: mean(|input| input.load_pressure),
+            oil: WarmOil {
+                density_ratio: mean(|input| input.oil.density_ratio),
+                viscosity_ratio: mean(|input| input.oil.viscosity_ratio),
+            },
+            memory,
+            lag: mean(|input| input.lag),
+        }
+    };
     let these = |values: &Vec<f64>| blocks.iter().map(|block| mean(values, block)).collect();
     Recording {
         file: recording.file.clone(),
         circuit: recording.circuit,
         command_roughness: recording.command_roughness,
         times: these(&recording.times),
-        inputs: inputs
-            .map(
-                |(
-                    (((((command, followed_command), pressure), tank_pressure), load_pressure), oil),
-                    (lag, turn),
-                )| {
-                    TestInput {
-                        command,
-                        followed_command,
-                        turn,
-                        supply: Supply { pressure, tank_pressure },
-                        load_pressure,
-                        oil,
-                        memory,
-                        lag,
-                    }
-                },
-            )
-            .collect(),
+        inputs: blocks.iter().map(input).collect(),
         oil_temperature: recording.oil_temperature.as_ref().map(these),
         accuracies: recording.accuracies.clone(),
         signals: signals.collect(),

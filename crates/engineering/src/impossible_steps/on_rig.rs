@@ -9,7 +9,6 @@
 //! h is the impulse response of the plant and V the total variation of its step response; A is the
 //! size of the step.
 
-use phea_dynamics::linear::{Polynomial, TransferFunction};
 use phea_dynamics::time_response::{step_response, uniform_times};
 use phea_dynamics::uncertain_plant::UncertainPlant;
 use phea_qft::family::Family;
@@ -99,8 +98,7 @@ fn reached(
     limit_v: f64,
 ) -> Option<f64> {
     let slow = plant.member(values)?.slow();
-    let [numerator, denominator] = [slow.command.numerator, slow.command.denominator].map(Polynomial::new);
-    let command = TransferFunction::from_polynomials(&numerator, &denominator).ok()?;
+    let command = slow.command.transfer_function().ok()?;
     let moving_s = time_s - slow.dead_time_s;
     let values = step_response(&command, &uniform_times(moving_s, POINTS).ok()?).ok()?;
     let steps = values.iter().zip(values.iter().skip(1)).map(|(one, next)| (next - one).abs());

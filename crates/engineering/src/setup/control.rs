@@ -93,6 +93,18 @@ pub(super) fn timing(project: &Project) -> Timing {
     }
 }
 
+/// The project with this pressure feedback in place of its own.
+pub(crate) fn with_pressure_feedback(
+    project: &Project,
+    pressure_feedback: Option<project::DeclaredPressureFeedback>,
+) -> Project {
+    let controller = project.controller.clone().unwrap_or_default();
+    Project {
+        controller: Some(project::DeclaredController { pressure_feedback, ..controller }),
+        ..project.clone()
+    }
+}
+
 /// What makes the controller of a position one of the force: 1/(M_v s^2 + B_v s + K_v); none where
 /// the declared controller is that of the force.
 fn admittance(declared: &project::DeclaredController) -> Result<Option<Stage>, ControlError> {

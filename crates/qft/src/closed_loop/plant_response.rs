@@ -1,7 +1,7 @@
 //! The response of one plant within its loop at one frequency, without the member.
 
 use num_complex::Complex64;
-use phea_dynamics::linear::{LinearError, Polynomial, StateSpace, TransferFunction};
+use phea_dynamics::linear::{LinearError, StateSpace, TransferFunction};
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 
 use super::fed_forward::{FedForward, closed, inner_path, rate_path};
@@ -50,10 +50,7 @@ impl Compensation {
         let rate = rate_path(gain, self.rate_sensor, &plant)?;
         let inner = inner_path(inner_feedback, &plant)?;
         let load_motion = load_motion(plant.disturbance.as_ref(), frequency_rad_per_s);
-        let rational = TransferFunction::from_polynomials(
-            &Polynomial::new(plant.command.numerator),
-            &Polynomial::new(plant.command.denominator),
-        )?;
+        let rational = plant.command.transfer_function()?;
         // whole samples only turn the phase; what is left of a sample becomes a state
         let held = |function: TransferFunction| {
             let dead_time_s = function.dead_time_s() + dead_time_s;

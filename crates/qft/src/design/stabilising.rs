@@ -105,12 +105,7 @@ fn central_plants(family: &UncertainFamily) -> Vec<PlantCoefficients<f64>> {
 
 impl PlantRoots {
     fn of(plant: &PlantCoefficients<f64>, sensor: &TransferFunction, delay_s: f64) -> Option<PlantRoots> {
-        let polynomial = |coefficients: &[f64]| Polynomial::new(coefficients.to_vec());
-        let command = &plant.command;
-        let own = TransferFunction::from_polynomials(
-            &polynomial(&command.numerator),
-            &polynomial(&command.denominator),
-        );
+        let own = plant.command.transfer_function();
         let rational = own.ok()?.series(&sensor.clone().with_dead_time(0.0).ok()?).ok()?;
         let mut roots = PlantRoots {
             gain: rational.gain(),

@@ -77,8 +77,6 @@ fn lines(actuator: &DeclaredActuator) -> Vec<&'static str> {
     let stiffens = |line: &DeclaredLine| {
         line.hose().is_some() && line.dynamic_stiffening.as_ref().is_some_and(|ratio| ratio.nominal != 1.0)
     };
-    let is_lumped =
-        |line: &DeclaredLine| line.motion.is_lumped() || matches!(line.motion, LineMotion::Creeping { .. });
     let mut told = Vec::new();
     if any(&|line| line.hose().is_some()) {
         told.push(match actuator.line.compliance {
@@ -92,7 +90,7 @@ fn lines(actuator: &DeclaredActuator) -> Vec<&'static str> {
     if any(&|line| stiffens(line) && !creeps(line)) {
         told.push("The wall of a hose has its dynamic modulus at every frequency; at rest it is softer by the stiffening ratio.");
     }
-    if any(&|line| line.length().is_some() && is_lumped(line)) {
+    if any(&|line| line.length().is_some() && !line.motion.has_waves()) {
         told.push("A line has one pressure over its length: no waves travel in it.");
     }
     if sides().any(|line| line.length().is_some()) {

@@ -8,7 +8,6 @@ use crate::document::{Document, StatusMark, Table};
 use crate::figure::{DisplayUnit, Figure, SettlingBand, Words};
 use crate::linear_loop::{LinearLoop, LoopStability, StepView, settling_words};
 use crate::over_time::ForceStep;
-use crate::project::Project;
 use crate::setup::Setup;
 
 /// Height of the drawn step where the project's scenarios give none, N.
@@ -26,7 +25,7 @@ pub(super) fn chapter(
         return Chapter::of(anchor, title, out);
     };
     out.explanation("The nominal plant in a loop with the given controller and prefilter. One linear plant: this proves nothing for the others, or for the nonlinear simulation.");
-    if has_waves(setup.project) {
+    if setup.project.has_waves() {
         out.explanation("Its lines are lumped. The audit judges the loop with waves in them: its margins are those to rely on.");
     }
     out.left_out(setup);
@@ -47,12 +46,6 @@ pub(super) fn chapter(
     out.explanation("Near a lightly damped resonance the loop crosses a gain of one several times: each margin is the smallest of all crossings, and a negative phase margin there is no instability by itself.");
     out.table(margins(&linear_loop.margins));
     Chapter::of(anchor, title, out)
-}
-
-/// Whether waves travel in a line of the rig.
-pub(super) fn has_waves(project: &Project) -> bool {
-    let lines = project.actuator.iter().flat_map(|actuator| [&actuator.line.a, &actuator.line.b]);
-    lines.into_iter().any(|line| line.length().is_some() && !line.motion.is_lumped())
 }
 
 fn figure(view: &StepView, reference: f64, unit: DisplayUnit) -> Figure {

@@ -39,7 +39,8 @@ pub(super) struct CommandedSteps {
     /// The commands that hold the declared rig at the references, from that with which it begins
     /// on, V.
     held_v: Vec<f64>,
-    /// What the nominal plant takes to hold 1 N, V/N; absent where a plant begins as that does.
+    /// Command that holds 1 N at the nominal plant, V/N; absent where every plant begins as the
+    /// nominal one does.
     nominal_v_per_n: Option<f64>,
 }
 
@@ -167,7 +168,7 @@ impl CommandedSteps {
         self.held_v.first().copied().unwrap_or(0.0) * self.ratio(held_v_per_n)
     }
 
-    /// What a plant takes to hold a force, over what the declared rig takes.
+    /// Command that holds a force at a plant, over that of the declared rig.
     fn ratio(&self, held_v_per_n: f64) -> f64 {
         let ratio = self.nominal_v_per_n.map(|nominal| held_v_per_n / nominal);
         ratio.filter(|ratio| ratio.is_finite() && *ratio > 0.0).unwrap_or(1.0)

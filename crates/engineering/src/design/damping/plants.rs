@@ -13,10 +13,10 @@ use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::inner_loop::{InnerPlant, InnerPoint};
 
 use super::super::DesignError;
-use super::{MissingPlants, with_feedback};
+use super::MissingPlants;
 use crate::family::family;
 use crate::project::DeclaredPressureFeedback;
-use crate::setup::Setup;
+use crate::setup::{Setup, with_pressure_feedback};
 use crate::source::Source;
 
 /// Most plants that a feedback is found with.
@@ -60,7 +60,7 @@ impl ProbedPlants {
         let valve = &rig.actuator.components().valve;
         let gain = valve.nominal_voltage / rig.point.pressure_a.max(rig.point.pressure_b);
         let small = DeclaredPressureFeedback { gain, high_pass: None, low_pass: None, ..*declared };
-        let probed = with_feedback(undamped.project, Some(small));
+        let probed = with_pressure_feedback(undamped.project, Some(small));
         let probed = uncertain(source, &Setup::new(&probed)?)?;
         let timing = undamped.timing;
         let inner = InnerFeedback { gain, ..InnerFeedback::default() };

@@ -1,4 +1,4 @@
-//! Where a command turned between two rows of its record.
+//! Corners of a command between two rows of its record.
 //!
 //! ```text
 //! u_1 + r_1 (t - t_1) = u_2 + r_2 (t - t_2)
