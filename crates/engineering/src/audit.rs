@@ -154,7 +154,7 @@ pub struct ProjectAudit {
     pub whole_box: bool,
     /// Why its plants have no polynomials; `None` where they have them.
     pub without_polynomials: Option<&'static str>,
-    /// Whether the delay margin is that of the controller and of a pressure feedback together; its
+    /// True where the delay margin is that of the controller and of a pressure feedback together;
     /// gain, phase and modulus margins are those of the force loop around that feedback.
     pub feeds_pressures_back: bool,
     /// s; `None` for a continuous controller.
@@ -271,7 +271,11 @@ impl ProjectAudit {
         );
         let noise = |signal| SignalNoise::of(signal, problem, audit.stability.verdict);
         let [velocity_noise, pressure_noise] = [NoisySignal::LoadVelocity, NoisySignal::Pressures].map(noise);
-        let nominal = margins.nominal.as_ref().and_then(|_| nominal_margins(problem));
+        let nominal = margins.nominal.as_ref().and_then(|set| {
+            let own = nominal_margins(problem)?;
+            let delay_margin_s = if feeds_pressures_back { set.delay_s.value } else { own.delay_margin_s };
+            Some(NominalMargins { delay_margin_s, ..own })
+        });
         ProjectAudit {
             nominal,
             margins,

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use phea_dynamics::pieces::{WorkPiece, Workers};
-use phea_dynamics::watch::{Progress, Stopped, Watch, tell, within};
+use phea_dynamics::watch::{Progress, Stopped, Watch, tell, unwatched, within};
 
 /// How often the watch is told while pieces of work go on.
 const ROUND: Duration = Duration::from_millis(20);
@@ -44,6 +44,13 @@ pub fn side_by_side<T: Send>(
     });
     all_cores().work(pieces.collect(), stage, watch)?;
     results.into_iter().collect::<Option<Vec<T>>>().ok_or(Stopped)
+}
+
+/// The result for each item in its order, computed on all cores.
+pub(crate) fn of_each<One: Sync, Found: Send>(all: &[One], of: impl Fn(&One) -> Found + Sync) -> Vec<Found> {
+    let found = side_by_side(all.len(), "", &mut unwatched, |index, _| all.get(index).map(&of));
+    // nothing stops it
+    found.unwrap_or_default()
 }
 
 /// As many threads as there are cores; the calling thread where there is one core.

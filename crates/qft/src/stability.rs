@@ -39,6 +39,7 @@ pub use family::{FamilyStability, family_stability};
 pub use finding::{
     ClosestApproach, DelayMargin, SearchedInfinity, StabilityFinding, StabilityMethod, StabilityReason,
 };
+pub use resampled::borne_delay;
 
 use crate::closed_loop::{Compensation, Member};
 use characteristic::Characteristic;

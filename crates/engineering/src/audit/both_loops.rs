@@ -12,99 +12,111 @@
 use num_complex::Complex64;
 
 use phea_dynamics::frequency::logarithmic_grid;
-use phea_dynamics::portable::{argument, magnitude};
-use phea_qft::closed_loop::Member;
+use phea_dynamics::order::sort_by_number;
+use phea_qft::closed_loop::{Compensation, Member};
 use phea_qft::family::Family;
-use phea_qft::stability::DelayMargin;
+use phea_qft::stability::{CriticalDelay, DelayMargin, StabilityStatus, borne_delay, member_stability};
 use phea_qft::verification::{Audit, PlantPoint};
 
-use super::margins::plants_of_margins;
+use super::margins::response::{filled, phase_margins};
+use super::margins::{corners, spread, worst_of};
 use crate::robust::RobustProblem;
+use crate::side_by_side::of_each;
 
-/// Most plants that are examined.
-const PLANTS: usize = 256;
+/// Most members and corners that are examined, and plants whose delay is found by sampling them
+/// anew.
+const MEMBERS: usize = 150;
+const CORNERS: usize = 64;
+const RANKED: usize = 4;
 /// Points of the grid, and how far it reaches below its end.
-const GRID_POINTS: usize = 2000;
+const GRID_POINTS: usize = 400;
 const DECADES: f64 = 1e-4;
 /// End of the grid of a continuous loop, rad/s.
 const END_OF_CONTINUOUS: f64 = 2e4;
-/// Halvings of an interval in which |L_t| passes 1.
-const HALVINGS: usize = 40;
 
 /// The least delay in s that makes a plant of the family unstable; `None` without a pressure
-/// feedback, and where a response is not known.
+/// feedback, and where no response is known.
 pub(super) fn least_delay(problem: &RobustProblem, audit: &Audit) -> Option<DelayMargin> {
-    let known = audit.delay_margin.as_ref()?;
-    let plants = match plants_of_margins(problem, audit) {
-        Family::Uncertain(family) => family.members().to_vec(),
-        Family::Measured(_) => return None,
-    };
-    let step = plants.len().div_ceil(PLANTS).max(1);
-    let some = plants.into_iter().step_by(step).map(PlantPoint::Parameters);
-    let all = std::iter::once(known.plant.clone()).chain(some);
-    let each = all.map(|plant| delay_margin(problem, &plant));
-    let found = each.collect::<Option<Vec<DelayMargin>>>()?;
-    found.into_iter().min_by(|one, other| one.delay_s.total_cmp(&other.delay_s))
+    audit.delay_margin.as_ref()?;
+    let Family::Uncertain(family) = &problem.family else { return None };
+    let corners = corners(family);
+    let plants = spread(family.members(), MEMBERS).chain(spread(&corners, CORNERS));
+    let plants = plants.map(PlantPoint::Parameters).chain(worst_of(audit));
+    let plants: Vec<PlantPoint> = plants.collect();
+    let estimated = of_each(&plants, |plant| {
+        Some(WholeLoop::of((problem, &problem.compensation), plant)?.critical_delay()?.delay_s)
+    });
+    let ranked = estimated.into_iter().zip(&plants).filter_map(|(delay_s, plant)| Some((delay_s?, plant)));
+    let mut ranked: Vec<(f64, &PlantPoint)> = ranked.collect();
+    sort_by_number(&mut ranked, |one| one.0);
+    ranked.truncate(RANKED);
+    let nearest = of_each(&ranked, |(_, plant)| delay_margin(problem, plant)).into_iter().flatten();
+    nearest.min_by(|one, other| one.delay_s.total_cmp(&other.delay_s))
 }
 
-/// The least delay in s that makes this plant unstable, which must be stable without it.
+/// The least delay in s that makes this plant unstable, which must be stable without it. A sampled
+/// loop is sampled anew with each delay: between whole samples a delay also changes |L_t|.
 pub(super) fn delay_margin(problem: &RobustProblem, plant: &PlantPoint) -> Option<DelayMargin> {
-    let whole = WholeLoop::of(problem, plant)?;
-    let highest = problem.compensation.highest_frequency_rad_per_s().min(END_OF_CONTINUOUS);
-    let mut least = DelayMargin { delay_s: f64::INFINITY, frequency_rad_per_s: 0.0, plant: plant.clone() };
-    let frequencies = logarithmic_grid(DECADES * highest, highest, GRID_POINTS).ok()?;
-    for (low, high) in frequencies.iter().zip(frequencies.iter().skip(1)) {
-        let Some(frequency_rad_per_s) = whole.crossover(*low, *high) else { continue };
-        let lag = argument(-whole.at(frequency_rad_per_s)?).rem_euclid(std::f64::consts::TAU);
-        let delay_s = lag / frequency_rad_per_s;
-        if delay_s < least.delay_s {
-            least = DelayMargin { delay_s, frequency_rad_per_s, ..least };
-        }
-    }
-    Some(least)
+    let whole = WholeLoop::of((problem, &problem.compensation), plant)?;
+    let remaining = |delay_s: f64| {
+        let delayed = problem.compensation.with_delay(problem.compensation.delay_s() + delay_s);
+        let whole = WholeLoop::of((problem, &delayed), plant)?;
+        let is_stable = member_stability(&whole.with, &delayed).status == StabilityStatus::Stable;
+        whole.critical_delay().filter(|_| is_stable)
+    };
+    let found = match problem.compensation.sample_time_s() {
+        Some(_) => borne_delay(&remaining)?,
+        None => whole.critical_delay()?,
+    };
+    let CriticalDelay { delay_s, frequency_rad_per_s } = found;
+    Some(DelayMargin { delay_s, frequency_rad_per_s, plant: plant.clone() })
 }
 
 /// A plant in its loop, and the same without pressure feedback.
-struct WholeLoop<'p> {
-    problem: &'p RobustProblem,
+struct WholeLoop<'c> {
+    compensation: &'c Compensation,
     with: Member,
     without: Member,
 }
 
-impl<'p> WholeLoop<'p> {
+impl<'c> WholeLoop<'c> {
     /// `None` where no pressure is fed back.
-    fn of(problem: &'p RobustProblem, plant: &PlantPoint) -> Option<WholeLoop<'p>> {
-        let PlantPoint::Parameters(values) = plant else { return None };
-        let open = problem.compensation.without_inner_feedback();
-        let without = match (&problem.before_feedback, &problem.family) {
-            (Some(Family::Uncertain(family)), _) => open.member_of(family.plant(), values),
-            (None, Family::Uncertain(family)) if problem.compensation.inner_feedback().is_some() => {
-                open.member_of(family.plant(), values)
-            }
+    fn of(
+        (problem, compensation): (&RobustProblem, &'c Compensation),
+        plant: &PlantPoint,
+    ) -> Option<WholeLoop<'c>> {
+        let (PlantPoint::Parameters(values), Family::Uncertain(family)) = (plant, &problem.family) else {
+            return None;
+        };
+        let before = match &problem.before_feedback {
+            Some(Family::Uncertain(before)) => before,
+            _ if compensation.inner_feedback().is_some() => family,
             _ => return None,
         };
-        Some(WholeLoop { problem, with: problem.member(plant)?, without: without.ok()? })
+        let without = compensation.without_inner_feedback().member_of(before.plant(), values).ok()?;
+        let with = compensation.member_of(family.plant(), values).ok()?;
+        Some(WholeLoop { compensation, with, without })
     }
 
     /// L_t
     fn at(&self, frequency_rad_per_s: f64) -> Option<Complex64> {
-        let with = self.problem.response(&self.with, frequency_rad_per_s)?;
-        let without = self.without.response(frequency_rad_per_s)?;
-        let whole = without.plant / with.plant * (1.0 + with.open_loop()) - 1.0;
+        let [with, without] =
+            [self.with.response(frequency_rad_per_s)?, self.without.response(frequency_rad_per_s)?];
+        let open_loop = with.plant * with.sensor * self.compensation.response(frequency_rad_per_s).feedback;
+        let whole = without.plant / with.plant * (1.0 + open_loop) - 1.0;
         whole.is_finite().then_some(whole)
     }
 
-    /// The frequency between these at which |L_t| passes 1.
-    fn crossover(&self, mut low: f64, mut high: f64) -> Option<f64> {
-        let is_above = |frequency: f64| Some(magnitude(self.at(frequency)?) >= 1.0);
-        let first = is_above(low)?;
-        if first == is_above(high)? {
-            return None;
-        }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if is_above(middle)? == first { low = middle } else { high = middle }
-        }
-        Some(high)
+    /// The least phase over frequency where |L_t| passes 1.
+    fn critical_delay(&self) -> Option<CriticalDelay> {
+        let highest = self.compensation.highest_frequency_rad_per_s().min(END_OF_CONTINUOUS);
+        let frequencies = logarithmic_grid(DECADES * highest, highest, GRID_POINTS).ok()?;
+        let at = |frequency: f64| Some((frequency, self.at(frequency)?));
+        let crossings = phase_margins(&filled(frequencies.into_iter(), &at), &at).into_iter();
+        let least = crossings.min_by(|one, other| one.delay_s.total_cmp(&other.delay_s));
+        Some(CriticalDelay {
+            delay_s: least.as_ref().map_or(f64::INFINITY, |margin| margin.delay_s),
+            frequency_rad_per_s: least.map_or(f64::INFINITY, |margin| margin.frequency_rad_per_s),
+        })
     }
 }

@@ -7,10 +7,10 @@
 //! delay:     the least dead time that brings L to -1
 //! ```
 
-mod response;
+pub(super) mod response;
 
 use phea_dynamics::frequency::{GainMargin, Margins, PhaseMargin, decibels, margins};
-use phea_dynamics::linear::{LinearError, Polynomial, TransferFunction};
+use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_qft::closed_loop::Member;
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::stability::{StabilityStatus, member_stability};
@@ -198,10 +198,7 @@ fn visited(problem: &RobustProblem, audit: &Audit) -> Vec<PlantPoint> {
             all.extend(spread(&corners(family), most).map(PlantPoint::Parameters));
         }
     }
-    all.extend(audit.specifications.iter().flat_map(worst_plants).cloned());
-    all.push(audit.stability.plant.clone());
-    all.extend(audit.stability.closest_approach.iter().map(|closest| closest.plant.clone()));
-    all.extend(audit.delay_margin.iter().map(|margin| margin.plant.clone()));
+    all.extend(worst_of(audit));
     let mut distinct: Vec<PlantPoint> = Vec::new();
     for plant in all {
         if !distinct.contains(&plant) {
@@ -209,6 +206,14 @@ fn visited(problem: &RobustProblem, audit: &Audit) -> Vec<PlantPoint> {
         }
     }
     distinct
+}
+
+/// The plants that the audit found worst in anything.
+pub(super) fn worst_of(audit: &Audit) -> impl Iterator<Item = PlantPoint> {
+    let closest = audit.stability.closest_approach.iter().map(|closest| &closest.plant);
+    let delayed = audit.delay_margin.iter().map(|margin| &margin.plant);
+    let of_specifications = audit.specifications.iter().flat_map(worst_plants);
+    of_specifications.chain([&audit.stability.plant]).chain(closest).chain(delayed).cloned()
 }
 
 /// The plants of which the worst margins are the worst, without a search between them.
@@ -341,11 +346,7 @@ pub(super) fn margins_of(problem: &RobustProblem, plant: &PlantPoint) -> Option<
 fn open_loop(problem: &RobustProblem, member: &Member) -> Result<Option<TransferFunction>, LinearError> {
     let with_sensor = match member {
         Member::Continuous { plant, sensor, .. } => {
-            let command = TransferFunction::from_polynomials(
-                &Polynomial::new(plant.command.numerator.clone()),
-                &Polynomial::new(plant.command.denominator.clone()),
-            )?;
-            command.with_dead_time(plant.dead_time_s)?.series(sensor)?
+            plant.command.transfer_function()?.with_dead_time(plant.dead_time_s)?.series(sensor)?
         }
         Member::Sampled { with_sensor, .. } => with_sensor.clone(),
         Member::Responding { .. } | Member::Measured { .. } => return Ok(None),

@@ -4,7 +4,6 @@ use phea_dynamics::frequency::decibels;
 use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::portable;
 
-use super::both_loops;
 use super::margins::{margins_of, nominal_point};
 use crate::quantity::significant;
 use crate::robust::RobustProblem;
@@ -118,7 +117,6 @@ pub(crate) fn nominal_margins(problem: &RobustProblem) -> Option<NominalMargins>
         phase_margin_deg: found.phase_margin_deg(),
         crossover_rad_per_s: crossings.iter().copied().fold(0.0, f64::max),
         crossovers: Crossovers::of(crossings, magnitude),
-        delay_margin_s: both_loops::delay_margin(problem, &nominal_point(problem))
-            .map_or(found.delay_margin_s(), |both| both.delay_s),
+        delay_margin_s: found.delay_margin_s(),
     })
 }

@@ -7,7 +7,8 @@
 //!
 //! Where a rate or an inner signal is fed back within the plant, the remaining delay is that of the
 //! controller's own path, and sampling the plant anew would delay the rate too: there phase over
-//! frequency is used.
+//! frequency is used. [`borne_delay`] is the search for any estimate of the remaining delay, such
+//! as that of the whole loop, cut at the command.
 
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 
@@ -36,6 +37,24 @@ pub(super) fn critical_delay(
         let found = of_member(&delayed.member(plant.clone()).ok()?, &delayed, path);
         found.critical_delay.filter(|_| found.status == StabilityStatus::Stable)
     };
+    borne_delay(&remaining)
+}
+
+/// The delay at which a loop becomes unstable, from an estimate of what remains after each delay in
+/// s, which is `None` where the loop is unstable; `None` for a loop that is not stable to begin
+/// with.
+///
+/// # Example
+/// A loop that bears 3 s, by an estimate that is a fifth too long.
+/// ```
+/// use phea_qft::stability::{CriticalDelay, borne_delay};
+/// let remaining = |delay_s: f64| {
+///     let rest_s = 3.0 - delay_s;
+///     (rest_s > 0.0).then_some(CriticalDelay { delay_s: 1.2 * rest_s, frequency_rad_per_s: 5.0 })
+/// };
+/// assert!((borne_delay(&remaining).unwrap().delay_s - 3.0).abs() < 1e-6);
+/// ```
+pub fn borne_delay(remaining: &dyn Fn(f64) -> Option<CriticalDelay>) -> Option<CriticalDelay> {
     let mut rest = remaining(0.0)?;
     let mut borne = 0.0;
     let mut too_long = f64::INFINITY;

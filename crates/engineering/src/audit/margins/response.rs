@@ -20,7 +20,7 @@ const CLOSEST: f64 = 1.0 + 1e-6;
 const POINTS_MAXIMUM: usize = 5000;
 
 /// A frequency in rad/s, and L there.
-type KnownPoint = (f64, Complex64);
+pub(in crate::audit) type KnownPoint = (f64, Complex64);
 
 /// The margins between the first and the last frequency at which the response is known; `None` for
 /// fewer than two. Between the frequencies of a measurement the response is interpolated.
@@ -40,19 +40,27 @@ pub(super) fn margins(problem: &RobustProblem, member: &Member) -> Option<Margin
         let (frequency_rad_per_s, value) = crossing(*from, *to, &at, &|point| angle(point) < 0.0)?;
         passes.then(|| GainMargin { frequency_rad_per_s, factor: 1.0 / magnitude(value) })
     };
+    Some(Margins {
+        gain_margins: pairs().filter_map(of_gain).collect(),
+        phase_margins: phase_margins(&points, &at),
+        modulus_margin: ModulusMargin { frequency_rad_per_s: nearest.0, distance: nearest.1 },
+    })
+}
+
+/// The margins where |L| passes 1 between neighbouring points.
+pub(in crate::audit) fn phase_margins(
+    points: &[KnownPoint],
+    at: &dyn Fn(f64) -> Option<KnownPoint>,
+) -> Vec<PhaseMargin> {
+    let above = |point: &KnownPoint| magnitude(point.1) >= 1.0;
     let of_phase = |(from, to): (&KnownPoint, &KnownPoint)| {
-        let above = |point: &KnownPoint| magnitude(point.1) >= 1.0;
-        let (frequency_rad_per_s, value) = crossing(*from, *to, &at, &above)?;
+        let (frequency_rad_per_s, value) = crossing(*from, *to, at, &above)?;
         let signed = argument(-value);
         let lag = if signed < 0.0 { signed + 2.0 * std::f64::consts::PI } else { signed };
         let delay_s = lag / frequency_rad_per_s;
         Some(PhaseMargin { frequency_rad_per_s, phase_deg: signed.to_degrees(), delay_s })
     };
-    Some(Margins {
-        gain_margins: pairs().filter_map(of_gain).collect(),
-        phase_margins: pairs().filter_map(of_phase).collect(),
-        modulus_margin: ModulusMargin { frequency_rad_per_s: nearest.0, distance: nearest.1 },
-    })
+    points.iter().zip(points.iter().skip(1)).filter_map(of_phase).collect()
 }
 
 /// The frequency of the least |1 + L|, and that: the least of the points, refined between its
@@ -91,12 +99,24 @@ fn points(
         }
         _ => vec![],
     };
-    let fills = matches!(member, Member::Responding { .. });
+    let known = frequencies.into_iter().take_while(|&one| one <= highest);
+    match member {
+        Member::Responding { .. } => filled(known, at),
+        _ => known.filter_map(at).collect(),
+    }
+}
+
+/// The points at these frequencies, rising, and as many between them as it takes for L to turn
+/// little.
+pub(in crate::audit) fn filled(
+    frequencies: impl Iterator<Item = f64>,
+    at: &dyn Fn(f64) -> Option<KnownPoint>,
+) -> Vec<KnownPoint> {
     let mut found: Vec<KnownPoint> = Vec::new();
-    for end in frequencies.into_iter().take_while(|&one| one <= highest).filter_map(at) {
+    for end in frequencies.filter_map(at) {
         let mut ahead = vec![end];
         while let Some(&next) = ahead.last() {
-            let middle = found.last().filter(|&&last| fills && turns(last, next));
+            let middle = found.last().filter(|&&last| turns(last, next));
             let middle = middle.filter(|_| found.len() < POINTS_MAXIMUM);
             match middle.and_then(|last| at((last.0 * next.0).sqrt())) {
                 Some(point) => ahead.push(point),

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::time_response::{StepBaseline, step_metrics};
-use phea_dynamics::watch::unwatched;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{Design, LoopDesignError};
 use phea_qft::family::Family;
@@ -12,7 +11,6 @@ use phea_qft::loop_shaping::{Judgement, MarginRow, SampledMargin, SearchProblem,
 use phea_qft::verification::PlantPoint;
 
 use super::commands::StepCommands;
-use super::led::STAGE;
 use super::plants::{SteppedPlant, SteppedPlants};
 use crate::audit::TimeOutcome;
 use crate::design::added_by_rig::{AddedByRig, added_to};
@@ -20,7 +18,7 @@ use crate::design::command_of_steps::ScenarioSteps;
 use crate::design::{DesignError, ProjectDesign};
 use crate::linear_step::StepResponse;
 use crate::robust::RobustProblem;
-use crate::side_by_side::side_by_side;
+use crate::side_by_side::of_each;
 use crate::simulate::{ReachedStep, TrackingWish};
 
 /// Margin to be left to every limit on a frequency response, dB.
@@ -309,13 +307,6 @@ impl StepWishes {
             |row: &MarginRow| row.margin_db.is_finite() && row.slopes.iter().all(|slope| slope.is_finite());
         places.iter().enumerate().map(row).filter(is_finite).collect()
     }
-}
-
-/// The result for each item in its order, computed on all cores.
-fn of_each<One: Sync, Found: Send>(all: &[One], of: impl Fn(&One) -> Found + Sync) -> Vec<Found> {
-    let found = side_by_side(all.len(), STAGE, &mut unwatched, |index, _| all.get(index).map(&of));
-    // nothing stops it
-    found.unwrap_or_default()
 }
 
 impl SearchProblem for StepShaping<'_> {
