@@ -20,7 +20,6 @@ mod parameters;
 mod purity;
 mod sizes;
 mod units;
-mod words;
 mod wrapping;
 
 use std::fmt;
@@ -74,7 +73,6 @@ const CHECKS: &[(&str, Check)] = &[
     ("purity", purity::check),
     ("sizes", sizes::check),
     ("units", units::check),
-    ("words", words::check),
     ("wrapping", wrapping::check),
 ];
 

@@ -85,7 +85,7 @@ pub enum Request {
     Verify {
         /// Whether it is proven.
         proof: bool,
-        /// Whether it is tried on the nonlinear model.
+        /// True where it is tested in nonlinear simulation.
         on_machine: bool,
     },
     /// Shaping by hand, elements changed in order.

@@ -45,7 +45,7 @@ fn satisfaction(view: &ProjectDesign) -> &'static str {
     if view.is_met() { "satisfies every specification" } else { "does not satisfy every specification" }
 }
 
-/// What a stopped design is.
+/// The sentence on a stopped design.
 fn stopped_sentence(view: &ProjectDesign) -> String {
     let verdict = match view.is_met() {
         true if view.unfinished.contains(&DesignPart::Trial) => {
@@ -85,8 +85,13 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
                 .to_string()
         }
         DesignStatus::Met if !view.tolerates_its_delay && view.exceeded_command().is_none() => {
-            "not met: the controller satisfies every specification, and the loop, with the pressure feedback in it, tolerates less further delay than `design.minimum_delay_margin` requires: a smaller gain of the feedback leaves more"
-                .to_string()
+            let cure = match view.designed.view.feeds_pressures_back {
+                true => ": a smaller gain of the pressure feedback leaves more",
+                false => "",
+            };
+            format!(
+                "not met: the controller satisfies every specification, and its loop tolerates less further delay than `design.minimum_delay_margin` requires{cure}"
+            )
         }
         DesignStatus::Met => match view.exceeded_command() {
             Some(command) => command_words(command),
