@@ -83,6 +83,7 @@ pub enum StructureFactor {
 /// let g = structure.compensator(&x).transfer_function()?;
 /// assert!((g.gain() - 20.0).abs() < 1e-12); // 2 (s/5 + 1)/(s (s/50 + 1))
 /// assert_eq!((structure.order()?, structure.relative_degree()?, structure.dimension()), (2, 1, 3));
+/// assert_eq!(structure.integrators(), 1);
 /// assert!((structure.high_frequency_gain_db(&x)? - 26.0206).abs() < 1e-4); // of 20
 /// # Ok(())
 /// # }
@@ -250,6 +251,31 @@ impl Structure {
         })
     }
 
+    /// The place in x of the frequency of the first pole, or pair of poles, that is free.
+    ///
+    /// # Example
+    /// ```
+    /// # use phea_qft::loop_shaping::{Structure, StructureFactor};
+    /// let parts = [10.0, 20.0].map(|least| StructureFactor::RealPole { frequency: [least, 20.0] });
+    /// let of = |parts: &[StructureFactor]| {
+    ///     Structure { sign: 1.0, gain: [0.1, 10.0], parts: parts.to_vec() }.free_pole()
+    /// };
+    /// // behind the gain, which is free; a pole without a range has no place
+    /// assert_eq!([of(&parts), of(&parts[1..])], [Some(1), None]);
+    /// ```
+    pub fn free_pole(&self) -> Option<usize> {
+        let mut place = usize::from(is_free(&self.gain));
+        for part in &self.parts {
+            let ranges: Vec<[f64; 2]> = part.ranges().collect();
+            let is_pole = matches!(part, StructureFactor::RealPole { .. } | StructureFactor::PolePair { .. });
+            if is_pole && ranges.first().is_some_and(is_free) {
+                return Some(place);
+            }
+            place += ranges.iter().filter(|range| is_free(range)).count();
+        }
+        None
+    }
+
     /// Least and greatest value of every number, that of the gain first.
     fn ranges(&self) -> impl Iterator<Item = [f64; 2]> {
         std::iter::once(self.gain).chain(self.parts.iter().flat_map(StructureFactor::ranges))
@@ -270,6 +296,14 @@ impl Structure {
         let mut free = Vec::with_capacity(all.size_hint().0);
         free.extend(all.zip(self.ranges()).filter(|(_, range)| is_free(range)).map(|(one, _)| one));
         free
+    }
+
+    /// Integrators, s = 0 among the poles.
+    #[must_use]
+    pub fn integrators(&self) -> usize {
+        let is_integrator =
+            |part: &&StructureFactor| matches!(part, StructureFactor::Fixed(Element::Integrator));
+        self.parts.iter().filter(is_integrator).count()
     }
 
     /// Number of poles.
