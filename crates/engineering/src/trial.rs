@@ -19,6 +19,7 @@ pub use judge::{OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, SETTLING_ROOM, percent_w
 pub use crate::linear_step::StepResponse;
 use corners::{runs_of_corners, worst_of};
 pub use first_steps::MOST_OF_SCENARIOS;
+use first_steps::RequiredOfSteps;
 pub(crate) use required::BAND_WITH_ROOM;
 pub use required::HeldRequirement;
 pub(crate) use rigs::waves_alone;
@@ -72,7 +73,7 @@ pub struct Trial {
     /// The runs of all corners of the box and plants inside that were driven, whose worst are among
     /// `runs`.
     pub corners: Vec<TrialRun>,
-    /// Plants for which no rig was found, and why.
+    /// Plants for which no rig was found, and why, and steps that were left out.
     pub not_driven: Vec<String>,
 }
 
@@ -117,6 +118,12 @@ impl Trial {
         self.worst_run() <= 1.0 && self.worst_run_with_room() > LATE_WITHOUT_ROOM
     }
 
+    /// True where corners of the box were driven, and not through the largest step.
+    pub fn keeps_largest_from_corners(&self) -> bool {
+        let has_largest = |runs: &[TrialRun]| runs.iter().any(|run| run.size == StepSize::Largest);
+        !self.corners.is_empty() && has_largest(&self.runs) && !has_largest(&self.corners)
+    }
+
     /// The worst of all runs.
     pub fn agreement(&self) -> Agreement {
         self.runs.iter().map(|run| run.agreement).max().unwrap_or(Agreement::Agrees)
@@ -140,7 +147,12 @@ pub fn tried(
         return Ok(None);
     }
     let rig = setup.rig()?;
-    let (rigs, not_driven) = rigs::rigs(setup, rig, problem, view);
+    let (rigs, mut not_driven) = rigs::rigs(setup, rig, problem, view);
+    let left_out = RequiredOfSteps::of(&problem.in_time).left_out((setup.project, rig));
+    let force = |force_n: f64| setup.project.units.force.short(force_n, 3);
+    let words =
+        |[from, to]: [f64; 2]| format!("a smaller step of a scenario, {} to {}", force(from), force(to));
+    not_driven.extend(left_out.into_iter().map(words));
     let count = rigs.len() as f64 + CORNERS_SHARE;
     let from = rigs.len() as f64 / count;
     let all = driven(source, &rigs, problem, &mut within(&mut *watch, [0.0, 0.9 * from]))?;

@@ -262,16 +262,18 @@ fn every_run_is_held_against_the_required_step() {
     }
 }
 
-/// What holds for every step is tried the other way too, and in the steps of the scenarios, each
-/// pair of references once; a step of a size of its own is tried alone.
+/// What holds for every step is tried the other way too, and in the three largest steps of the
+/// scenarios, each pair of references once; a step of a size of its own is tried alone.
 #[test]
 fn a_requirement_of_every_step_is_tried_both_ways_and_in_scenarios() {
     let request = Request::Verify { proof: false, on_machine: true };
     let scenario = "[[scenario]]\nname = \"pull\"\nduration = \"2 s\"\nreference = [\
         { at = \"0 s\", force = \"0 N\" }, { at = \"0.5 s\", force = \"-600 N\" }, \
-        { at = \"1 s\", force = \"0 N\" }, { at = \"1.5 s\", force = \"150 N\" }]\n";
+        { at = \"1 s\", force = \"0 N\" }, { at = \"1.5 s\", force = \"150 N\" }, \
+        { at = \"1.8 s\", force = \"100 N\" }]\n";
+    let answered = |step: &str| answer(&format!("{}{scenario}", rig(step)), &request).0;
     let of = |step: &str| {
-        let found = answer(&format!("{}{scenario}", rig(step)), &request).0;
+        let found = answered(step);
         let runs = found["machine"]["runs"].as_array().unwrap().clone();
         let is_declared = |run: &Value| run["what"].as_str().unwrap().starts_with("the rig as declared");
         let runs: Vec<Value> = runs.into_iter().filter(is_declared).collect();
@@ -294,6 +296,8 @@ fn a_requirement_of_every_step_is_tried_both_ways_and_in_scenarios() {
     let scenarios = runs.iter().filter(|(size, _)| size == "scenario").map(|(_, ends)| *ends);
     let largest = vec![[0.0, 4000.0], [0.0, -600.0], [0.0, 150.0]];
     assert_eq!((from, scenarios.collect::<Vec<[f64; 2]>>()), (same, largest));
+    let left = &answered("settling_time = 30\n")["machine"]["not_driven"];
+    assert_eq!(*left, serde_json::json!(["a smaller step of a scenario, 150 N to 100 N"]));
     let stated = of("settling_time = 30\namplitude = \"300 N\"\n");
     assert!(stated.iter().all(|(size, _)| ["required", "largest_unsaturated"].contains(&size.as_str())));
     // a force before the step alone leaves its direction open

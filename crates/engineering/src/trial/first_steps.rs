@@ -7,7 +7,7 @@
 //! a requirement of every step                              -> the same the other way, and the steps of the scenarios
 //! ```
 
-use super::run::StepSize;
+use super::run::{Leg, StepSize};
 use super::steps::{HeldLegs, Steps};
 use crate::project::Project;
 use crate::rig::Rig;
@@ -52,7 +52,19 @@ impl RequiredOfSteps {
 
     /// The steps of a machine.
     pub(super) fn first_steps(&self, (project, rig): (&Project, &Rig), legs: HeldLegs) -> Vec<FirstSteps> {
-        let mut all: Vec<FirstSteps> = Vec::new();
+        self.wanted((project, rig), legs).0
+    }
+
+    /// The smaller steps of the scenarios, through which it is not driven, from and to, N.
+    pub(super) fn left_out(&self, (project, rig): (&Project, &Rig)) -> Vec<[f64; 2]> {
+        let held_anyhow = HeldLegs { hold_s: 0.0, last: Leg::There };
+        let left = self.wanted((project, rig), held_anyhow).1;
+        left.into_iter().map(|steps| [steps.from_n, steps.to_n]).collect()
+    }
+
+    /// The steps of a machine, and those of the scenarios that are left out.
+    fn wanted(&self, (project, rig): (&Project, &Rig), legs: HeldLegs) -> (Vec<FirstSteps>, Vec<Steps>) {
+        let (mut all, mut left): (Vec<FirstSteps>, Vec<Steps>) = (Vec::new(), Vec::new());
         for &required in &self.stated {
             let steps = Steps::first(rig, required, legs);
             let of = |steps| FirstSteps { size: StepSize::Required, required, steps };
@@ -66,14 +78,15 @@ impl RequiredOfSteps {
         }
         if self.of_every_step {
             all.extend(tenth.reversed(rig).map(|steps| of(StepSize::Reversed, steps)));
-            let scenarios = of_scenarios(project, &all, legs);
+            let mut scenarios = of_scenarios(project, &all, legs);
+            left = scenarios.split_off(MOST_OF_SCENARIOS.min(scenarios.len()));
             all.extend(scenarios.into_iter().map(|steps| of(StepSize::Scenario, steps)));
         }
-        all
+        (all, left)
     }
 }
 
-/// The largest steps of the scenarios that are not driven already.
+/// The steps of the scenarios that are not driven already, the largest first.
 fn of_scenarios(project: &Project, driven: &[FirstSteps], legs: HeldLegs) -> Vec<Steps> {
     let mut found: Vec<Steps> = Vec::new();
     for step in stepped_references(project).into_iter().flat_map(|stepped| stepped.steps) {
@@ -83,6 +96,5 @@ fn of_scenarios(project: &Project, driven: &[FirstSteps], legs: HeldLegs) -> Vec
         }
     }
     found.sort_by(|one, other| other.size().total_cmp(&one.size()));
-    found.truncate(MOST_OF_SCENARIOS);
     found
 }

@@ -137,7 +137,11 @@ fn meanings(trial: &Trial) -> Vec<String> {
     let driven = others.into_iter().filter(|(one, _)| trial.runs.iter().any(|run| run.agreement == *one));
     told.extend(driven.map(|(_, words)| words.to_string()));
     if trial.runs.iter().any(|run| run.size == StepSize::Largest) {
-        told.push(format!("\"largest step\": {}", largest_step_words()));
+        let but = match trial.keeps_largest_from_corners() {
+            true => "; corners of the box and plants inside it are driven through the other steps alone",
+            false => "",
+        };
+        told.push(format!("\"largest step\": {}{but}", largest_step_words()));
     }
     if trial.runs.iter().any(|run| run.remaining_amplitude_n.is_some()) {
         told.push(
