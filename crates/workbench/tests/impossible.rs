@@ -246,4 +246,13 @@ fn a_step_that_the_whole_voltage_does_not_bring_in_time() {
     let words = format!("{before_the_wave:?}");
     assert!(words.contains("no step settles") && !words.contains("times the flow"), "{words}");
     assert!(words.contains("or shorten the line"), "{words}");
+    // a requirement of every step is that of the scenarios' steps
+    let scenario = |time: f64, to: f64| {
+        let steps = format!("{{ at = \"0 s\", force = \"8 kN\" }}, {{ at = \"1 s\", force = \"{to} kN\" }}");
+        let required = rig(&format!("settling_time = \"{time} s\"\n"));
+        format!("{required}[[scenario]]\nname = \"up\"\nduration = \"2 s\"\nreference = [{steps}]\n")
+    };
+    let parts = [slowest, "of the 20 kN of a step of a scenario", "smaller steps in the scenarios"];
+    assert_begins(|time| scenario(-time, 28.0), -1.0, -0.002, key, &parts);
+    assert!(said(&scenario(0.05, 8.001)).is_empty());
 }

@@ -11,7 +11,7 @@
 
 use phea_dynamics::time_response::{step_response, uniform_times};
 use phea_dynamics::uncertain_plant::UncertainPlant;
-use phea_qft::family::Family;
+use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::verification::PlantPoint;
 
 use super::in_time::still_s;
@@ -19,7 +19,7 @@ use crate::project::{LateError, Project};
 use crate::quantity::{DisplayUnit, FORCE, display, significant};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
-use crate::simulate::{BeyondReach, TimeRequirement, steps_beyond};
+use crate::simulate::{BeyondReach, ReferenceStep, TimeRequirement, stepped_references, steps_beyond};
 
 /// Points of a step response.
 const POINTS: usize = 1000;
@@ -42,8 +42,32 @@ fn force(project: &Project, value: f64) -> String {
     display(value, project.motion().dimension(&FORCE), 4)
 }
 
+/// A step that is required.
+struct AskedStep {
+    from_n: f64,
+    size_n: f64,
+    /// True where a scenario makes it, and the requirement holds for every step.
+    of_scenario: bool,
+}
+
+/// The step of a requirement, or those of the scenarios where it holds for every step.
+fn asked(setup: &Setup<'_>, required: &TimeRequirement) -> Option<Vec<AskedStep>> {
+    let from_n = required.steps.initial_force_n.unwrap_or(setup.rig().ok()?.point.hydraulic_force);
+    if let Some(amplitude_n) = required.steps.amplitude_n {
+        return Some(vec![AskedStep { from_n, size_n: amplitude_n.abs(), of_scenario: false }]);
+    }
+    let scenarios = stepped_references(setup.project).into_iter().filter(|_| !required.steps.are_stated());
+    let steps = scenarios.flat_map(|stepped| stepped.steps);
+    let of = |step: ReferenceStep| AskedStep {
+        from_n: step.from_n,
+        size_n: (step.to_n - step.from_n).abs(),
+        of_scenario: true,
+    };
+    Some(steps.map(of).collect())
+}
+
 /// A step that the valve's whole voltage does not bring into its band in time, of the plant that
-/// does least.
+/// does least of it.
 fn too_slow(
     setup: &Setup<'_>,
     problem: &RobustProblem,
@@ -51,41 +75,55 @@ fn too_slow(
     few: &Family,
 ) -> Option<LateError> {
     let Family::Uncertain(few) = few else { return None };
-    let (amplitude_n, settling_s) = (required.steps.amplitude_n?, required.wish.settling_time_s?);
+    let settling_s = required.wish.settling_time_s?;
     if settling_s <= still_s(setup, problem) {
         return None;
     }
     let rig = setup.rig().ok()?;
-    let from_n = required.steps.initial_force_n.unwrap_or(rig.point.hydraulic_force);
     let stated = setup.project.controller.as_ref().and_then(|controller| controller.saturation);
     let limit_v = stated.unwrap_or(rig.actuator.components().valve.nominal_voltage);
     let time_s = settling_s - setup.timing.delay_s;
-    let each = few.members().iter().filter_map(|values| {
-        reached(few.plant(), values, (time_s, from_n), limit_v).map(|reached_n| (reached_n, values))
+    let share = 1.0 - required.wish.band_percent / 100.0;
+    let each = asked(setup, required)?.into_iter().filter_map(|step| {
+        let (reached_n, values) = least_reached(few, (time_s, step.from_n), limit_v)?;
+        Some((share * step.size_n / reached_n, step, reached_n, values))
     });
-    let (reached_n, values) = each.min_by(|one, other| one.0.total_cmp(&other.0))?;
+    let (ratio, step, reached_n, values) = each.max_by(|one, other| one.0.total_cmp(&other.0))?;
     let plant = problem.names.text(&PlantPoint::Parameters(values.clone()));
     let plant = if plant.is_empty() { String::new() } else { format!(" ({plant})") };
-    let needed_n = (1.0 - required.wish.band_percent / 100.0) * amplitude_n.abs();
-    (reached_n < needed_n).then(|| LateError {
+    let (of, smaller) = match step.of_scenario {
+        true => ("of a step of a scenario", "smaller steps in the scenarios"),
+        false => ("of the step", "a smaller `amplitude`"),
+    };
+    (ratio > 1.0).then(|| LateError {
         path: format!("specification[{}].settling_time", required.number - 1),
         message: format!(
-            "[[specification]] {}, `settling_time`: with at most {} V at the valve the slowest linear plant{plant} moves by {} of the {} of the step in {}",
+            "[[specification]] {}, `settling_time`: with at most {} V at the valve the slowest linear plant{plant} moves by {} of the {} {of} in {}",
             required.number,
             significant(limit_v, 3),
             force(setup.project, reached_n),
-            force(setup.project, amplitude_n.abs()),
+            force(setup.project, step.size_n),
             DisplayUnit::MILLISECOND.text(settling_s, 3),
         ),
-        help: match needed_n / reached_n {
-            ratio if ratio <= LARGER_VALVE => format!(
-                "require a smaller `amplitude` or more time, or take a valve with {} times the flow",
+        help: match ratio <= LARGER_VALVE {
+            true => format!(
+                "require {smaller} or more time, or take a valve with {} times the flow",
                 significant(ratio, 2)
             ),
-            _ => "require more time or a much smaller `amplitude`: no larger valve makes up for the time that is missing"
-                .to_string(),
+            false => format!(
+                "require more time or {smaller}: no larger valve makes up for the time that is missing"
+            ),
         },
     })
+}
+
+/// What [`reached`] says of the plant that does least, and its parameters.
+fn least_reached(few: &UncertainFamily, during: (f64, f64), limit_v: f64) -> Option<(f64, &Vec<f64>)> {
+    let each = few
+        .members()
+        .iter()
+        .filter_map(|values| Some((reached(few.plant(), values, during, limit_v)?, values)));
+    each.min_by(|one, other| one.0.total_cmp(&other.0))
 }
 
 /// The most that the plant with these parameters does within a time in s from an equilibrium at a
