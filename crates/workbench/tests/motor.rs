@@ -442,3 +442,14 @@ fn what_does_not_treat_a_motor_refuses_it() {
     }
     assert!(load(VANE, &[], &[]).project.motion().is_rotary());
 }
+
+/// What is refused at a line of the file is said in the words of a motor too.
+#[test]
+fn a_load_that_cannot_be_held_is_a_torque() {
+    let settings = ["operating_point.load_force=\"9 kN.m\""];
+    let error = try_answer(VANE, &settings, &[], &Request::Verify { on_machine: false, proof: false });
+    let CommandError::Refused(refusal) = error.unwrap_err() else { panic!() };
+    let message = &refusal.diagnostics[0].message;
+    assert!(message.contains("a load torque of 9000 N.m cannot be held: the valve holds"), "{message}");
+    assert!(message.ends_with(" N.m"), "{message}");
+}
