@@ -230,6 +230,7 @@ fn an_impossible_step_ends_a_design_at_once() {
 }
 
 /// The valve moves the force by at most U V(t): far less than 20 kN in 2 ms, and more in 1 s.
+// ORIGIN: written by hand, a step of 20 kN, and one of 1 N
 #[test]
 fn a_step_that_the_whole_voltage_does_not_bring_in_time() {
     let in_time = |time: f64| {
