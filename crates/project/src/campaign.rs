@@ -66,7 +66,7 @@ impl Campaign {
         let k = plain("distribution", "Default distribution of the parameters.");
         v.choice(k, &DISTRIBUTIONS, &mut self.distribution, false);
         v.text(plain("scenario", "Which scenario is driven; absent, the first."), &mut self.scenario, false);
-        let k = key("runs", &RATIO, "How many runs a report makes; absent: 500.").at_least(1.0);
+        let k = key("runs", &RATIO, "How many runs a report makes; absent: 200.").at_least(1.0);
         v.optional_count(k, &mut self.runs);
         let k = plain("parameters", "What is varied, by its path.");
         v.dictionary(

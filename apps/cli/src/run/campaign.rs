@@ -2,7 +2,6 @@
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{ErrorKind, Read as _, Seek as _, SeekFrom, Write as _};
-use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -32,15 +31,11 @@ pub(super) fn request(
     (threads, files): (Option<u16>, bool),
 ) -> Result<CampaignRequest, String> {
     let shard = shard.map(Shard::read).transpose().map_err(|error| error.to_string())?.unwrap_or_default();
-    let all = || std::thread::available_parallelism().map_or(1, NonZero::get);
-    let threads = threads.map_or_else(all, usize::from);
+    let all = Effort::on_all_cores();
+    let effort = threads.map_or(all, |threads| Effort { threads: threads.into(), ..all });
     let asked = match (run, runs) {
         (Some(run), _) => CampaignRuns::One(run),
-        (None, runs) => CampaignRuns::All(RequestedRuns {
-            runs: runs.unwrap_or_default(),
-            shard,
-            effort: Effort { threads, ..Effort::default() },
-        }),
+        (None, runs) => CampaignRuns::All(RequestedRuns { runs: runs.unwrap_or_default(), shard, effort }),
     };
     Ok(CampaignRequest { seed, asked, files })
 }

@@ -9,6 +9,7 @@ use std::time::Duration;
 use super::plan::Plan;
 use super::queue::{Finished, MACHINES, Shared, in_lanes, one_by_one};
 use super::{CampaignError, Row};
+use crate::side_by_side::all_cores;
 
 /// How long rows are collected before they are reported and the watch is called again: a round.
 const ROUND: Duration = Duration::from_millis(20);
@@ -43,6 +44,13 @@ pub(super) enum News {
     Rows(Vec<Finished>),
     /// Rows that wait for an earlier run. They are passed on again in their turn.
     Ahead(Vec<Row>),
+}
+
+impl Effort {
+    /// All cores, with lanes.
+    pub fn on_all_cores() -> Effort {
+        Effort { threads: all_cores().at_once, ..Effort::default() }
+    }
 }
 
 /// Takes a notification; the campaign stops soon after the answer `false`.

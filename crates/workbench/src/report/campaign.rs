@@ -6,8 +6,8 @@ use phea_dynamics::watch::{Stopped, Watch};
 use super::chapter::Chapter;
 use crate::answer::significant;
 use crate::campaign::{
-    CampaignError, METRIC_NAMES, Plan, QUANTILES, RequestedRuns, Row, Shard, Spread, Summary, VariedRange,
-    WorstRun, beyond_box, campaign, counted, lumps, metrics, pictures, requirement,
+    CampaignError, Effort, METRIC_NAMES, Plan, QUANTILES, RequestedRuns, Row, Shard, Spread, Summary,
+    VariedRange, WorstRun, beyond_box, campaign, counted, lumps, metrics, pictures, requirement,
 };
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
@@ -18,7 +18,7 @@ use crate::simulate::{Cause, Window, cause_words, metric_of};
 use crate::source::Source;
 
 /// Number of runs where the project states none, and their seed.
-const RUNS: u64 = 500;
+const RUNS: u64 = 200;
 const SEED: u32 = 1;
 /// Runs from which the work of all is estimated.
 const PILOT_RUNS: u64 = 8;
@@ -75,7 +75,7 @@ pub(super) fn driven(
     let asked = loaded.project.campaign.as_ref().and_then(|campaign| campaign.runs).map_or(RUNS, u64::from);
     let mut told = || -> Result<_, CampaignError> {
         let plan = Plan::new(source, loaded, SEED)?;
-        let of = |runs: u64| RequestedRuns { runs, shard: Shard::default(), effort: Default::default() };
+        let of = |runs: u64| RequestedRuns { runs, shard: Shard::default(), effort: Effort::on_all_cores() };
         let pilot = campaign(&plan, of(asked.min(PILOT_RUNS)), None, watch)?;
         let runs = within_budget(asked, &pilot);
         let rows = campaign(&plan, of(runs), None, watch)?;
