@@ -2,7 +2,6 @@
 //! `phea_qft`, and their wording.
 
 mod alone;
-mod both_loops;
 mod dead_time;
 mod in_time;
 mod margins;
@@ -12,11 +11,13 @@ mod proven;
 mod remark;
 mod signal_noise;
 mod stability;
+mod whole_loop;
 mod words;
 pub use signal_noise::{NoisySignal, SignalNoise, SignalNoiseEffect};
 pub(crate) use words::rounded;
 pub use words::{evidence_key, evidence_sentence, finding_sentence, place_words};
 
+pub use crate::common_position::CommonPosition;
 pub(crate) use alone::{caveat as caveat_of_rig, unexamined as unexamined_rig};
 pub use dead_time::LoopDeadTime;
 pub use in_time::{TimeFinding, TimeOutcome, Unexamined, WorstStep};
@@ -29,6 +30,7 @@ pub use prefilter::PrefilterGain;
 pub use proven::{prove_audit, standing_word, try_to_prove, why_not_proven};
 pub use remark::remark_sentences;
 pub use stability::{infinity_sentence, stability_reason, stability_sentence};
+pub use whole_loop::DelayedPaths;
 pub use words::{
     closed_loop_symbol, frequency_number, frequency_words, margin_words, meaning, verdict_key, verdict_words,
     worst_at_design,
@@ -148,15 +150,17 @@ pub struct ProjectAudit {
     pub specification_names: Vec<String>,
     /// The number in the file, from 1, of each that is declared there; the others come after them.
     pub specification_numbers: Vec<usize>,
+    /// Where every plant is taken; `None` where they differ in it, and without a rig.
+    pub position: Option<CommonPosition>,
     /// Number of plants of the family.
     pub members: usize,
     /// Whether everything between them belongs to the family.
     pub whole_box: bool,
     /// Why its plants have no polynomials; `None` where they have them.
     pub without_polynomials: Option<&'static str>,
-    /// True where the delay margin is that of the controller and of a pressure feedback together;
-    /// gain, phase and modulus margins are those of the force loop around that feedback.
-    pub feeds_pressures_back: bool,
+    /// Paths that the delay margin delays with the controller; gain, phase and modulus margins are
+    /// those of the force loop around them.
+    pub delayed_paths: DelayedPaths,
     /// s; `None` for a continuous controller.
     pub sample_time_s: Option<f64>,
     /// Delay of the loop, s.
@@ -256,9 +260,10 @@ impl ProjectAudit {
     /// does not contain it.
     pub(crate) fn new(problem: &RobustProblem, mut audit: Audit, of_rig: Option<Caveat>) -> ProjectAudit {
         let RobustProblem { family, compensation, .. } = problem;
-        let of_both_loops = both_loops::least_delay(problem, &audit);
-        let feeds_pressures_back = of_both_loops.is_some();
-        audit.delay_margin = of_both_loops.or(audit.delay_margin);
+        let delayed_paths = DelayedPaths::of(problem);
+        if delayed_paths.are_some() {
+            audit.delay_margin = whole_loop::least_delay(problem, &audit).or(audit.delay_margin);
+        }
         let caveats: Vec<Caveat> = of_rig.into_iter().chain(problem.caveats.clone()).collect();
         if audit.verdict == Verdict::Met && caveats.iter().any(|caveat| caveat.unproven) {
             audit.verdict = Verdict::NotProven;
@@ -273,7 +278,8 @@ impl ProjectAudit {
         let [velocity_noise, pressure_noise] = [NoisySignal::LoadVelocity, NoisySignal::Pressures].map(noise);
         let nominal = margins.nominal.as_ref().and_then(|set| {
             let own = nominal_margins(problem)?;
-            let delay_margin_s = if feeds_pressures_back { set.delay_s.value } else { own.delay_margin_s };
+            let delay_margin_s =
+                if delayed_paths.are_some() { set.delay_s.value } else { own.delay_margin_s };
             Some(NominalMargins { delay_margin_s, ..own })
         });
         ProjectAudit {
@@ -284,12 +290,13 @@ impl ProjectAudit {
             names: problem.names.clone(),
             specification_names: problem.specification_names.clone(),
             specification_numbers: problem.specification_numbers.clone(),
+            position: problem.position.filter(|_| matches!(family, Family::Uncertain(_))),
             members: match family {
                 Family::Uncertain(family) => family.members().len(),
                 Family::Measured(family) => family.plants().len(),
             },
             without_polynomials: problem.without_polynomials,
-            feeds_pressures_back,
+            delayed_paths,
             whole_box: matches!(family, Family::Uncertain(family) if family.extent() == Extent::Box),
             sample_time_s: compensation.sample_time_s(),
             delay_s: compensation.delay_s(),

@@ -21,6 +21,7 @@ pub mod audit;
 pub mod bench;
 pub mod campaign;
 pub mod caveat;
+mod common_position;
 pub mod csv;
 pub mod derived;
 pub mod design;

@@ -15,6 +15,7 @@ use phea_qft::template::{BuiltTemplate, TemplateError, TemplateOptions, Template
 use phea_qft::verification::PlantPoint;
 
 use crate::caveat::{Caveat, caveats};
+use crate::common_position::CommonPosition;
 use crate::family::{ProjectFamilyError, family};
 use crate::limit_kind::{DesignLimitKind, limit_key};
 use crate::plant_names::PlantNames;
@@ -63,6 +64,8 @@ pub struct RobustProblem {
     pub pressure_noise: f64,
     /// A margin of minus this much still counts as met, dB.
     pub tolerance_db: f64,
+    /// Where every plant is taken; `None` where they differ in it, and without a rig.
+    pub position: Option<CommonPosition>,
     /// How the rig moves.
     pub units: Units,
     /// Declared effects that none of this includes.
@@ -175,6 +178,7 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
         velocity_noise: velocity_noise(setup.project),
         pressure_noise: pressure_noise(setup.project),
         tolerance_db: setup.project.tolerance_db().unwrap_or(default_tolerance_db),
+        position: CommonPosition::of(setup),
         units: setup.project.units,
         caveats: caveats(setup),
     })

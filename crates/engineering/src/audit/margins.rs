@@ -16,7 +16,7 @@ use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::{Audit, PlantPoint, SpecificationFinding, Verdict};
 
-use super::both_loops;
+use super::whole_loop;
 use crate::robust::RobustProblem;
 
 /// A margin, and where it is.
@@ -127,7 +127,7 @@ impl AuditMargins {
         search.between();
         let MarginSearch { worst, plants, .. } = search;
         let family = worst.map(|worst| with_audited(worst, audit));
-        let nominal = nominal.map(|nominal| with_both_loops(problem, nominal));
+        let nominal = nominal.map(|nominal| with_whole_loop(problem, nominal));
         // a delay between whole samples also changes the sampled plant: the audit samples it anew
         let least_s = family.as_ref().map_or(0.0, |family| family.delay_s.value);
         let nominal = nominal.map(|mut nominal| {
@@ -159,9 +159,9 @@ fn with_audited(mut worst: MarginSet, audit: &Audit) -> MarginSet {
     worst
 }
 
-/// With the delay that force loop and pressure feedback tolerate together.
-fn with_both_loops(problem: &RobustProblem, mut nominal: MarginSet) -> MarginSet {
-    if let Some(found) = both_loops::delay_margin(problem, &nominal.delay_s.plant) {
+/// With the delay that the force loop and the paths within it tolerate together.
+fn with_whole_loop(problem: &RobustProblem, mut nominal: MarginSet) -> MarginSet {
+    if let Some(found) = whole_loop::delay_margin(problem, &nominal.delay_s.plant) {
         nominal.delay_s = LoopMargin {
             value: found.delay_s,
             frequency_rad_per_s: found.delay_s.is_finite().then_some(found.frequency_rad_per_s),

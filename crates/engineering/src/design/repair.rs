@@ -192,6 +192,7 @@ fn alone_in_loop(plant: &UncertainPlant, design: &ProjectDesign) -> RobustProble
     RobustProblem {
         family: Family::Uncertain(UncertainFamily::of_nominal(plant.clone())),
         before_feedback: None,
+        position: None,
         rig_outside: None,
         caveats: vec![],
         ..design.designed.problem.clone()
@@ -210,6 +211,7 @@ fn family_with_waves(
     let problem = RobustProblem {
         family,
         before_feedback: None,
+        position: None,
         rig_outside: None,
         caveats: vec![],
         ..found.designed.problem.clone()

@@ -6,6 +6,7 @@ use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::verification::Verdict;
 
 use super::{CommandOfSteps, DesignPart, ProjectDesign, Repair, RepairStatus};
+use crate::audit::DelayedPaths;
 use crate::project::{DESIGN_OBJECTIVES, word_of};
 use crate::quantity::significant;
 use crate::robust::DEFAULT_TOLERANCE_DB;
@@ -43,6 +44,15 @@ fn within_tolerance(view: &ProjectDesign) -> String {
 
 fn satisfaction(view: &ProjectDesign) -> &'static str {
     if view.is_met() { "satisfies every specification" } else { "does not satisfy every specification" }
+}
+
+/// What leaves more of the delay, where a path within the force loop is delayed too.
+fn delay_cure(paths: DelayedPaths) -> &'static str {
+    match (paths.pressure_feedback, paths.velocity_feed_forward) {
+        (true, _) => ": a smaller gain of the pressure feedback leaves more",
+        (false, true) => ": a smaller gain of the velocity feed-forward leaves more",
+        (false, false) => "",
+    }
 }
 
 /// The sentence on a stopped design.
@@ -85,10 +95,7 @@ pub fn status_sentence(view: &ProjectDesign) -> String {
                 .to_string()
         }
         DesignStatus::Met if !view.tolerates_its_delay && view.exceeded_command().is_none() => {
-            let cure = match view.designed.view.feeds_pressures_back {
-                true => ": a smaller gain of the pressure feedback leaves more",
-                false => "",
-            };
+            let cure = delay_cure(view.designed.view.delayed_paths);
             format!(
                 "not met: the controller satisfies every specification, and its loop tolerates less further delay than `design.minimum_delay_margin` requires{cure}"
             )

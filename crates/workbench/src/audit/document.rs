@@ -4,7 +4,7 @@ use phea_dynamics::portable;
 use phea_qft::proof::{Proof, Standing};
 use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
 
-use super::{NominalMargins, ProjectAudit, below_design, in_time, margins};
+use super::{DelayedPaths, NominalMargins, ProjectAudit, below_design, in_time, margins};
 use super::{
     closed_loop_symbol, evidence_sentence, finding_sentence, infinity_sentence, place_words,
     remark_sentences, stability_sentence, standing_word, verdict_words, why_not_proven, worst_at_design,
@@ -76,9 +76,18 @@ fn delay_sentence(view: &ProjectAudit) -> Option<String> {
     Some(format!(
         "the loop tolerates {} ms more delay{} before a plant becomes unstable, {}",
         DisplayUnit::MILLISECOND.number(margin.delay_s, 3),
-        if view.feeds_pressures_back { ", of controller and pressure feedback alike," } else { "" },
+        delayed_words(view.delayed_paths),
         place_words(margin.frequency_rad_per_s)
     ))
+}
+
+fn delayed_words(paths: DelayedPaths) -> &'static str {
+    match (paths.pressure_feedback, paths.velocity_feed_forward) {
+        (true, true) => ", of controller, pressure feedback and velocity feed-forward alike,",
+        (true, false) => ", of controller and pressure feedback alike,",
+        (false, true) => ", of controller and velocity feed-forward alike,",
+        (false, false) => "",
+    }
 }
 
 /// A margin, and where.
@@ -230,6 +239,9 @@ pub(crate) fn basis(view: &ProjectAudit) -> Vec<String> {
     let audit = &view.audit;
     let mut sentences =
         vec![view.family_sentence(), view.loop_sentence(), evidence_sentence(view), tolerance(view)];
+    if let Some(position) = &view.position {
+        sentences.insert(1, position.sentence());
+    }
     sentences.extend(infinity_sentence(&audit.stability, &view.names));
     sentences.extend(audit.stability.folding.and_then(folding));
     sentences.extend(margins::sentence(view));

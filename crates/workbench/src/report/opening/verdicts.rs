@@ -52,6 +52,9 @@ fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
         let verdict = Cell::verdict(view.verdict()).then(missed);
         Some(verdict.then(proven(side.is_proven().unwrap_or(false))).strong())
     }));
+    rows.extend(row("position of every plant", sides, |side| {
+        Some(Cell::from(side.view?.position.as_ref()?.words()))
+    }));
     rows.extend(row("every plant stable", sides, |side| {
         let verdict = side.view?.audit.stability.verdict;
         let word = match verdict {

@@ -1,13 +1,13 @@
-//! The delay that force loop and pressure feedback tolerate together: one computer closes both, and
-//! what delays it delays both.
+//! The delay that the force loop and the paths within it tolerate together: one computer closes
+//! all of them, and what delays it delays each.
 //!
 //! ```text
-//! 1 + L_t e^(-s tau) = 0,    1 + L_t = (1 + H_p P_p) (1 + L) = P_0/P (1 + L)
+//! 1 + L_t e^(-s tau) = 0,    1 + L_t = P_0/P (1 + L),    P_0/P = 1 + H_p P_p - H_v P_v
 //! ```
 //!
-//! L_t is the whole loop, cut at the command; P the plant with the pressure feedback in it, which
-//! is that of L, and P_0 the plant without. The force loop alone tolerates more: cut there, the
-//! pressures are fed back as early as before.
+//! L_t is the whole loop, cut at the command; P the plant with the pressure feedback H_p and the
+//! velocity feed-forward H_v in it, which is that of L, and P_0 the plant without. The force loop
+//! alone tolerates more: cut there, pressures and velocity act as early as before.
 
 use num_complex::Complex64;
 
@@ -19,7 +19,7 @@ use phea_qft::stability::{CriticalDelay, DelayMargin, StabilityStatus, borne_del
 use phea_qft::verification::{Audit, PlantPoint};
 
 use super::margins::response::{filled, phase_margins};
-use super::margins::{corners, spread, worst_of};
+use super::margins::{corners, nominal_point, spread, worst_of};
 use crate::robust::RobustProblem;
 use crate::side_by_side::of_each;
 
@@ -33,9 +33,39 @@ const GRID_POINTS: usize = 400;
 const DECADES: f64 = 1e-4;
 /// End of the grid of a continuous loop, rad/s.
 const END_OF_CONTINUOUS: f64 = 2e4;
+/// Share of that end at which a path within shows whether it changes the plant.
+const TOUCH: f64 = 0.1;
 
-/// The least delay in s that makes a plant of the family unstable; `None` without a pressure
-/// feedback, and where no response is known.
+/// Paths within the force loop that are delayed with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DelayedPaths {
+    /// From the pressures of the chambers.
+    pub pressure_feedback: bool,
+    /// From the velocity of a load that the force moves.
+    pub velocity_feed_forward: bool,
+}
+
+impl DelayedPaths {
+    /// None where the velocity of the load does not depend on the force, and nothing else is fed
+    /// back.
+    pub(super) fn of(problem: &RobustProblem) -> DelayedPaths {
+        let RobustProblem { before_feedback, compensation, .. } = problem;
+        let nominal = WholeLoop::of((problem, compensation), &nominal_point(problem));
+        let closes = nominal.is_some();
+        let pressure_feedback =
+            closes && (before_feedback.is_some() || compensation.inner_feedback().is_some());
+        let velocity_feed_forward = closes && compensation.rate_feed_forward() != 0.0;
+        DelayedPaths { pressure_feedback, velocity_feed_forward }
+    }
+
+    /// True where there is one.
+    pub fn are_some(self) -> bool {
+        self.pressure_feedback || self.velocity_feed_forward
+    }
+}
+
+/// The least delay in s that makes a plant of the family unstable; `None` without such a path, and
+/// where no response is known.
 pub(super) fn least_delay(problem: &RobustProblem, audit: &Audit) -> Option<DelayMargin> {
     audit.delay_margin.as_ref()?;
     let Family::Uncertain(family) = &problem.family else { return None };
@@ -72,7 +102,7 @@ pub(super) fn delay_margin(problem: &RobustProblem, plant: &PlantPoint) -> Optio
     Some(DelayMargin { delay_s, frequency_rad_per_s, plant: plant.clone() })
 }
 
-/// A plant in its loop, and the same without pressure feedback.
+/// A plant in its loop, and the same without the paths within.
 struct WholeLoop<'c> {
     compensation: &'c Compensation,
     with: Member,
@@ -80,7 +110,7 @@ struct WholeLoop<'c> {
 }
 
 impl<'c> WholeLoop<'c> {
-    /// `None` where no pressure is fed back.
+    /// `None` where no path within changes the plant.
     fn of(
         (problem, compensation): (&RobustProblem, &'c Compensation),
         plant: &PlantPoint,
@@ -90,12 +120,23 @@ impl<'c> WholeLoop<'c> {
         };
         let before = match &problem.before_feedback {
             Some(Family::Uncertain(before)) => before,
-            _ if compensation.inner_feedback().is_some() => family,
+            _ if compensation.inner_feedback().is_some() || compensation.rate_feed_forward() != 0.0 => family,
             _ => return None,
         };
-        let without = compensation.without_inner_feedback().member_of(before.plant(), values).ok()?;
+        let without = compensation.without_inner_paths().member_of(before.plant(), values).ok()?;
         let with = compensation.member_of(family.plant(), values).ok()?;
-        Some(WholeLoop { compensation, with, without })
+        let whole = WholeLoop { compensation, with, without };
+        (!whole.is_force_loop()).then_some(whole)
+    }
+
+    /// True where the paths within leave the plant as it is.
+    fn is_force_loop(&self) -> bool {
+        let at = TOUCH * self.highest();
+        self.with.response(at).map(|seen| seen.plant) == self.without.response(at).map(|seen| seen.plant)
+    }
+
+    fn highest(&self) -> f64 {
+        self.compensation.highest_frequency_rad_per_s().min(END_OF_CONTINUOUS)
     }
 
     /// L_t
@@ -109,7 +150,7 @@ impl<'c> WholeLoop<'c> {
 
     /// The least phase over frequency where |L_t| passes 1.
     fn critical_delay(&self) -> Option<CriticalDelay> {
-        let highest = self.compensation.highest_frequency_rad_per_s().min(END_OF_CONTINUOUS);
+        let highest = self.highest();
         let frequencies = logarithmic_grid(DECADES * highest, highest, GRID_POINTS).ok()?;
         let at = |frequency: f64| Some((frequency, self.at(frequency)?));
         let crossings = phase_margins(&filled(frequencies.into_iter(), &at), &at).into_iter();

@@ -1,0 +1,42 @@
+//! The position of the piston at which every plant of a family is taken.
+
+use crate::quantity::Units;
+use crate::setup::Setup;
+
+/// A position in m, or in rad of a motor, that no plant of the family varies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CommonPosition {
+    /// From the end of chamber A.
+    pub position: f64,
+    /// The length of the stroke.
+    pub stroke: f64,
+    units: Units,
+}
+
+impl CommonPosition {
+    /// `None` without a rig, of a motor that turns on, and where the family varies the position.
+    pub(crate) fn of(setup: &Setup<'_>) -> Option<CommonPosition> {
+        let project = setup.project;
+        let mut varied = project.uncertain_numbers().into_iter();
+        if varied.any(|one| one.name == "operating_point.position") {
+            return None;
+        }
+        let rig = setup.rig().ok()?;
+        let stroke = rig.actuator.components().cylinder.stroke.length()?;
+        Some(CommonPosition { position: rig.point.position, stroke, units: project.units })
+    }
+
+    /// `100 mm of 200 mm of stroke`
+    pub fn words(&self) -> String {
+        let [position, stroke] = [self.position, self.stroke].map(|x| self.units.position.short(x, 4));
+        format!("{position} of {stroke} of stroke")
+    }
+
+    /// The same, with what includes other positions.
+    pub fn sentence(&self) -> String {
+        format!(
+            "Position: every plant is taken at {}. Elsewhere the oil is stiffer or softer: nothing is said of a loop there, unless `position` in [family.operating_region] includes it.",
+            self.words()
+        )
+    }
+}
