@@ -13,6 +13,10 @@ use crate::robust::RobustProblem;
 const DURATIONS_S: [f64; 4] = [0.5, 2.0, 10.0, 40.0];
 const POINTS: usize = 4000;
 
+/// Settling times over which a response is known: a slow part of it may be highest long after it
+/// has settled within the band.
+const KNOWN_SETTLING_TIMES: f64 = 5.0;
+
 /// Bounds of the duration of a step, s.
 const SHORTEST_HOLD_S: f64 = 0.5;
 pub(super) const LONGEST_HOLD_S: f64 = 20.0;
@@ -41,11 +45,18 @@ pub(super) fn predicted(tried: &Tried, problem: &RobustProblem) -> Result<Predic
     for duration in DURATIONS_S {
         let Ok(response) = linear_step(&member, compensation, duration, POINTS) else { break };
         let metrics = step_metrics(&response.times_s, &response.values, StepBaseline::unit(), BAND_PERCENT)?;
-        let settles_early = metrics.settling.time_s().is_some_and(|time_s| time_s < 0.5 * duration);
+        let settles_s = metrics.settling.time_s().filter(|time_s| *time_s < 0.5 * duration);
         found = Prediction::Step(metrics, response);
-        if settles_early {
-            break;
+        let Some(settles_s) = settles_s else { continue };
+        let known_s = KNOWN_SETTLING_TIMES * settles_s;
+        if known_s > duration
+            && let Ok(response) = linear_step(&member, compensation, known_s, POINTS)
+        {
+            let (times_s, values) = (&response.times_s, &response.values);
+            let metrics = step_metrics(times_s, values, StepBaseline::unit(), BAND_PERCENT)?;
+            found = Prediction::Step(metrics, response);
         }
+        break;
     }
     Ok(found)
 }

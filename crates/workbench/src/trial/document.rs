@@ -1,7 +1,7 @@
 //! The trial of a verdict on the machine, for people.
 
 use super::{
-    Agreement, BAND_PERCENT, MOST_OF_SCENARIOS, OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, SETTLING_ROOM,
+    Agreement, BAND_PERCENT, Leg, MOST_OF_SCENARIOS, OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, SETTLING_ROOM,
     StepResponse, StepSize, Trial, TrialRun, TrialStep, agreement_word, largest_step_words, percent_words,
 };
 use crate::document::{Cell, Document, Table};
@@ -20,7 +20,9 @@ fn headline(trial: &Trial) -> String {
     }
     let both = |run: &TrialRun| {
         let own_s = run.machine.as_ref()?.settling_time_s?;
-        Some((own_s, run.linear.as_ref()?.settling_time_s?, step_words(run)))
+        let slowest = run.legs.iter().find(|(_, step)| step.settling_time_s == Some(own_s));
+        let is_back = slowest.is_some_and(|(leg, _)| *leg == Leg::Back);
+        Some((own_s, run.linear.as_ref()?.settling_time_s?, ends_words(run, is_back)))
     };
     let apart = |own_s: &f64, linear_s: &f64| (own_s / linear_s).max(linear_s / own_s);
     let furthest = trial.runs.iter().filter_map(both);
@@ -198,8 +200,13 @@ fn corners(trial: &Trial) -> Vec<String> {
 
 /// From one reference to the other.
 fn step_words(run: &TrialRun) -> String {
+    ends_words(run, false)
+}
+
+/// The same, or back.
+fn ends_words(run: &TrialRun, is_back: bool) -> String {
     let [from, to] = run.reference_n.map(|force| run.units.force.short(force, 3));
-    format!("{from} to {to}")
+    if is_back { format!("{to} to {from}") } else { format!("{from} to {to}") }
 }
 
 /// Fraction of the step below which an oscillation counts as none.
