@@ -17,7 +17,7 @@ use phea_qft::verification::PlantPoint;
 use super::in_time::still_s;
 use crate::project::{LateError, Project};
 use crate::quantity::{DisplayUnit, FORCE, display, significant};
-use crate::robust::RobustProblem;
+use crate::robust::{LINES_IN_MOTION, RobustProblem};
 use crate::setup::Setup;
 use crate::simulate::{BeyondReach, ReferenceStep, TimeRequirement, stepped_references, steps_beyond};
 
@@ -26,7 +26,9 @@ const POINTS: usize = 1000;
 /// What is added to the variation of a response that is known at points, as a share.
 const BETWEEN_POINTS: f64 = 0.02;
 /// Largest ratio of flows for which a larger valve is advised: beyond it time is what is missing.
-const LARGER_VALVE: f64 = 10.0;
+const LARGER_VALVE: f64 = 3.0;
+/// How much more a plant with waves in its lines may do than the same with lumped ones.
+const WAVES: f64 = 2.0;
 
 /// The steps of a project that its rig does not reach, of these plants of its family; without those
 /// that are required before the force can move at all.
@@ -95,10 +97,14 @@ fn too_slow(
         true => ("of a step of a scenario", "smaller steps in the scenarios"),
         false => ("of the step", "a smaller `amplitude`"),
     };
-    (ratio > 1.0).then(|| LateError {
+    let (lumped, most) = match problem.without_polynomials {
+        Some(LINES_IN_MOTION) => (" with lumped lines", WAVES),
+        _ => ("", 1.0),
+    };
+    (ratio > most).then(|| LateError {
         path: format!("specification[{}].settling_time", required.number - 1),
         message: format!(
-            "[[specification]] {}, `settling_time`: with at most {} V at the valve the slowest linear plant{plant} moves by {} of the {} {of} in {}",
+            "[[specification]] {}, `settling_time`: with at most {} V at the valve the slowest linear plant{lumped}{plant} moves by at most {} of the {} {of} in {}",
             required.number,
             significant(limit_v, 3),
             force(setup.project, reached_n),

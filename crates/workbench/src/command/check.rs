@@ -54,9 +54,13 @@ pub(super) fn check(
         document.gap();
     }
     document.append(specification::document(&wishes));
+    let valid = match impossible.is_empty() {
+        true => "The project is valid.",
+        false => "The project is valid, and requires what no loop can satisfy: see the warnings.",
+    };
     document.line(match underived {
-        Some(words) => format!("The project is valid. {words}"),
-        None => "The project is valid.".to_string(),
+        Some(words) => format!("{valid} {words}"),
+        None => valid.to_string(),
     });
     let files = derived::files(&derived);
     let body = derived::body(loaded, &derived, visited.as_deref(), &wishes, told);
