@@ -199,6 +199,12 @@ impl Plan {
         &self.scenario.name
     }
 
+    /// Names of the scenarios that it does not drive.
+    pub fn other_scenarios(&self) -> Vec<&str> {
+        let others = self.project.scenarios.iter().enumerate().filter(|(place, _)| *place != self.place);
+        others.map(|(_, scenario)| scenario.name.as_str()).collect()
+    }
+
     /// The band of its settling times, percent of a step.
     pub fn settling_band_percent(&self) -> f64 {
         self.scenario.settling_band_percent

@@ -56,6 +56,17 @@ fn without(metric: usize, spread: Option<Spread>, driven: usize) -> Option<Strin
     (missing > 0).then(|| format!("{missing} of {driven} {words}"))
 }
 
+/// The scenarios of the project that a campaign leaves out; `None` where it has no other.
+pub(crate) fn left_out(plan: &Plan) -> Option<String> {
+    let others: Vec<String> = plan.other_scenarios().iter().map(|name| format!("\"{name}\"")).collect();
+    (!others.is_empty()).then(|| {
+        format!(
+            "The campaign drives one scenario, and not {}: `campaign.scenario` names it.",
+            others.join(", ")
+        )
+    })
+}
+
 /// Tables and sentences of a campaign; whether its rows are kept.
 pub(crate) fn document(
     plan: &Plan,
@@ -67,6 +78,7 @@ pub(crate) fn document(
     let asked = runs.end - runs.start;
     let mut out = Document::default();
     out.line(format!("{}: {}, seed {}", plan.scenario(), counted(rows), plan.seed()));
+    left_out(plan).into_iter().for_each(|sentence| out.line(sentence));
     if (rows as u64) < asked {
         let next = match kept {
             true => "the same command continues from there",

@@ -7,7 +7,7 @@ use super::chapter::Chapter;
 use crate::answer::significant;
 use crate::campaign::{
     CampaignError, Effort, METRIC_NAMES, Plan, QUANTILES, RequestedRuns, Row, Shard, Spread, Summary,
-    VariedRange, WorstRun, beyond_box, campaign, counted, lumps, metrics, pictures, requirement,
+    VariedRange, WorstRun, beyond_box, campaign, counted, left_out, lumps, metrics, pictures, requirement,
 };
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
@@ -165,6 +165,7 @@ fn document([runs, asked]: [u64; 2], plan: &Plan, summary: &Summary, figures: Ve
     let (scenario, seed) = (plan.scenario(), plan.seed());
     let mut out = Document::default();
     out.explanation(format!("{runs} runs of the scenario `{scenario}`, seed {seed}, with the numbers below drawn anew for each, independently of each other: {completed} were completed."));
+    out.explanations(left_out(plan));
     out.explanations((runs < asked).then(|| format!("{asked} runs were asked for: these are as many as a report makes within its budget of {BUDGET_STEPS} steps of the integration. `phea campaign PROJECT.toml --seed {seed} --runs {asked}` makes all of them.")));
     let refused = summary.refused.first().map(|(run, reason)| {
         format!("{} draws do not give a machine, the first is run {run}: {reason}.", summary.refused.len())
