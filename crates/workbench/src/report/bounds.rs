@@ -1,8 +1,10 @@
 //! The chapter on templates and bounds: the plants at each design frequency, where the nominal loop
 //! may not be, and whether the given loop satisfies this.
 
+use num_complex::Complex64;
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::order::sort_by_number;
+use phea_dynamics::portable::exp_complex;
 use phea_qft::bound::{Bound, Collision, Feasibility, Placement};
 use phea_qft::template::{Resolution, Template};
 use phea_qft::verification::Verdict;
@@ -91,16 +93,29 @@ fn specification_figures(problem: &RobustProblem, found: &[DesignFrequency]) -> 
 /// Bounds that a chart of loops shows at most.
 const SHOWN_BOUNDS: usize = 5;
 
+/// Phases beside a loop at which a bound is looked for, and how many of them count as much as a
+/// decibel.
+const BESIDE_DEGREES: [f64; 9] = [0.0, -10.0, 10.0, -20.0, 20.0, -30.0, 30.0, -40.0, 40.0];
+const DEGREES_PER_DECIBEL: f64 = 4.0;
+
 /// The bounds of all specifications at the frequencies at which one of these loops comes nearest to
 /// them, rising; and whether others are left out.
 pub(super) fn nearest_bounds(found: &[DesignFrequency], loops: &[&RobustProblem]) -> (Vec<Bound>, bool) {
     let distance = |one: &DesignFrequency| {
         let of = |problem: &&RobustProblem| {
             let feedback = problem.compensation.response(one.frequency_rad_per_s).feedback;
-            match one.exact_bounds.placement(one.template.template.nominal * feedback) {
-                Placement::Allowed { slack_db } => slack_db,
-                Placement::Forbidden { .. } => 0.0,
-            }
+            let open_loop = one.template.template.nominal * feedback;
+            // a bound may lie beside the loop, and not above or below it
+            let beside = |degrees: f64| {
+                let turned = exp_complex(Complex64::new(0.0, degrees.to_radians()));
+                let above_db = match one.exact_bounds.placement(open_loop * turned) {
+                    Placement::Allowed { slack_db } => slack_db,
+                    Placement::Forbidden { .. } => 0.0,
+                };
+                let beside_db = degrees / DEGREES_PER_DECIBEL;
+                (above_db * above_db + beside_db * beside_db).sqrt()
+            };
+            BESIDE_DEGREES.into_iter().map(beside).fold(f64::INFINITY, f64::min)
         };
         loops.iter().map(of).fold(f64::INFINITY, f64::min)
     };
@@ -168,20 +183,32 @@ pub(super) fn chart(
     }
     let given = [problem];
     let (bounds, left_out) = nearest_bounds(found, if problem.has_controller { &given } else { &[] });
+    let violations = view.map_or_else(Vec::new, |view| violations(problem, view));
+    let has_violations = !violations.is_empty();
     let chart = NicholsChart {
         loops: nominal.into_iter().collect(),
         design_frequencies_rad_per_s: problem.design_frequencies(),
         bounds: group("all specifications", &bounds),
         templates: &[],
-        violations: view.map_or_else(Vec::new, |view| violations(problem, view)),
+        violations,
         contours_db: vec![],
     };
     if bounds.is_empty() {
         return Ok(Some(chart.draw(&Words::new("nichols", "Nichols chart of the loop", NO_BOUNDS))));
     }
-    let caption = "The bounds of all specifications together, the nominal loop with its design frequencies, and the plants that violate a specification most: a loop above a bound that is open upwards, and outside closed ones, satisfies all of them at that frequency.";
+    let shown = match (problem.has_controller, has_violations) {
+        (true, true) => {
+            ", the nominal loop with its design frequencies, and the plants that violate a specification most"
+        }
+        (true, false) => ", and the nominal loop with its design frequencies",
+        (false, _) => "",
+    };
+    let caption = "a loop above a bound that is open upwards, and outside closed ones, satisfies all of them at that frequency.";
     let within = if view.is_some() { WITHIN_TOLERANCE } else { "" };
-    let caption = format!("{caption}{within}{}", nearest_words(left_out));
+    let caption = format!(
+        "The bounds of all specifications together{shown}: {caption}{within}{}",
+        nearest_words(left_out)
+    );
     Ok(Some(chart.draw(&Words::new("nichols", "Nichols chart of the loop", caption))))
 }
 

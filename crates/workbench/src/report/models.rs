@@ -21,8 +21,9 @@ pub(super) fn chapter(setup: &Setup<'_>, linearization: &Linearization) -> Resul
         }
         (true, false) => " These models hold the load still; the plant alone has its motion.",
     };
+    let lumped = if setup.project.has_waves() { ", with its lines lumped" } else { "" };
     out.explanation(format!(
-        "The plant is the one of every verdict. The two-pressure model is the linearisation of the actuator as declared, its leakage included; the fifth-order model (6.7) takes one stiffness and one load pressure. \
+        "The plant is the one of every verdict{lumped}. The two-pressure model is the linearisation of the actuator as declared, its leakage included; the fifth-order model (6.7) takes one stiffness and one load pressure. \
          The resulting error is judged with derived parameters in both; everything else here uses the values in use. \
          (6.12) splits it into hydraulic, mechanical and valve part; (6.13) keeps the hydraulic part alone.{held}",
     ));

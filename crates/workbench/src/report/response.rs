@@ -21,7 +21,7 @@ pub(super) fn chapter(
     let (anchor, title) = ("response", "Step response of the linear loop");
     let mut out = Document::default();
     let Some(linear_loop) = linear_loop else {
-        out.explanation("The project gives no controller, so that there is no loop to close.");
+        out.explanation("The project gives no controller. What a designed one does stands in the chapter on the design; `phea report` of the `designed.toml` beside this page shows the step of its linear loop here.");
         return Chapter::of(anchor, title, out);
     };
     out.explanation("The nominal plant in a loop with the given controller and prefilter. One linear plant: this proves nothing for the others, or for the nonlinear simulation.");
