@@ -52,13 +52,15 @@ struct AskedStep {
     of_scenario: bool,
 }
 
-/// The step of a requirement, or those of the scenarios where it holds for every step.
+/// The step of a requirement, or those of the scenarios where it is part of the verdict and holds
+/// for every step.
 fn asked(setup: &Setup<'_>, required: &TimeRequirement) -> Option<Vec<AskedStep>> {
     let from_n = required.steps.initial_force_n.unwrap_or(setup.rig().ok()?.point.hydraulic_force);
     if let Some(amplitude_n) = required.steps.amplitude_n {
         return Some(vec![AskedStep { from_n, size_n: amplitude_n.abs(), of_scenario: false }]);
     }
-    let scenarios = stepped_references(setup.project).into_iter().filter(|_| !required.steps.are_stated());
+    let is_of_every_step = required.follows && !required.steps.are_stated();
+    let scenarios = stepped_references(setup.project).into_iter().filter(|_| is_of_every_step);
     let steps = scenarios.flat_map(|stepped| stepped.steps);
     let of = |step: ReferenceStep| AskedStep {
         from_n: step.from_n,
