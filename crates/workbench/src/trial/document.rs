@@ -226,8 +226,9 @@ fn reasons(trial: &Trial) -> Vec<String> {
     told.chain(trial.not_driven.iter().map(|missing| format!("not driven: {missing}"))).collect()
 }
 
-/// Number of settling times of the linear loop that are drawn.
+/// Number of settling times of the linear loop that are drawn, and of required ones at least.
 const SETTLING_TIMES: f64 = 3.0;
+const REQUIRED_TIMES: f64 = 1.2;
 /// Range of the frame in shares of the step; a response that leaves it is drawn up to there.
 const SHOWN: std::ops::RangeInclusive<f64> = -0.4..=2.4;
 
@@ -237,7 +238,9 @@ fn figure(trial: &Trial, [name, title]: [&str; 2]) -> Option<Figure> {
     let first = runs.first()?;
     let driven_s = first.machine_response.times_s.last().copied()?;
     let settles_s = first.linear.and_then(|step| step.settling_time_s);
-    let end_s = settles_s.map_or(driven_s, |time_s| driven_s.min(SETTLING_TIMES * time_s));
+    let required_s = first.requirements.iter().filter_map(|held| held.wish.settling_time_s);
+    let seen_s = REQUIRED_TIMES * required_s.fold(0.0, f64::max);
+    let end_s = settles_s.map_or(driven_s, |time_s| driven_s.min(seen_s.max(SETTLING_TIMES * time_s)));
     let series = |name: &str, response: &StepResponse| {
         let rows = response.times_s.iter().copied().zip(response.values.iter().copied());
         let shown = rows.take_while(|(time_s, value)| *time_s <= end_s && SHOWN.contains(value));

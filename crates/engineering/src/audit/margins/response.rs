@@ -5,6 +5,7 @@ use phea_dynamics::frequency::{GainMargin, Margins, ModulusMargin, PhaseMargin, 
 use phea_dynamics::portable::{argument, magnitude};
 use phea_qft::closed_loop::Member;
 
+use crate::golden_section::least_between;
 use crate::robust::RobustProblem;
 
 /// Frequencies of an even grid, before it is refined.
@@ -72,14 +73,10 @@ fn nearest(points: &[KnownPoint], at: &dyn Fn(f64) -> Option<KnownPoint>) -> Opt
         one.total_cmp(&other)
     })?;
     let own = *points.get(least)?;
-    let [mut low, mut high] =
+    let ends =
         [least.saturating_sub(1), least + 1].map(|index| points.get(index).map_or(own.0, |point| point.0));
-    for _ in 0..REFINEMENTS {
-        let third = (high - low) / 3.0;
-        let (Some(left), Some(right)) = (at(low + third), at(high - third)) else { break };
-        if distance(&left) < distance(&right) { high = right.0 } else { low = left.0 }
-    }
-    let refined = at(0.5 * (low + high)).filter(|point| distance(point) < distance(&own));
+    let of = |frequency: f64| at(frequency).as_ref().map_or(f64::INFINITY, distance);
+    let refined = at(least_between(ends, REFINEMENTS, of)).filter(|point| distance(point) < distance(&own));
     let found = refined.unwrap_or(own);
     Some((found.0, distance(&found)))
 }
