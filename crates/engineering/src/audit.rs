@@ -150,7 +150,7 @@ pub struct ProjectAudit {
     pub specification_names: Vec<String>,
     /// The number in the file, from 1, of each that is declared there; the others come after them.
     pub specification_numbers: Vec<usize>,
-    /// Where every plant is taken; `None` where they differ in it, and without a rig.
+    /// Position of every plant; `None` where they differ in it or its stiffness, and without a rig.
     pub position: Option<CommonPosition>,
     /// Number of plants of the family.
     pub members: usize,

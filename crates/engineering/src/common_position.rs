@@ -14,11 +14,14 @@ pub struct CommonPosition {
 }
 
 impl CommonPosition {
-    /// `None` without a rig, of a motor that turns on, and where the family varies the position.
+    /// `None` without a rig, of a motor that turns on, and where the family varies the position, or
+    /// the stiffness that depends on it, or the project states that stiffness.
     pub(crate) fn of(setup: &Setup<'_>) -> Option<CommonPosition> {
         let project = setup.project;
         let mut varied = project.uncertain_numbers().into_iter();
-        if varied.any(|one| one.name == "operating_point.position") {
+        let is_varied = varied
+            .any(|one| ["operating_point.position", "hydraulic_stiffness"].contains(&one.name.as_str()));
+        if is_varied || project.linear.hydraulic_stiffness.is_some() {
             return None;
         }
         let rig = setup.rig().ok()?;

@@ -64,7 +64,7 @@ pub struct RobustProblem {
     pub pressure_noise: f64,
     /// A margin of minus this much still counts as met, dB.
     pub tolerance_db: f64,
-    /// Where every plant is taken; `None` where they differ in it, and without a rig.
+    /// Position of every plant; `None` where they differ in it or its stiffness, and without a rig.
     pub position: Option<CommonPosition>,
     /// How the rig moves.
     pub units: Units,

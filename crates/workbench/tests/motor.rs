@@ -443,7 +443,7 @@ fn what_does_not_treat_a_motor_refuses_it() {
     assert!(load(VANE, &[], &[]).project.motion().is_rotary());
 }
 
-/// What is refused at a line of the file is said in the words of a motor too.
+/// Errors with a place in the file use the words of a motor too.
 #[test]
 fn a_load_that_cannot_be_held_is_a_torque() {
     let settings = ["operating_point.load_force=\"9 kN.m\""];

@@ -262,8 +262,8 @@ fn every_run_is_held_against_the_required_step() {
     }
 }
 
-/// What holds for every step is tried the other way too, and in the three largest steps of the
-/// scenarios, each pair of references once; a step of a size of its own is tried alone.
+/// Requirements of every step are tested the other way too, and in the three largest steps of the
+/// scenarios, each pair of references once; a step of a size of its own is tested alone.
 #[test]
 fn a_requirement_of_every_step_is_tried_both_ways_and_in_scenarios() {
     let request = Request::Verify { proof: false, on_machine: true };

@@ -13,6 +13,7 @@ use super::ask::{HOSE, answer, json, near, number, project_of};
 const VERIFY: Request = Request::Verify { proof: false, on_machine: false };
 const VANE: &str = include_str!("../../../examples/rotary/vane.toml");
 
+const STRUCTURAL: &str = include_str!("../../../examples/structural/rig.toml");
 const LOOP: &str = r#"
 schema = 1
 title = "Delays"
@@ -31,6 +32,23 @@ frequencies = [0.1, 1]
 fn loop_sentence(text: &str, settings: &[&str]) -> String {
     let said = answer(text, settings, &[], &VERIFY).text;
     said.lines().find(|line| line.trim_start().starts_with("Loop: ")).unwrap().trim().to_string()
+}
+
+/// The position of every plant is named, unless the family varies it or the stiffness that depends
+/// on it.
+#[test]
+fn the_position_of_all_plants_is_named() {
+    let said = |text: &str, settings: &[&str]| answer(text, settings, &[], &VERIFY).text;
+    let sentence = "Position: every plant is taken at 150 mm of 300 mm of stroke.";
+    assert!(said(STRUCTURAL, &["line.model=lumped"]).contains(sentence));
+    let position = &json(STRUCTURAL, &["line.model=lumped"], &[], &VERIFY)["position"];
+    assert_eq!(*position, serde_json::json!({ "position_m": 0.15, "stroke_m": 0.3 }));
+    let region = "family.operating_region={ position = [\"140 mm\", \"160 mm\"], points = 2 }";
+    for (text, settings) in
+        [(STRUCTURAL, &["line.model=lumped", region][..]), (HOSE, &[]), (VANE, &[]), (LOOP, &[])]
+    {
+        assert!(!said(text, settings).contains("Position: "), "{settings:?}");
+    }
 }
 
 /// Dead time of plant, sensor, controller and lines, each where it is.

@@ -46,7 +46,7 @@ fn satisfaction(view: &ProjectDesign) -> &'static str {
     if view.is_met() { "satisfies every specification" } else { "does not satisfy every specification" }
 }
 
-/// What leaves more of the delay, where a path within the force loop is delayed too.
+/// Advice that leaves more delay, where a path within the force loop is delayed too.
 fn delay_cure(paths: DelayedPaths) -> &'static str {
     match (paths.pressure_feedback, paths.velocity_feed_forward) {
         (true, _) => ": a smaller gain of the pressure feedback leaves more",

@@ -27,7 +27,7 @@ const POINTS: usize = 1000;
 const BETWEEN_POINTS: f64 = 0.02;
 /// Largest ratio of flows for which a larger valve is advised: beyond it time is what is missing.
 const LARGER_VALVE: f64 = 3.0;
-/// How much more a plant with waves in its lines may do than the same with lumped ones.
+/// Ratio by which a plant with waves in its lines may do more than the same with lumped ones.
 const WAVES: f64 = 2.0;
 
 /// The steps of a project that its rig does not reach, of these plants of its family; without those
@@ -125,7 +125,7 @@ fn too_slow(
     })
 }
 
-/// What [`reached`] says of the plant that does least, and its parameters.
+/// Result of [`reached`] for the plant that does least, and its parameters.
 fn least_reached(few: &UncertainFamily, during: (f64, f64), limit_v: f64) -> Option<(f64, &Vec<f64>)> {
     let each = few
         .members()

@@ -13,9 +13,9 @@ use crate::robust::RobustProblem;
 const DURATIONS_S: [f64; 4] = [0.5, 2.0, 10.0, 40.0];
 const POINTS: usize = 4000;
 
-/// Settling times over which a response is known: a slow part of it may be highest long after it
-/// has settled within the band.
-const KNOWN_SETTLING_TIMES: f64 = 5.0;
+/// Duration of a step in settling times of the linear loop, within bounds: a slow part of it may be
+/// highest long after it has settled within the band.
+pub(super) const SETTLING_TIMES: f64 = 5.0;
 
 /// Bounds of the duration of a step, s.
 const SHORTEST_HOLD_S: f64 = 0.5;
@@ -48,7 +48,7 @@ pub(super) fn predicted(tried: &Tried, problem: &RobustProblem) -> Result<Predic
         let settles_s = metrics.settling.time_s().filter(|time_s| *time_s < 0.5 * duration);
         found = Prediction::Step(metrics, response);
         let Some(settles_s) = settles_s else { continue };
-        let known_s = KNOWN_SETTLING_TIMES * settles_s;
+        let known_s = (SETTLING_TIMES * settles_s).min(LONGEST_HOLD_S);
         if known_s > duration
             && let Ok(response) = linear_step(&member, compensation, known_s, POINTS)
         {

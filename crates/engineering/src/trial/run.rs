@@ -2,7 +2,7 @@
 
 use super::first_steps::{FirstSteps, RequiredOfSteps};
 use super::judge::{Driven, judge, met, not_started};
-use super::prediction::{LONGEST_HOLD_S, LinearStep};
+use super::prediction::{LONGEST_HOLD_S, LinearStep, SETTLING_TIMES};
 use super::required::{HeldRequirement, held};
 use super::rigs::Tried;
 use super::steps::{CommandLimits, HeldLegs, REACH, Steps};
@@ -176,9 +176,8 @@ impl TrialRun {
 
 /// Percent of the step within which the force counts as settled.
 pub const BAND_PERCENT: f64 = 2.0;
-/// Duration of a step in settling times of the linear loop, at a corner of the box in times that
-/// are required too.
-const SETTLING_TIMES: f64 = 5.0;
+/// Duration of a step at a corner of the box in settling times of the linear loop, and in times
+/// that are required.
 const SETTLING_TIMES_AT_CORNERS: f64 = 3.0;
 const REQUIRED_TIMES: f64 = 2.0;
 /// Ratio of the largest step to the first from which a run of its own is worth its time.

@@ -49,6 +49,10 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
     let timing = Object::new()
         .known("sample_time_s", view.sample_time_s, "the controller is continuous")
         .with("delay_s", view.delay_s);
+    let position = view
+        .position
+        .as_ref()
+        .map(|taken| Object::new().with("position_m", taken.position).with("stroke_m", taken.stroke));
     let reduction = view.nominal.map(|margins| margins.gain_reduction_db);
     let no_margin = "no margin: not every plant is known to be stable";
     let own = Object::new()
@@ -63,6 +67,7 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
         .known("gain_reduction_db", reduction, margins::NO_NOMINAL)
         .with("margins", margins::object(view))
         .with("members", view.members)
+        .maybe("position", position)
         .with("parameters", names.headings())
         .with("timing", timing)
         .maybe("velocity_noise", view.velocity_noise.as_ref().map(|noise| signal_noise(noise, names)))
