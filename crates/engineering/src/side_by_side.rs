@@ -163,8 +163,9 @@ pub(crate) fn left_behind<T: Send + 'static>(
 }
 
 /// The results of two pieces of work: of `first`, on a thread of its own where there is more than
-/// one core, and of `second`, whose progress is reported meanwhile. The first has this fraction of
-/// the progress where it has to be done before.
+/// one core, and of `second`, whose progress is reported meanwhile, and then the stage of the first
+/// as long as it is waited for. The first has this fraction of the progress where it has to be done
+/// before.
 pub(crate) fn both<A: Send, B>(
     watch: Watch<'_>,
     fraction: f64,
@@ -175,19 +176,29 @@ pub(crate) fn both<A: Send, B>(
         let first = first(&mut within(&mut *watch, [0.0, fraction]));
         return (first, second(&mut within(watch, [fraction, 1.0])));
     }
-    let goes_on = AtomicBool::new(true);
+    let (goes_on, stage) = (AtomicBool::new(true), Mutex::new(None));
+    let of_first = || stage.lock().unwrap_or_else(PoisonError::into_inner);
     std::thread::scope(|scope| {
-        let beside = scope.spawn(|| first(&mut |_| goes_on.load(Ordering::Relaxed)));
-        let mut last = Progress { stage: "", share: fraction };
+        let beside = scope.spawn(|| {
+            first(&mut |progress: Progress| {
+                *of_first() = Some(progress.stage);
+                goes_on.load(Ordering::Relaxed)
+            })
+        });
+        let mut share = fraction;
         let mut told = |progress: Progress| {
-            last = progress;
+            share = progress.share;
             let answer = watch(progress);
             goes_on.fetch_and(answer, Ordering::Relaxed);
             answer
         };
         let second = second(&mut within(&mut told, [fraction, 1.0]));
         while !beside.is_finished() {
-            goes_on.fetch_and(watch(last), Ordering::Relaxed);
+            // a piece that asked nothing so far would not hear of a stop either
+            let stage = *of_first();
+            if let Some(stage) = stage {
+                goes_on.fetch_and(watch(Progress { stage, share }), Ordering::Relaxed);
+            }
             std::thread::sleep(WAITING);
         }
         match beside.join() {
@@ -229,6 +240,24 @@ mod tests {
         }
         drop(release);
         assert_eq!(left_behind(&mut |_| true, "", |_| Ok(2)), Ok(2));
+    }
+
+    /// Waiting for the first piece is reported by its own stage, and a second one that tells nothing
+    /// is no stage.
+    #[test]
+    fn what_is_waited_for_is_named() {
+        let mut seen = vec![];
+        let mut watch = |progress: Progress| {
+            seen.push(progress.stage);
+            seen.len() < 3
+        };
+        let first = |watch: Watch<'_>| {
+            while watch(Progress { stage: "first", share: 0.5 }) {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+        };
+        both(&mut watch, 0.1, first, |_| ());
+        assert!(seen.len() >= 3 && seen.iter().all(|stage| *stage == "first"), "{seen:?}");
     }
 
     /// The first piece hears of the stop that the watch of the second one answers, and both give
