@@ -242,8 +242,7 @@ mod tests {
         assert_eq!(left_behind(&mut |_| true, "", |_| Ok(2)), Ok(2));
     }
 
-    /// Waiting for the first piece is reported by its own stage, and a second one that tells nothing
-    /// is no stage.
+    /// Waiting for the first piece is reported by its own stage.
     #[test]
     fn what_is_waited_for_is_named() {
         let mut seen = vec![];

@@ -34,6 +34,15 @@ const ROUGH_EVALUATIONS: usize = 12;
 /// Longest block, as share of a recording.
 const LONGEST_BLOCK: usize = 10;
 
+/// How far a search goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Depth {
+    /// Until the sum falls by no more than its hundred-thousandth: enough to compare models.
+    ToCompare,
+    /// Until nothing is left to gain.
+    ToTheEnd,
+}
+
 /// The valve that explains the recordings best, with the signals and their scales.
 pub(super) struct Fit<'a> {
     pub(super) together: Together<'a>,
@@ -120,11 +129,16 @@ pub(super) fn fitted<'a>(
         let mut state = stream(u64::from(search.seed), index as u64);
         if index == 0 { variables.start() } else { variables.scattered(&mut state) }
     });
-    fitted_from(&starts.collect::<Vec<_>>(), Together::new(recordings, tested, variables), EVALUATIONS, watch)
+    fitted_from(
+        &starts.collect::<Vec<_>>(),
+        Together::new(recordings, tested, variables),
+        Depth::ToTheEnd,
+        watch,
+    )
 }
 
 /// The same recordings explained by another model of the valve, from where this one ended or from
-/// a first guess, whichever leads further.
+/// a first guess, whichever leads further; as far as it takes to compare the two.
 pub(super) fn with_another_model<'a>(
     first: &Fit<'a>,
     tested: TestedValve,
@@ -133,7 +147,7 @@ pub(super) fn with_another_model<'a>(
     let together = Together::new(first.together.recordings, tested, &first.together.variables);
     let mut starts = together.variables.starts();
     starts.insert(0, together.variables.of(&first.coefficients()));
-    fitted_from(&starts, together, ROUGH_EVALUATIONS, watch)
+    fitted_from(&starts, together, Depth::ToCompare, watch)
 }
 
 /// Recordings explained by the same model from near where another fit ended.
@@ -144,7 +158,19 @@ pub(super) fn from_near<'a>(
     watch: Watch<'_>,
 ) -> Result<Fit<'a>, IdentifyError> {
     let together = Together::new(recordings, like.together.tested, &like.together.variables);
-    fitted_from(&[start.to_vec()], together, EVALUATIONS, watch)
+    fitted_from(&[start.to_vec()], together, Depth::ToTheEnd, watch)
+}
+
+/// Other recordings explained by the same model from a start, as far as it takes to compare the
+/// two.
+pub(super) fn compared<'a>(
+    recordings: &'a [Recording],
+    like: &Fit<'_>,
+    start: &[f64],
+    watch: Watch<'_>,
+) -> Result<Fit<'a>, IdentifyError> {
+    let together = Together::new(recordings, like.together.tested, &like.together.variables);
+    fitted_from(&[start.to_vec()], together, Depth::ToCompare, watch)
 }
 
 /// A few steps towards the minimum that a model of the valve with another term has beside this one,
@@ -164,7 +190,7 @@ pub(super) fn a_few_steps_with<'a>(
 fn fitted_from<'a>(
     starts: &[Vec<f64>],
     mut together: Together<'a>,
-    most: usize,
+    depth: Depth,
     watch: Watch<'_>,
 ) -> Result<Fit<'a>, IdentifyError> {
     if together.channels.is_empty() {
@@ -174,11 +200,15 @@ fn fitted_from<'a>(
     let minimum = if has_many_rows(together.recordings) {
         let fewer: Vec<Recording> = together.recordings.iter().map(averaged).collect();
         let mut few = Together::new(&fewer, together.tested, &together.variables);
-        let near = settled(&mut few, &start, watch)?.variables;
+        let near = settled(&mut few, &start, depth, watch)?.variables;
         together.rescale(&near, &together.residuals(&near));
+        let most = match depth {
+            Depth::ToCompare => ROUGH_EVALUATIONS,
+            Depth::ToTheEnd => EVALUATIONS,
+        };
         near_minimum(&together, &near, most, watch)?
     } else {
-        settled(&mut together, &start, watch)?
+        settled(&mut together, &start, depth, watch)?
     };
     if minimum.ending == Ending::NoStart || minimum.linearised.residuals.len() <= together.variables.count() {
         return Err(IdentifyError::Data("the recordings have too few rows to fit a valve".to_string()));
@@ -200,7 +230,7 @@ impl Fit<'_> {
             self.together.rescale(&near, &self.minimum.linearised.residuals);
             near_minimum(&self.together, &near, EVALUATIONS, watch)?
         } else {
-            settled(&mut self.together, &near, watch)?
+            settled(&mut self.together, &near, Depth::ToTheEnd, watch)?
         };
         Ok(self)
     }
@@ -232,7 +262,12 @@ fn near_minimum(
 }
 
 /// The minimum that a start leads to, with the scale of each signal from its residuals there.
-fn settled(together: &mut Together<'_>, start: &[f64], watch: Watch<'_>) -> Result<Minimum, Stopped> {
+fn settled(
+    together: &mut Together<'_>,
+    start: &[f64],
+    depth: Depth,
+    watch: Watch<'_>,
+) -> Result<Minimum, Stopped> {
     let mut minimum = together.searched(start, ROUGH, watch)?;
     for _ in 0..ROUNDS {
         let change = together.rescale(&minimum.variables, &minimum.linearised.residuals);
@@ -241,7 +276,10 @@ fn settled(together: &mut Together<'_>, start: &[f64], watch: Watch<'_>) -> Resu
             break;
         }
     }
-    together.searched_to_the_end(&minimum.variables, watch)
+    match depth {
+        Depth::ToCompare => Ok(minimum),
+        Depth::ToTheEnd => together.searched_to_the_end(&minimum.variables, watch),
+    }
 }
 
 /// The best end of several starts, over fewer rows, and how many of them lead there.

@@ -57,7 +57,7 @@ pub(super) fn remembered(
         let mut went_on = first.together.recordings.to_vec();
         went_on.iter_mut().for_each(|recording| goes_on(recording, width));
         let start = first.together.variables.start();
-        let other = fit::from_near(&went_on, first, &start, watch)?;
+        let other = fit::compared(&went_on, first, &start, watch)?;
         let [before, after] = criteria([first, &other]);
         if before - after > DECISIVE {
             return settled(&other, vec![true; went_on.len()], watch).map(Some);

@@ -85,7 +85,11 @@ pub(super) fn with_terms<'a>(
             let mut with = fit::a_few_steps_with(&found, tested, watch)?;
             let mut gain = gained(&found, &with);
             if gain > 0.0 || found.has_misfit() {
-                let whole = fit::with_another_model(&found, tested, watch)?;
+                let mut whole = fit::with_another_model(&found, tested, watch)?;
+                let nearly = gained(&found, &whole);
+                if nearly > 0.0 && nearly < DECISIVE {
+                    whole = whole.searched_to_the_end(watch)?;
+                }
                 let of_whole = gained(&found, &whole);
                 // it may end elsewhere, and worse
                 if of_whole > gain {
