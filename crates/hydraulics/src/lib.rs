@@ -35,6 +35,7 @@ pub mod power_unit;
 pub mod reference_rig;
 pub mod series;
 pub mod servovalve;
+pub mod signal;
 pub mod stiffness;
 pub mod stroke;
 pub mod two_pressure;

@@ -48,10 +48,7 @@ pub use chambers::{AeratedChambers, Chambers};
 pub use ledger::{Account, ENERGY_ACCOUNTS, Ledger, OIL_ACCOUNTS};
 pub use load::{LoadModel, Motion};
 pub use options::{MachineError, MachineOptions};
-pub use signals::{
-    ADJUSTMENT_SIGNALS, GAS_PRESSURE_SIGNALS, HEAT_SIGNALS, INDICATORS, LINKAGE_SIGNALS, SERIES_SIGNALS,
-    SIGNALS, TRANSMISSION_SIGNALS,
-};
+pub use signals::{INDICATORS, MachineSignals};
 pub use start::{InitialCondition, StartValues};
 pub use state::MachineState;
 

@@ -10,8 +10,9 @@ use phea_hydraulics::accumulator::{
     Accumulator, AdjustedPart, Adjustment, Bladder, GasBranch, GasValve, MovedGas, Neck,
 };
 use phea_hydraulics::actuator::{Actuator, Components};
-use phea_hydraulics::machine::{ENERGY_ACCOUNTS, INDICATORS, Machine, MachineOptions, SIGNALS, StartValues};
+use phea_hydraulics::machine::{ENERGY_ACCOUNTS, INDICATORS, Machine, MachineOptions, StartValues};
 use phea_hydraulics::reference_rig::{components, pipe_line};
+use phea_hydraulics::signal::Signal;
 use phea_hydraulics::stiffness::StiffnessModel;
 
 use super::machine_conservation::{machine_of, random, step};
@@ -320,10 +321,10 @@ fn a_shut_valve_keeps_its_gas() {
     for (change, flows) in [(0.0, false), (0.5, true)] {
         machine.rates(&state, 1.0, &[0.25, 0.0, change, 0.0], &mut rates);
         assert_eq!(rates[6] > 0.0, flows);
-        let outputs = machine.outputs(&state, &[0.25, 0.0, change, 0.0]);
-        let of = |name: &str| outputs[SIGNALS.iter().position(|known| *known == name).unwrap()];
-        assert_eq!((of("setting_a_ratio"), of("gas_pressure_a_pa")), (change, 20e5));
-        assert_eq!((of("setting_b_ratio"), of("adjustment_power_w")), (0.0, 0.0));
+        let outputs = machine.signals(&state, &[0.25, 0.0, change, 0.0]);
+        let of = |signal: Signal| outputs.get(signal).unwrap();
+        assert_eq!((of(Signal::SettingA), of(Signal::GasPressureA)), (change, 20e5));
+        assert_eq!((of(Signal::SettingB), of(Signal::AdjustmentPower)), (0.0, 0.0));
     }
 }
 

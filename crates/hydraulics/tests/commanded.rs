@@ -10,10 +10,11 @@ use phea_dynamics::simulation::{DIRECTIONS, Plant, System, small_signal};
 use phea_hydraulics::accumulator::{AdjustedPart, Adjustment, GasValve, Neck};
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cross_port::{CrossPort, Restrictor};
-use phea_hydraulics::machine::{Accumulator, InitialCondition, Machine, PowerUnit, PumpLimited, SIGNALS};
+use phea_hydraulics::machine::{Accumulator, InitialCondition, Machine, PowerUnit, PumpLimited};
 use phea_hydraulics::operating_point::{Balance, Settled, SettledSupply};
 use phea_hydraulics::plant::YieldingSupply;
 use phea_hydraulics::servovalve::{SpoolDirection, Supply};
+use phea_hydraulics::signal::Signal;
 
 /// Two of five numbers have a supply that yields, with an accumulator for every other of these;
 /// some pumps give less than what leaks.
@@ -97,7 +98,7 @@ pub(super) fn cross_port(number: u64) -> Option<CrossPort> {
 
 /// The supply pressure of a machine in this state, or the stated one where it does not yield.
 pub(super) fn supply_pressure(machine: &Machine, stated: f64, state: &[f64]) -> f64 {
-    let place = machine.state_names().iter().position(|name| name == "supply_pressure_pa");
+    let place = machine.state_names().iter().position(|name| name == Signal::SupplyPressure.name());
     place.map_or(stated, |place| state[place])
 }
 
@@ -151,16 +152,11 @@ impl System<f64> for Commanded {
 const STATES: usize = 24;
 const INPUTS: usize = 4;
 
-/// Where a signal stands among those of a machine.
-pub(super) fn place(signal: &str) -> usize {
-    SIGNALS.iter().position(|known| *known == signal).unwrap()
-}
-
 /// How signals of a machine at rest grow with its states and with its inputs.
 pub(super) fn slopes(
     machine: &Machine,
     rest: &InitialCondition,
-    signals: &[&str],
+    signals: &[Signal],
 ) -> Vec<[f64; STATES + INPUTS]> {
     let mut slopes = vec![[0.0; STATES + INPUTS]; signals.len()];
     for first in (0..STATES + INPUTS).step_by(DIRECTIONS) {
@@ -173,9 +169,9 @@ pub(super) fn slopes(
         };
         let states = seeded(&rest.state, 0, STATES);
         let inputs = seeded(&rest.all_inputs(), STATES, STATES + INPUTS);
-        let outputs = machine.outputs(&states, &inputs);
+        let outputs = machine.signals(&states, &inputs);
         for (signal, slopes) in signals.iter().zip(&mut slopes) {
-            let found = outputs[place(signal)];
+            let found = outputs.get(*signal).unwrap();
             slopes.iter_mut().skip(first).zip(found.gradient()).for_each(|(slope, found)| *slope = *found);
         }
     }

@@ -16,12 +16,13 @@ use phea_hydraulics::line::{Line, StiffeningMember};
 use phea_hydraulics::linkage::{
     FourBar, Linkage, LinkageError, LinkageGeometry, LinkageTable, PivotTriangle, RodEnd, STANDARD_GRAVITY,
 };
-use phea_hydraulics::machine::{InitialCondition, LoadModel, Machine, MachineOptions, SIGNALS, StartValues};
+use phea_hydraulics::machine::{InitialCondition, LoadModel, Machine, MachineOptions, StartValues};
 use phea_hydraulics::operating_point::{Condition, operating_point};
 use phea_hydraulics::plant::{LinearLoad, LinearPlant, LinearSeries, PlantInMotion};
 use phea_hydraulics::reference_rig::{components, cylinder, hose_line, nominal_plant, pipe_line};
 use phea_hydraulics::series::{ForceFrom, SeriesElement, SeriesSpring, SeriesTravel, Transmission};
 use phea_hydraulics::servovalve::SpoolDirection;
+use phea_hydraulics::signal::Signal;
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::stroke::ActuatorStroke;
 use phea_hydraulics::two_pressure::{TwoPressureModel, two_pressure_linear_parameters};
@@ -224,11 +225,9 @@ fn swings(rig: Components, expected: [[f64; 3]; 3]) {
     // behind a spring that is relaxed at 0.8 rad
     let relaxed = 0.8;
     state[6] += beginning.inputs[0] - relaxed;
-    let signal = |name: &str, state: &[f64]| {
-        let place = SIGNALS.iter().position(|known| *known == name).unwrap();
-        machine.outputs::<f64>(state, &[relaxed, 0.0])[place]
-    };
-    assert!((signal("position_m", &state) - 0.02).abs() < 1e-12);
+    let signal =
+        |signal: Signal, state: &[f64]| machine.signals::<f64>(state, &[relaxed, 0.0]).get(signal).unwrap();
+    assert!((signal(Signal::Position, &state) - 0.02).abs() < 1e-12);
     let width = 2e-5;
     let mut rates = |_: f64, state: &[f64]| {
         let mut rates = vec![0.0; state.len()];
@@ -239,10 +238,13 @@ fn swings(rig: Components, expected: [[f64; 3]; 3]) {
         for index in 0..5000 {
             step(&mut state, f64::from(index) * width, width, &mut rates);
         }
-        let names = ["joint_angle_rad", "joint_velocity_rad_per_s", "position_m"];
+        let names = [Signal::JointAngle, Signal::JointVelocity, Signal::Position];
         for (name, expected) in names.into_iter().zip(expected) {
             let found = signal(name, &state);
-            assert!((found - expected).abs() < 2e-8 * expected.abs().max(1.0), "{name}: {found} {expected}");
+            assert!(
+                (found - expected).abs() < 2e-8 * expected.abs().max(1.0),
+                "{name:?}: {found} {expected}"
+            );
         }
     }
 }
@@ -374,7 +376,7 @@ fn drawn(number: u64) -> Drawn {
     let angle = rest.inputs[0] + if load.moves() { rest.state[6] } else { 0.0 };
     let (end, weight) = (linkage.end(angle), linkage.weight_at(angle));
     let [gravity, falling] = weight.map_or([0.0; 2], |weight| [weight.torque, weight.stiffness]);
-    let compressed = machine.outputs(&rest.state, &rest.inputs)[SERIES_DEFLECTION];
+    let compressed = machine.signals(&rest.state, &rest.inputs).series_deflection;
     assert!((end.position + rest.state[4] + compressed - position).abs() < 1e-11, "{number}");
     let pressed =
         if number % 3 == 2 { contact.relative_damping * (force * end.lever_arm + gravity) } else { 0.0 };
@@ -404,7 +406,6 @@ fn load(number: u64, [mass, stiffness, damping]: [f64; 3], contact: Contact) -> 
 }
 
 /// Place of the deflection of what lies between sensor and load in the signals of a machine.
-const SERIES_DEFLECTION: usize = 19;
 
 /// Of five numbers two have a damped, progressive spring on the rod, one a transmission.
 fn series(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> Option<SeriesElement> {

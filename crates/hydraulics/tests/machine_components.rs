@@ -12,7 +12,7 @@ use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, EntrainedAir, Fluid}
 use phea_hydraulics::friction::{Friction, MovingFriction};
 use phea_hydraulics::line::{Line, StiffeningMember};
 use phea_hydraulics::machine::{
-    Accumulator, Chambers, INDICATORS, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited, SIGNALS,
+    Accumulator, Chambers, INDICATORS, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited,
     StartValues,
 };
 use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
@@ -42,10 +42,6 @@ fn step(state: &mut [f64], time: f64, width: f64, rates: &mut impl FnMut(f64, &[
 
 fn machine_of(components: Components, options: &MachineOptions) -> Machine {
     Machine::new(&Actuator::new(components).unwrap(), options).unwrap()
-}
-
-fn signal(name: &str) -> usize {
-    SIGNALS.iter().position(|&signal| signal == name).unwrap()
 }
 
 fn indicator(name: &str) -> usize {
@@ -101,7 +97,7 @@ fn the_benchmark_runs_as_the_reference_says() {
             step(&mut state, index as f64 * width, width, &mut rates);
         }
         done = last;
-        let found = machine.outputs(&state[..7], &load_step(time))[signal("force_n")];
+        let found = machine.signals(&state[..7], &load_step(time)).force;
         assert!((found - force).abs() < 5e-3, "{time} s: {found} against {force}");
     }
 }
@@ -321,8 +317,8 @@ fn a_pump_gives_what_it_has() {
     let (actuator, machine) = (Actuator::new(rig).unwrap(), machine_of(rig, &options));
     let idle = operating_point(&actuator, 0.25, Condition::Load(SteadyLoad::Force(0.0))).unwrap();
     let rest = machine.rest(&idle).unwrap();
-    let outputs = machine.outputs(&rest.state, &rest.inputs);
-    let [supply, taken] = [outputs[signal("supply_pressure_pa")], outputs[signal("supply_flow_m3_per_s")]];
+    let outputs = machine.signals(&rest.state, &rest.inputs);
+    let [supply, taken] = [outputs.supply_pressure, outputs.supply_flow];
     // What the valve leaks and its tare flow do not go through the relief valve.
     assert!((supply - (70e5 - 5e5 * taken / unit.pump_flow)).abs() < 1.0);
     assert!(taken > 7e-6 && taken < 4e-5);
@@ -339,11 +335,11 @@ fn a_pump_gives_what_it_has() {
             |_: f64, state: &[f64], rates: &mut [f64]| machine.rates(state, 10.0, &beginning.inputs, rates);
         step(&mut state, index as f64 * 2e-5, 2e-5, &mut rates);
     }
-    let outputs = machine.outputs(&state, &beginning.inputs);
-    let velocity = outputs[signal("velocity_m_per_s")];
-    let given = unit.pump_flow - (outputs[signal("supply_flow_m3_per_s")] - rig.cylinder.area_a * velocity);
+    let outputs = machine.signals(&state, &beginning.inputs);
+    let velocity = outputs.piston.velocity;
+    let given = unit.pump_flow - (outputs.supply_flow - rig.cylinder.area_a * velocity);
     assert!((rig.cylinder.area_a * velocity / given - 1.0).abs() < 1e-6);
-    assert!(outputs[signal("supply_pressure_pa")] < 40e5 && velocity > 0.09);
+    assert!(outputs.supply_pressure < 40e5 && velocity > 0.09);
 }
 
 /// The gas of an accumulator takes up what its polytropic compression says.
@@ -373,7 +369,7 @@ fn tare_flow_is_the_supplys() {
         let supply = phea_hydraulics::servovalve::Supply { pressure, tank_pressure: 0.0 };
         let valve = phea_hydraulics::servovalve::Servovalve { tare_flow, ..rig.valve };
         let machine = machine_of(Components { supply, valve, ..rig }, &options);
-        machine.outputs(&[0.3, 0.0, 20e5, 15e5, 0.0, 0.0], &[0.2, 0.0])[signal("supply_flow_m3_per_s")]
+        machine.signals(&[0.3, 0.0, 20e5, 15e5, 0.0, 0.0], &[0.2, 0.0]).supply_flow
     };
     for (pressure, share) in [(70e5, 1.0), (17.5e5, 0.5)] {
         let tare = with(pressure, 7.55e-6) - with(pressure, 0.0);

@@ -15,8 +15,8 @@ use phea_hydraulics::line::{
     Conduit, DynamicLine, END_SHARE, LaminarFriction, Segments, StiffeningMember, TransmissionLine,
 };
 use phea_hydraulics::machine::{
-    Accumulator, INDICATORS, LoadModel, Machine, MachineError, MachineOptions, PowerUnit, PumpLimited,
-    SIGNALS,
+    Accumulator, INDICATORS, LoadModel, Machine, MachineError, MachineOptions, MachineSignals, PowerUnit,
+    PumpLimited,
 };
 use phea_hydraulics::operating_point::{Condition, SteadyLoad, operating_point};
 use phea_hydraulics::reference_rig::{
@@ -261,9 +261,6 @@ fn a_machine_with_everything_is_the_text_of_its_equations() {
 /// dv/dt = F_H + F_stops - F_fr - F_e.
 #[test]
 fn forces_that_are_told_accelerate_the_piston() {
-    let signal = |name: &str| SIGNALS.iter().position(|&signal| signal == name).unwrap();
-    let [hydraulic, friction, stops, sensed] =
-        ["hydraulic_force_n", "friction_n", "end_stops_n", "force_n"].map(signal);
     let mut stopped = 0;
     for machine in machines() {
         let mut noise = Noise(23);
@@ -271,12 +268,12 @@ fn forces_that_are_told_accelerate_the_piston() {
             let (state, command, mut inputs) = some_state(&machine, &mut noise);
             inputs[0] = [inputs[0], 0.0, 0.5][index % 3];
             let accelerating = cylinder().moving_mass * rates_of(&machine, &state, command, &inputs)[5];
-            let told = machine.outputs(&state, &inputs);
-            let found = told[hydraulic] + told[stops] - told[friction] - told[sensed];
-            let scale =
-                [hydraulic, stops, friction, sensed].map(|force| told[force].abs()).iter().sum::<f64>();
+            let MachineSignals { hydraulic_force, end_stops, friction, force, .. } =
+                machine.signals(&state, &inputs);
+            let found = hydraulic_force + end_stops - friction - force;
+            let scale = [hydraulic_force, end_stops, friction, force].map(f64::abs).iter().sum::<f64>();
             assert!((found - accelerating).abs() < 1e-12 * scale, "{found} N against {accelerating} N");
-            stopped += usize::from(told[stops] != 0.0);
+            stopped += usize::from(end_stops != 0.0);
         }
     }
     assert!(stopped > 20, "{stopped}");
@@ -298,9 +295,8 @@ fn rests_do_not_move() {
             let mut sent = vec![f64::NAN; rest.waves.len()];
             machine.outgoing(&rest.state, &inputs, &mut sent);
             assert!(sent.iter().zip(&rest.waves).all(|(sent, wave)| (sent / wave - 1.0).abs() < 1e-9));
-            let outputs = machine.outputs(&rest.state, &inputs);
-            let [at, opening] = ["position_m", "opening_v"]
-                .map(|name| outputs[SIGNALS.iter().position(|signal| *signal == name).unwrap()]);
+            let outputs = machine.signals(&rest.state, &inputs);
+            let (at, opening) = (outputs.piston.position, outputs.opening);
             assert!((at - position).abs() < 1e-15 && (opening - command).abs() < 1e-15);
         }
     }

@@ -106,8 +106,9 @@ fn driven(rig: Components, arm: f64) -> [f64; 4] {
     for index in 0..10_000 {
         step(&mut state, f64::from(index) * 2e-5, 2e-5, &mut rates);
     }
-    let outputs = machine.outputs(&state, &beginning.inputs);
-    [outputs[5] * arm, outputs[0] / arm, outputs[2], outputs[3]]
+    let signals = machine.signals(&state, &beginning.inputs);
+    let [pressure_a, pressure_b] = signals.pressures;
+    [signals.piston.position * arm, signals.force / arm, pressure_a, pressure_b]
 }
 
 #[test]
@@ -195,7 +196,7 @@ fn turning_on_changes_no_volume() {
     }
     let mut indicators = vec![0.0; machine.indicators()];
     machine.indicate(&state, &beginning.inputs, &mut indicators);
-    let angle = machine.outputs(&state, &beginning.inputs)[5];
+    let angle = machine.signals(&state, &beginning.inputs).piston.position;
     // no end is reached, and the compliance at this angle is that at the start
     assert!(angle > 2.0 && indicators[2] > 0.0 && indicators[3] > 0.0, "{angle} {indicators:?}");
     let compliance = actuator.chamber_compliance([35e5, 30e5], StiffeningMember::Nominal);

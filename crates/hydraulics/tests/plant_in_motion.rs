@@ -28,7 +28,7 @@ use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line, leak
 use phea_hydraulics::stiffness::StiffnessModel;
 
 use super::commanded::{
-    Commanded, cross_port, gas_valves, necks, place, power_unit, thermal_time_constants, without_branches,
+    Commanded, cross_port, gas_valves, necks, power_unit, thermal_time_constants, without_branches,
 };
 use super::plant::plant_at_rest;
 
@@ -77,8 +77,7 @@ pub(super) fn plant_behind(
     load: LinearLoad,
 ) -> (LinearPlant, BehindLines) {
     let parts = actuator.components();
-    let outputs = machine.outputs(&rest.state, &rest.all_inputs());
-    let ports = ["port_pressure_a_pa", "port_pressure_b_pa"].map(|name| outputs[place(name)]);
+    let ports = machine.signals(&rest.state, &rest.all_inputs()).port_pressures;
     let (plant, lumped) = plant_at_rest(actuator, (machine, unit), (position, ports, &rest.state), load);
     let pressures = [rest.state[2], rest.state[3]];
     let oil = Chambers::behind_lines(actuator, StiffeningMember::Nominal, [0.0; 2]);

@@ -14,7 +14,7 @@ use phea_hydraulics::force_sensor::{ForceSensor, in_series};
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::line::{DynamicLine, END_SHARE, LineModel, StiffeningMember};
 use phea_hydraulics::machine::{
-    ENERGY_ACCOUNTS, InitialCondition, LoadModel, Machine, MachineOptions, SIGNALS, StartValues,
+    ENERGY_ACCOUNTS, InitialCondition, LoadModel, Machine, MachineOptions, StartValues,
 };
 use phea_hydraulics::operating_point::{Condition, OperatingPoint, operating_point};
 use phea_hydraulics::plant::{
@@ -23,10 +23,11 @@ use phea_hydraulics::plant::{
 use phea_hydraulics::reference_rig::{components, hose_line, nominal_plant};
 use phea_hydraulics::series::{ForceFrom, SeriesElement, SeriesSpring, SeriesTravel};
 use phea_hydraulics::servovalve::{Servovalve, SpoolDirection};
+use phea_hydraulics::signal::Signal;
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::two_pressure::{TwoPressureModel, two_pressure_linear_parameters};
 
-use super::commanded::{amplitudes, place, signal_of, slopes};
+use super::commanded::{amplitudes, signal_of, slopes};
 use super::machine_conservation::{Motion, check, check_instant, machine_of, random, step};
 
 fn rig(spring: SeriesSpring) -> Components {
@@ -97,19 +98,19 @@ pub(super) fn drawn_with(series: SeriesElement, number: u64) -> Drawn {
     let model = TwoPressureModel::new(&actuator, pressures, StiffeningMember::Nominal, friction);
     let point = OperatingPoint { pressure_a: pressures[0], pressure_b: pressures[1], ..point };
     let parameters = two_pressure_linear_parameters(&model, &point, SpoolDirection::Extending);
-    let force = at_rest(&machine, &rest, "load_force_n");
+    let force = at_rest(&machine, &rest, Signal::LoadForce);
     let series = LinearSeries::of_components(&parts, force);
     let plant = LinearPlant { series, ..LinearPlant::of_two_pressures(&parameters, 0.0, linear) };
     Drawn { machine, rest, plant }
 }
 
-fn at_rest(machine: &Machine, rest: &InitialCondition, name: &str) -> f64 {
-    machine.outputs(&rest.state, &rest.inputs)[place(name)]
+fn at_rest(machine: &Machine, rest: &InitialCondition, signal: Signal) -> f64 {
+    machine.signals(&rest.state, &rest.inputs).get(signal).unwrap()
 }
 
 impl Drawn {
     /// A signal of the machine, for one unit of the command and of the motion of the ground.
-    pub(super) fn small_signal(&self, signal: &str, feed_forward: f64, frequency: f64) -> [Complex64; 2] {
+    pub(super) fn small_signal(&self, signal: Signal, feed_forward: f64, frequency: f64) -> [Complex64; 2] {
         let slopes = slopes(&self.machine, &self.rest, &[signal]);
         amplitudes(&self.machine, &self.rest, (feed_forward, 1.0), frequency)
             .map(|amplitudes| signal_of(&amplitudes, &slopes[0]))
@@ -132,7 +133,7 @@ pub(super) fn is_the_machine(rig: &Drawn, number: u64) {
     let plant = LinearPlant { load_velocity_feed_forward: fed, ..rig.plant };
     let on_load = LinearSeries { output: SeriesOutput::OnLoad, ..plant.series.unwrap() };
     let port = LinearPlant { series: Some(on_load), ..plant };
-    for (plant, signal) in [(plant, "force_n"), (port, "load_force_n")] {
+    for (plant, signal) in [(plant, Signal::Force), (port, Signal::LoadForce)] {
         let coefficients = plant.coefficients();
         let disturbance = coefficients.disturbance.unwrap();
         for step in 0..20 {
@@ -140,7 +141,7 @@ pub(super) fn is_the_machine(rig: &Drawn, number: u64) {
             let [command, ground] = rig.small_signal(signal, gain, frequency);
             for (told, own) in [(&coefficients.command, command), (&disturbance, ground)] {
                 let error = (told.at_frequency(frequency) / own - 1.0).norm_sqr().sqrt();
-                assert!(error < 1e-6, "rig {number}, {signal} at {frequency} rad/s: {error}");
+                assert!(error < 1e-6, "rig {number}, {signal:?} at {frequency} rad/s: {error}");
             }
         }
     }
@@ -163,7 +164,7 @@ pub(super) fn velocity_is_that_of_the_machine(rig: &Drawn, number: u64) {
             let s = Complex64::new(0.0, frequency);
             polynomial.iter().fold(Complex64::ZERO, |sum, one| sum * s + *one)
         };
-        let own = rig.small_signal("load_velocity_m_per_s", 0.0, frequency);
+        let own = rig.small_signal(Signal::LoadVelocity, 0.0, frequency);
         let told =
             [&rate.command, &rate.disturbance].map(|path| at(path) / at(&coefficients.command.denominator));
         let moving = lumped.load_velocity(Complex64::new(0.0, frequency));
@@ -266,13 +267,13 @@ fn a_rigid_spring_is_no_spring() {
             let machine = Machine::new(&actuator, &MachineOptions::default()).unwrap();
             let point = operating_point(&actuator, 0.2, Condition::Command(0.4)).unwrap();
             let rest = machine.rest(&point).unwrap();
-            machine.outputs(&rest.state, &rest.inputs)
+            machine.signals(&rest.state, &rest.inputs)
         });
-        for (index, (one, other)) in rests[0].iter().zip(rests[1]).enumerate() {
-            let absent = ["series_deflection_m", "velocity_m_per_s", "load_velocity_m_per_s"]
-                .contains(&SIGNALS[index]);
+        for signal in Signal::ALL {
+            let Some((one, other)) = rests[0].get(*signal).zip(rests[1].get(*signal)) else { continue };
+            let absent = [Signal::SeriesDeflection, Signal::Velocity, Signal::LoadVelocity].contains(signal);
             let size = if absent { 1.0 } else { one.abs() };
-            assert!((one - other).abs() <= 1e-9 * size, "{}: {one} {other}", SIGNALS[index]);
+            assert!((one - other).abs() <= 1e-9 * size, "{signal:?}: {one} {other}");
         }
     }
 }

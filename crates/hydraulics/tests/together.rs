@@ -22,10 +22,11 @@ use phea_hydraulics::plant::{
 };
 use phea_hydraulics::reference_rig::{components, cylinder, hose, hose_line};
 use phea_hydraulics::series::SeriesElement;
+use phea_hydraulics::signal::Signal;
 use phea_hydraulics::stiffness::StiffnessModel;
 use phea_hydraulics::stroke::{ActuatorStroke, PistonStage, Telescope};
 
-use super::commanded::{amplitudes, cross_port, place, power_unit, signal_of, slopes};
+use super::commanded::{amplitudes, cross_port, power_unit, signal_of, slopes};
 use super::linkage::{STROKE, linkages};
 use super::plant::{plant_at_rest, telescope};
 use super::plant_in_motion::{model, plant_behind};
@@ -295,7 +296,7 @@ fn rest(draw: &mut Draw, rig: &Actuator, machine: &Machine, position: f64) -> In
         machine.rest(&operating_point(rig, position, condition).unwrap()).ok()
     });
     let within = |rest: &InitialCondition| {
-        let end = machine.outputs(&rest.state, &rest.all_inputs())[place("load_position_m")];
+        let end = machine.signals(&rest.state, &rest.all_inputs()).load.position;
         rig.components().linkage.is_none() || (0.0..=STROKE).contains(&end)
     };
     rests.find(within).unwrap()
@@ -384,12 +385,11 @@ fn drawn(number: u64, kinds: &[Linkage; 4]) -> Drawn {
     let mut draw = Draw::new(90, number);
     let (rig, of_gas) = parts(&mut draw, number, kinds);
     let Resting { actuator, lines, load, unit, machine, position, rest } = resting(&mut draw, number, rig);
-    let outputs = machine.outputs(&rest.state, &rest.all_inputs());
-    let of = |names: [&str; 2]| names.map(|name| outputs[place(name)]);
-    assert!((outputs[place("position_m")] - position).abs() < 1e-11, "{number}");
-    let [force, angle] = of(["hydraulic_force_n", "joint_angle_rad"]);
+    let outputs = machine.signals(&rest.state, &rest.all_inputs());
+    assert!((outputs.piston.position - position).abs() < 1e-11, "{number}");
+    let (force, angle) = (outputs.hydraulic_force, outputs.joint.position);
     let (own, turned) = linear_load(&load, rig.linkage.as_ref(), force, angle);
-    let (pressures, of_machine) = (of(["pressure_a_pa", "pressure_b_pa"]), (&machine, &unit));
+    let (pressures, of_machine) = (outputs.pressures, (&machine, &unit));
     let (plant, behind) = match lines {
         Some(lines) => {
             let (plant, behind) = plant_behind(&actuator, of_machine, lines, (position, &rest), own);
@@ -441,7 +441,8 @@ fn apart(rig: &Drawn) -> f64 {
         None => PlantInMotion::lumped(&plant),
     });
     let polynomials = plants.map(|plant| plant.coefficients());
-    let names = ["force_n", "load_force_n", "load_velocity_m_per_s", "pressure_a_pa", "pressure_b_pa"];
+    let names =
+        [Signal::Force, Signal::LoadForce, Signal::LoadVelocity, Signal::PressureA, Signal::PressureB];
     let signals = slopes(machine, rest, &names);
     let gain = plant.load_velocity_feed_forward.unwrap_or(0.0);
     let mut worst = 0.0_f64;

@@ -142,8 +142,8 @@ fn steady_motions_stay() {
         let machine = Machine::new(&actuator, &options).unwrap();
         let point = operating_point(&actuator, 0.2, Condition::Motion(2.0, SteadyLoad::Force(1e3))).unwrap();
         let steady = machine.rest(&point).unwrap();
-        let outputs = machine.outputs(&steady.state, &steady.all_inputs());
-        let [chamber, port] = [outputs[2], outputs[15]];
+        let signals = machine.signals(&steady.state, &steady.all_inputs());
+        let (chamber, port) = (signals.pressures[0], signals.port_pressures[0]);
         let drop = conduit.steady_resistance() * rig.cylinder.area_a * point.velocity;
         assert!(
             point.velocity > 0.05 && (port - chamber - drop).abs() < 1e-3 * drop,

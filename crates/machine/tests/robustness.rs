@@ -9,10 +9,11 @@ use phea_hydraulics::contact::Contact;
 use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::friction::Friction;
 use phea_hydraulics::machine::{
-    INDICATORS, LoadModel, Machine, MachineOptions, PowerUnit, PumpLimited, SIGNALS, StartValues,
+    INDICATORS, LoadModel, Machine, MachineOptions, MachineSignals, PowerUnit, PumpLimited, StartValues,
 };
 use phea_hydraulics::reference_rig::{benchmark_components, components, hose_line, stopped};
 use phea_hydraulics::servovalve::{SpoolImperfection, Supply};
+use phea_hydraulics::signal::Signal;
 use phea_hydraulics::stiffness::StiffnessModel;
 
 use crate::driven::{Driven, driven};
@@ -24,14 +25,16 @@ fn drive(
     duration_s: f64,
     command: &[(f64, f64)],
     ground: Profile,
-) -> (Driven, Vec<[f64; SIGNALS.len()]>) {
+) -> (Driven, Vec<MachineSignals>) {
     let beginning = machine.start(start).unwrap().state;
     let command = Profile::steps(0.0, command).unwrap();
     let settings = SimulationSettings { maximum_steps: 200_000, ..SimulationSettings::default() };
     let result = driven(machine, beginning, [duration_s, duration_s / 1000.0], command, ground, &settings);
     let rows = result.states.iter().zip(&result.inputs);
-    let outputs: Vec<_> = rows.map(|(state, inputs)| machine.outputs(state, inputs)).collect();
-    assert!(outputs.iter().flatten().all(|value| value.is_finite()));
+    let outputs: Vec<_> = rows.map(|(state, inputs)| machine.signals(state, inputs)).collect();
+    let values =
+        |row: &MachineSignals| Signal::ALL.iter().filter_map(|signal| row.get(*signal)).collect::<Vec<f64>>();
+    assert!(outputs.iter().flat_map(values).all(f64::is_finite));
     (result, outputs)
 }
 
@@ -39,9 +42,8 @@ fn machine_of(components: Components, options: &MachineOptions) -> Machine {
     Machine::new(&Actuator::new(components).unwrap(), options).unwrap()
 }
 
-fn column(outputs: &[[f64; SIGNALS.len()]], name: &str) -> Vec<f64> {
-    let index = SIGNALS.iter().position(|&signal| signal == name).unwrap();
-    outputs.iter().map(|row| row[index]).collect()
+fn column(outputs: &[MachineSignals], signal: Signal) -> Vec<f64> {
+    outputs.iter().filter_map(|row| row.get(signal)).collect()
 }
 
 fn happened(result: &Driven, name: &str) -> bool {
@@ -70,7 +72,7 @@ fn a_shut_valve_settles() {
     let (result, outputs) = drive(machine, &at(0.25), 30.0, &[], Profile::constant(0.25));
     assert_eq!(result.outcome.status, Status::Completed);
     assert!(result.outcome.events.is_empty());
-    let pressure = column(&outputs, "pressure_a_pa");
+    let pressure = column(&outputs, Signal::PressureA);
     let [before, last] = [pressure[pressure.len() - 10], pressure[pressure.len() - 1]];
     // ORIGIN: analytic, thesis Table 5.1: p_A = p_S/(1 + (K_vin4/K_vin3)^2) where leakage in equals
     // leakage out
@@ -87,7 +89,7 @@ fn a_piston_meets_its_end_stops() {
     let (result, outputs) = drive(machine_of(rig, &options), &at(0.4), 4.0, &course, Profile::constant(0.4));
     assert_eq!(result.outcome.status, Status::Completed);
     assert!(happened(&result, "end_stop_b") && happened(&result, "end_stop_a"));
-    let position = column(&outputs, "position_m");
+    let position = column(&outputs, Signal::Position);
     let [largest, least] =
         [position.iter().copied().fold(0.0, f64::max), position.iter().copied().fold(1.0, f64::min)];
     assert!(largest > 0.5 && largest < 0.501 && least < 0.0 && least > -0.001);
@@ -112,7 +114,7 @@ fn violent_loads_are_survived() {
         let machine = machine_of(rig, &MachineOptions::default());
         let (result, outputs) = drive(machine, &at(0.25), 0.5, &[(0.0, 0.5)], ground.clone());
         assert_eq!(result.outcome.status, Status::Completed);
-        assert!(column(&outputs, "force_n").iter().any(|force| force.abs() > 5e3));
+        assert!(column(&outputs, Signal::Force).iter().any(|force| force.abs() > 5e3));
         assert!(result.outcome.work.steps < 20_000, "{:?}", result.outcome.work);
     }
     let machine = machine_of(benchmark_components(), &MachineOptions::default());
@@ -141,7 +143,7 @@ fn lost_supplies_and_reversed_pressures_are_no_error() {
     let (result, outputs) =
         drive(machine_of(rig, &options), &at(0.25), 3.0, &course, Profile::constant(0.25));
     assert_eq!(result.outcome.status, Status::Completed);
-    let supply = column(&outputs, "supply_pressure_pa");
+    let supply = column(&outputs, Signal::SupplyPressure);
     assert!(supply[0] > 60e5 && supply[supply.len() - 1] < 5e5);
     let reversed =
         Components { supply: Supply { pressure: 20e5, tank_pressure: 1e5 }, ..benchmark_components() };
@@ -149,7 +151,7 @@ fn lost_supplies_and_reversed_pressures_are_no_error() {
     let machine = machine_of(reversed, &MachineOptions::default());
     let (result, outputs) = drive(machine, &start, 1.0, &[(0.0, 0.05)], Profile::constant(0.25));
     assert_eq!(result.outcome.status, Status::Completed);
-    let taken = column(&outputs, "supply_flow_m3_per_s");
+    let taken = column(&outputs, Signal::SupplyFlow);
     assert!(taken[0] < 0.0 && taken[taken.len() - 1] > 0.0);
 }
 
@@ -180,7 +182,7 @@ fn walls_are_met_with_every_friction() {
             drive(machine_of(rig, &options), &at(0.25), 1.5, &course, Profile::constant(0.25));
         assert_eq!(result.outcome.status, Status::Completed);
         assert!(happened(&result, "load_contact") && result.outcome.work.steps < 20_000);
-        let force = column(&outputs, "force_n");
+        let force = column(&outputs, Signal::Force);
         assert!(force[500] > 5e3 && force[1000].abs() < 300.0, "{} {}", force[500], force[1000]);
     }
 }

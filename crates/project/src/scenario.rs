@@ -1,8 +1,8 @@
 //! `[[scenario]]`: what is simulated.
 
+use super::input_signal::{InputSignal, InputUnit};
 use super::key::{Key, key, plain};
 use super::measured::MeasuredFile;
-use super::signal::{Signal, SignalUnit};
 use super::visitor::{Variants, Visitor};
 use phea_quantity::{ANGULAR_FREQUENCY, FORCE, LENGTH, PERCENT, PRESSURE, TIME, VELOCITY, VOLTAGE};
 
@@ -19,16 +19,16 @@ pub struct Scenario {
     /// point, mid stroke by default.
     pub start: Option<Start>,
     /// The reference force, the sum of these.
-    pub reference: Vec<Signal>,
+    pub reference: Vec<InputSignal>,
     /// The open-loop command of the valve, the sum of these; empty: the controller commands.
-    pub command: Vec<Signal>,
+    pub command: Vec<InputSignal>,
     /// What the load does.
     pub load_motion: Option<LoadMotion>,
     /// An external force on the load, the sum of these; positive in the direction of positive
     /// position.
-    pub external_force: Vec<Signal>,
+    pub external_force: Vec<InputSignal>,
     /// By how much the setting of accumulators has moved from rest, the sum of these.
-    pub setting_change: Vec<Signal>,
+    pub setting_change: Vec<InputSignal>,
     /// Percent, of every settling time.
     pub settling_band_percent: f64,
     /// Measurements on the rig.
@@ -189,14 +189,14 @@ impl Scenario {
         v.table(k, &mut self.start, Start::visit);
         let k =
             plain("reference", "The reference force: steps, each until the next, and what is added to them.");
-        v.one_or_more(k, &mut self.reference, Signal::visitor(SignalUnit::REFERENCE));
+        v.one_or_more(k, &mut self.reference, InputSignal::visitor(InputUnit::REFERENCE));
         let k = plain("command", "The command of the valve, open loop: no controller acts.");
-        v.one_or_more(k, &mut self.command, Signal::visitor(SignalUnit::COMMAND));
+        v.one_or_more(k, &mut self.command, InputSignal::visitor(InputUnit::COMMAND));
         v.table(plain("load_motion", "What the load does."), &mut self.load_motion, LoadMotion::visit);
         let k = plain("external_force", "A force on the load from outside, towards positive positions.");
-        v.one_or_more(k, &mut self.external_force, Signal::visitor(SignalUnit::EXTERNAL_FORCE));
+        v.one_or_more(k, &mut self.external_force, InputSignal::visitor(InputUnit::EXTERNAL_FORCE));
         let k = plain("setting_change", "By how much the setting of accumulators moves from rest.");
-        v.one_or_more(k, &mut self.setting_change, Signal::visitor(SignalUnit::SETTING_CHANGE));
+        v.one_or_more(k, &mut self.setting_change, InputSignal::visitor(InputUnit::SETTING_CHANGE));
         let k =
             key("settling_band_percent", &PERCENT, "Band of every settling time, in percent of the step.");
         v.quantity(k.positive().below(100.0).or(1.0), &mut self.settling_band_percent);

@@ -10,6 +10,7 @@ mod family;
 mod ideal;
 mod identify;
 mod impedance;
+mod input_signal;
 mod line_motion;
 mod linear_loop;
 mod linkage;
@@ -20,7 +21,6 @@ mod plausible;
 mod pressure_feedback;
 mod rig;
 mod series;
-mod signal;
 mod specification;
 mod wishes;
 

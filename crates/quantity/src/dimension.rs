@@ -72,6 +72,23 @@ pub struct Dimension {
     pub si: &'static str,
 }
 
+impl Dimension {
+    /// The ending of names of quantities in SI: of a key of JSON, of a column of a table.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_quantity::{FLOW, RATIO, TORQUE};
+    /// assert_eq!([FLOW.suffix(), TORQUE.suffix(), RATIO.suffix()], ["m3_per_s", "n_m", "ratio"]);
+    /// ```
+    pub fn suffix(&self) -> String {
+        match self.si {
+            "1" => "ratio".to_string(),
+            "degC" => "degC".to_string(),
+            si => si.to_lowercase().replace('/', "_per_").replace('.', "_"),
+        }
+    }
+}
+
 macro_rules! dimensions {
     ($($(#[$doc:meta])* $identifier:ident = $name:literal, $exponents:expr, $units:expr, $si:literal, $examples:literal;)*) => {
         $($(#[$doc])* pub static $identifier: Dimension =

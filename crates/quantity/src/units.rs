@@ -1,6 +1,6 @@
 //! The units in which the quantities of one project are shown.
 
-use super::dimension::Dimension;
+use super::dimension::*;
 use super::display_unit::DisplayUnit;
 use super::motion::MotionKind;
 use super::parse::parse;
@@ -45,6 +45,28 @@ impl Units {
             pressure: DisplayUnit::BAR,
             flow: DisplayUnit::LITRE_PER_MINUTE,
         }
+    }
+
+    /// The unit in which quantities of a dimension are shown; the SI unit where none is customary.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_quantity::{FLOW, Units, VOLTAGE};
+    /// assert_eq!(Units::default().of(&FLOW).symbol, "L/min");
+    /// assert_eq!(Units::default().of(&VOLTAGE).symbol, "V");
+    /// ```
+    pub fn of(&self, dimension: &'static Dimension) -> DisplayUnit {
+        let customary = [
+            (&FORCE, self.force),
+            (&LENGTH, self.position),
+            (&PRESSURE, self.pressure),
+            (&FLOW, self.flow),
+            (&VELOCITY, self.motion.unit(DisplayUnit::METRE_PER_SECOND)),
+            (&ANGLE, DisplayUnit::DEGREE),
+            (&TEMPERATURE, DisplayUnit::DEGREE_CELSIUS),
+        ];
+        let found = customary.into_iter().find(|(known, _)| std::ptr::eq(*known, dimension));
+        found.map_or(DisplayUnit { symbol: dimension.si, in_si: 1.0 }, |(_, unit)| unit)
     }
 
     /// The unit of this symbol, if quantities of the dimension can be shown in it.

@@ -24,7 +24,7 @@ use phea_dynamics::simulation::{
 use phea_engineering::simulate;
 use phea_hydraulics::machine::StartValues;
 use phea_machine::{Control, Digital, Waking, Watcher};
-use phea_workbench::project::{self, MotionShape, Project, Signal};
+use phea_workbench::project::{self, InputSignal, MotionShape, Project};
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
 
@@ -142,7 +142,7 @@ impl Bench {
             pressure_b: stated.pressure_b.unwrap_or(0.0),
             ..StartValues::default()
         })?;
-        let steps: Vec<(f64, f64)> = scenario.reference.iter().flat_map(Signal::steps).collect();
+        let steps: Vec<(f64, f64)> = scenario.reference.iter().flat_map(InputSignal::steps).collect();
         let reference = Input::Value(Profile::steps(0.0, &steps)?);
         let declared = scenario.load_motion.as_ref().ok_or("no motion")?;
         let MotionShape::SmoothStep { duration, distance } = declared.shape else {

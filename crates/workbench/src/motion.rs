@@ -5,7 +5,7 @@ mod json;
 mod markup;
 
 use crate::answer::Object;
-use crate::project::{Loaded, Project, Signal};
+use crate::project::{InputSignal, Loaded, Project};
 use crate::quantity::{MotionKind, Vocabulary};
 use crate::source::OutputFile;
 
@@ -36,7 +36,7 @@ fn texts_of_user(loaded: &Loaded, project: &Project) -> Vec<String> {
     for scenario in &project.scenarios {
         texts.push(scenario.name.clone());
         texts.extend(scenario.measured.iter().map(|measured| measured.file.clone()));
-        for published in scenario.reference.iter().filter_map(Signal::published) {
+        for published in scenario.reference.iter().filter_map(InputSignal::published) {
             texts.extend(published.source.iter().chain(&published.remark).cloned());
         }
     }

@@ -44,7 +44,7 @@ use crate::error::CommandError;
 use crate::figure::Figure;
 use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop_of, settling_words};
 use crate::linearize::{Linearization, linearize, stiffness_at_settings, stiffness_words};
-use crate::project::{DeclaredActuator, Loaded, Project, Signal, WrittenUnits};
+use crate::project::{DeclaredActuator, InputSignal, Loaded, Project, WrittenUnits};
 use crate::quantity::MotionKind;
 use crate::rig::Rig;
 use crate::setup::Setup;
@@ -353,7 +353,7 @@ fn reference(project: &Project) -> Option<f64> {
         .scenarios
         .iter()
         .flat_map(|scenario| &scenario.reference)
-        .flat_map(Signal::steps)
+        .flat_map(InputSignal::steps)
         .map(|(_, force)| force)
         .find(|force| *force != 0.0)
 }

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use phea_hydraulics::signal::Signal;
 use phea_workbench::project;
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{ScenarioRun, simulate_project};
@@ -25,7 +26,7 @@ fn run(text: &str, settings: &[&str]) -> ScenarioRun {
 /// Largest difference of the force in N, at the times of the reference.
 fn force_error(run: &ScenarioRun, reference: &str) -> f64 {
     let rows = reference.lines().filter(|line| !line.starts_with(['#', 't']));
-    let force = run.record.signal("force_n");
+    let force = run.record.signal(Signal::Force);
     let (mut next, mut worst, mut compared) = (0, 0.0_f64, 0);
     for row in rows {
         let numbers: Vec<f64> = row.split(',').map(|number| number.parse().unwrap()).collect();

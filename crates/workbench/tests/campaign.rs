@@ -5,6 +5,7 @@
 
 mod kept;
 
+use phea_hydraulics::signal::Signal;
 use std::fs;
 use std::path::Path;
 
@@ -132,7 +133,7 @@ fn an_open_loop_is_drawn_as_a_closed_one_is() {
         let simulated =
             simulate_project(&source, &Setup::new(&drawn.project).unwrap(), &mut |_| true).unwrap().remove(0);
         let force_n = plan.forces(run..run + 1, lanes(1)).unwrap().remove(0);
-        let seen = simulated.record.signal("force_n");
+        let seen = simulated.record.signal(Signal::Force);
         assert_eq!((simulated.looks_per_row, seen.len()), (1, force_n.len()));
         assert!(seen.iter().zip(&force_n).all(|(one, other)| one.to_bits() == other.to_bits()), "run {run}");
         let row = &expected[run as usize];
@@ -170,7 +171,7 @@ fn a_run_is_what_simulate_makes_of_its_settings() {
                 simulate_project(&source(), &Setup::new(&load(&all).project).unwrap(), &mut |_| true)
                     .unwrap()
                     .remove(0);
-            let seen = simulated.record.signal("force_n");
+            let seen = simulated.record.signal(Signal::Force);
             assert_eq!((simulated.looks_per_row, seen.len()), (1, force_n.len()));
             assert!(
                 seen.iter().zip(force_n).all(|(one, other)| one.to_bits() == other.to_bits()),

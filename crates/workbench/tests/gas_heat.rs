@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use phea_dynamics::portable::pow;
+use phea_hydraulics::signal::Signal;
 use phea_workbench::command::{Request, SimulateRequest};
 use phea_workbench::report::report;
 use phea_workbench::setup::Setup;
@@ -180,14 +181,14 @@ fn the_gas_of_a_run_is_adiabatic_where_it_has_no_time_for_heat() {
     let slow = ["line.accumulator.thermal_time_constant=1e9", "line.b.accumulator.thermal_time_constant=1e9"];
     let record = run_of(&[&slow[..], &[PRESSED]].concat()).record;
     let [behind_a, chamber_a, chamber_b, ratio_a, ratio_b, celsius_b] = [
-        "gas_pressure_a_pa",
-        "pressure_a_pa",
-        "pressure_b_pa",
-        "gas_temperature_a_ratio",
-        "gas_temperature_b_ratio",
-        "gas_temperature_b_degC",
+        Signal::GasPressureA,
+        Signal::PressureA,
+        Signal::PressureB,
+        Signal::GasTemperatureRatioA,
+        Signal::GasTemperatureRatioB,
+        Signal::GasTemperatureB,
     ]
-    .map(|name| record.signal(name));
+    .map(|signal| record.signal(signal));
     assert!((behind_a[0] - chamber_a[0]).abs() < 1.0, "{} {}", behind_a[0], chamber_a[0]);
     assert!(ratio_a[0] == 1.0 && ratio_b[0] == 1.0 && celsius_b[0] == 45.0);
     let mut widest = [0.0_f64; 2];
@@ -204,8 +205,8 @@ fn the_gas_of_a_run_is_adiabatic_where_it_has_no_time_for_heat() {
         assert!((celsius + 273.15 - 318.15 * ratio).abs() < 1e-9);
     }
     // chamber B has no neck, and the project does not state how warm the gas at A is
-    for name in ["gas_pressure_b_pa", "gas_temperature_a_degC"] {
-        assert!(record.signal(name).is_empty(), "{name}");
+    for signal in [Signal::GasPressureB, Signal::GasTemperatureA] {
+        assert!(record.signal(signal).is_empty(), "{signal:?}");
     }
 }
 

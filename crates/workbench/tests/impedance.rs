@@ -11,6 +11,7 @@ use phea_dynamics::linear::TransferFunction;
 use phea_hydraulics::impedance::closed_loop_port;
 use phea_hydraulics::linear::transfer_functions;
 use phea_hydraulics::plant::{LinearPlant, PlantInMotion};
+use phea_hydraulics::signal::Signal;
 use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_workbench::audit::audit_project;
 use phea_workbench::command::{AlternativesRequest, Request};
@@ -157,7 +158,7 @@ fn a_load_that_yields_changes_the_loop() {
         let status = member_stability(&member, &compensation).status;
         assert_eq!(status == StabilityStatus::Stable, stable, "{stiffness}: {status:?}");
         let run = driven(&project);
-        let force = run.record.signal("force_n");
+        let force = run.record.signal(Signal::Force);
         let last = &force[force.len() * 4 / 5..];
         let [low, high] = last.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], force| {
             [low.min(*force), high.max(*force)]
@@ -165,7 +166,7 @@ fn a_load_that_yields_changes_the_loop() {
         assert_eq!(high - low < 1.0, stable, "{stiffness}: {low} to {high}");
         if stable {
             assert!((high / steady - 1.0).abs() < 1e-2, "{high}, not {steady}");
-            let given = run.record.signal("virtual_force_n");
+            let given = run.record.signal(Signal::VirtualForce);
             assert!((force.last().unwrap() + given.last().unwrap() - 200.0).abs() < 2.0);
         }
     }
@@ -184,7 +185,7 @@ fn an_admittance_is_an_impedance() {
     let force = ["controller.numerator=60*s + 300", "controller.denominator=s*(2000*s + 100000)", &outer];
     for load in [&[][..], &[SPRUNG]] {
         let [admittance, impedance] = [position, force].map(|law| benchmark(&[load, &law].concat()));
-        let [one, other] = [&admittance, &impedance].map(driven).map(|run| run.record.signal("force_n"));
+        let [one, other] = [&admittance, &impedance].map(driven).map(|run| run.record.signal(Signal::Force));
         let apart = one.iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
         let largest = other.iter().fold(0.0_f64, |largest, force| largest.max(force.abs()));
         assert!(apart < 1e-5 * largest, "{load:?}: {apart} of {largest}");

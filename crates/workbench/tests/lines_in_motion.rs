@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use phea_hydraulics::signal::Signal;
 use phea_workbench::campaign::{Effort, Plan};
 use phea_workbench::command::{self, Request};
 use phea_workbench::project::{self, LineMotion, LineSegments, Loaded, Refusal};
@@ -46,7 +47,7 @@ fn run(settings: &[&str]) -> ScenarioRun {
 }
 
 fn force(settings: &[&str]) -> Vec<f64> {
-    run(settings).record.signal("force_n").to_vec()
+    run(settings).record.signal(Signal::Force).to_vec()
 }
 
 fn largest(one: &[f64], other: &[f64]) -> f64 {

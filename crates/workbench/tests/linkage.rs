@@ -5,7 +5,7 @@
 
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::uncertain_plant::PlantCoefficients;
-use phea_hydraulics::machine::SIGNALS;
+use phea_hydraulics::signal::Signal;
 use phea_qft::family::Family;
 use phea_workbench::command::Request;
 use phea_workbench::family::family;
@@ -115,12 +115,12 @@ fn the_machine_rests_where_the_plant_is() {
         let project = project_of(text, settings);
         let bench = ControlledMachine::new(&Setup::new(&project).unwrap()).unwrap();
         let rest = bench.machine.rest_under_load(&bench.rig.point).unwrap();
-        let outputs = bench.machine.outputs::<f64>(&rest.state, &rest.all_inputs());
-        let signal = |name: &str| outputs[SIGNALS.iter().position(|known| *known == name).unwrap()];
+        let outputs = bench.machine.signals::<f64>(&rest.state, &rest.all_inputs());
+        let signal = |signal: Signal| outputs.get(signal).unwrap();
         let places = linkage_places(&bench.rig);
         let place = places.iter().find(|place| place.at == LinkagePosition::OperatingPoint).unwrap();
-        assert!((signal("joint_angle_rad") - place.angle_rad).abs() < 1e-9, "{settings:?}");
-        let arm = signal("joint_torque_n_m") / signal("force_n");
+        assert!((signal(Signal::JointAngle) - place.angle_rad).abs() < 1e-9, "{settings:?}");
+        let arm = signal(Signal::JointTorque) / signal(Signal::Force);
         assert!((arm / place.lever_arm_m - 1.0).abs() < 1e-9, "{settings:?}: {arm} {}", place.lever_arm_m);
         let inertia = place.reflected_mass_kg.unwrap() * arm * arm;
         assert!((inertia - 0.6).abs() < 1e-9);
@@ -144,12 +144,12 @@ fn a_weight_is_held_at_rest() {
         let project = project_of(&text, settings);
         let bench = ControlledMachine::new(&Setup::new(&project).unwrap()).unwrap();
         let rest = bench.machine.rest_under_load(&bench.rig.point).unwrap();
-        let outputs = bench.machine.outputs::<f64>(&rest.state, &rest.all_inputs());
-        let signal = |name: &str| outputs[SIGNALS.iter().position(|known| *known == name).unwrap()];
+        let outputs = bench.machine.signals::<f64>(&rest.state, &rest.all_inputs());
+        let signal = |signal: Signal| outputs.get(signal).unwrap();
         // ORIGIN: analytic, 4 kg 9.80665 m/s2 0.3 m cos(theta - 40 deg)
-        let level = signal("joint_angle_rad") - 40_f64.to_radians();
+        let level = signal(Signal::JointAngle) - 40_f64.to_radians();
         let torque = 4.0 * 9.80665 * 0.3 * phea_dynamics::portable::cos(level);
-        let held = signal("joint_torque_n_m");
+        let held = signal(Signal::JointTorque);
         assert!((held / torque - 1.0).abs() < 1e-9, "{settings:?}: {held} {torque}");
     }
 }
@@ -191,11 +191,15 @@ fn a_run_starts_at_the_operating_point() {
     for settings in [&[][..], &["operating_point.position=\"15 mm\"", "load.stiffness=400"]] {
         let project = project_of(KNEE, settings);
         let run = run(&project);
-        let at_start = |name: &str| run.record.signal(name)[0];
+        let at_start = |signal: Signal| run.record.signal(signal)[0];
         let wanted = project.operating_point.position.unwrap();
-        assert!((at_start("position_m") - wanted).abs() < 1e-8, "{settings:?}: {}", at_start("position_m"));
-        assert!((at_start("force_n") - 600.0).abs() < 1e-3);
-        assert!(at_start("joint_velocity_rad_per_s").abs() < 1e-9);
+        assert!(
+            (at_start(Signal::Position) - wanted).abs() < 1e-8,
+            "{settings:?}: {}",
+            at_start(Signal::Position)
+        );
+        assert!((at_start(Signal::Force) - 600.0).abs() < 1e-3);
+        assert!(at_start(Signal::JointVelocity).abs() < 1e-9);
     }
 }
 
@@ -224,10 +228,10 @@ fn a_straight_table_is_a_load_in_other_units() {
             assert!((one - other).abs() <= 2e-4 * other.abs() + 1e-3, "{name}: {one} {other}");
         }
     }
-    let end = |run: &ScenarioRun, name: &str| *run.record.signal(name).last().unwrap();
-    for name in ["force_n", "position_m", "load_position_m", "pressure_a_pa"] {
-        let (one, other) = (end(&one, name), end(&other, name));
-        assert!((one / other - 1.0).abs() < 1e-5, "{name}: {one} {other}");
+    let end = |run: &ScenarioRun, signal: Signal| *run.record.signal(signal).last().unwrap();
+    for signal in [Signal::Force, Signal::Position, Signal::LoadPosition, Signal::PressureA] {
+        let (one, other) = (end(&one, signal), end(&other, signal));
+        assert!((one / other - 1.0).abs() < 1e-5, "{signal:?}: {one} {other}");
     }
 }
 

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use phea_hydraulics::signal::Signal;
 use phea_workbench::project::{self, Project};
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::simulate_project;
@@ -31,7 +32,7 @@ fn samples(settings: &[&str]) -> (Vec<f64>, Vec<f64>) {
     assert_eq!(run.stopped(), None);
     let at_samples = |values: &[f64]| values.iter().copied().step_by(run.looks_per_row).collect::<Vec<f64>>();
     let [commands, forces] =
-        [&run.record.control_v, &run.record.signal("force_n")].map(|one| at_samples(one));
+        [&run.record.signal(Signal::Control), &run.record.signal(Signal::Force)].map(|one| at_samples(one));
     assert_eq!(commands.len(), 20_001);
     (commands, forces)
 }

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use num_complex::Complex64;
+use phea_hydraulics::signal::Signal;
 use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::Verdict;
 use phea_workbench::audit::audit_project;
@@ -149,8 +150,8 @@ fn it_rests_with_what_is_fed_back() {
         let run = simulate_project(&Memory::default(), &Setup::new(&project).unwrap(), &mut |_| true)
             .unwrap()
             .remove(0);
-        let of = |name: &str| run.record.signal(name)[0];
-        let (force, command) = (of("force_n"), of("command_v"));
+        let of = |signal: Signal| run.record.signal(signal)[0];
+        let (force, command) = (of(Signal::Force), of(Signal::Command));
         let declared = project.controller.unwrap().pressure_feedback.unwrap();
         let areas = [1.963_495_408_5e-3, 0.945_619_389e-3];
         let ratio = match declared.signal {
@@ -158,7 +159,7 @@ fn it_rests_with_what_is_fed_back() {
             project::PressureSignal::PressureDifference => 1.0,
         };
         let fed = if declared.high_pass.is_some() { 0.0 } else { declared.gain };
-        let expected = 0.0005 * (1e3 - force) - fed * (of("pressure_a_pa") - ratio * of("pressure_b_pa"));
+        let expected = 0.0005 * (1e3 - force) - fed * (of(Signal::PressureA) - ratio * of(Signal::PressureB));
         assert!((command - expected).abs() < 1e-7, "{feedback}: {command} {expected}");
     }
 }

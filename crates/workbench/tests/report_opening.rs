@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use phea_hydraulics::signal::Signal;
 use std::fmt::Write as _;
 
 use crate::ask::{built_hose, contradictory_report};
@@ -62,7 +63,7 @@ fn without(text: &str, first: &str, until: &str) -> String {
 fn measured_hose() -> (Memory, f64) {
     let plain = Memory::default().with("rig.toml", HOSE);
     let run = runs(&plain, &load(&plain, &[])).remove(0);
-    let force = run.record.signal("force_n");
+    let force = run.record.signal(Signal::Force);
     let mut csv = "time_s,force_n\n".to_string();
     let rows = run.record.times_s.iter().zip(&force).step_by(16);
     let (mut least, mut most) = (f64::MAX, f64::MIN);

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use phea_hydraulics::signal::Signal;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
@@ -93,7 +94,7 @@ fn a_reference_is_the_sum_of_its_parts() {
     let (window, metrics) = &run.windows[3];
     assert_eq!(metrics.overshoot_percent, Err("the reference moves"));
     let from = row(&run, window.start_s);
-    let errors = run.record.reference_n.iter().zip(run.record.signal("force_n")).skip(from);
+    let errors = run.record.reference_n.iter().zip(run.record.signal(Signal::Force)).skip(from);
     let largest = errors.map(|(reference, force)| (reference - force).abs()).fold(0.0, f64::max);
     let found = metrics.tracking_error_peak_n.unwrap();
     assert!(found >= largest && found < 1.001 * largest + 0.1, "{found} {largest}");
@@ -132,12 +133,12 @@ fn a_recorded_reference_is_followed_like_what_was_recorded() {
     };
     let ramp = of("{ kind = \"ramp\", start = \"0.1 s\", duration = \"0.2 s\", force = \"1 kN\" }");
     let file = of("{ kind = \"file\", start = \"0.1 s\", file = \"ramp.csv\" }");
-    let forces = ramp.record.signal("force_n").into_iter().zip(file.record.signal("force_n"));
+    let forces = ramp.record.signal(Signal::Force).into_iter().zip(file.record.signal(Signal::Force));
     let apart = forces.map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
     // ORIGIN: analytic, the cubic bends where the ramp ends, by at most 4/27 of the 50 N that the
     // last interval rises
     assert!(apart < 50.0 * 4.0 / 27.0, "{apart}");
-    let end = |run: &ScenarioRun| last(run.record.signal("force_n"));
+    let end = |run: &ScenarioRun| last(run.record.signal(Signal::Force));
     assert!((end(&ramp) - end(&file)).abs() < 1.0, "{} {}", end(&ramp), end(&file));
     let text = rig("duration = 1\nreference = { kind = \"file\", file = \"ramp.csv\" }");
     let wrong = Memory::default().with("ramp.csv", "time_ms,force_nm\n0,0\n1,1\n");
@@ -159,7 +160,7 @@ fn a_command_played_back_gives_the_force_it_was_recorded_with() {
         "duration = \"1 s\"\noutput_step = \"0.25 ms\"\n{START}\nreference = {{ at = \"0.1 s\", force = \"4 kN\" }}"
     ));
     let mut recorded = "time_s,voltage_v\n".to_string();
-    for (time, command) in closed.record.times_s.iter().zip(&closed.record.control_v) {
+    for (time, command) in closed.record.times_s.iter().zip(&closed.record.signal(Signal::Control)) {
         writeln!(recorded, "{time},{command}").unwrap();
     }
     let text =
@@ -169,14 +170,14 @@ fn a_command_played_back_gives_the_force_it_was_recorded_with() {
     let text = format!("{before}{}", &rest[rest.find("[[scenario]]").unwrap()..]);
     let open = run_with(&text, &Memory::default().with("command.csv", recorded));
     for time_s in [0.05, 0.11, 0.15, 0.2, 0.4, 1.0] {
-        let [one, other] = [&closed, &open].map(|run| run.record.signal("force_n")[row(run, time_s)]);
+        let [one, other] = [&closed, &open].map(|run| run.record.signal(Signal::Force)[row(run, time_s)]);
         assert!((one - other).abs() < 2.0, "{time_s}: {one} {other}");
     }
     let (window, metrics) = &open.windows[0];
     assert_eq!(window.cause, Cause::CommandMotion { kind: "file" });
-    assert!(open.record.reference_n.is_empty() && open.record.filtered_reference_n.is_empty());
+    assert!(open.record.reference_n.is_empty() && open.record.signal(Signal::FilteredReference).is_empty());
     assert_eq!(metrics.overshoot_percent, Err("open loop: there is no reference"));
-    let largest = open.record.signal("force_n").into_iter().map(f64::abs).fold(0.0, f64::max);
+    let largest = open.record.signal(Signal::Force).into_iter().map(f64::abs).fold(0.0, f64::max);
     let found = metrics.force_peak_n.unwrap();
     assert!(found >= largest && found < 1.001 * largest, "{found} {largest}");
 }
@@ -227,19 +228,21 @@ fn a_force_from_outside_moves_the_load_by_its_spring() {
     let alone = of("");
     let pushed =
         of("external_force = { kind = \"ramp\", start = \"1 s\", duration = \"0.2 s\", force = \"800 N\" }");
-    let end = |run: &ScenarioRun, name: &str| last(run.record.signal(name));
+    let end = |run: &ScenarioRun, signal: Signal| last(run.record.signal(signal));
     // ORIGIN: analytic, F_x/k = 800/2e6
-    let moved = end(&pushed, "load_position_m") - end(&alone, "load_position_m");
+    let moved = end(&pushed, Signal::LoadPosition) - end(&alone, Signal::LoadPosition);
     assert!((moved - 4e-4).abs() < 2e-6, "{moved}");
-    assert!((end(&pushed, "force_n") - 1e3).abs() < 2.0 && (end(&alone, "force_n") - 1e3).abs() < 2.0);
-    assert_eq!(last(pushed.record.external_force_n.clone()), 800.0);
-    assert!(alone.record.external_force_n.is_empty());
+    assert!(
+        (end(&pushed, Signal::Force) - 1e3).abs() < 2.0 && (end(&alone, Signal::Force) - 1e3).abs() < 2.0
+    );
+    assert_eq!(last(pushed.record.signal(Signal::ExternalForce)), 800.0);
+    assert!(alone.record.signal(Signal::ExternalForce).is_empty());
     let (window, metrics) = pushed.windows.last().unwrap();
     assert_eq!((window.cause, window.start_s), (Cause::ExternalForce { about_joint: false }, 1.0));
     assert!(metrics.disturbance_peak_n.unwrap() > 1.0);
     // before it begins nothing of it is known
     let before = row(&alone, 0.9);
-    let known = |run: &ScenarioRun| run.record.signal("force_n")[before];
+    let known = |run: &ScenarioRun| run.record.signal(Signal::Force)[before];
     assert!((known(&alone) - known(&pushed)).abs() < 0.1, "{} {}", known(&alone), known(&pushed));
 }
 
@@ -281,24 +284,23 @@ fn halves_are_the_whole(change: impl Fn(String) -> String + Copy, tolerance_n: f
     let second = "duration = \"0.5 s\"\noutput_step = \"1 ms\"\nstart = { file = \"one.state.toml\" }\n\
                   reference = [{ at = 0, force = \"4 kN\" }, { at = \"0.05 s\", force = \"3 kN\" }]";
     let [one, other] = continued(&first, second, change);
-    let forces = whole.record.signal("force_n");
+    let forces = whole.record.signal(Signal::Force);
     let half = row(&whole, 0.5);
-    let looks = |run: &ScenarioRun| run.record.signal("force_n");
+    let looks = |run: &ScenarioRun| run.record.signal(Signal::Force);
     // steps that end at another break than those of the whole
     let first = forces.iter().zip(looks(&one)).map(|(whole, half)| (whole - half).abs()).fold(0.0, f64::max);
     assert!(first < tolerance_n, "{first}");
-    let apart = |name: &str| {
-        let (whole, other) = (whole.record.signal(name), other.record.signal(name));
+    let apart = |signal: Signal| {
+        let (whole, other) = (whole.record.signal(signal), other.record.signal(signal));
         assert_eq!(whole.len(), half + other.len());
         whole[half..].iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
     };
-    assert!(apart("force_n") < tolerance_n, "{} N", apart("force_n"));
-    assert!(apart("load_position_m") < 1e-12, "{}", apart("load_position_m"));
-    assert!(apart("pressure_a_pa") < 1e3 * tolerance_n, "{} Pa", apart("pressure_a_pa"));
+    assert!(apart(Signal::Force) < tolerance_n, "{} N", apart(Signal::Force));
+    assert!(apart(Signal::LoadPosition) < 1e-12, "{}", apart(Signal::LoadPosition));
+    assert!(apart(Signal::PressureA) < 1e3 * tolerance_n, "{} Pa", apart(Signal::PressureA));
     // at the first instant nothing has been integrated yet: the bits are those of the end
-    let end = one.record.signals.last().unwrap();
-    assert_eq!(&other.record.signals[0][..], &end[..]);
-    let command = |run: &ScenarioRun| run.record.control_v.clone();
+    assert_eq!(other.record.samples[0].machine, one.record.samples.last().unwrap().machine);
+    let command = |run: &ScenarioRun| run.record.signal(Signal::Control);
     let difference =
         command(&whole)[half..].iter().zip(command(&other)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(difference < 1e-3 * tolerance_n.max(0.1), "{difference} V");
@@ -340,12 +342,14 @@ fn a_setting_goes_on_from_where_it_was() {
         let goes_on = "setting_change = [{ at = 0, change = 0.4 }, { kind = \"ramp\", change = 0.4, duration = \"0.2 s\" }]";
         let [_, other] = continued(&first, &second(goes_on), adjusted);
         let half = row(&whole, 0.4);
-        for (name, tolerance) in [("force_n", 0.05), ("pressure_a_pa", 50.0), ("setting_a_ratio", 1e-9)] {
-            let (whole, other) = (whole.record.signal(name), other.record.signal(name));
+        for (signal, tolerance) in
+            [(Signal::Force, 0.05), (Signal::PressureA, 50.0), (Signal::SettingA, 1e-9)]
+        {
+            let (whole, other) = (whole.record.signal(signal), other.record.signal(signal));
             assert_eq!(whole.len(), half + other.len());
             let apart =
                 whole[half..].iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
-            assert!(apart < tolerance, "{part} {name}: {apart}");
+            assert!(apart < tolerance, "{part} {signal:?}: {apart}");
         }
         let text = adjusted(rig(&first));
         let answer = command::answer(

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use num_complex::Complex64;
+use phea_hydraulics::signal::Signal;
 use phea_qft::family::Family;
 use phea_workbench::catalogue;
 use phea_workbench::command::Request;
@@ -242,12 +243,12 @@ fn metrics_are_those_of_the_rows() {
         let [(_, metrics)] = runs[0].windows[..] else { panic!("{settings:?}") };
         let record = &runs[0].record;
         let largest = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let force = record.signal("force_n");
+        let force = record.signal(Signal::Force);
         let near = |found: f64, rows: f64, slack: f64| {
             assert!((found - rows).abs() < slack, "{settings:?}: {found} and {rows} of the rows\n{text}");
         };
         near(metrics.overshoot_percent.unwrap(), (largest(&force) / 10.0 - 100.0).max(0.0), 0.05);
-        near(metrics.control_peak_v.unwrap(), largest(&record.control_v), 0.005);
+        near(metrics.control_peak_v.unwrap(), largest(&record.signal(Signal::Control)), 0.005);
         let last = force.len() - force.len() / 11..;
         let mean = force[last.clone()].iter().sum::<f64>() / force[last].len() as f64;
         near(metrics.steady_state_error_n.unwrap(), 1000.0 - mean, 0.1);

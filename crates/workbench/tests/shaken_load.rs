@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
 
+use phea_hydraulics::signal::Signal;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -58,7 +59,7 @@ pub(crate) fn of_machine(settings: &[&str], hertz: u32) -> Complex64 {
         .unwrap()
         .remove(0);
     assert_eq!(run.status, Status::Completed);
-    let (times, force) = (&run.record.times_s, run.record.signal("force_n"));
+    let (times, force) = (&run.record.times_s, run.record.signal(Signal::Force));
     let sample_s = project.controller.as_ref().unwrap().sample_time.unwrap_or(1e-3);
     let at_samples = times.iter().zip(&force).filter(|(time, _)| {
         let samples = **time / sample_s;

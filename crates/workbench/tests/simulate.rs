@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use phea_hydraulics::signal::Signal;
 use std::fmt::Write as _;
 
 use phea_workbench::command::{self, Request};
@@ -60,9 +61,9 @@ fn run_of(text: &str, settings: &[&str]) -> ScenarioRun {
 }
 
 /// The value of a signal at a time of the record.
-fn at(run: &ScenarioRun, name: &str, time_s: f64) -> f64 {
+fn at(run: &ScenarioRun, signal: Signal, time_s: f64) -> f64 {
     let row = run.record.times_s.iter().position(|time| *time >= time_s - 1e-9).unwrap();
-    run.record.signal(name)[row]
+    run.record.signal(signal)[row]
 }
 
 #[test]
@@ -70,7 +71,7 @@ fn the_benchmark_gives_the_force_of_its_reference_solution() {
     let run = run_of(BENCHMARK, &["simulation.tolerance=1e-8"]);
     // ORIGIN: other tool, CVODE BDF at 1e-12 on the same equations in C
     for (time_s, force_n) in REFERENCE {
-        let found = at(&run, "force_n", time_s);
+        let found = at(&run, Signal::Force, time_s);
         assert!((found - force_n).abs() < 0.02, "{time_s} s: {found} N, not {force_n}");
     }
     assert_eq!(run.stopped(), None);
@@ -83,7 +84,7 @@ fn sampled_with_a_continuous_prefilter_it_gives_that_of_the_sampled_loop() {
     let run = run_of(BENCHMARK, &settings);
     // ORIGIN: other tool, CVODE BDF at 1e-12, restarted at each sample
     for (time_s, force_n) in REFERENCE_SAMPLED {
-        let found = at(&run, "force_n", time_s);
+        let found = at(&run, Signal::Force, time_s);
         assert!((found - force_n).abs() < 0.02, "{time_s} s: {found} N, not {force_n}");
     }
 }
@@ -170,7 +171,7 @@ fn an_equilibrium_is_kept() {
     let cases = [(of(BENCHMARK), vec![]), (of(everything), vec![noiseless])];
     for (text, settings) in cases {
         let run = run_of(&text, &settings);
-        let force = run.record.signal("force_n");
+        let force = run.record.signal(Signal::Force);
         let most = force.iter().map(|force| force.abs()).fold(0.0, f64::max);
         assert!(most < 1.0, "{most} N");
         assert_eq!(run.windows, []);
@@ -194,7 +195,7 @@ fn the_feed_forward_lets_the_force_feel_less_of_the_load() {
 fn noise_is_of_its_seed_alone() {
     let noisy = |seed: &str, noise: &str| {
         let settings = ["controller.sample_time=1 ms", "scenario.0.duration=0.3 s", seed, noise];
-        run_of(BENCHMARK, &settings).record.signal("force_n")
+        run_of(BENCHMARK, &settings).record.signal(Signal::Force)
     };
     let quiet = noisy("simulation.seed=1", "force_sensor.noise=0 N");
     let one = noisy("simulation.seed=1", "force_sensor.noise=5 N");
@@ -211,10 +212,10 @@ fn converters_round_the_command() {
     ];
     let run = run_of(BENCHMARK, &quantized);
     let step = 20.0 / 256.0;
-    for command in &run.record.control_v {
+    for command in &run.record.signal(Signal::Control) {
         assert_eq!((command / step).round() * step, *command);
     }
-    assert!(run.record.control_v.iter().any(|command| *command != 0.0));
+    assert!(run.record.signal(Signal::Control).iter().any(|command| *command != 0.0));
 }
 
 #[test]
@@ -225,7 +226,7 @@ fn a_limit_that_is_reached_is_told_with_its_time() {
         let run = run_of(BENCHMARK, &settings);
         let first = run.occurrences.first().unwrap();
         assert!(first.kind == "command_limit" && first.begins && first.time_s >= 2.0, "{first:?}");
-        assert!(run.record.control_v.iter().all(|command| command.abs() <= 0.3));
+        assert!(run.record.signal(Signal::Control).iter().all(|command| command.abs() <= 0.3));
     }
 }
 
@@ -260,7 +261,7 @@ fn a_measured_motion_is_that_motion() {
     let run = simulate_project(&source, &Setup::new(&project).unwrap(), &mut |_| true).unwrap().remove(0);
     let same = run_of(BENCHMARK, &["scenario.0.duration=3.5 s"]);
     for time_s in [2.9, 3.03, 3.06, 3.11, 3.3] {
-        let (found, expected) = (at(&run, "force_n", time_s), at(&same, "force_n", time_s));
+        let (found, expected) = (at(&run, Signal::Force, time_s), at(&same, Signal::Force, time_s));
         assert!((found - expected).abs() < 3.0, "{time_s}: {found} {expected}");
     }
 }
@@ -445,7 +446,7 @@ fn a_late_sensor_is_a_late_command() {
     let motion_of = |settings: &[&str]| {
         let run = run_of(BENCHMARK, settings);
         let (force, row) =
-            (run.record.signal("force_n"), run.record.times_s.iter().position(|time| *time >= 3.0));
+            (run.record.signal(Signal::Force), run.record.times_s.iter().position(|time| *time >= 3.0));
         force[row.unwrap()..].to_vec()
     };
     let sensor = motion_of(&["sensor={ numerator = \"1\", denominator = \"1\", delay = \"0.5 ms\" }"]);
@@ -490,7 +491,7 @@ fn lines_with_waves_rest_too() {
     for settings in
         [vec!["line.model=two_wave"], vec!["line.model=transmission_line", "controller.delay=1 ms"]]
     {
-        let force = run_of(&text, &settings).record.signal("force_n");
+        let force = run_of(&text, &settings).record.signal(Signal::Force);
         let most = force.iter().map(|force| force.abs()).fold(0.0, f64::max);
         assert!(most < 1.0, "{settings:?}: {most} N");
     }

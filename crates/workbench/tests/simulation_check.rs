@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use phea_hydraulics::signal::Signal;
 use phea_workbench::command::{self, Request, SimulateRequest};
 use phea_workbench::project::{self, Loaded};
 use phea_workbench::setup::Setup;
@@ -38,7 +39,7 @@ fn with_check() -> Request {
 }
 
 fn apart(one: &ScenarioRun, other: &ScenarioRun) -> f64 {
-    let (one, other) = (one.record.signal("force_n"), other.record.signal("force_n"));
+    let (one, other) = (one.record.signal(Signal::Force), other.record.signal(Signal::Force));
     assert_eq!(one.len(), other.len());
     one.iter().zip(&other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
 }
@@ -58,8 +59,9 @@ fn a_check_is_the_difference_of_two_runs() {
     assert!((check.tolerance - 1e-6).abs() < 1e-18 && check.stopped.is_none());
     let force = check.force.unwrap();
     assert!(force.difference > 0.0 && force.difference == apart(&plain, &tenth));
-    let peak =
-        |run: &ScenarioRun| run.record.signal("force_n").iter().fold(0.0_f64, |most, f| most.max(f.abs()));
+    let peak = |run: &ScenarioRun| {
+        run.record.signal(Signal::Force).iter().fold(0.0_f64, |most, f| most.max(f.abs()))
+    };
     assert_eq!(force.peak, peak(&plain).max(peak(&tenth)));
     let disturbances = [&plain, &tenth].map(|run| run.windows[1].1.disturbance_peak_n.unwrap());
     assert_eq!(

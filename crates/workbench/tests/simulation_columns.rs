@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use phea_hydraulics::signal::Signal;
 use phea_workbench::project;
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{Record, simulate_project};
@@ -32,7 +33,7 @@ fn apart(one: &[f64], other: &[f64]) -> (f64, f64) {
 fn spool_and_opening_differ_by_bias_and_hysteresis() {
     let of = |settings: &[&str]| {
         let record = record_of(settings);
-        [record.signal("spool_v"), record.signal("opening_v")]
+        [record.signal(Signal::Spool), record.signal(Signal::Opening)]
     };
     let [spool, opening] = of(&["valve.null_bias=0.05 V"]);
     let shifted: Vec<f64> = opening.iter().map(|opening| opening + 0.05).collect();
@@ -55,13 +56,13 @@ fn the_command_behind_the_delay_is_that_before_it_later() {
     for (record, tolerance) in [(continuous, 1e-5), (sampled, 0.0)] {
         // between two samples, where rounding of times decides nothing
         let between = |values: &[f64]| values.iter().skip(2).step_by(4).copied().collect::<Vec<_>>();
-        let (before, behind) = (&record.control_v, record.signal("command_v"));
+        let (before, behind) = (&record.signal(Signal::Control), record.signal(Signal::Command));
         let (difference, most) = apart(&between(&behind[looks..]), &between(&before[..before.len() - looks]));
         assert!(difference <= tolerance && most > 0.1, "{difference} V of {most} V");
         assert!(apart(&behind, before).0 > 0.01);
     }
     let without = record_of(&[]);
-    assert_eq!(without.control_v, without.signal("command_v"));
+    assert_eq!(without.signal(Signal::Control), without.signal(Signal::Command));
 }
 
 /// u = K_p e + the integral part, of a law K_p + K_i/s; sampled by the bilinear rule, half a
@@ -71,18 +72,19 @@ fn proportional_and_integral_part_are_the_command() {
     for (sample_time_s, setting) in [(0.0, None), (1e-3, Some("controller.sample_time=1 ms"))] {
         let settings: Vec<&str> = setting.into_iter().collect();
         let record = record_of(&settings);
-        let error = record.filtered_reference_n.iter().zip(record.signal("measurement_n"));
+        let filtered = record.signal(Signal::FilteredReference);
+        let error = filtered.iter().zip(record.signal(Signal::Measurement));
         let proportional = 0.001 + 0.5 * 0.008 * sample_time_s;
         let expected: Vec<f64> = error
-            .zip(record.signal("integral_v"))
+            .zip(record.signal(Signal::Integral))
             .map(|((reference, measured), integral)| proportional * (reference - measured) + integral)
             .collect();
-        let (difference, most) = apart(&record.control_v, &expected);
+        let (difference, most) = apart(&record.signal(Signal::Control), &expected);
         assert!(difference < 1e-12 && most > 0.3, "{difference} V of {most} V");
-        assert!(record.signal("integral_v").iter().any(|part| part.abs() > 0.1));
+        assert!(record.signal(Signal::Integral).iter().any(|part| part.abs() > 0.1));
     }
     let strictly_proportional = record_of(&["controller={ numerator = \"0.001\", denominator = \"1\" }"]);
-    assert!(strictly_proportional.signal("integral_v").iter().all(|part| *part == 0.0));
+    assert!(strictly_proportional.signal(Signal::Integral).iter().all(|part| *part == 0.0));
 }
 
 #[test]
@@ -91,9 +93,9 @@ fn the_limit_is_all_between_the_unlimited_command_and_that_given_out() {
         let mut settings = vec!["controller.saturation=0.3 V"];
         settings.extend(extra);
         let record = record_of(&settings);
-        let unlimited = record.signal("unlimited_control_v");
+        let unlimited = record.signal(Signal::UnlimitedControl);
         assert!(unlimited.iter().any(|command| command.abs() > 0.35));
-        for (unlimited, given) in unlimited.iter().zip(&record.control_v) {
+        for (unlimited, given) in unlimited.iter().zip(&record.signal(Signal::Control)) {
             assert_eq!(unlimited.clamp(-0.3, 0.3), *given);
         }
     }
@@ -104,9 +106,9 @@ fn the_limit_is_all_between_the_unlimited_command_and_that_given_out() {
 #[test]
 fn the_measurement_is_the_force_behind_the_sensor() {
     let plain = record_of(&[]);
-    assert_eq!(plain.signal("measurement_n"), plain.signal("force_n"));
+    assert_eq!(plain.signal(Signal::Measurement), plain.signal(Signal::Force));
     let late = record_of(&["sensor={ numerator = \"100\", denominator = \"s + 100\" }"]);
-    let (force, measured) = (late.signal("force_n"), late.signal("measurement_n"));
+    let (force, measured) = (late.signal(Signal::Force), late.signal(Signal::Measurement));
     let half = 0.5 * 100.0 * 0.25e-3;
     let mut state = measured[0];
     let mut largest: f64 = 0.0;
@@ -121,9 +123,11 @@ fn the_measurement_is_the_force_behind_the_sensor() {
 /// oil flows.
 #[test]
 fn pressures_at_both_ends_of_a_line() {
-    let [port, chamber] = ["port_pressure_a_pa", "pressure_a_pa"].map(|name| record_of(&[]).signal(name));
+    let [port, chamber] =
+        [Signal::PortPressureA, Signal::PressureA].map(|signal| record_of(&[]).signal(signal));
     assert_eq!(port, chamber);
     let line = "line={ hose = \"eaton_synflex_3130_08\", length = \"1.5 m\", model = \"segments\" }";
-    let [port, chamber] = ["port_pressure_a_pa", "pressure_a_pa"].map(|name| record_of(&[line]).signal(name));
+    let [port, chamber] =
+        [Signal::PortPressureA, Signal::PressureA].map(|signal| record_of(&[line]).signal(signal));
     assert!(apart(&port, &chamber).0 > 1e3, "{} Pa", apart(&port, &chamber).0);
 }

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "the platform's functions are exact enough for a test")]
 
+use phea_hydraulics::signal::Signal;
 use std::f64::consts::TAU;
 
 use num_complex::Complex64;
@@ -150,7 +151,7 @@ fn at_slow_velocity_bristles_give_the_static_curve() {
     let of_static = [&slow[..], &[smoothed]].concat();
     for settings in [&slow[..], &of_static] {
         let run = run(settings);
-        let (friction, velocity) = (run.record.signal("friction_n"), run.record.signal("velocity_m_per_s"));
+        let (friction, velocity) = (run.record.signal(Signal::Friction), run.record.signal(Signal::Velocity));
         let mut compared = 0;
         for (friction, v) in friction.iter().zip(&velocity).skip(100).filter(|(_, v)| v.abs() > 1e-3) {
             let curve = v.signum() * (80.0 + 40.0 * (-(v / 0.01).powi(2)).exp()) + 4e3 * v;
@@ -169,8 +170,8 @@ fn friction_lies_between_hydraulic_and_measured_force() {
     const MOVING_MASS_KG: f64 = 13.1;
     let run = run(&["simulation.tolerance=1e-8"]);
     let [hydraulic, friction, force, velocity] =
-        ["hydraulic_force_n", "friction_n", "force_n", "velocity_m_per_s"]
-            .map(|name| run.record.signal(name));
+        [Signal::HydraulicForce, Signal::Friction, Signal::Force, Signal::Velocity]
+            .map(|signal| run.record.signal(signal));
     let left: Vec<f64> = hydraulic
         .iter()
         .zip(&friction)
@@ -218,7 +219,7 @@ fn disturbed(line: &[&str], time_constant_s: f64) -> (ScenarioRun, Metrics) {
 
 /// How often the force crosses 4 kN while it is more than one percent off between crossings.
 fn swings(run: &ScenarioRun) -> usize {
-    let force = run.record.signal("force_n");
+    let force = run.record.signal(Signal::Force);
     let after = run.record.times_s.iter().zip(&force).filter(|(time, _)| **time >= 3.0);
     let sides: Vec<bool> =
         after.map(|(_, force)| force - 4e3).filter(|off| off.abs() > 40.0).map(|off| off > 0.0).collect();

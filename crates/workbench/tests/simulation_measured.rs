@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use phea_hydraulics::signal::Signal;
 use std::fmt::Write as _;
 
 use phea_workbench::command::{self, Request, SimulateRequest};
@@ -39,7 +40,7 @@ const MAPPED: &str = "[[scenario.measured]]\nfile = \"bench.csv\"\ntime_column =
 #[test]
 fn what_is_off_by_a_constant_has_its_nrmse() {
     let plain = run("", "");
-    let (force, pressure) = (plain.record.signal("force_n"), plain.record.signal("pressure_a_pa"));
+    let (force, pressure) = (plain.record.signal(Signal::Force), plain.record.signal(Signal::PressureA));
     let at = |values: &[f64], time_s: f64| {
         let place = time_s / 0.25e-3;
         let (row, part) = ((place.floor() as usize).min(values.len() - 2), place.fract());

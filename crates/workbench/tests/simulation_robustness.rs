@@ -4,9 +4,10 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
 use phea_dynamics::simulation::Status;
+use phea_hydraulics::signal::Signal;
 use phea_workbench::project::{self, Loaded, Project, Refusal};
 use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{Record, ScenarioRun, simulate_project};
+use phea_workbench::simulate::{ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 
 const BENCHMARK: &str = include_str!("../../../examples/simulation/benchmark.toml");
@@ -35,10 +36,8 @@ fn run(text: &str, settings: &[&str]) -> ScenarioRun {
     let run = simulate_project(&Memory::default(), &Setup::new(&project).unwrap(), &mut |_| true)
         .unwrap()
         .remove(0);
-    let Record { times_s, reference_n, filtered_reference_n, control_v, signals, of_loop, .. } = &run.record;
-    let all = [times_s, reference_n, filtered_reference_n, control_v].into_iter().flatten();
-    let all = all.chain(signals.iter().flatten()).chain(of_loop.iter().flatten());
-    assert_eq!(all.filter(|value| !value.is_finite()).count(), 0, "{settings:?}");
+    let values = Signal::ALL.iter().flat_map(|signal| run.record.signal(*signal));
+    assert_eq!(values.filter(|value| !value.is_finite()).count(), 0, "{settings:?}");
     assert!(run.work.steps < MOST_STEPS, "{:?} with {settings:?}", run.work);
     run
 }
@@ -60,7 +59,7 @@ fn happened(run: &ScenarioRun, kind: &str) -> bool {
     run.occurrences.iter().any(|occurrence| occurrence.kind == kind && occurrence.begins)
 }
 
-fn last(run: &ScenarioRun, signal: &str) -> f64 {
+fn last(run: &ScenarioRun, signal: Signal) -> f64 {
     *run.record.signal(signal).last().unwrap()
 }
 
@@ -79,7 +78,7 @@ fn a_valve_that_is_shut_for_ten_seconds() {
     let text = BENCHMARK.replace("load_motion =", "# load_motion =");
     let shut = ["scenario.0.reference=[]", "controller.numerator=1e-12", "scenario.0.duration=10 s"];
     let run = completed(&text, &shut);
-    let pressure = run.record.signal("pressure_a_pa");
+    let pressure = run.record.signal(Signal::PressureA);
     let count = pressure.len();
     // ORIGIN: analytic, thesis Table 5.1: p_A = p_S/(1 + (K_vin4/K_vin3)^2) where leakage in equals
     // leakage out
@@ -94,8 +93,8 @@ fn a_valve_that_is_shut_for_ten_seconds() {
 fn a_supply_that_is_lost() {
     let lost = ["supply.model=pump_limited", "supply.flow=0.001 L/min", "supply.volume=0.1 L"];
     let run = completed(BENCHMARK, &lost);
-    assert!(last(&run, "supply_pressure_pa") < 10e5, "{}", last(&run, "supply_pressure_pa"));
-    assert!(last(&run, "force_n") < 3e3 && happened(&run, "command_limit"), "{:?}", run.occurrences);
+    assert!(last(&run, Signal::SupplyPressure) < 10e5, "{}", last(&run, Signal::SupplyPressure));
+    assert!(last(&run, Signal::Force) < 3e3 && happened(&run, "command_limit"), "{:?}", run.occurrences);
     let refusal = refused(BENCHMARK, &["supply.model=pump_limited"]);
     assert!(refusal.contains("missing `flow` in [supply]"), "{refusal}");
 }
@@ -105,9 +104,9 @@ fn a_supply_that_is_lost() {
 fn pressures_that_are_reversed() {
     let above = ["scenario.0.start.pressure_a=90 bar", "scenario.0.start.pressure_b=85 bar"];
     let run = completed(BENCHMARK, &above);
-    let taken = run.record.signal("supply_flow_m3_per_s");
+    let taken = run.record.signal(Signal::SupplyFlow);
     assert!(taken.iter().copied().fold(0.0, f64::min) < 0.0);
-    assert!((last(&run, "force_n") - 4000.0).abs() < 1.0);
+    assert!((last(&run, Signal::Force) - 4000.0).abs() < 1.0);
     let refusal = refused(BENCHMARK, &["supply.tank_pressure=80 bar"]);
     assert!(refusal.contains("`tank_pressure` must be below `pressure`"), "{refusal}");
 }
@@ -122,7 +121,7 @@ fn a_load_beyond_the_end_of_the_stroke() {
         let stopped = [QUIET[0], QUIET[1], &beyond, "cylinder.end_stops={ stiffness = \"500 MN/m\" }"];
         let run = completed(BENCHMARK, &stopped);
         let outside =
-            run.record.signal("position_m").iter().map(|x| (x - 0.25).abs() - 0.25).fold(0.0, f64::max);
+            run.record.signal(Signal::Position).iter().map(|x| (x - 0.25).abs() - 0.25).fold(0.0, f64::max);
         assert!(happened(&run, stop) && outside > 0.0 && outside < 1e-3, "{distance}: {outside}");
         let free = self::run(BENCHMARK, &[QUIET[0], QUIET[1], &beyond]);
         assert!(happened(&free, stop), "{distance}: {:?}", free.occurrences);
@@ -145,7 +144,7 @@ fn hoses_without_length() {
     }
     for (text, short) in [(HOSE, "line.length=1e-6 m"), (BENCHMARK, "line.volume=1e-12 m3")] {
         let run = completed(text, &[short]);
-        assert!((last(&run, "force_n") - 4000.0).abs() < 20.0, "{short}: {}", last(&run, "force_n"));
+        assert!((last(&run, Signal::Force) - 4000.0).abs() < 20.0, "{short}: {}", last(&run, Signal::Force));
     }
 }
 
@@ -159,7 +158,7 @@ fn apart(text: &str, settings: &[&str]) -> f64 {
             .unwrap()
             .remove(0);
         assert_eq!(run.status, Status::Completed, "{settings:?}");
-        run.record.signal("force_n").to_vec()
+        run.record.signal(Signal::Force).to_vec()
     };
     let implicit = force(&["simulation.tolerance=1e-8"]);
     let explicit = force(&["simulation.method=dormand_prince", "simulation.tolerance=1e-8"]);
@@ -175,12 +174,12 @@ fn samples_of_a_microsecond_and_of_a_tenth_of_a_second() {
     let of = |sample: &[&str]| completed(BENCHMARK, &[&early[..], sample].concat());
     let (continuous, sampled) = (of(&[]), of(&["controller.sample_time=1 us"]));
     assert_eq!(continuous.record.times_s.len(), sampled.record.times_s.len());
-    let forces = [&continuous, &sampled].map(|run| run.record.signal("force_n"));
+    let forces = [&continuous, &sampled].map(|run| run.record.signal(Signal::Force));
     let difference =
         forces[0].iter().zip(&forces[1]).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
-    assert!(last(&continuous, "force_n") > 500.0 && difference < 0.5, "{difference} N");
+    assert!(last(&continuous, Signal::Force) > 500.0 && difference < 0.5, "{difference} N");
     let slow = completed(BENCHMARK, &["controller.sample_time=100 ms"]);
-    assert!(slow.record.control_v.iter().all(|command| command.abs() <= 10.0));
+    assert!(slow.record.signal(Signal::Control).iter().all(|command| command.abs() <= 10.0));
     let slowly =
         ["controller.sample_time=100 ms", "scenario.0.duration=1 s", "scenario.0.reference.0.at=0.1"];
     assert!(apart(BENCHMARK, &slowly) < 1e-5 * 4000.0);
@@ -208,11 +207,12 @@ fn twenty_millimetres_in_ten_milliseconds() {
         let settings: Vec<&str> = quiet.iter().copied().chain((!more.is_empty()).then_some(more)).collect();
         let run = completed(text, &settings);
         assert!(
-            (last(&run, "load_position_m") - 0.27).abs() < 0.02,
+            (last(&run, Signal::LoadPosition) - 0.27).abs() < 0.02,
             "{more}: {}",
-            last(&run, "load_position_m")
+            last(&run, Signal::LoadPosition)
         );
-        let peak = run.record.signal("force_n").iter().fold(0.0, |peak: f64, force| peak.max(force.abs()));
+        let peak =
+            run.record.signal(Signal::Force).iter().fold(0.0, |peak: f64, force| peak.max(force.abs()));
         assert!(peak > 300.0, "{more}: {peak} N");
         // waves of the wall are too fast for an explicit method
         if more.ends_with("two_wave") {

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use phea_hydraulics::signal::Signal;
 use phea_workbench::command::{CommandError, Request};
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::{ScenarioRun, simulate_project};
@@ -158,7 +159,7 @@ fn simulated(settings: &[&str], steps: &[(f64, f64)], duration_s: f64) -> Scenar
 
 /// Least and greatest force from one time to another, N.
 fn range(run: &ScenarioRun, from_s: f64, to_s: f64) -> [f64; 2] {
-    let rows = run.record.times_s.iter().zip(run.record.signal("force_n"));
+    let rows = run.record.times_s.iter().zip(run.record.signal(Signal::Force));
     let during = rows.filter(|(time_s, _)| (from_s..to_s).contains(*time_s));
     during
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (_, force)| [low.min(force), high.max(force)])

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
+use phea_hydraulics::signal::Signal;
 use phea_workbench::command::Request;
 use phea_workbench::project;
 use phea_workbench::setup::Setup;
@@ -134,7 +135,7 @@ fn the_gap_counts_from_the_equilibrium() {
     let run = simulate_project(&Memory::default(), &Setup::new(&project).unwrap(), &mut |_| true)
         .unwrap()
         .remove(0);
-    let load = run.record.signal("load_position_m").to_vec();
+    let load = run.record.signal(Signal::LoadPosition).to_vec();
     let (start, end) = (load[0], *load.last().unwrap());
     // where it stands before the step, and 2 mm on with what 500 N press into 20 MN/m
     assert!((load[400] - start).abs() < 1e-6, "{} m", load[400] - start);

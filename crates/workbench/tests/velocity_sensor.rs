@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
+use phea_hydraulics::signal::Signal;
 use phea_workbench::audit::{ProjectAudit, audit_project};
 use phea_workbench::campaign::{Effort, Plan};
 use phea_workbench::command::{self, Request};
@@ -53,13 +54,13 @@ fn a_sensor_without_error_is_none() {
         let with = |sensor: &[&str]| rig(&[&settings[..], sensor].concat());
         let (none, exact) = (with(&[]), with(&["velocity_sensor={ gain_error = 0, delay = 0, noise = 0 }"]));
         assert!(none != exact);
-        let forces = [&none, &exact].map(|project| simulated(project).record.signal("force_n"));
+        let forces = [&none, &exact].map(|project| simulated(project).record.signal(Signal::Force));
         assert!(forces[0].iter().zip(&forces[1]).all(|(one, other)| one.to_bits() == other.to_bits()));
         assert_eq!(worst(&none).to_bits(), worst(&exact).to_bits());
         for wrong in ["gain_error = 0.1", "delay = \"1 ms\"", "filter_frequency = \"40 Hz\""] {
             let other = with(&[&format!("velocity_sensor={{ {wrong} }}")]);
             assert!((worst(&other) - worst(&none)).abs() > 1e-3, "{settings:?} {wrong}");
-            let force = simulated(&other).record.signal("force_n");
+            let force = simulated(&other).record.signal(Signal::Force);
             assert!(force.iter().zip(&forces[0]).any(|(one, other)| (one - other).abs() > 1.0), "{wrong}");
         }
     }
@@ -75,7 +76,7 @@ fn its_gain_error_is_one_of_the_gain() {
         let shown = of(&[FED, "velocity_sensor.gain_error=-25 %"]);
         let other = of(&["controller.load_velocity_feed_forward.gain=15"]);
         assert!((worst(&shown) - worst(&other)).abs() < 1e-9, "{settings:?}");
-        let forces = [&shown, &other].map(|project| simulated(project).record.signal("force_n"));
+        let forces = [&shown, &other].map(|project| simulated(project).record.signal(Signal::Force));
         let apart = forces[0].iter().zip(&forces[1]).map(|(one, other)| (one - other).abs());
         let apart = apart.fold(0.0, f64::max);
         assert!(apart < 0.1, "{settings:?}: {apart} N");
@@ -198,8 +199,8 @@ fn rms(values: &[f64]) -> f64 {
 fn samples(project: &Project) -> [Vec<f64>; 2] {
     let run = simulated(project);
     assert_eq!(run.stopped(), None);
-    let held: &[f64] = &run.record.control_v;
-    [held, &run.record.signal("force_n")].map(|values| {
+    let held: &[f64] = &run.record.signal(Signal::Control);
+    [held, &run.record.signal(Signal::Force)].map(|values| {
         let at_samples: Vec<f64> = values.iter().copied().step_by(run.looks_per_row).skip(1000).collect();
         let mean = at_samples.iter().sum::<f64>() / at_samples.len() as f64;
         at_samples.iter().map(|value| value - mean).collect()
@@ -267,7 +268,7 @@ fn what_it_shows_is_rounded_and_reproducible() {
     let of = |seed: u32, sensor: &str| {
         let seed = format!("simulation.seed={seed}");
         let project = still(&[control, &seed, sensor, "scenario.0.duration=2 s"]);
-        simulated(&project).record.control_v
+        simulated(&project).record.signal(Signal::Control)
     };
     let noisy = "velocity_sensor={ noise = \"1 mm/s\" }";
     let rounded = "velocity_sensor={ noise = \"1 mm/s\", resolution = \"0.5 mm/s\" }";
@@ -308,7 +309,7 @@ fn a_campaign_draws_the_gain_error() {
             assert_eq!(values.iter().any(|value| value.starts_with("simulation.seed=")), !more.is_empty());
             let all: Vec<&str> = settings.iter().copied().chain(values.iter().map(String::as_str)).collect();
             let run = simulated(&self::loaded(CAMPAIGN, &all).project);
-            let seen = run.record.signal("force_n");
+            let seen = run.record.signal(Signal::Force);
             let shown = seen.iter().step_by(run.looks_per_row);
             assert!(shown.clone().count() >= 100);
             assert!(

@@ -7,6 +7,7 @@ use num_complex::Complex64;
 use phea_dynamics::portable::{exp, exp_complex, ln, sqrt_complex};
 use phea_dynamics::spectrum::Transform;
 use phea_hydraulics::line::friction_factor;
+use phea_hydraulics::signal::Signal;
 use phea_workbench::command::Request;
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::simulate_project;
@@ -93,7 +94,8 @@ fn a_fall_within_a_line_is_as_deep_as_in_the_exact_line() {
         let run = simulate_project(&Memory::default(), &Setup::new(&project).unwrap(), &mut |_| true)
             .unwrap()
             .remove(0);
-        let ends = ["port_pressure_a_pa", "pressure_a_pa"].map(|name| run.record.signal(name).to_vec());
+        let ends =
+            [Signal::PortPressureA, Signal::PressureA].map(|signal| run.record.signal(signal).to_vec());
         let [exact_pa, exact_m] = exact(&run.record.times_s, ends, viscosity_cst * 1e-6);
         let fall = START_PA - exact_pa;
         let deeper = (exact_pa - peak) / fall;

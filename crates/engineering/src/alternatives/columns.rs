@@ -1,5 +1,6 @@
 //! The numbers by which alternatives are compared, each with the reason where it does not exist.
 
+use phea_hydraulics::signal::Signal;
 use phea_qft::design::DesignStatus;
 
 use super::comparison::{ColumnSense, sense_of};
@@ -187,7 +188,7 @@ fn energy_from_supply(run: &ScenarioRun) -> Result<f64, String> {
         return Err(reason);
     }
     let record = &run.record;
-    let [pressure, flow] = ["supply_pressure_pa", "supply_flow_m3_per_s"].map(|name| record.signal(name));
+    let [pressure, flow] = [Signal::SupplyPressure, Signal::SupplyFlow].map(|signal| record.signal(signal));
     let power: Vec<f64> = pressure.iter().zip(&flow).map(|(pressure, flow)| pressure * flow).collect();
     let steps = record.times_s.windows(2).zip(power.windows(2));
     Ok(steps.map(|(times, powers)| 0.5 * (powers[0] + powers[1]) * (times[1] - times[0])).sum())

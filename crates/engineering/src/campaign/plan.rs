@@ -12,7 +12,7 @@ use super::CampaignError;
 use super::range::VariedRange;
 use super::row::CampaignColumns;
 use super::varied::ranges;
-use crate::project::{Loaded, MotionShape, Project, Scenario, Signal, print};
+use crate::project::{InputSignal, Loaded, MotionShape, Project, Scenario, print};
 use crate::quantity::{MotionKind, Units};
 use crate::rig::with_controller_of;
 use crate::setup::Setup;
@@ -406,7 +406,7 @@ fn mark(source: &dyn Source, project: &Project, scenario: &Scenario, seed: u32) 
     let signals = scenario.reference.iter().chain(&scenario.command).chain(&scenario.external_force);
     let signals = signals.chain(&scenario.setting_change);
     let signals = signals.filter_map(|signal| match signal {
-        Signal::File { file, .. } => Some(file),
+        InputSignal::File { file, .. } => Some(file),
         _ => None,
     });
     let signals = signals.chain(scenario.start.iter().filter_map(|start| start.file.as_ref()));

@@ -1,7 +1,6 @@
 //! The work of accumulators that are adjusted in a run, and what their valves throttle.
 
 use phea_dynamics::simulation::{Stretch, gauss_points};
-use phea_hydraulics::machine::{SIGNALS, TRANSMISSION_SIGNALS};
 
 use super::bench::ControlledMachine;
 
@@ -30,10 +29,6 @@ pub(super) struct AdjustmentWatch {
     inputs: Vec<f64>,
 }
 
-/// Place of the power in [`SIGNALS`], before those of a transmission.
-const POWER_PLACE: usize = SIGNALS.len() - 1 - TRANSMISSION_SIGNALS.len();
-const _: () = assert!(matches!(SIGNALS[POWER_PLACE].as_bytes(), b"adjustment_power_w"));
-
 impl AdjustmentWatch {
     /// Of a machine that has an adjustment.
     pub(super) fn of(bench: &ControlledMachine) -> Option<AdjustmentWatch> {
@@ -57,7 +52,7 @@ impl AdjustmentWatch {
             states.iter_mut().zip(stretch.states).for_each(|(state, over)| *state = over.at(part));
             stretch.inputs_at(part, inputs);
             let own = inputs.get(leading..).unwrap_or_default();
-            let power_w = bench.machine.outputs(states, own)[POWER_PLACE];
+            let power_w = bench.machine.signals(states, own).adjustment_power;
             work.brought_j += weight * length_s * power_w.max(0.0);
             work.taken_j -= weight * length_s * power_w.min(0.0);
             if let Some(throttled_j) = &mut work.throttled_j {

@@ -1,11 +1,11 @@
 //! A second run at a tenth of the tolerance: how far it differs from the first is an estimate of
 //! the first one's error.
 
-use phea_hydraulics::machine::SIGNALS;
+use phea_hydraulics::signal::Signal;
 
 use super::metrics::Measured;
 use super::{
-    Metrics, PassPlan, Record, RunOutput, ScenarioRun, SimulateError, StoppedRun, Window, prepared,
+    Metrics, PassPlan, Record, RunOutput, Sample, ScenarioRun, SimulateError, StoppedRun, Window, prepared,
     simulate_into,
 };
 use crate::number_table::TableFormat;
@@ -17,8 +17,6 @@ use phea_dynamics::watch::{Progress, Watch};
 pub(super) const FOLD: f64 = 10.0;
 /// Share of the peak above which a difference of the force is reported.
 pub(super) const LARGEST_PART: f64 = 1e-3;
-/// Beside [`SIGNALS`].
-const COMMAND: &str = "control_v";
 const NOT_COMPARED: &str = "one of the two runs has none";
 
 /// Difference between the reported run and a run at a tenth of the tolerance.
@@ -45,9 +43,9 @@ pub struct ToleranceCheck {
 /// The largest difference of one signal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    /// Its name, with its unit.
-    pub name: &'static str,
-    /// In that unit.
+    /// Which signal.
+    pub signal: Signal,
+    /// In its SI unit.
     pub difference: f64,
     /// When it occurs, s.
     pub time_s: f64,
@@ -127,8 +125,8 @@ fn check(run: &ScenarioRun, other: &ScenarioRun, tolerance: f64) -> ToleranceChe
     ToleranceCheck {
         tolerance,
         stopped: StoppedRun::of(other.status),
-        look_s: run.look_s * run.record.looks_apart.max(other.record.looks_apart) as f64,
-        force: signals.iter().find(|signal| signal.name == "force_n").cloned(),
+        look_s: run.look_s * run.record.stride.max(other.record.stride) as f64,
+        force: signals.iter().find(|signal| signal.signal == Signal::Force).cloned(),
         signals,
         metrics,
     }
@@ -138,15 +136,18 @@ fn check(run: &ScenarioRun, other: &ScenarioRun, tolerance: f64) -> ToleranceChe
 fn differences(one: &Record, other: &Record) -> Vec<Difference> {
     let rows = common_rows(one, other);
     let reference = one.reference_n.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-    let there = |(_, name): &(usize, &&str)| one.parts.have(name);
-    let of_machine = SIGNALS.iter().enumerate().filter(there).map(|(index, name)| {
-        let values = |row: &(usize, usize)| [one.signals[row.0][index], other.signals[row.1][index]];
-        difference(name, &rows, &one.times_s, values)
-    });
-    let command = |row: &(usize, usize)| [one.control_v[row.0], other.control_v[row.1]];
-    let mut found: Vec<Difference> = of_machine.flatten().collect();
-    found.extend(difference(COMMAND, &rows, &one.times_s, command));
-    for force in found.iter_mut().filter(|signal| signal.name == "force_n") {
+    let is_compared = |signal: &Signal| {
+        let is_of_machine = |sample: &Sample| sample.machine.get(*signal).is_some();
+        *signal == Signal::Control || one.samples.first().is_some_and(is_of_machine)
+    };
+    let compared = one.parts.signals().into_iter().filter(is_compared);
+    let of_signal = |signal: Signal| {
+        let value = |record: &Record, row: usize| record.parts.value(signal, &record.samples[row]);
+        let values = |row: &(usize, usize)| [value(one, row.0), value(other, row.1)];
+        difference(signal, &rows, &one.times_s, values)
+    };
+    let mut found: Vec<Difference> = compared.filter_map(of_signal).collect();
+    for force in found.iter_mut().filter(|signal| signal.signal == Signal::Force) {
         force.peak = force.peak.max(reference);
     }
     found
@@ -155,20 +156,20 @@ fn differences(one: &Record, other: &Record) -> Vec<Difference> {
 /// Indices of the samples at the same times: one record may have been thinned out more than the
 /// other.
 fn common_rows(one: &Record, other: &Record) -> Vec<(usize, usize)> {
-    let apart = one.looks_apart.max(other.looks_apart);
-    let [first, second] = [one, other].map(|record| (apart / record.looks_apart) as usize);
+    let apart = one.stride.max(other.stride);
+    let [first, second] = [one, other].map(|record| (apart / record.stride) as usize);
     let rows = (0..one.times_s.len()).step_by(first).zip((0..other.times_s.len()).step_by(second));
     rows.collect()
 }
 
 fn difference(
-    name: &'static str,
+    signal: Signal,
     rows: &[(usize, usize)],
     times_s: &[f64],
     values: impl Fn(&(usize, usize)) -> [f64; 2],
 ) -> Option<Difference> {
     let (&(first, _), _) = rows.split_first()?;
-    let mut found = Difference { name, difference: 0.0, time_s: times_s[first], peak: 0.0 };
+    let mut found = Difference { signal, difference: 0.0, time_s: times_s[first], peak: 0.0 };
     for row in rows {
         let [here, there] = values(row);
         found.peak = found.peak.max(here.abs()).max(there.abs());

@@ -10,9 +10,9 @@ use phea_machine::{Control, HeldInputs, Rest, Waking};
 use super::bench::ControlledMachine;
 use super::divergence::OtherInputs;
 use super::equilibrium::{RestedLoop, rest};
+use super::input_signal::{self, SignalOnset as Begun};
 use super::motion_file::{self, CHANGES, FORCES, VOLTAGES};
 use super::saved::{self, SavedState};
-use super::signal::{self, SignalOnset as Begun};
 use super::{Cause, SimulateError, Window};
 use crate::project::{self, LoadMotion, MotionShape, Project, Scenario};
 use crate::source::Source;
@@ -101,15 +101,16 @@ pub(super) fn driven_by(
     scenario: &Scenario,
 ) -> Result<ScenarioDrive, SimulateError> {
     let named = |error: ProfileError| SimulateError::Profile { name: scenario.name.clone(), error };
-    let reference = signal::profile(source, project, &scenario.name, &scenario.reference, &FORCES)?;
+    let reference = input_signal::profile(source, project, &scenario.name, &scenario.reference, &FORCES)?;
     let motion = match &scenario.load_motion {
         None => Profile::constant(0.0),
         Some(declared) => motion(source, project, declared).map_err(SimulateError::Motion)?.map_err(named)?,
     };
-    let command = signal::profile(source, project, &scenario.name, &scenario.command, &VOLTAGES)?;
-    let external_force = signal::profile(source, project, &scenario.name, &scenario.external_force, &FORCES)?;
+    let command = input_signal::profile(source, project, &scenario.name, &scenario.command, &VOLTAGES)?;
+    let external_force =
+        input_signal::profile(source, project, &scenario.name, &scenario.external_force, &FORCES)?;
     let setting_change =
-        signal::profile(source, project, &scenario.name, &scenario.setting_change, &CHANGES)?;
+        input_signal::profile(source, project, &scenario.name, &scenario.setting_change, &CHANGES)?;
     within_its_way(project, scenario, &setting_change)?;
     let about_joint = project.actuator.as_ref().is_some_and(|actuator| actuator.linkage.is_some());
     let windows = windows(scenario, about_joint, [&reference, &command, &external_force, &setting_change]);
@@ -322,11 +323,11 @@ fn windows(
         Begun::Step { time_s, from, to } => window(Cause::CommandStep { from_v: from, to_v: to }, time_s),
         Begun::Motion { time_s, kind } => window(Cause::CommandMotion { kind }, time_s),
     };
-    let begun = signal::beginnings(&scenario.reference, reference, end_s).into_iter().map(referred);
-    let of_command = signal::beginnings(&scenario.command, command, end_s).into_iter().map(commanded);
-    let outside = signal::beginnings(&scenario.external_force, external, end_s).into_iter();
+    let begun = input_signal::beginnings(&scenario.reference, reference, end_s).into_iter().map(referred);
+    let of_command = input_signal::beginnings(&scenario.command, command, end_s).into_iter().map(commanded);
+    let outside = input_signal::beginnings(&scenario.external_force, external, end_s).into_iter();
     let outside = outside.map(|begun| window(Cause::ExternalForce { about_joint }, begun.time_s()));
-    let adjusted = signal::beginnings(&scenario.setting_change, setting, end_s).into_iter();
+    let adjusted = input_signal::beginnings(&scenario.setting_change, setting, end_s).into_iter();
     let adjusted = adjusted.map(|begun| window(Cause::SettingChange, begun.time_s()));
     // a loop that starts in equilibrium starts with the inputs at time zero
     let stands = |window: &Window| {

@@ -1,7 +1,7 @@
 //! The equilibrium of the closed loop: the start of a scenario that states none.
 
 use phea_dynamics::simulation::EquilibriumError;
-use phea_hydraulics::machine::{InitialCondition, SIGNALS};
+use phea_hydraulics::machine::InitialCondition;
 use phea_machine::{HeldInputs, Rest, at_rest};
 
 use super::SimulateError;
@@ -36,27 +36,26 @@ pub(super) fn rest(
         let name = name.to_string();
         return Err(SimulateError::RestBeyondLimit { name, reference_n, command_v, limit_v });
     }
-    let signal = |name: &str, start: &[f64], inputs: &[f64]| {
-        let place = SIGNALS.iter().position(|signal| *signal == name);
-        place.map_or(0.0, |place| bench.machine.outputs::<f64>(start, inputs)[place])
-    };
+    let position =
+        |start: &[f64], inputs: &[f64]| bench.machine.signals::<f64>(start, inputs).piston.position;
     let own = beginning.all_inputs();
-    let wanted_m = signal("position_m", &beginning.state, &own);
+    let wanted_m = position(&beginning.state, &own);
     let [mut ground_m, _] = beginning.inputs;
     if !bench.machine.has_linkage() {
         // only its position depends on that of the ground
-        ground_m -= signal("position_m", &rest.start, &own) - wanted_m;
+        ground_m -= position(&rest.start, &own) - wanted_m;
         return Ok(RestedLoop { rest, ground_m });
     }
     // behind a linkage the torque depends on it too
     let (mut rest, mut from) = (rest, beginning.clone());
     for _ in 0..GROUNDS {
         let inputs = from.all_inputs();
-        let ahead_m = signal("position_m", &rest.start, &inputs) - wanted_m;
+        let ahead_m = position(&rest.start, &inputs) - wanted_m;
         if ahead_m.abs() <= AT_POSITION_M {
             return Ok(RestedLoop { rest, ground_m });
         }
-        ground_m -= bench.machine.turn_of(signal("joint_angle_rad", &rest.start, &inputs), ahead_m);
+        ground_m -=
+            bench.machine.turn_of(bench.machine.signals::<f64>(&rest.start, &inputs).joint.position, ahead_m);
         from.inputs[0] = ground_m;
         rest = at_rest(&bench.control, &rest.start, &from, standing).map_err(&named)?;
     }

@@ -2,7 +2,7 @@
 //! the simulated machine does not.
 
 use phea_dynamics::simulation::Quartic;
-use phea_hydraulics::machine::SIGNALS;
+use phea_hydraulics::machine::MachineSignals;
 use phea_hydraulics::series::ForceFrom;
 
 use super::ControlledMachine;
@@ -212,16 +212,16 @@ impl LimitWatch {
     }
 
     /// Takes the signals of the machine at a time.
-    pub(super) fn take_signals(&mut self, time_s: f64, signals: &[f64; SIGNALS.len()]) {
+    pub(super) fn take_signals(&mut self, time_s: f64, signals: &MachineSignals) {
         if let Some((limit, sensed)) = &mut self.sensor {
             let through = match sensed {
-                SensedForce::Measured => signals[FORCE_PLACE],
-                SensedForce::Deflection(stiffness) => *stiffness * signals[DEFLECTION_PLACE],
+                SensedForce::Measured => signals.force,
+                SensedForce::Deflection(stiffness) => *stiffness * signals.deflection,
             };
             limit.take(time_s, through);
         }
         if let Some(limit) = &mut self.pump {
-            limit.take(time_s, signals[SUPPLY_PLACE]);
+            limit.take(time_s, signals.supply_pressure);
         }
     }
 
@@ -232,14 +232,6 @@ impl LimitWatch {
         [sensor, self.stall.found, self.command.found, pump].into_iter().flatten().collect()
     }
 }
-
-/// Places of the measured force, the supply's pressure and the sensor's deflection in [`SIGNALS`].
-const FORCE_PLACE: usize = 0;
-const SUPPLY_PLACE: usize = 4;
-const DEFLECTION_PLACE: usize = 7;
-const _: () = assert!(matches!(SIGNALS[FORCE_PLACE].as_bytes(), b"force_n"));
-const _: () = assert!(matches!(SIGNALS[SUPPLY_PLACE].as_bytes(), b"supply_pressure_pa"));
-const _: () = assert!(matches!(SIGNALS[DEFLECTION_PLACE].as_bytes(), b"deflection_m"));
 
 impl WatchedLimit {
     pub(super) fn new(limit: RigLimit, [low, high]: [f64; 2]) -> WatchedLimit {

@@ -1,9 +1,10 @@
 //! The files of `simulate`: a table for each scenario, and the state it ended in.
 
-use super::columns::Columns;
+use phea_hydraulics::signal::Signal;
+
+use super::columns::SignalParts;
 use super::file_names::state_names;
-use super::parts::SignalParts;
-use super::{ControlledMachine, Look, ScenarioRun};
+use super::{ControlledMachine, Sample, ScenarioRun};
 use crate::project::Loaded;
 use crate::source::{Destination, Unfinished, WriteError};
 use crate::{
@@ -25,7 +26,8 @@ pub fn files(loaded: &Loaded, runs: &[ScenarioRun]) -> Vec<OutputFile> {
 pub struct RunTable<'a> {
     /// Where it goes, for messages.
     path: String,
-    columns: Columns,
+    parts: SignalParts,
+    columns: Vec<Signal>,
     table: NumberTable<Box<dyn Unfinished + 'a>>,
     /// The row that is being written.
     values: Vec<f64>,
@@ -38,17 +40,19 @@ impl<'a> RunTable<'a> {
         format: TableFormat,
         bench: &ControlledMachine,
     ) -> Result<RunTable<'a>, WriteError> {
-        let columns = Columns::new(&SignalParts::of(bench));
-        let names: Vec<_> = columns.names().into_iter().map(|name| bench.units.motion.name(name)).collect();
+        let parts = SignalParts::of(bench);
+        let columns = parts.signals();
+        let names: Vec<_> = columns.iter().map(|signal| bench.units.motion.name(signal.name())).collect();
         let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
         let path = destination.path_of(name);
         let table = NumberTable::new(destination.begin(name)?, format, &names);
         let table = table.map_err(|error| unwritten(&path, &error))?;
-        Ok(RunTable { path, columns, table, values: Vec::new() })
+        Ok(RunTable { path, parts, columns, table, values: Vec::new() })
     }
 
-    pub(super) fn row(&mut self, look: &Look) -> Result<(), WriteError> {
-        self.columns.read(look, &mut self.values);
+    pub(super) fn row(&mut self, sample: &Sample) -> Result<(), WriteError> {
+        self.values.clear();
+        self.values.extend(self.columns.iter().map(|signal| self.parts.value(*signal, sample)));
         self.table.row(&self.values).map_err(|error| unwritten(&self.path, &error))
     }
 

@@ -7,7 +7,9 @@ use super::bench::ControlledMachine;
 use super::course::driven_by;
 use super::force_limits::ForceLimits;
 use super::{SimulateError, measured};
-use crate::project::{DeclaredActuator, Findings, LateError, Load, MotionShape, Project, Scenario, Signal};
+use crate::project::{
+    DeclaredActuator, Findings, InputSignal, LateError, Load, MotionShape, Project, Scenario,
+};
 use crate::quantity::{FORCE, LENGTH, TIME, display};
 use crate::setup::Setup;
 use crate::source::Source;
@@ -48,7 +50,7 @@ fn files_of(index: usize, scenario: &Scenario) -> Vec<(String, &str)> {
     let mut files = Vec::new();
     for (name, signals) in signals {
         for (number, signal) in signals.iter().enumerate() {
-            if let Signal::File { file, .. } = signal {
+            if let InputSignal::File { file, .. } = signal {
                 files.push((format!("{own}.{name}[{number}].file"), file.as_str()));
             }
         }

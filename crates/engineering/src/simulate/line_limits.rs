@@ -13,6 +13,7 @@ use phea_dynamics::simulation::{Quartic, Stretch};
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::line::Line;
 use phea_hydraulics::series::SeriesElement;
+use phea_hydraulics::signal::Signal;
 
 use super::bench::ControlledMachine;
 use super::exceeded::{Exceeded, LimitPlace, RigLimit, WatchedLimit};
@@ -328,10 +329,10 @@ fn size(line: &Line) -> [f64; 2] {
 
 /// The place of the pressure of a chamber in the state, and those of its line.
 fn places(bench: &ControlledMachine, side: usize) -> (Option<usize>, Vec<usize>) {
-    let [chamber, line] = [["pressure_a_pa", "line_a_"], ["pressure_b_pa", "line_b_"]][side];
+    let (chamber, line) = [(Signal::PressureA, "line_a_"), (Signal::PressureB, "line_b_")][side];
     let names = bench.machine.state_names();
     let named = |known: &dyn Fn(&str) -> bool| {
         names.iter().enumerate().filter(|(_, name)| known(name)).map(|(place, _)| place).collect::<Vec<_>>()
     };
-    (named(&|name| name == chamber).first().copied(), named(&|name| name.starts_with(line)))
+    (named(&|name| name == chamber.name()).first().copied(), named(&|name| name.starts_with(line)))
 }

@@ -8,7 +8,7 @@ use phea_machine::{Control, ControllerSample, ControllerSamples};
 
 use super::adjusted::{AdjustmentWatch, AdjustmentWork};
 use super::bench::ControlledMachine;
-use super::columns::LOOP_SIGNALS;
+use super::columns::SignalParts;
 use super::course::PreparedScenario;
 use super::divergence::Divergence;
 use super::exceeded::{Exceeded, LimitWatch};
@@ -18,8 +18,7 @@ use super::gas::{GasRange, GasWatch};
 use super::ledgers::{LedgerWatch, NOT_REQUESTED, RunLedger};
 use super::line_limits::LineWatch;
 use super::measured::{Measurement, Overlay, Overlaying};
-use super::parts::SignalParts;
-use super::record::{Look, Record};
+use super::record::{ControlSignals, Record, Sample};
 use super::sum::SignalSum;
 use super::sums;
 use super::{Metrics, SimulateError};
@@ -48,13 +47,12 @@ pub(super) struct Sighted<'t> {
 }
 
 /// The controller at one time.
-struct LoopLook {
+struct ControllerOutput {
     /// Reference and filtered reference in N; `None` in an open loop.
     asked_for: Option<[f64; 2]>,
     /// V, output of the controller.
     control_v: f64,
-    /// In the order of [`LOOP_SIGNALS`].
-    of_loop: [f64; LOOP_SIGNALS.len()],
+    others: ControlSignals,
 }
 
 /// Samples at which the force is kept for comparison.
@@ -197,49 +195,60 @@ impl<'a, 't> Looking<'a, 't> {
     }
 
     /// What the controller sees and gives out, and the inputs of the machine alone.
-    fn loop_look<'i>(&self, states: &[f64], inputs: &'i [f64]) -> (LoopLook, &'i [f64]) {
-        let (asked_for, control_v, mut of_loop, others) = match &self.bench.control {
+    fn loop_look<'i>(&self, states: &[f64], inputs: &'i [f64]) -> (ControllerOutput, &'i [f64]) {
+        let (asked_for, control_v, mut signals, others) = match &self.bench.control {
             Control::Continuous(closed) => {
                 let signals = closed.signals::<f64, f64>(states, inputs);
                 let (arriving, integral) =
                     (closed.arriving_command(states, inputs), closed.integral_part(states));
-                let of_loop = [arriving, signals.wanted, integral, signals.measurement, 0.0];
-                (Some([inputs[0], signals.filtered_reference]), signals.command, of_loop, &inputs[1..])
+                let others = ControlSignals {
+                    command_v: arriving,
+                    unlimited_v: signals.wanted,
+                    integral_v: integral,
+                    measurement_n: signals.measurement,
+                    virtual_force_n: 0.0,
+                };
+                (Some([inputs[0], signals.filtered_reference]), signals.command, others, &inputs[1..])
             }
             Control::Sampled(_) => {
                 let last = self.samples.borrow().last;
                 let of_sample = |number: fn(&ControllerSample) -> f64| last.as_ref().map_or(0.0, number);
-                let of_loop = [
-                    inputs[0],
-                    of_sample(|sample| sample.unlimited_v),
-                    of_sample(|sample| sample.integral_v),
-                    of_sample(|sample| sample.measurement_n),
-                    0.0,
-                ];
+                let others = ControlSignals {
+                    command_v: inputs[0],
+                    unlimited_v: of_sample(|sample| sample.unlimited_v),
+                    integral_v: of_sample(|sample| sample.integral_v),
+                    measurement_n: of_sample(|sample| sample.measurement_n),
+                    virtual_force_n: 0.0,
+                };
                 let filtered = of_sample(|sample| sample.filtered_reference_n);
-                (Some([inputs[1], filtered]), of_sample(|sample| sample.command_v), of_loop, &inputs[2..])
+                (Some([inputs[1], filtered]), of_sample(|sample| sample.command_v), others, &inputs[2..])
             }
             Control::Open(held) => {
                 let [_, measured, _] = held.sampled::<f64, f64>(states, inputs);
-                (None, inputs[0], [inputs[0], inputs[0], 0.0, measured, 0.0], &inputs[2..])
+                let others = ControlSignals {
+                    command_v: inputs[0],
+                    unlimited_v: inputs[0],
+                    measurement_n: measured,
+                    ..ControlSignals::default()
+                };
+                (None, inputs[0], others, &inputs[2..])
             }
         };
-        let [.., virtual_force] = &mut of_loop;
-        *virtual_force = self.bench.control.sensed().given_way::<f64, f64>(states, others);
-        (LoopLook { asked_for, control_v, of_loop }, others)
+        signals.virtual_force_n = self.bench.control.sensed().given_way::<f64, f64>(states, others);
+        (ControllerOutput { asked_for, control_v, others: signals }, others)
     }
 
-    fn look(&self, time_s: f64, of_loop: LoopLook, states: &[f64], others: &[f64]) -> Look {
-        let LoopLook { asked_for, control_v, of_loop } = of_loop;
+    fn sample(&self, time_s: f64, of_loop: ControllerOutput, states: &[f64], others: &[f64]) -> Sample {
+        let ControllerOutput { asked_for, control_v, others: control } = of_loop;
         let machine = &self.bench.machine;
-        Look {
+        Sample {
             time_s,
             reference_n: asked_for.map(|[reference, _]| reference),
             filtered_reference_n: asked_for.map(|[_, filtered]| filtered),
             control_v,
             external_force_n: others.get(2).copied().filter(|_| machine.has_external_force()),
-            signals: machine.outputs(states, others),
-            of_loop,
+            machine: machine.signals(states, others),
+            control,
         }
     }
 }
@@ -262,19 +271,19 @@ impl Observer for Looking<'_, '_> {
             self.count += 1;
             return;
         }
-        let look = self.look(time_s, of_loop, states, others);
-        self.limits.take_signals(time_s, &look.signals);
+        let sample = self.sample(time_s, of_loop, states, others);
+        self.limits.take_signals(time_s, &sample.machine);
         if let Some(table) = self.table.as_mut().filter(|_| self.count.is_multiple_of(self.looks_per_row))
-            && let Err(fault) = table.row(&look)
+            && let Err(fault) = table.row(&sample)
         {
             self.fault = Some(fault);
             self.full.set(true);
         }
         if let Some(record) = &mut self.record {
-            record.take(self.count, &look);
+            record.take(self.count, &sample);
         }
         for overlay in &mut self.overlays {
-            overlay.take(&look);
+            overlay.take(&sample);
         }
         self.count += 1;
     }

@@ -9,11 +9,12 @@
 
 use phea_dynamics::order::ends;
 
-use super::Look;
-use super::columns::ColumnSource;
+use phea_hydraulics::signal::Signal;
+
+use super::Sample;
+use super::columns::SignalParts;
 use super::metrics::Measured;
 use super::motion_file::rising;
-use super::parts::SignalParts;
 use super::plausible;
 use crate::project::{Findings, MeasuredFile, MeasuredSignal, Project, Refusal, Scenario};
 use crate::quantity::{DisplayUnit, TIME, Units};
@@ -25,7 +26,7 @@ use crate::table::{Column, Measurand, MeasuredTable, Sought, TIMES};
 pub(super) struct Measurement {
     file: String,
     column: String,
-    signal: &'static str,
+    signal: Signal,
     /// s, of the scenario; rising.
     times_s: Vec<f64>,
     /// SI.
@@ -39,8 +40,8 @@ pub struct Overlay {
     pub file: String,
     /// Its column.
     pub column: String,
-    /// The simulated signal, by the name of its column in the table.
-    pub signal: &'static str,
+    /// The simulated signal.
+    pub signal: Signal,
     /// Times of the rows that are compared, s.
     pub times_s: Vec<f64>,
     /// Measured, SI.
@@ -58,31 +59,14 @@ pub struct Overlay {
 impl Overlay {
     /// The unit in which people read the signal, in a project with these.
     pub fn display_unit(&self, units: Units) -> DisplayUnit {
-        self.ending(units).map_or(DisplayUnit::VOLT, |(_, unit)| unit)
+        units.of(self.signal.dimension())
     }
 
     /// The signal without its unit, in words.
     pub fn quantity(&self) -> String {
-        let name = self.ending(Units::default()).and_then(|(ending, _)| self.signal.strip_suffix(ending));
-        name.unwrap_or(self.signal).replace('_', " ")
-    }
-
-    fn ending(&self, units: Units) -> Option<(&'static str, DisplayUnit)> {
-        let all = [
-            ("_m3_per_s", units.flow),
-            ("_rad_per_s", DisplayUnit::RADIAN_PER_SECOND),
-            ("_rad", DisplayUnit::DEGREE),
-            ("_n_m", DisplayUnit::NEWTON_METRE),
-            ("_degC", DisplayUnit::DEGREE_CELSIUS),
-            ("_ratio", DisplayUnit::ONE),
-            ("_w", DisplayUnit::WATT),
-            ("_m_per_s", DisplayUnit::METRE_PER_SECOND),
-            ("_pa", units.pressure),
-            ("_n", units.force),
-            ("_m", units.position),
-            ("_v", DisplayUnit::VOLT),
-        ];
-        all.into_iter().find(|(ending, _)| self.signal.ends_with(ending))
+        let name = self.signal.name();
+        let suffix = self.signal.dimension().suffix();
+        name.strip_suffix(&suffix).map_or(name, |stem| stem.trim_end_matches('_')).replace('_', " ")
     }
 }
 
@@ -118,7 +102,7 @@ fn of_file(
     findings: &mut Findings,
 ) -> Option<Vec<Measurement>> {
     let measurands: Vec<Measurand> =
-        declared.signals.iter().map(|one| Measurand::of(one.signal, one.dimension())).collect();
+        declared.signals.iter().map(|one| Measurand::of(one.signal.name(), one.signal.dimension())).collect();
     let time_unit = declared.time_column.as_ref().map(|_| declared.time_unit.as_deref().unwrap_or(TIME.si));
     let time = Sought {
         measurand: &TIMES,
@@ -144,7 +128,7 @@ fn of_file(
     for ((signal, column), values) in
         declared.signals.iter().zip(columns.iter().skip(1)).zip(numbers.as_slice())
     {
-        plausible::check(project, &table, (column, signal.dimension()), values, findings);
+        plausible::check(project, &table, (column, signal.signal.dimension()), values, findings);
     }
     times_s.iter_mut().for_each(|time_s| *time_s += declared.offset);
     rising(&table, time, &times_s, findings);
@@ -165,7 +149,8 @@ fn of_file(
 /// A measurement that is compared with a run while it is sampled.
 pub(super) struct Overlaying<'a> {
     measurement: &'a Measurement,
-    source: Option<ColumnSource>,
+    /// The parts of the rig; `None` if it lacks the signal.
+    parts: Option<SignalParts>,
     /// Time and value of the last sample.
     before: Option<(f64, f64)>,
     /// The next row.
@@ -186,18 +171,18 @@ impl<'a> Overlaying<'a> {
             rmse: Err(NO_ROW),
             nrmse: Err(NO_ROW),
         };
-        let source = ColumnSource::named(measurement.signal, parts);
-        let overlay = match source {
+        let parts = parts.have(measurement.signal).then_some(*parts);
+        let overlay = match parts {
             Some(_) => overlay,
             None => Overlay { rmse: Err(NO_SIGNAL), nrmse: Err(NO_SIGNAL), ..overlay },
         };
-        Overlaying { measurement, source, before: None, next: 0, overlay }
+        Overlaying { measurement, parts, before: None, next: 0, overlay }
     }
 
     /// Takes every row since the last sample, interpolated linearly between the two.
-    pub(super) fn take(&mut self, look: &Look) {
-        let Some(source) = self.source else { return };
-        let (now_s, now) = (look.time_s, source.of(look));
+    pub(super) fn take(&mut self, sample: &Sample) {
+        let Some(parts) = &self.parts else { return };
+        let (now_s, now) = (sample.time_s, parts.value(self.measurement.signal, sample));
         while let Some((&time_s, &measured)) =
             self.measurement.times_s.get(self.next).zip(self.measurement.values.get(self.next))
             && time_s <= now_s
@@ -222,7 +207,7 @@ impl<'a> Overlaying<'a> {
 
     pub(super) fn finish(self) -> Overlay {
         let mut overlay = self.overlay;
-        if self.source.is_some() {
+        if self.parts.is_some() {
             overlay.rows_outside += self.measurement.times_s.len() - self.next;
         }
         if !overlay.measured.is_empty() {

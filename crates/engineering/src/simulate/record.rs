@@ -1,9 +1,9 @@
 //! The record of a run: samples of the machine and its controller, evenly spaced in time.
 
-use phea_hydraulics::machine::SIGNALS;
+use phea_hydraulics::machine::MachineSignals;
+use phea_hydraulics::signal::Signal;
 
-use super::columns::{self, LOOP_SIGNALS};
-use super::parts::SignalParts;
+use super::columns::SignalParts;
 use phea_quantity::Units;
 
 /// Largest number of samples of a run that its record keeps.
@@ -11,7 +11,7 @@ const MOST_KEPT: usize = 100_000;
 
 /// The machine and its controller at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Look {
+pub struct Sample {
     /// s.
     pub time_s: f64,
     /// N; at a step, the value from then on. `None` in an open loop.
@@ -22,33 +22,40 @@ pub struct Look {
     pub control_v: f64,
     /// N, external force on the load, if there is one.
     pub external_force_n: Option<f64>,
-    /// The signals of the machine, in the order of [`SIGNALS`].
-    pub signals: [f64; SIGNALS.len()],
-    /// The signals of the control loop, in the order of [`LOOP_SIGNALS`]; in an open loop the
-    /// command, without an integral part.
-    pub of_loop: [f64; LOOP_SIGNALS.len()],
+    /// The signals of the machine.
+    pub machine: MachineSignals,
+    /// The signals of the controller.
+    pub control: ControlSignals,
 }
 
-/// The machine and its controller over time: every sample or, in a long run, every second, fourth,
-/// eighth and so on, so that no more than a hundred thousand are kept.
+/// The signals of a controller besides reference and output; of an open loop the command, without
+/// an integral part.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ControlSignals {
+    /// V, as it reaches the valve, after the delay of the loop.
+    pub command_v: f64,
+    /// V, that the controller would put out without its limit.
+    pub unlimited_v: f64,
+    /// V, that the integral part holds.
+    pub integral_v: f64,
+    /// N, after the sensor, with what a virtual impedance adds.
+    pub measurement_n: f64,
+    /// N, that a virtual impedance adds before the sensor.
+    pub virtual_force_n: f64,
+}
+
+/// Samples over time: every one or, in a long run, every second, fourth, eighth and so on, so that
+/// no more than a hundred thousand are kept.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
     /// s.
     pub times_s: Vec<f64>,
     /// N; at a step, the value from then on. Empty in an open loop.
     pub reference_n: Vec<f64>,
-    /// N, after the prefilter. Empty in an open loop.
-    pub filtered_reference_n: Vec<f64>,
-    /// V, output of the controller, or the command of an open loop.
-    pub control_v: Vec<f64>,
-    /// N, external force on the load; empty if there is none.
-    pub external_force_n: Vec<f64>,
-    /// The signals of the machine, each in the order of [`SIGNALS`].
-    pub signals: Vec<[f64; SIGNALS.len()]>,
-    /// The signals of the control loop, each in the order of [`LOOP_SIGNALS`].
-    pub of_loop: Vec<[f64; LOOP_SIGNALS.len()]>,
-    /// Number of samples from one of these to the next.
-    pub looks_apart: u64,
+    /// The samples.
+    pub samples: Vec<Sample>,
+    /// Number of samples of the run from one of these to the next.
+    pub stride: u64,
     /// The units in which it is shown, with how the rig moves: of one that turns, positions are in
     /// rad and forces in N m.
     pub units: Units,
@@ -59,14 +66,10 @@ pub struct Record {
 impl Default for Record {
     fn default() -> Record {
         Record {
-            times_s: vec![],
-            reference_n: vec![],
-            filtered_reference_n: vec![],
-            control_v: vec![],
-            external_force_n: vec![],
-            signals: vec![],
-            of_loop: vec![],
-            looks_apart: 1,
+            times_s: Vec::new(),
+            reference_n: Vec::new(),
+            samples: Vec::new(),
+            stride: 1,
             units: Units::default(),
             parts: SignalParts::default(),
         }
@@ -74,50 +77,40 @@ impl Default for Record {
 }
 
 impl Record {
-    /// A column of the table over time; empty for an unknown name, and for one of a part that the
-    /// rig lacks.
-    pub fn signal(&self, name: &str) -> Vec<f64> {
-        columns::signal(self, name)
+    /// A signal over time; empty if the rig lacks it, and the reference of an open loop.
+    pub fn signal(&self, signal: Signal) -> Vec<f64> {
+        let is_reference = matches!(signal, Signal::Reference | Signal::FilteredReference);
+        if !self.parts.have(signal) || (is_reference && self.reference_n.is_empty()) {
+            return Vec::new();
+        }
+        self.samples.iter().map(|sample| self.parts.value(signal, sample)).collect()
     }
 
     /// Allocates memory for this many samples at once, but for no more than a long run keeps.
-    pub(super) fn reserve(&mut self, looks: usize) {
-        let looks = looks.min(MOST_KEPT + 1);
-        self.times_s.reserve(looks);
-        self.control_v.reserve(looks);
-        self.signals.reserve(looks);
-        self.of_loop.reserve(looks);
+    pub(super) fn reserve(&mut self, samples: usize) {
+        let samples = samples.min(MOST_KEPT + 1);
+        self.times_s.reserve(samples);
+        self.samples.reserve(samples);
     }
 
     /// Keeps the sample of this number, counted from zero, or leaves it out.
-    pub(super) fn take(&mut self, number: u64, look: &Look) {
-        if !number.is_multiple_of(self.looks_apart) {
+    pub(super) fn take(&mut self, number: u64, sample: &Sample) {
+        if !number.is_multiple_of(self.stride) {
             return;
         }
-        self.times_s.push(look.time_s);
-        self.reference_n.extend(look.reference_n);
-        self.filtered_reference_n.extend(look.filtered_reference_n);
-        self.control_v.push(look.control_v);
-        self.external_force_n.extend(look.external_force_n);
-        self.signals.push(look.signals);
-        self.of_loop.push(look.of_loop);
+        self.times_s.push(sample.time_s);
+        self.reference_n.extend(sample.reference_n);
+        self.samples.push(*sample);
         if self.times_s.len() > MOST_KEPT {
             self.halve();
         }
     }
 
     fn halve(&mut self) {
-        let columns = [
-            &mut self.times_s,
-            &mut self.reference_n,
-            &mut self.filtered_reference_n,
-            &mut self.control_v,
-            &mut self.external_force_n,
-        ];
-        columns.into_iter().for_each(every_second);
-        every_second(&mut self.signals);
-        every_second(&mut self.of_loop);
-        self.looks_apart *= 2;
+        every_second(&mut self.times_s);
+        every_second(&mut self.reference_n);
+        every_second(&mut self.samples);
+        self.stride *= 2;
     }
 }
 
@@ -139,30 +132,37 @@ mod tests {
     fn a_record_is_even_and_never_long() {
         let parts = SignalParts { external_force: true, ..SignalParts::default() };
         let mut record = Record { parts, ..Record::default() };
-        let looks = 7 * MOST_KEPT as u64 / 2;
-        for number in 0..looks {
+        let samples = 7 * MOST_KEPT as u64 / 2;
+        for number in 0..samples {
             let time_s = number as f64;
-            let signals = [time_s; SIGNALS.len()];
-            let (reference_n, filtered_reference_n, control_v) = (Some(time_s), Some(time_s), time_s);
-            let external_force_n = Some(time_s);
-            let of_loop = [time_s; LOOP_SIGNALS.len()];
-            let look = Look {
-                time_s,
-                reference_n,
-                filtered_reference_n,
-                control_v,
-                external_force_n,
-                signals,
-                of_loop,
-            };
-            record.take(number, &look);
+            record.take(
+                number,
+                &Sample {
+                    time_s,
+                    reference_n: Some(time_s),
+                    filtered_reference_n: Some(time_s),
+                    control_v: time_s,
+                    external_force_n: Some(time_s),
+                    machine: MachineSignals { force: time_s, ..MachineSignals::default() },
+                    control: ControlSignals { integral_v: time_s, ..ControlSignals::default() },
+                },
+            );
             assert!(record.times_s.len() <= MOST_KEPT);
         }
-        assert_eq!(record.looks_apart, 4);
-        let expected: Vec<f64> = (0..looks).step_by(4).map(|number| number as f64).collect();
-        assert!(record.times_s == expected && record.control_v == expected);
-        assert!(record.signal("force_n") == expected && record.reference_n == expected);
-        assert!(record.signal("integral_v") == expected);
-        assert!(record.filtered_reference_n == expected && record.external_force_n == expected);
+        assert_eq!(record.stride, 4);
+        let expected: Vec<f64> = (0..samples).step_by(4).map(|number| number as f64).collect();
+        assert!(record.times_s == expected && record.reference_n == expected);
+        for signal in [
+            Signal::Time,
+            Signal::Reference,
+            Signal::FilteredReference,
+            Signal::Control,
+            Signal::ExternalForce,
+            Signal::Force,
+            Signal::Integral,
+        ] {
+            assert!(record.signal(signal) == expected, "{signal:?}");
+        }
+        assert!(record.signal(Signal::ExternalTorque).is_empty());
     }
 }

@@ -1,6 +1,6 @@
 //! The steps of the reference that the scenarios of a project make.
 
-use crate::project::{Project, Scenario, Signal};
+use crate::project::{InputSignal, Project, Scenario};
 
 /// A step of the reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,11 +54,11 @@ fn stepped(scenario: &Scenario) -> Option<SteppedReference> {
     if !scenario.command.is_empty() {
         return None;
     }
-    let (single, staircases): (Vec<&Signal>, Vec<&Signal>) =
-        scenario.reference.iter().partition(|signal| matches!(signal, Signal::Step { .. }));
+    let (single, staircases): (Vec<&InputSignal>, Vec<&InputSignal>) =
+        scenario.reference.iter().partition(|signal| matches!(signal, InputSignal::Step { .. }));
     // single steps are one staircase
-    let mut parts: Vec<Vec<(f64, f64)>> = vec![single.into_iter().flat_map(Signal::steps).collect()];
-    parts.extend(staircases.into_iter().map(Signal::steps));
+    let mut parts: Vec<Vec<(f64, f64)>> = vec![single.into_iter().flat_map(InputSignal::steps).collect()];
+    parts.extend(staircases.into_iter().map(InputSignal::steps));
     let mut times_s: Vec<f64> = parts.iter().flatten().map(|(time_s, _)| *time_s).collect();
     times_s.sort_by(f64::total_cmp);
     times_s.dedup();

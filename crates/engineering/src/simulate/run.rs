@@ -12,6 +12,7 @@ use phea_machine::{Control, ControllerSamples, Digital, DigitalMemory, Waking, W
 
 use super::adjusted::AdjustmentWork;
 use super::bench::ControlledMachine;
+use super::columns::SignalParts;
 use super::course::PreparedScenario;
 use super::divergence::Divergence;
 use super::exceeded::Exceeded;
@@ -19,7 +20,6 @@ use super::gas::GasRange;
 use super::look::Looking;
 use super::measured::{Measurement, Overlay};
 use super::metrics::Metrics;
-use super::parts::SignalParts;
 use super::record::Record;
 use super::repetition::{self, PassPlan, PassResult, Repetition};
 use super::saved::{self, SavedState};

@@ -1,7 +1,6 @@
 //! Force and command as sums of states and inputs.
 
 use phea_dynamics::simulation::Plant;
-use phea_hydraulics::machine::SIGNALS;
 use phea_machine::Control;
 
 use super::bench::ControlledMachine;
@@ -10,10 +9,10 @@ use super::sum::SignalSum;
 /// The pressures of chambers A and B.
 pub(super) fn pressures<'a>(bench: &'a ControlledMachine, wanted: &[usize]) -> [SignalSum<'a>; 2] {
     let others = bench.control.leading_inputs();
-    ["pressure_a_pa", "pressure_b_pa"].map(|name| {
-        let place = SIGNALS.iter().position(|signal| *signal == name).unwrap_or_default();
-        let pressure =
-            move |state: &[f64], inputs: &[f64]| bench.machine.outputs(state, &inputs[others..])[place];
+    [0, 1].map(|side| {
+        let pressure = move |state: &[f64], inputs: &[f64]| {
+            bench.machine.signals(state, &inputs[others..]).pressures[side]
+        };
         SignalSum::of(wanted, bench.control.size(), pressure)
     })
 }

@@ -5,10 +5,11 @@
 //! ```
 
 use phea_dynamics::time_response::{StepBaseline, step_metrics};
+use phea_hydraulics::signal::Signal;
 
 use super::run::{BAND_PERCENT, Leg, TrialStep};
 use crate::linear_step::StepResponse;
-use crate::project::{Project, Scenario, Signal};
+use crate::project::{InputSignal, Project, Scenario};
 use crate::rig::Rig;
 use crate::simulate::{RequiredSteps, ScenarioRun, stays_settled};
 
@@ -73,7 +74,8 @@ impl Steps {
         let towards = (self.to_n - self.from_n).signum();
         let reach = (REACH * push(rig)).min(limits.force_n);
         let most = reach - towards * self.from_n;
-        let estimated = ESTIMATE_SHARE * room(&driven.record.control_v, limits.command_v) * self.size();
+        let estimated =
+            ESTIMATE_SHARE * room(&driven.record.signal(Signal::Control), limits.command_v) * self.size();
         Steps { to_n: self.from_n + towards * most.min(estimated), ..*self }
     }
 
@@ -95,7 +97,7 @@ impl Steps {
     /// The project with one scenario: in equilibrium under the first reference, then the steps up
     /// to this one.
     pub(super) fn project(&self, project: &Project, last: Leg) -> Project {
-        let at = |at, value| Signal::Step { at, value, published: None };
+        let at = |at, value| InputSignal::Step { at, value, published: None };
         let steps = Leg::up_to(last).map(|leg| at(self.begins_s(leg), self.ends(leg)[1]));
         let scenario = Scenario {
             name: "step".to_string(),
@@ -142,7 +144,7 @@ impl Steps {
     }
 
     fn measured(&self, driven: &ScenarioRun, leg: Leg) -> TrialStep {
-        if driven.record.signal("virtual_force_n").iter().any(|force| *force != 0.0) {
+        if driven.record.signal(Signal::VirtualForce).iter().any(|force| *force != 0.0) {
             let StepResponse { times_s, values } = self.response(driven, leg);
             let metrics = step_metrics(&times_s, &values, StepBaseline::to_value(1.0), BAND_PERCENT).ok();
             return TrialStep {
@@ -230,10 +232,10 @@ fn room(commands_v: &[f64], limit_v: f64) -> f64 {
 /// What the loop controls, N.
 fn controlled(driven: &ScenarioRun) -> Vec<f64> {
     let record = &driven.record;
-    let forces = record.signal("force_n");
+    let forces = record.signal(Signal::Force);
     if !record.parts.impedance {
         return forces;
     }
-    let virtual_forces = record.signal("virtual_force_n");
+    let virtual_forces = record.signal(Signal::VirtualForce);
     forces.into_iter().zip(virtual_forces).map(|(force, virtual_force)| force + virtual_force).collect()
 }

@@ -45,7 +45,7 @@ pub enum LoadModel<S = f64> {
 }
 
 /// Position and velocity of the load or of its ground. Units: m, m/s.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion<S = f64> {
     /// Position in m.
     pub position: S,

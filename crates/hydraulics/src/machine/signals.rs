@@ -3,65 +3,117 @@ use phea_dynamics::scalar::{Parameters, Scalar};
 use super::equations::constant;
 use super::{Machine, Motion};
 use crate::series::MovingSeries;
+use crate::signal::Signal;
 
-/// Names of the signals of a machine, with units, in the order of [`Machine::outputs`].
-pub const SIGNALS: [&str; 33] = [
-    "force_n",
-    "spool_v",
-    "pressure_a_pa",
-    "pressure_b_pa",
-    "supply_pressure_pa",
-    "position_m",
-    "velocity_m_per_s",
-    "deflection_m",
-    "friction_n",
-    "end_stops_n",
-    "flow_a_m3_per_s",
-    "flow_b_m3_per_s",
-    "supply_flow_m3_per_s",
-    "load_position_m",
-    "load_velocity_m_per_s",
-    "port_pressure_a_pa",
-    "port_pressure_b_pa",
-    "hydraulic_force_n",
-    "opening_v",
-    "series_deflection_m",
-    "load_force_n",
-    "joint_angle_rad",
-    "joint_velocity_rad_per_s",
-    "joint_torque_n_m",
-    "gas_pressure_a_pa",
-    "gas_pressure_b_pa",
-    "gas_temperature_a_ratio",
-    "gas_temperature_b_ratio",
-    "setting_a_ratio",
-    "setting_b_ratio",
-    "adjustment_power_w",
-    "transmission_pressure_rod_pa",
-    "transmission_pressure_load_pa",
-];
+/// The signals of a machine at one time; those of parts that it lacks are zero.
+///
+/// Pairs are of sides A and B. With a series element `force` is the force that its
+/// [`ForceFrom`](crate::series::ForceFrom) measures and `load_force` that on the load. Behind a
+/// linkage `load` is the motion of the rod's end.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MachineSignals<T = f64> {
+    /// N, of the rod on the load.
+    pub force: T,
+    /// V, position U of the spool.
+    pub spool: T,
+    /// V, opening of the edges, y = U - U_0 - z, less null bias and magnetic lag
+    /// ([`crate::servovalve::SpoolImperfection`]).
+    pub opening: T,
+    /// Pa, of the chambers, which are those of the lines' ends at the cylinder.
+    pub pressures: [T; 2],
+    /// Pa, of the lines' ends at the valve.
+    pub port_pressures: [T; 2],
+    /// Pa, of the supply at the valve.
+    pub supply_pressure: T,
+    /// Of the piston: m, m/s.
+    pub piston: Motion<T>,
+    /// m, of the force sensor.
+    pub deflection: T,
+    /// N, of the chambers on the piston.
+    pub hydraulic_force: T,
+    /// N, of the piston.
+    pub friction: T,
+    /// N, of the end stops on the piston.
+    pub end_stops: T,
+    /// m3/s, from the valve into the lines.
+    pub flows: [T; 2],
+    /// m3/s, from the supply into the valve.
+    pub supply_flow: T,
+    /// Of the load: m, m/s.
+    pub load: Motion<T>,
+    /// m, by which the series spring or the oil of a transmission is compressed.
+    pub series_deflection: T,
+    /// N, on the load.
+    pub load_force: T,
+    /// Of the joint of a linkage: rad, rad/s.
+    pub joint: Motion<T>,
+    /// N m, of the rod on that joint.
+    pub joint_torque: T,
+    /// Pa, of the gas behind necks.
+    pub gas_pressures: [T; 2],
+    /// Absolute temperatures of gas that exchanges heat over those of its walls.
+    pub gas_temperature_ratios: [T; 2],
+    /// Settings of the accumulators.
+    pub settings: [T; 2],
+    /// W, of the adjustment, [`MovedGas::power`](crate::accumulator::MovedGas::power).
+    pub adjustment_power: T,
+    /// Pa, of the oil of a transmission at the pistons on rod and load.
+    pub transmission_pressures: [T; 2],
+}
 
-/// Those of [`SIGNALS`] that only a machine with a series element has: without one the force on the
-/// load is `force_n`, and nothing deflects but the sensor.
-pub const SERIES_SIGNALS: [&str; 2] = ["series_deflection_m", "load_force_n"];
-
-/// Those of [`SIGNALS`] that only a machine with a transmission has: the pressures of its oil at
-/// either piston.
-pub const TRANSMISSION_SIGNALS: [&str; 2] = ["transmission_pressure_rod_pa", "transmission_pressure_load_pa"];
-
-/// Those of [`SIGNALS`] that only a machine with a linkage has: its load turns.
-pub const LINKAGE_SIGNALS: [&str; 3] = ["joint_angle_rad", "joint_velocity_rad_per_s", "joint_torque_n_m"];
-
-/// Those of [`SIGNALS`] that only a machine with a neck at chamber A or B has: without one the gas
-/// has the pressure of its chamber.
-pub const GAS_PRESSURE_SIGNALS: [&str; 2] = ["gas_pressure_a_pa", "gas_pressure_b_pa"];
-
-/// Those of [`SIGNALS`] that only a machine with gas that exchanges heat at chamber A or B has.
-pub const HEAT_SIGNALS: [&str; 2] = ["gas_temperature_a_ratio", "gas_temperature_b_ratio"];
-
-/// Those of [`SIGNALS`] that only a machine has whose accumulators are adjusted: their settings,
-/// and the power of the adjustment, [`MovedGas::power`](crate::accumulator::MovedGas::power).
-pub const ADJUSTMENT_SIGNALS: [&str; 3] = ["setting_a_ratio", "setting_b_ratio", "adjustment_power_w"];
+impl<T: Copy> MachineSignals<T> {
+    /// The value of a signal; `None` for those of the controller and of what acts on the load.
+    pub fn get(&self, signal: Signal) -> Option<T> {
+        Some(match signal {
+            Signal::Force => self.force,
+            Signal::Spool => self.spool,
+            Signal::Opening => self.opening,
+            Signal::PressureA => self.pressures[0],
+            Signal::PressureB => self.pressures[1],
+            Signal::PortPressureA => self.port_pressures[0],
+            Signal::PortPressureB => self.port_pressures[1],
+            Signal::SupplyPressure => self.supply_pressure,
+            Signal::Position => self.piston.position,
+            Signal::Velocity => self.piston.velocity,
+            Signal::Deflection => self.deflection,
+            Signal::HydraulicForce => self.hydraulic_force,
+            Signal::Friction => self.friction,
+            Signal::EndStops => self.end_stops,
+            Signal::FlowA => self.flows[0],
+            Signal::FlowB => self.flows[1],
+            Signal::SupplyFlow => self.supply_flow,
+            Signal::LoadPosition => self.load.position,
+            Signal::LoadVelocity => self.load.velocity,
+            Signal::SeriesDeflection => self.series_deflection,
+            Signal::LoadForce => self.load_force,
+            Signal::JointAngle => self.joint.position,
+            Signal::JointVelocity => self.joint.velocity,
+            Signal::JointTorque => self.joint_torque,
+            Signal::GasPressureA => self.gas_pressures[0],
+            Signal::GasPressureB => self.gas_pressures[1],
+            Signal::GasTemperatureRatioA => self.gas_temperature_ratios[0],
+            Signal::GasTemperatureRatioB => self.gas_temperature_ratios[1],
+            Signal::SettingA => self.settings[0],
+            Signal::SettingB => self.settings[1],
+            Signal::AdjustmentPower => self.adjustment_power,
+            Signal::TransmissionPressureRod => self.transmission_pressures[0],
+            Signal::TransmissionPressureLoad => self.transmission_pressures[1],
+            Signal::Time
+            | Signal::Reference
+            | Signal::Control
+            | Signal::FilteredReference
+            | Signal::GasTemperatureA
+            | Signal::GasTemperatureB
+            | Signal::Command
+            | Signal::UnlimitedControl
+            | Signal::Integral
+            | Signal::Measurement
+            | Signal::VirtualForce
+            | Signal::ExternalForce
+            | Signal::ExternalTorque => return None,
+        })
+    }
+}
 
 /// Names of the state events of a machine, in the order of its indicators. Each indicator is
 /// positive in ordinary operation and negative while the event lasts.
@@ -93,20 +145,8 @@ pub const INDICATORS: [&str; 14] = [
 ];
 
 impl<S: Scalar> Machine<S> {
-    /// The [`SIGNALS`] at a state and inputs. `spool_v` is the spool's position U, `opening_v` the
-    /// opening of the edges, y = U - U_0 - z, less null bias and magnetic lag
-    /// ([`crate::servovalve::SpoolImperfection`]); flows are those of the valve's ports A and B
-    /// into the lines. `port_pressure` is that of a line's end at the valve, `pressure` that of its
-    /// end at the chamber, which is the chamber's. `force_n` is what the rod pushes on the load
-    /// with, `hydraulic_force_n` what the chambers push the piston with; between them lie its
-    /// friction, end stops and acceleration. With a series element `force_n` is the force that its
-    /// [`ForceFrom`](crate::series::ForceFrom) measures, F_e that through the sensor,
-    /// `load_force_n` that on the load, and `series_deflection_m` how far the spring, or the oil of
-    /// a transmission, is compressed. Behind a linkage `load_position_m` is that of the rod's end,
-    /// and `joint_torque_n_m` what the rod turns the joint with. `gas_pressure` is that of the gas
-    /// behind a neck, gauge, and `gas_temperature_ratio` the absolute temperature of gas that
-    /// exchanges heat over that of its wall, theta. Signals of parts that the machine lacks are
-    /// zero:
+    /// The signals at a state and inputs. Between `force` and `hydraulic_force` are the piston's
+    /// friction, end stops and acceleration:
     ///
     /// ```text
     /// F_H = A_A p_A - A_B p_B = F_e + F_fr - F_stops + M dv/dt      all positive towards the B end but F_fr      thesis (4.29)
@@ -117,15 +157,16 @@ impl<S: Scalar> Machine<S> {
     /// # use phea_hydraulics::actuator::Actuator;
     /// # use phea_hydraulics::reference_rig::{components, hose_line};
     /// # use phea_hydraulics::stiffness::StiffnessModel;
-    /// use phea_hydraulics::machine::{Machine, MachineOptions, SIGNALS};
+    /// use phea_hydraulics::machine::{Machine, MachineOptions};
+    /// use phea_hydraulics::signal::Signal;
     /// let actuator = Actuator::new(components(hose_line(), StiffnessModel::Uniform))?;
     /// let machine = Machine::new(&actuator, &MachineOptions::default())?;
-    /// let outputs = machine.outputs(&[0.0, 0.0, 35e5, 35e5, 1e-4, 0.0], &[0.25, 0.0]);
-    /// assert_eq!((SIGNALS[0], outputs[0]), ("force_n", 2e3));
-    /// assert_eq!((SIGNALS[5], outputs[5]), ("position_m", 0.2501));
+    /// let signals = machine.signals(&[0.0, 0.0, 35e5, 35e5, 1e-4, 0.0], &[0.25, 0.0]);
+    /// assert_eq!((signals.force, signals.piston.position), (2e3, 0.2501));
+    /// assert_eq!(signals.get(Signal::PressureA), Some(35e5));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn outputs<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> [T; SIGNALS.len()] {
+    pub fn signals<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> MachineSignals<T> {
         let vector = state;
         let state = self.layout.read(vector);
         let load = self.load_of(&state, &ground_of(inputs));
@@ -147,43 +188,32 @@ impl<S: Scalar> Machine<S> {
         };
         let (turning, torque) =
             if self.linkage.is_some() { (load, end.on_load(joint.on_load)) } else { (still, zero) };
-        let [gas_pressures, ratios] = self.told_of_gas(vector, self.layout.setting(inputs));
-        let oil_pressures = self.oil_pressures([joint.sensed, joint.on_load]);
-        [
-            self.measured_force(&state),
-            state.spool.spool,
-            state.pressure_a,
-            state.pressure_b,
-            self.supply_of(&state).pressure,
-            position,
-            state.velocity,
-            joint.sensor_deflection,
-            forces.friction.force,
-            forces.end_stops,
-            flows.from_valve[0],
-            flows.from_valve[1],
-            self.supply_flow(&state, &flows.edges),
-            end.motion.position,
-            end.motion.velocity,
-            ports[0],
-            ports[1],
-            forces.hydraulic,
-            self.spool.convert(&mut constant::<S, T>).opening(&state.spool),
-            joint.spring.position,
-            joint.on_load,
-            turning.position,
-            turning.velocity,
-            torque,
-            gas_pressures[0],
-            gas_pressures[1],
-            ratios[0],
-            ratios[1],
-            settings[0],
-            settings[1],
-            power,
-            oil_pressures[0],
-            oil_pressures[1],
-        ]
+        let [gas_pressures, gas_temperature_ratios] = self.told_of_gas(vector, self.layout.setting(inputs));
+        MachineSignals {
+            force: self.measured_force(&state),
+            spool: state.spool.spool,
+            opening: self.spool.convert(&mut constant::<S, T>).opening(&state.spool),
+            pressures: [state.pressure_a, state.pressure_b],
+            port_pressures: ports,
+            supply_pressure: self.supply_of(&state).pressure,
+            piston: Motion { position, velocity: state.velocity },
+            deflection: joint.sensor_deflection,
+            hydraulic_force: forces.hydraulic,
+            friction: forces.friction.force,
+            end_stops: forces.end_stops,
+            flows: flows.from_valve,
+            supply_flow: self.supply_flow(&state, &flows.edges),
+            load: end.motion,
+            series_deflection: joint.spring.position,
+            load_force: joint.on_load,
+            joint: turning,
+            joint_torque: torque,
+            gas_pressures,
+            gas_temperature_ratios,
+            settings,
+            adjustment_power: power,
+            transmission_pressures: self.oil_pressures([joint.sensed, joint.on_load]),
+        }
     }
 
     /// Pressures of the oil of a transmission in Pa where it carries these forces in N; zero

@@ -6,6 +6,7 @@ use super::series::SeriesStates;
 use super::{Machine, Motion};
 use crate::series::MovingSeries;
 use crate::servovalve::SpoolState;
+use crate::signal::Signal;
 
 /// States of a machine, or their rates, by name. States that a machine lacks are zero and have no
 /// place in its vector.
@@ -403,7 +404,7 @@ impl Machine {
     /// # use phea_hydraulics::machine::{Machine, MachineOptions};
     /// let actuator = Actuator::new(components(hose_line(), StiffnessModel::Uniform))?;
     /// let machine = Machine::new(&actuator, &MachineOptions::default())?;
-    /// assert_eq!(machine.state_names()[..3], ["spool_v", "spool_rate_v_per_s", "pressure_a_pa"]);
+    /// assert_eq!(machine.state_names()[..2], ["spool_v", "spool_rate_v_per_s"]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn state_names(&self) -> Vec<String> {
@@ -413,7 +414,7 @@ impl Machine {
             own.deflection = own.series.position;
         }
         if self.linkage.is_some() {
-            own.load = Motion { position: "joint_displacement_rad", velocity: "joint_velocity_rad_per_s" };
+            own.load = Motion { position: "joint_displacement_rad", velocity: Signal::JointVelocity.name() };
         }
         self.layout.visit(&mut own, |name| names.push((*name).to_string()));
         self.layout.visit_gas(&mut GAS_NAMES.clone(), |name| names.push((*name).to_string()));
@@ -431,24 +432,24 @@ impl Machine {
 /// Names of the states with their units.
 const NAMES: MachineState<&str> = MachineState {
     spool: SpoolState {
-        spool: "spool_v",
+        spool: Signal::Spool.name(),
         spool_rate: "spool_rate_v_per_s",
         spool_friction: "spool_friction_v",
         magnetic_lag: "magnetic_lag_v",
     },
-    pressure_a: "pressure_a_pa",
-    pressure_b: "pressure_b_pa",
-    deflection: "deflection_m",
-    velocity: "velocity_m_per_s",
+    pressure_a: Signal::PressureA.name(),
+    pressure_b: Signal::PressureB.name(),
+    deflection: Signal::Deflection.name(),
+    velocity: Signal::Velocity.name(),
     bristle: "bristle_m",
-    load: Motion { position: "load_displacement_m", velocity: "load_velocity_m_per_s" },
-    supply_pressure: "supply_pressure_pa",
+    load: Motion { position: "load_displacement_m", velocity: Signal::LoadVelocity.name() },
+    supply_pressure: Signal::SupplyPressure.name(),
     cross_port_pressure: "cross_port_pressure_pa",
-    series: Motion { position: "series_deflection_m", velocity: "series_velocity_m_per_s" },
+    series: Motion { position: Signal::SeriesDeflection.name(), velocity: "series_velocity_m_per_s" },
 };
 
 const GAS_NAMES: GasStates<&str> = GasStates {
     neck_flows: ["neck_flow_a_m3_per_s", "neck_flow_b_m3_per_s"],
-    pressures: ["gas_pressure_a_pa", "gas_pressure_b_pa"],
+    pressures: [Signal::GasPressureA.name(), Signal::GasPressureB.name()],
     warmings: ["gas_warming_a", "gas_warming_b"],
 };

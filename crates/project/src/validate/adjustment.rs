@@ -3,7 +3,7 @@
 use super::Check;
 use crate::{
     AdjustmentKind, DeclaredAccumulator, DeclaredActuator, DeclaredAdjustment, DeclaredSupply, GasAtOne,
-    Scenario, Signal, SignalUnit, Uncertain,
+    InputSignal, InputUnit, Scenario, Uncertain,
 };
 use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE as ATMOSPHERE;
 use phea_quantity::{self as quantity, PRESSURE, TIME};
@@ -76,8 +76,8 @@ pub(super) fn course(
     path: &str,
     check: &mut Check<'_, '_>,
 ) {
-    let (signals, unit) = (&scenario.setting_change, SignalUnit::SETTING_CHANGE);
-    super::signal::signals(signals, unit, [path, "setting_change"], scenario.duration, check);
+    let (signals, unit) = (&scenario.setting_change, InputUnit::SETTING_CHANGE);
+    super::input_signal::signals(signals, unit, [path, "setting_change"], scenario.duration, check);
     if signals.is_empty() {
         return;
     }
@@ -93,9 +93,9 @@ pub(super) fn course(
     }
     let is_unclear = check.reader.unclear.iter().any(|table| table.ends_with(".adjustment"));
     let moves_gas = !is_unclear && adjusted.iter().any(|one| one.valve().is_none());
-    let jumps = |signal: &Signal| match signal {
-        Signal::Step { at, .. } => *at > 0.0,
-        Signal::Steps { times, .. } => times.iter().any(|time| *time > 0.0),
+    let jumps = |signal: &InputSignal| match signal {
+        InputSignal::Step { at, .. } => *at > 0.0,
+        InputSignal::Steps { times, .. } => times.iter().any(|time| *time > 0.0),
         _ => false,
     };
     for (index, _) in signals.iter().enumerate().filter(|(_, signal)| moves_gas && jumps(signal)) {
@@ -107,7 +107,7 @@ pub(super) fn course(
 
 /// A setting stays from 0 to 1. Signals of steps and ramps alone have their extremes where one
 /// begins or ends; for others a simulation reports it.
-fn leaves_its_way(signals: &[Signal], rest: f64, place: &str, check: &mut Check<'_, '_>) {
+fn leaves_its_way(signals: &[InputSignal], rest: f64, place: &str, check: &mut Check<'_, '_>) {
     let courses: Option<Vec<PartCourse>> = signals.iter().map(PartCourse::of).collect();
     let Some(courses) = courses else { return };
     let sum = |time: f64| rest + courses.iter().map(|course| course.value(time)).sum::<f64>();
@@ -138,13 +138,13 @@ struct PartCourse {
 }
 
 impl PartCourse {
-    fn of(signal: &Signal) -> Option<PartCourse> {
+    fn of(signal: &InputSignal) -> Option<PartCourse> {
         let (is_ramp, corners) = match signal {
-            Signal::Step { at, value, .. } => (false, vec![[*at, *value]]),
-            Signal::Steps { times, values } => {
+            InputSignal::Step { at, value, .. } => (false, vec![[*at, *value]]),
+            InputSignal::Steps { times, values } => {
                 (false, times.iter().zip(values).map(|(time, value)| [*time, *value]).collect())
             }
-            Signal::Ramp { value, start, duration } => {
+            InputSignal::Ramp { value, start, duration } => {
                 let start = start.unwrap_or(0.0);
                 (true, vec![[start, 0.0], [start + duration, *value]])
             }

@@ -22,10 +22,10 @@ pub(super) fn measured(files: &[MeasuredFile], path: &str, check: &mut Check<'_,
         for (index, signal) in declared.signals.iter().enumerate() {
             let path = format!("{path}.signals[{index}]");
             if let Some(written) = &signal.unit {
-                unit(written, signal.dimension(), &format!("{path}.unit"), check);
+                unit(written, signal.signal.dimension(), &format!("{path}.unit"), check);
             }
             if declared.signals.iter().take(index).any(|earlier| earlier.signal == signal.signal) {
-                let message = format!("`{}` is there twice", signal.signal);
+                let message = format!("`{}` is there twice", signal.signal.name());
                 check.error(&format!("{path}.signal"), message);
             }
         }

@@ -1,7 +1,7 @@
 //! A motor in place of the cylinder: what it needs, and what phea does not yet do with one.
 
 use super::Check;
-use crate::{DeclaredActuator, MotionShape, Project, Scenario, Signal};
+use crate::{DeclaredActuator, InputSignal, MotionShape, Project, Scenario};
 
 pub(super) fn motor(project: &Project, actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     let Some(motor) = &actuator.motor else { return };
@@ -35,7 +35,7 @@ fn files(scenario: &Scenario, path: &str, check: &mut Check<'_, '_>) {
 
 /// The keys of a scenario that name files.
 pub(super) fn keys_of_files(scenario: &Scenario) -> impl Iterator<Item = &'static str> {
-    let has_file = |all: &[Signal]| all.iter().any(|signal| matches!(signal, Signal::File { .. }));
+    let has_file = |all: &[InputSignal]| all.iter().any(|signal| matches!(signal, InputSignal::File { .. }));
     let motion = scenario.load_motion.as_ref();
     let keys = [
         ("reference", has_file(&scenario.reference)),

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 
+use super::input_signal::signals;
 use super::linear_loop::conjugates;
 use super::measured::measured;
-use super::signal::signals;
 use super::{Check, adjustment, linear_parameter};
 use crate::{
-    Campaign, DELAY_PATH, DeclaredActuator, DeclaredPlant, DeclaredSizing, Distribution, Formula,
-    LINEAR_PARAMETERS, LinearParameter, Load, Project, Scenario, SignalUnit, Start, Uncertain,
+    Campaign, DELAY_PATH, DeclaredActuator, DeclaredPlant, DeclaredSizing, Distribution, Formula, InputUnit,
+    LINEAR_PARAMETERS, LinearParameter, Load, Project, Scenario, Start, Uncertain,
 };
 use phea_dynamics::uncertain_plant::Spacing;
 use phea_quantity::significant;
@@ -114,13 +114,13 @@ fn one_scenario(scenario: &Scenario, actuator: &DeclaredActuator, path: &str, ch
     if position.is_some_and(|position| actuator.is_beyond(position)) {
         check.error(&format!("{path}.start.position"), "`position` is beyond the stroke");
     }
-    signals(&scenario.reference, SignalUnit::REFERENCE, [path, "reference"], scenario.duration, check);
-    signals(&scenario.command, SignalUnit::COMMAND, [path, "command"], scenario.duration, check);
+    signals(&scenario.reference, InputUnit::REFERENCE, [path, "reference"], scenario.duration, check);
+    signals(&scenario.command, InputUnit::COMMAND, [path, "command"], scenario.duration, check);
     if scenario.is_open_loop() && !scenario.reference.is_empty() {
         let message = "a scenario with a `command` runs open loop: nothing follows its `reference`";
         check.error_with_help(&format!("{path}.command"), message, "give one of the two");
     }
-    let (external, unit) = (&scenario.external_force, SignalUnit::EXTERNAL_FORCE);
+    let (external, unit) = (&scenario.external_force, InputUnit::EXTERNAL_FORCE);
     signals(external, unit, [path, "external_force"], scenario.duration, check);
     if !external.is_empty() && actuator.load == Load::Prescribed && !check.is_unclear("load") {
         let message = "an `external_force` moves no load whose motion is prescribed";

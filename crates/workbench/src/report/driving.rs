@@ -1,6 +1,6 @@
 //! The inputs of a scenario, in sentences.
 
-use crate::project::{Amplitudes, Multisine, Scenario, Signal};
+use crate::project::{Amplitudes, InputSignal, Multisine, Scenario};
 use crate::quantity::{DisplayUnit, TIME, Units, display};
 
 /// Digits of a number in a sentence.
@@ -40,10 +40,10 @@ pub(super) fn sentences(scenario: &Scenario, units: Units, turns: bool) -> Vec<S
 }
 
 /// All parts, joined.
-fn parts(signals: &[Signal], unit: DisplayUnit) -> String {
+fn parts(signals: &[InputSignal], unit: DisplayUnit) -> String {
     let steps: Vec<String> = signals
         .iter()
-        .flat_map(Signal::steps)
+        .flat_map(InputSignal::steps)
         .map(|(at, to)| format!("{} from {}", unit.short(to, DIGITS), display(at, &TIME, DIGITS)))
         .collect();
     let mut all = Vec::new();
@@ -55,21 +55,21 @@ fn parts(signals: &[Signal], unit: DisplayUnit) -> String {
     all.join(", plus ")
 }
 
-fn part(signal: &Signal, unit: DisplayUnit) -> String {
+fn part(signal: &InputSignal, unit: DisplayUnit) -> String {
     let number = |value: &f64| unit.short(*value, DIGITS);
     let time = |value: f64| display(value, &TIME, DIGITS);
     let what = match signal {
-        Signal::Step { .. } | Signal::Steps { .. } => String::new(),
-        Signal::Ramp { value, .. } => format!("a ramp by {}", number(value)),
-        Signal::Sine { amplitude, frequency, .. } => {
+        InputSignal::Step { .. } | InputSignal::Steps { .. } => String::new(),
+        InputSignal::Ramp { value, .. } => format!("a ramp by {}", number(value)),
+        InputSignal::Sine { amplitude, frequency, .. } => {
             format!("a sine of {} at {}", number(amplitude), hertz(frequency))
         }
-        Signal::Chirp { amplitude, frequency, final_frequency, .. } => {
+        InputSignal::Chirp { amplitude, frequency, final_frequency, .. } => {
             let band = [frequency, final_frequency].map(hertz).join(" to ");
             format!("a chirp of {} from {band}", number(amplitude))
         }
-        Signal::Multisine(sines) => multisine(sines, unit),
-        Signal::File { file, .. } => format!("the file {file}"),
+        InputSignal::Multisine(sines) => multisine(sines, unit),
+        InputSignal::File { file, .. } => format!("the file {file}"),
     };
     let start = time(signal.begins_s());
     match signal.duration_s() {

@@ -136,7 +136,7 @@ fn overlay(overlay: &Overlay) -> Object {
     Object::new()
         .with("file", overlay.file.as_str())
         .with("column", overlay.column.as_str())
-        .with("signal", overlay.signal)
+        .with("signal", overlay.signal.name())
         .with("rows", overlay.times_s.len())
         .with("rows_outside", overlay.rows_outside)
         .told("rmse", overlay.rmse)

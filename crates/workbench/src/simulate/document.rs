@@ -12,7 +12,7 @@ use super::{
 };
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
-use crate::project::{Loaded, Scenario, Signal};
+use crate::project::{InputSignal, Loaded, Scenario};
 use crate::quantity::{DisplayUnit, TIME, Units, VOLTAGE, ZERO_CELSIUS, display};
 
 /// Number of occurrences that are listed one by one; more are counted.
@@ -152,7 +152,7 @@ pub(crate) fn published<'a>(
     window: &Window,
     units: Units,
 ) -> Option<(&'a str, [Cell; METRICS.len()])> {
-    let begins = |step: &&Signal| matches!(step, Signal::Step { at, .. } if *at == window.start_s);
+    let begins = |step: &&InputSignal| matches!(step, InputSignal::Step { at, .. } if *at == window.start_s);
     let step = declared.reference.iter().find(begins)?;
     let published = step.published().filter(|_| matches!(window.cause, Cause::ReferenceStep { .. }))?;
     let known = [(OVERSHOOT, published.overshoot_percent), (SETTLING, published.settling_time)];
@@ -193,7 +193,7 @@ fn measured_cells(overlay: &Overlay, units: Units) -> [Cell; 5] {
         outside => format!("{}, {outside} more outside", overlay.times_s.len()),
     };
     [
-        overlay.signal.into(),
+        overlay.signal.name().into(),
         format!("{} `{}`", overlay.file, overlay.column).into(),
         overlay.nrmse.map_or(Cell::Missing, percent),
         overlay.rmse.map_or(Cell::Missing, |rmse| Cell::quantity(rmse, 3, overlay.display_unit(units))),

@@ -1,13 +1,13 @@
 //! Figures of runs over time.
 
 use super::span::{span_of, span_of_events};
-use super::{Cause, GAS_TEMPERATURES, Metrics, Record, ScenarioComparison, ScenarioRun, Window, cause_words};
+use super::{Cause, Metrics, Record, ScenarioComparison, ScenarioRun, Window, cause_words};
 use crate::answer::{OutputFile, picture_files, significant};
 use crate::figure::axis::extent;
 use crate::figure::{CurveChart, CurvePanel, CurveStyle, DisplayUnit, Figure, SettlingBand, Words};
 use crate::over_time::{ForceStep, Trace, behind, chart, named, panel, trace};
 use crate::quantity::Units;
-use phea_hydraulics::machine::{GAS_PRESSURE_SIGNALS, HEAT_SIGNALS};
+use phea_hydraulics::signal::Signal;
 
 /// Largest number of events that are all enlarged; if there are more, all that are not steps, and
 /// the greatest step.
@@ -90,7 +90,8 @@ fn overview(words: &Words, run: &ScenarioRun, span_s: [f64; 2]) -> Figure {
 /// positions where the load moves.
 pub(super) fn close_up(words: &Words, run: &ScenarioRun, window: &Window, span_s: [f64; 2]) -> Figure {
     let record = &run.record;
-    let forces = ["force_n", "hydraulic_force_n"].map(|name| over_time(record, record.signal(name)));
+    let forces =
+        [Signal::Force, Signal::HydraulicForce].map(|signal| over_time(record, record.signal(signal)));
     let forces = panel("Forces F_e, F_H", record.units.force, 150.0, forces.into());
     let forces = named(forces, ["measured force", "hydraulic force"]);
     let mut panels = vec![voltages(record), pressures(record), forces, measured(record, 150.0)];
@@ -118,10 +119,10 @@ const LEAVES: f64 = 0.5;
 /// that would spoil the scale is left to a panel of its own.
 fn measured(record: &Record, height: f64) -> CurvePanel {
     let unit = record.units.force;
-    let mut series = vec![over_time(record, record.signal("force_n"))];
+    let mut series = vec![over_time(record, record.signal(Signal::Force))];
     let mut names = vec!["measured force"];
     if fits(record) {
-        series.push(over_time(record, record.filtered_reference_n.clone()));
+        series.push(over_time(record, record.signal(Signal::FilteredReference)));
         names.push("prefiltered reference");
     }
     let force = named(panel("Force F_e", unit, height, series), names);
@@ -135,22 +136,22 @@ fn measured(record: &Record, height: f64) -> CurvePanel {
 /// The prefiltered reference by itself, where it does not fit the scale of the force.
 fn prefiltered(record: &Record) -> Option<CurvePanel> {
     let unit = record.units.force;
-    let series = over_time(record, record.filtered_reference_n.clone());
+    let series = over_time(record, record.signal(Signal::FilteredReference));
     (!fits(record)).then(|| named(panel("F F_ref", unit, 90.0, vec![series]), ["prefiltered reference"]))
 }
 
 /// Whether the prefiltered reference can be drawn on the scale of force and reference.
 fn fits(record: &Record) -> bool {
     let (least, most) =
-        extent(record.signal("force_n").into_iter().chain(record.reference_n.iter().copied()));
-    let (lowest, highest) = extent(record.filtered_reference_n.iter().copied());
+        extent(record.signal(Signal::Force).into_iter().chain(record.reference_n.iter().copied()));
+    let (lowest, highest) = extent(record.signal(Signal::FilteredReference).into_iter());
     let room = LEAVES * (most - least);
-    record.filtered_reference_n.is_empty() || (lowest >= least - room && highest <= most + room)
+    record.signal(Signal::FilteredReference).is_empty() || (lowest >= least - room && highest <= most + room)
 }
 
 /// Reference less force, where the reference moves.
 pub(super) fn tracking_error(record: &Record) -> Vec<f64> {
-    let pairs = record.reference_n.iter().zip(record.signal("force_n"));
+    let pairs = record.reference_n.iter().zip(record.signal(Signal::Force));
     pairs.map(|(reference, force)| reference - force).collect()
 }
 
@@ -182,10 +183,15 @@ fn load_words(record: &Record) -> &'static str {
     if turns(record) { "rod's end" } else { "load" }
 }
 
-/// The external force on the load, if there is one.
+/// The force from outside on the load, or the torque on one that turns, if there is one.
+fn external_force(record: &Record) -> Option<Vec<f64>> {
+    let signals = [Signal::ExternalForce, Signal::ExternalTorque].map(|signal| record.signal(signal));
+    signals.into_iter().find(|values| !values.is_empty())
+}
+
+/// The panel of that force.
 fn from_outside(record: &Record) -> Option<CurvePanel> {
-    let series =
-        (!record.external_force_n.is_empty()).then(|| over_time(record, record.external_force_n.clone()))?;
+    let series = over_time(record, external_force(record)?);
     Some(match turns(record) {
         false => {
             let force = panel("Force F_x", record.units.force, 90.0, vec![series]);
@@ -203,7 +209,7 @@ fn settings(record: &Record) -> Option<CurvePanel> {
     if !record.parts.adjustment {
         return None;
     }
-    let series = ["setting_a_ratio", "setting_b_ratio"].map(|name| over_time(record, record.signal(name)));
+    let series = [Signal::SettingA, Signal::SettingB].map(|signal| over_time(record, record.signal(signal)));
     Some(named(panel("Settings s_A, s_B", DisplayUnit::ONE, 90.0, series.into()), ["s_A", "s_B"]))
 }
 
@@ -214,7 +220,7 @@ pub(crate) fn turns(record: &Record) -> bool {
 
 /// The angle of the joint behind a linkage, if there is one.
 fn joint(record: &Record) -> Option<CurvePanel> {
-    let series = turns(record).then(|| over_time(record, record.signal("joint_angle_rad")))?;
+    let series = turns(record).then(|| over_time(record, record.signal(Signal::JointAngle)))?;
     Some(named(panel("Joint θ", DisplayUnit::DEGREE, 90.0, vec![series]), ["joint"]))
 }
 
@@ -222,12 +228,20 @@ fn joint(record: &Record) -> Option<CurvePanel> {
 /// are any: over that of the wall where the working temperature is not stated.
 fn gas(record: &Record) -> Vec<CurvePanel> {
     let unstated = [0, 1].map(|side| match record.parts.gas_wall_celsius[side] {
-        None => record.signal(HEAT_SIGNALS[side]),
+        None => record.signal([Signal::GasTemperatureRatioA, Signal::GasTemperatureRatioB][side]),
         Some(_) => vec![],
     });
     let panels = [
-        ("Gas p_g", record.units.pressure, GAS_PRESSURE_SIGNALS.map(|name| record.signal(name))),
-        ("Gas T", DisplayUnit::DEGREE_CELSIUS, GAS_TEMPERATURES.map(|name| record.signal(name))),
+        (
+            "Gas p_g",
+            record.units.pressure,
+            [Signal::GasPressureA, Signal::GasPressureB].map(|signal| record.signal(signal)),
+        ),
+        (
+            "Gas T",
+            DisplayUnit::DEGREE_CELSIUS,
+            [Signal::GasTemperatureA, Signal::GasTemperatureB].map(|signal| record.signal(signal)),
+        ),
         ("Gas T/T_w", DisplayUnit::ONE, unstated),
     ];
     let there = panels.into_iter().filter(|(_, _, sides)| sides.iter().any(|side| !side.is_empty()));
@@ -242,17 +256,21 @@ fn gas(record: &Record) -> Vec<CurvePanel> {
 }
 
 fn voltages(record: &Record) -> CurvePanel {
-    let series = [record.control_v.clone(), record.signal("spool_v")].map(|values| over_time(record, values));
+    let series = [Signal::Control, Signal::Spool]
+        .map(|signal| record.signal(signal))
+        .map(|values| over_time(record, values));
     named(panel("Voltage", DisplayUnit::VOLT, 110.0, series.into()), ["command", "spool"])
 }
 
 fn pressures(record: &Record) -> CurvePanel {
-    let series = ["pressure_a_pa", "pressure_b_pa"].map(|name| over_time(record, record.signal(name)));
+    let series =
+        [Signal::PressureA, Signal::PressureB].map(|signal| over_time(record, record.signal(signal)));
     named(panel("Pressure", record.units.pressure, 110.0, series.into()), ["p_A", "p_B"])
 }
 
 fn positions(record: &Record) -> CurvePanel {
-    let series = ["position_m", "load_position_m"].map(|name| over_time(record, record.signal(name)));
+    let series =
+        [Signal::Position, Signal::LoadPosition].map(|signal| over_time(record, record.signal(signal)));
     let quantity = if record.units.motion.is_rotary() { "Angle" } else { "Position" };
     let positions = panel(quantity, record.units.position, 90.0, series.into());
     named(positions, [if record.units.motion.is_rotary() { "shaft" } else { "piston" }, load_words(record)])
@@ -334,9 +352,9 @@ fn step(run: &ScenarioRun, window: &Window, (number, event): (usize, usize)) -> 
     let shown = ForceStep {
         times_s: &of(&record.times_s),
         reference: &of(&record.reference_n),
-        force: &of(&record.signal("force_n")),
-        filtered_reference: &of(&record.filtered_reference_n),
-        command: &of(&record.control_v),
+        force: &of(&record.signal(Signal::Force)),
+        filtered_reference: &of(&record.signal(Signal::FilteredReference)),
+        command: &of(&record.signal(Signal::Control)),
         unit: record.units.force,
         settling_band: (to_n != 0.0).then_some(SettlingBand { level: to_n, percent }),
         settled: settling
@@ -396,10 +414,10 @@ fn side_by_side(words: &Words, titles: &[String], runs: &[&ScenarioRun], span_s:
     let windows = runs.first().map(|run| run.windows.as_slice()).unwrap_or_default();
     let units = units_of(runs);
     let unit = units.force;
-    let forces = panel("Force F_e", unit, 230.0, each(|record| record.signal("force_n")));
+    let forces = panel("Force F_e", unit, 230.0, each(|record| record.signal(Signal::Force)));
     let panels = vec![
         behind(forces, unit, CurveStyle::Reference, reference),
-        panel("Command U_C", DisplayUnit::VOLT, 130.0, each(|record| record.control_v.clone())),
+        panel("Command U_C", DisplayUnit::VOLT, 130.0, each(|record| record.signal(Signal::Control))),
         panel("p_A - p_B", units.pressure, 130.0, each(load_pressure)),
     ];
     chart(panels, titles.to_vec(), &instants(windows, span_s), span_s).draw(words)
@@ -412,6 +430,6 @@ fn units_of(runs: &[&ScenarioRun]) -> Units {
 
 /// The difference of the pressures of both chambers.
 pub(super) fn load_pressure(record: &Record) -> Vec<f64> {
-    let (one, other) = (record.signal("pressure_a_pa"), record.signal("pressure_b_pa"));
+    let (one, other) = (record.signal(Signal::PressureA), record.signal(Signal::PressureB));
     one.iter().zip(&other).map(|(one, other)| one - other).collect()
 }

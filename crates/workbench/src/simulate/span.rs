@@ -1,6 +1,7 @@
 //! The time that a figure of an event shows: until a step has settled, two cycles of what repeats.
 
 use super::{Cause, Metrics, Record, ScenarioRun, Window};
+use phea_hydraulics::signal::Signal;
 
 /// Shown before an event, as a part of what is shown after it.
 const BEFORE: f64 = 0.05;
@@ -18,7 +19,7 @@ pub(crate) fn span_of(run: &ScenarioRun, window: &Window, end_s: f64) -> [f64; 2
     let metrics = run.windows.iter().find(|(own, _)| own == window).map(|(_, metrics)| metrics);
     let after_s = match window.cause {
         Cause::ReferenceMotion { .. } => moving(&run.record, &run.record.reference_n, window),
-        Cause::CommandMotion { .. } => moving(&run.record, &run.record.control_v, window),
+        Cause::CommandMotion { .. } => moving(&run.record, &run.record.signal(Signal::Control), window),
         _ => settled(metrics),
     };
     around(window, after_s, end_s)

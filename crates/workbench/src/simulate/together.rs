@@ -10,6 +10,7 @@ use super::{Cause, Record, ScenarioRun, TrackingWish, Window, cause_words};
 use crate::figure::{CurveChart, CurvePanel, CurveRange, CurveStyle, DisplayUnit, Figure, Words};
 use crate::over_time::{Trace, behind, chart, has, panel, trace};
 use crate::quantity::Units;
+use phea_hydraulics::signal::Signal;
 
 /// A run with the name of its controller.
 #[derive(Clone, Copy, Debug)]
@@ -99,7 +100,7 @@ pub(crate) fn measured_together(runs: &[NamedRun<'_>], number: usize) -> Option<
         });
         let measured = trace(&overlay.times_s, &overlay.measured);
         let series = simulated.chain([measured]).collect();
-        let reference = asked_for(&first.run.record).filter(|_| overlay.signal == "force_n");
+        let reference = asked_for(&first.run.record).filter(|_| overlay.signal == Signal::Force);
         let unit = overlay.display_unit(first.run.record.units);
         behind(panel(&overlay.quantity(), unit, height, series), unit, CurveStyle::Reference, reference)
     });
@@ -157,7 +158,7 @@ fn drawn(
     panels.push(commands(runs, low));
     panels.push(panel("p_A - p_B", units(runs).pressure, low, each(runs, load_pressure)));
     if positions {
-        let piston = each(runs, |record| record.signal("position_m"));
+        let piston = each(runs, |record| record.signal(Signal::Position));
         panels.push(panel("Piston", units(runs).position, 90.0, piston));
     }
     with_events(runs, panels, span_s).draw(words)
@@ -196,12 +197,12 @@ fn units(runs: &[NamedRun<'_>]) -> Units {
 
 /// The force as measured on the rig, if it was measured.
 fn force_measured(runs: &[NamedRun<'_>]) -> Option<Trace> {
-    let overlay = runs.first()?.run.measured.iter().find(|overlay| overlay.signal == "force_n")?;
+    let overlay = runs.first()?.run.measured.iter().find(|overlay| overlay.signal == Signal::Force)?;
     Some(trace(&overlay.times_s, &overlay.measured))
 }
 
 fn forces(runs: &[NamedRun<'_>], height: f64, span_s: [f64; 2], wish: Option<&TrackingWish>) -> CurvePanel {
-    let mut curves = each(runs, |record| record.signal("force_n"));
+    let mut curves = each(runs, |record| record.signal(Signal::Force));
     curves.extend(force_measured(runs));
     let first = runs.first().map(|named| named.run);
     let windows = first.map(|run| run.windows.as_slice()).unwrap_or_default();
@@ -261,5 +262,5 @@ fn near_reference(runs: &[NamedRun<'_>], span_s: [f64; 2], wish: Option<&Trackin
 fn commands(runs: &[NamedRun<'_>], height: f64) -> CurvePanel {
     // the longer title does not fit next to a low frame
     let title = if height < 100.0 { "U_C" } else { "Command U_C" };
-    panel(title, DisplayUnit::VOLT, height, each(runs, |record| record.control_v.clone()))
+    panel(title, DisplayUnit::VOLT, height, each(runs, |record| record.signal(Signal::Control)))
 }

@@ -15,7 +15,7 @@ pub(crate) fn row(check: &ToleranceCheck) -> Object {
         .told("part_of_peak", force.map(Difference::part_of_peak))
         .each("signals", &check.signals, |found| {
             Object::new()
-                .with("name", found.name)
+                .with("name", found.signal.name())
                 .with("difference", found.difference)
                 .with("time_s", found.time_s)
                 .with("peak", found.peak)

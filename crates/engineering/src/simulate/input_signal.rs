@@ -4,7 +4,7 @@ use phea_dynamics::simulation::{Harmonic, Profile, ProfileError, schroeder_phase
 
 use super::SimulateError;
 use super::motion_file;
-use crate::project::{Multisine, Project, Signal};
+use crate::project::{InputSignal, Multisine, Project};
 use crate::source::Source;
 use crate::table::Measurand;
 
@@ -34,13 +34,13 @@ pub(super) fn profile(
     source: &dyn Source,
     project: &Project,
     scenario: &str,
-    signals: &[Signal],
+    signals: &[InputSignal],
     values: &'static Measurand,
 ) -> Result<Profile, SimulateError> {
     let named = |error: ProfileError| SimulateError::Profile { name: scenario.to_string(), error };
-    let (single, others): (Vec<&Signal>, Vec<&Signal>) =
-        signals.iter().partition(|signal| matches!(signal, Signal::Step { .. }));
-    let steps: Vec<(f64, f64)> = single.into_iter().flat_map(Signal::steps).collect();
+    let (single, others): (Vec<&InputSignal>, Vec<&InputSignal>) =
+        signals.iter().partition(|signal| matches!(signal, InputSignal::Step { .. }));
+    let steps: Vec<(f64, f64)> = single.into_iter().flat_map(InputSignal::steps).collect();
     let mut parts = vec![Profile::steps(0.0, &steps).map_err(named)?];
     for signal in others {
         parts.push(shape(source, project, signal, values)?.map_err(named)?);
@@ -51,7 +51,7 @@ pub(super) fn profile(
 fn shape(
     source: &dyn Source,
     project: &Project,
-    signal: &Signal,
+    signal: &InputSignal,
     values: &'static Measurand,
 ) -> Result<Result<Profile, ProfileError>, SimulateError> {
     let start_s = signal.begins_s();
@@ -60,16 +60,16 @@ fn shape(
         None => profile,
     };
     Ok(match signal {
-        Signal::Step { .. } | Signal::Steps { .. } => Profile::steps(0.0, &signal.steps()),
-        Signal::Ramp { value, duration, .. } => Profile::ramp(start_s, *duration, *value),
-        Signal::Sine { amplitude, frequency, .. } => {
+        InputSignal::Step { .. } | InputSignal::Steps { .. } => Profile::steps(0.0, &signal.steps()),
+        InputSignal::Ramp { value, duration, .. } => Profile::ramp(start_s, *duration, *value),
+        InputSignal::Sine { amplitude, frequency, .. } => {
             Profile::sine(start_s, *amplitude, *frequency).map(ended)
         }
-        Signal::Chirp { duration, amplitude, frequency, final_frequency, .. } => {
+        InputSignal::Chirp { duration, amplitude, frequency, final_frequency, .. } => {
             Profile::chirp(start_s, *duration, *amplitude, [*frequency, *final_frequency])
         }
-        Signal::Multisine(sines) => Profile::multisine(start_s, &harmonics(sines)).map(ended),
-        Signal::File { file, .. } => {
+        InputSignal::Multisine(sines) => Profile::multisine(start_s, &harmonics(sines)).map(ended),
+        InputSignal::File { file, .. } => {
             motion_file::signal(source, project, file, start_s, values).map_err(SimulateError::Motion)?
         }
     })
@@ -89,14 +89,15 @@ fn harmonics(sines: &Multisine) -> Vec<Harmonic> {
 }
 
 /// The events in the sum of these before the end. A step that changes nothing is not an event.
-pub(super) fn beginnings(signals: &[Signal], profile: &Profile, end_s: f64) -> Vec<SignalOnset> {
-    let steps = signals.iter().flat_map(Signal::steps).map(|(time_s, _)| time_s);
+pub(super) fn beginnings(signals: &[InputSignal], profile: &Profile, end_s: f64) -> Vec<SignalOnset> {
+    let steps = signals.iter().flat_map(InputSignal::steps).map(|(time_s, _)| time_s);
     let step = |time_s: f64| {
         let (from, to) = (profile.value_before(time_s), profile.value(time_s));
         (from != to).then_some(SignalOnset::Step { time_s, from, to })
     };
     let moving = signals.iter().filter(|signal| signal.steps().is_empty());
-    let motion = |signal: &Signal| SignalOnset::Motion { time_s: signal.begins_s(), kind: signal.kind() };
+    let motion =
+        |signal: &InputSignal| SignalOnset::Motion { time_s: signal.begins_s(), kind: signal.kind() };
     let all = steps.filter_map(step).chain(moving.map(motion));
     all.filter(|beginning| beginning.time_s() < end_s).collect()
 }

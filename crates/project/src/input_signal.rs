@@ -10,7 +10,7 @@ use phea_quantity::{ANGLE, ANGULAR_FREQUENCY, Dimension, FORCE, RATIO, TIME, VOL
 /// amplitudes are in the unit of the signal, times in s, frequencies in rad/s. Without a start it
 /// begins at once; after its duration it holds its final value.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Signal {
+pub enum InputSignal {
     /// A value that holds until the next step.
     Step {
         /// When it comes.
@@ -101,15 +101,15 @@ impl Default for Amplitudes {
     }
 }
 
-impl Default for Signal {
+impl Default for InputSignal {
     fn default() -> Self {
-        Signal::Step { at: 0.0, value: 0.0, published: None }
+        InputSignal::Step { at: 0.0, value: 0.0, published: None }
     }
 }
 
 /// The quantity of a signal, and the names of its values.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct SignalUnit {
+pub(crate) struct InputUnit {
     /// Key of one value.
     pub(crate) value: &'static str,
     /// Key of several.
@@ -121,15 +121,15 @@ pub(crate) struct SignalUnit {
     on_load: bool,
 }
 
-impl SignalUnit {
+impl InputUnit {
     /// The unit of a reference.
-    pub(crate) const REFERENCE: SignalUnit =
-        SignalUnit { value: "force", values: "forces", dimension: &FORCE, published: true, on_load: false };
+    pub(crate) const REFERENCE: InputUnit =
+        InputUnit { value: "force", values: "forces", dimension: &FORCE, published: true, on_load: false };
     /// The unit of an external force on the load.
-    pub(crate) const EXTERNAL_FORCE: SignalUnit =
-        SignalUnit { value: "force", values: "forces", dimension: &FORCE, published: false, on_load: true };
+    pub(crate) const EXTERNAL_FORCE: InputUnit =
+        InputUnit { value: "force", values: "forces", dimension: &FORCE, published: false, on_load: true };
     /// The unit of an open-loop command.
-    pub(crate) const COMMAND: SignalUnit = SignalUnit {
+    pub(crate) const COMMAND: InputUnit = InputUnit {
         value: "voltage",
         values: "voltages",
         dimension: &VOLTAGE,
@@ -137,20 +137,15 @@ impl SignalUnit {
         on_load: false,
     };
     /// The unit of the setting of accumulators.
-    pub(crate) const SETTING_CHANGE: SignalUnit = SignalUnit {
-        value: "change",
-        values: "changes",
-        dimension: &RATIO,
-        published: false,
-        on_load: false,
-    };
+    pub(crate) const SETTING_CHANGE: InputUnit =
+        InputUnit { value: "change", values: "changes", dimension: &RATIO, published: false, on_load: false };
 }
 
 /// A signal as it is written, which depends on its quantity.
 #[derive(Clone)]
 struct WrittenSignal {
-    unit: SignalUnit,
-    signal: Signal,
+    unit: InputUnit,
+    signal: InputSignal,
 }
 
 impl Variants for WrittenSignal {
@@ -159,13 +154,13 @@ impl Variants for WrittenSignal {
     fn all(&self) -> Vec<WrittenSignal> {
         let (start, amplitude, frequency) = (None, 0.0, 0.0);
         let all = [
-            Signal::default(),
-            Signal::Steps { times: Vec::new(), values: Vec::new() },
-            Signal::Ramp { value: 0.0, start, duration: 0.0 },
-            Signal::Sine { start, duration: None, amplitude, frequency },
-            Signal::Chirp { start, duration: 0.0, amplitude, frequency, final_frequency: 0.0 },
-            Signal::Multisine(Multisine::default()),
-            Signal::File { start, file: String::new() },
+            InputSignal::default(),
+            InputSignal::Steps { times: Vec::new(), values: Vec::new() },
+            InputSignal::Ramp { value: 0.0, start, duration: 0.0 },
+            InputSignal::Sine { start, duration: None, amplitude, frequency },
+            InputSignal::Chirp { start, duration: 0.0, amplitude, frequency, final_frequency: 0.0 },
+            InputSignal::Multisine(Multisine::default()),
+            InputSignal::File { start, file: String::new() },
         ];
         all.map(|signal| WrittenSignal { unit: self.unit, signal }).into()
     }
@@ -175,7 +170,7 @@ impl Variants for WrittenSignal {
     }
 
     fn goes_without_saying(&self) -> bool {
-        matches!(self.signal, Signal::Step { .. })
+        matches!(self.signal, InputSignal::Step { .. })
     }
 
     fn visit<V: Visitor>(&mut self, v: &mut V) {
@@ -189,7 +184,7 @@ impl Variants for WrittenSignal {
             moving(key("amplitude", of, "Of a sine, a chirp, or each sine of a multisine.").positive());
         let first = key("frequency", &ANGULAR_FREQUENCY, "Of a sine, or where a chirp begins.").positive();
         match &mut self.signal {
-            Signal::Step { at, value, published } => {
+            InputSignal::Step { at, value, published } => {
                 v.quantity(key("at", &TIME, "When a step comes.").not_negative(), at);
                 v.quantity(level, value);
                 if self.unit.published {
@@ -198,24 +193,24 @@ impl Variants for WrittenSignal {
                     v.table(plain("published", doc), published, Published::visit);
                 }
             }
-            Signal::Steps { times, values } => {
+            InputSignal::Steps { times, values } => {
                 let k = key("times", &TIME, "When each of several steps comes.").not_negative();
                 v.quantities(k, times, true);
                 let k = moving(key(self.unit.values, of, "Of several steps, each until the next."));
                 v.quantities(k, values, true);
             }
-            Signal::Ramp { value, start, duration } => {
+            InputSignal::Ramp { value, start, duration } => {
                 v.quantity(level, value);
                 v.optional(begins, start);
                 v.quantity(how_long, duration);
             }
-            Signal::Sine { start, duration, amplitude, frequency } => {
+            InputSignal::Sine { start, duration, amplitude, frequency } => {
                 v.optional(begins, start);
                 v.optional(how_long, duration);
                 v.quantity(size, amplitude);
                 v.quantity(first, frequency);
             }
-            Signal::Chirp { start, duration, amplitude, frequency, final_frequency } => {
+            InputSignal::Chirp { start, duration, amplitude, frequency, final_frequency } => {
                 v.optional(begins, start);
                 v.quantity(how_long, duration);
                 v.quantity(size, amplitude);
@@ -223,7 +218,7 @@ impl Variants for WrittenSignal {
                 let k = key("final_frequency", &ANGULAR_FREQUENCY, "Where a chirp ends.").positive();
                 v.quantity(k, final_frequency);
             }
-            Signal::Multisine(sines) => {
+            InputSignal::Multisine(sines) => {
                 v.optional(begins, &mut sines.start);
                 v.optional(how_long, &mut sines.duration);
                 sines.amplitudes.visit(size, v);
@@ -232,7 +227,7 @@ impl Variants for WrittenSignal {
                 let k = key("phases", &ANGLE, "Of the sines of a multisine; absent: Schroeder's.");
                 v.quantities(k, &mut sines.phases, false);
             }
-            Signal::File { start, file } => {
+            InputSignal::File { start, file } => {
                 v.optional(begins, start);
                 let mut name = Some(std::mem::take(file));
                 v.text(plain("file", "A CSV file with time and value."), &mut name, true);
@@ -264,58 +259,62 @@ impl Amplitudes {
     }
 }
 
-impl Signal {
+impl InputSignal {
     /// Its shape, as it is written in the project file.
     pub fn kind(&self) -> &'static str {
         match self {
-            Signal::Step { .. } => "step",
-            Signal::Steps { .. } => "steps",
-            Signal::Ramp { .. } => "ramp",
-            Signal::Sine { .. } => "sine",
-            Signal::Chirp { .. } => "chirp",
-            Signal::Multisine(_) => "multisine",
-            Signal::File { .. } => "file",
+            InputSignal::Step { .. } => "step",
+            InputSignal::Steps { .. } => "steps",
+            InputSignal::Ramp { .. } => "ramp",
+            InputSignal::Sine { .. } => "sine",
+            InputSignal::Chirp { .. } => "chirp",
+            InputSignal::Multisine(_) => "multisine",
+            InputSignal::File { .. } => "file",
         }
     }
 
     /// When it begins, s; of several steps, the first.
     pub fn begins_s(&self) -> f64 {
         match self {
-            Signal::Step { at, .. } => *at,
-            Signal::Steps { times, .. } => times.first().copied().unwrap_or(0.0),
-            Signal::Ramp { start, .. }
-            | Signal::Sine { start, .. }
-            | Signal::Chirp { start, .. }
-            | Signal::Multisine(Multisine { start, .. })
-            | Signal::File { start, .. } => start.unwrap_or(0.0),
+            InputSignal::Step { at, .. } => *at,
+            InputSignal::Steps { times, .. } => times.first().copied().unwrap_or(0.0),
+            InputSignal::Ramp { start, .. }
+            | InputSignal::Sine { start, .. }
+            | InputSignal::Chirp { start, .. }
+            | InputSignal::Multisine(Multisine { start, .. })
+            | InputSignal::File { start, .. } => start.unwrap_or(0.0),
         }
     }
 
     /// How long it moves, s, if stated.
     pub fn duration_s(&self) -> Option<f64> {
         match self {
-            Signal::Ramp { duration, .. } | Signal::Chirp { duration, .. } => Some(*duration),
-            Signal::Sine { duration, .. } | Signal::Multisine(Multisine { duration, .. }) => *duration,
-            Signal::Step { .. } | Signal::Steps { .. } | Signal::File { .. } => None,
+            InputSignal::Ramp { duration, .. } | InputSignal::Chirp { duration, .. } => Some(*duration),
+            InputSignal::Sine { duration, .. } | InputSignal::Multisine(Multisine { duration, .. }) => {
+                *duration
+            }
+            InputSignal::Step { .. } | InputSignal::Steps { .. } | InputSignal::File { .. } => None,
         }
     }
 
     /// The times and values of its steps.
     pub fn steps(&self) -> Vec<(f64, f64)> {
         match self {
-            Signal::Step { at, value, .. } => vec![(*at, *value)],
-            Signal::Steps { times, values } => times.iter().copied().zip(values.iter().copied()).collect(),
+            InputSignal::Step { at, value, .. } => vec![(*at, *value)],
+            InputSignal::Steps { times, values } => {
+                times.iter().copied().zip(values.iter().copied()).collect()
+            }
             _ => Vec::new(),
         }
     }
 
     /// Published values, for a step of the reference.
     pub fn published(&self) -> Option<&Published> {
-        if let Signal::Step { published, .. } = self { published.as_ref() } else { None }
+        if let InputSignal::Step { published, .. } = self { published.as_ref() } else { None }
     }
 
     /// Reads or prints it as a signal of its quantity.
-    pub(crate) fn visitor<V: Visitor>(unit: SignalUnit) -> impl Fn(&mut Signal, &mut V) {
+    pub(crate) fn visitor<V: Visitor>(unit: InputUnit) -> impl Fn(&mut InputSignal, &mut V) {
         move |signal, v| {
             let mut written = WrittenSignal { unit, signal: std::mem::take(signal) };
             v.variant(plain("kind", "Its shape in time; absent: a step."), &mut written, false);

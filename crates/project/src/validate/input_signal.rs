@@ -1,15 +1,15 @@
 //! The functions of time of a scenario.
 
 use super::Check;
-use crate::{Amplitudes, Multisine, Signal, SignalUnit};
+use crate::{Amplitudes, InputSignal, InputUnit, Multisine};
 
 /// Most sines of a multisine.
 const MOST_SINES: usize = 1000;
 
 /// Checks every part of the signal under this key of a scenario with this duration in s.
 pub(super) fn signals(
-    signals: &[Signal],
-    unit: SignalUnit,
+    signals: &[InputSignal],
+    unit: InputUnit,
     [scenario, name]: [&str; 2],
     duration: f64,
     check: &mut Check<'_, '_>,
@@ -20,7 +20,7 @@ pub(super) fn signals(
         let path = format!("{path}[{index}]");
         one_signal(signal, unit, &path, check);
         match signal {
-            Signal::Step { at, .. } => {
+            InputSignal::Step { at, .. } => {
                 let stated = format!("{path}.at");
                 times.extend(Some(at).filter(|_| check.declared(&stated) && !check.refused(&stated)));
             }
@@ -36,9 +36,9 @@ pub(super) fn signals(
     }
 }
 
-fn one_signal(signal: &Signal, unit: SignalUnit, path: &str, check: &mut Check<'_, '_>) {
+fn one_signal(signal: &InputSignal, unit: InputUnit, path: &str, check: &mut Check<'_, '_>) {
     match signal {
-        Signal::Steps { times, values } => {
+        InputSignal::Steps { times, values } => {
             check.increasing(&format!("{path}.times"), times);
             let both = !times.is_empty() && !values.is_empty();
             if both && times.len() != values.len() {
@@ -48,7 +48,7 @@ fn one_signal(signal: &Signal, unit: SignalUnit, path: &str, check: &mut Check<'
                 check.error(&format!("{path}.{}", unit.values), message);
             }
         }
-        Signal::Multisine(sines) if !sines.frequencies.is_empty() => multisine(sines, path, check),
+        InputSignal::Multisine(sines) if !sines.frequencies.is_empty() => multisine(sines, path, check),
         _ => {}
     }
 }
