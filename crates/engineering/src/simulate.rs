@@ -22,6 +22,7 @@ mod ledgers;
 mod line_limits;
 mod look;
 mod measured;
+mod metric;
 mod metrics;
 mod motion_file;
 mod plausible;
@@ -53,6 +54,7 @@ pub use ledgers::{AccountSum, RunLedger};
 pub(crate) use line_limits::LineWatch;
 pub use line_limits::{LAMINAR_UP_TO, LineLimits};
 pub use measured::Overlay;
+pub use metric::{Metric, PerMetric};
 pub use metrics::{Cause, Measured, Metrics, Window};
 pub use record::{ControlSignals, Record, Sample};
 pub use repetition::{

@@ -22,7 +22,7 @@ pub(crate) use figures::{comparison_files, figure_files, laid_over, pictures, tu
 pub(crate) use frequency::{
     document as frequency_document, files as frequency_files, pictures as frequency_pictures,
 };
-pub(crate) use metrics::{METRICS, Metric, OVERSHOOT, SETTLING, cells_of, metric_of, settling_within};
+pub(crate) use metrics::{cells_of, label_within, settling_within, shown_in};
 pub(crate) use required::{not_judged_words, requirement_sentence, satisfied_word};
 pub(crate) use span::around;
 pub(crate) use together::{NamedRun, at_a_glance, close_ups, measured_together, together};

@@ -12,13 +12,13 @@ use std::path::Path;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use phea_workbench::campaign::{
-    CampaignError, Effort, FamilyBox, METRIC_NAMES, Plan, RequestedRuns, Row, RowOutcome, RowStore,
-    STATUS_WORDS, Shard, Summary,
+    CampaignError, Effort, FamilyBox, Plan, RequestedRuns, Row, RowOutcome, RowStore, STATUS_WORDS, Shard,
+    Summary,
 };
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, CommandError, Request};
 use phea_workbench::project::{self, Loaded};
 use phea_workbench::setup::Setup;
-use phea_workbench::simulate::simulate_project;
+use phea_workbench::simulate::{Metric, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -116,7 +116,11 @@ fn an_open_loop_is_drawn_as_a_closed_one_is() {
     }
     assert!(!header.contains("disturbance") && !header.contains("settling") && !header.contains("error"));
     let summary = Summary::of(&plan, &expected);
-    let spreads: Vec<usize> = summary.metrics.iter().map(|of| of.iter().flatten().count()).collect();
+    let spreads: Vec<usize> = summary
+        .metrics
+        .iter()
+        .map(|of| Metric::ALL.iter().filter(|metric| of[**metric].is_some()).count())
+        .collect();
     assert_eq!(spreads, [3, 3]);
     for run in 0..2 {
         let request = CampaignRequest { seed: 1, asked: CampaignRuns::One(run), files: false };
@@ -138,9 +142,9 @@ fn an_open_loop_is_drawn_as_a_closed_one_is() {
         assert!(seen.iter().zip(&force_n).all(|(one, other)| one.to_bits() == other.to_bits()), "run {run}");
         let row = &expected[run as usize];
         for ((_, metrics), numbers) in simulated.windows.iter().zip(&row.ran().unwrap().metrics) {
-            let of = |name: &str| numbers[METRIC_NAMES.iter().position(|known| *known == name).unwrap()];
-            assert_eq!(metrics.force_peak_n.ok(), of("force_peak_n"));
-            assert!(metrics.force_peak_n.is_ok() && of("control_peak_v") == Some(0.5));
+            let of = |metric: Metric| numbers[metric];
+            assert_eq!(metrics.force_peak_n.ok(), of(Metric::ForcePeak));
+            assert!(metrics.force_peak_n.is_ok() && of(Metric::ControlPeak) == Some(0.5));
         }
     }
 }
@@ -179,11 +183,11 @@ fn a_run_is_what_simulate_makes_of_its_settings() {
             );
             let row = plan.rows(run as u64..run as u64 + 1, lanes(1)).unwrap().remove(0);
             for ((_, metrics), numbers) in simulated.windows.iter().zip(&row.ran().unwrap().metrics) {
-                let of = |name: &str| numbers[METRIC_NAMES.iter().position(|known| *known == name).unwrap()];
-                assert_eq!(metrics.disturbance_peak_n.ok(), of("disturbance_peak_n"));
-                assert_eq!(metrics.rise_time_s.ok(), of("rise_time_s"));
+                let of = |metric: Metric| numbers[metric];
+                assert_eq!(metrics.disturbance_peak_n.ok(), of(Metric::DisturbancePeak));
+                assert_eq!(metrics.rise_time_s.ok(), of(Metric::RiseTime));
                 // the command is the same sum in another order
-                let peaks = metrics.control_peak_v.ok().zip(of("control_peak_v"));
+                let peaks = metrics.control_peak_v.ok().zip(of(Metric::ControlPeak));
                 assert!(peaks.is_some_and(|(one, other)| (one - other).abs() < 1e-9 * one), "{peaks:?}");
             }
         }
@@ -428,8 +432,8 @@ fn the_worst_of_runs_that_do_not_settle_overshoots_most() {
     let summary = Summary::of(&plan, &rows);
     let (run, reached) = summary.requirements[0].judged.unwrap().worst.unwrap();
     assert_eq!(reached.settling_time_s, f64::INFINITY);
-    let place = METRIC_NAMES.iter().position(|name| *name == "overshoot_percent").unwrap();
-    let overshoots: Vec<f64> = rows.iter().map(|row| row.ran().unwrap().metrics[0][place].unwrap()).collect();
+    let overshoots: Vec<f64> =
+        rows.iter().map(|row| row.ran().unwrap().metrics[0][Metric::Overshoot].unwrap()).collect();
     let most = overshoots.iter().copied().fold(0.0, f64::max);
     assert!(overshoots[0] < most, "the first run is not the worst: {overshoots:?}");
     assert_eq!((reached.overshoot_percent, overshoots[run as usize]), (most, most));

@@ -2,9 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
-use phea_workbench::campaign::{Effort, METRIC_NAMES, Plan};
+use phea_workbench::campaign::{Effort, Plan};
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, Request};
 use phea_workbench::project;
+use phea_workbench::simulate::Metric;
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -46,10 +47,15 @@ fn agree_of(text: &str, more: &[&str]) {
         let events = run["events"].as_array().unwrap();
         assert_eq!(events.len(), ran.metrics.len());
         for (event, numbers) in events.iter().zip(&ran.metrics) {
-            for (name, number) in METRIC_NAMES.iter().zip(numbers) {
-                let own = event["metrics"][*name].as_f64();
+            for metric in Metric::ALL {
+                let (own, number) = (event["metrics"][metric.name()].as_f64(), numbers[metric]);
                 let bits = |value: Option<f64>| value.map(f64::to_bits);
-                assert_eq!(bits(own), bits(*number), "{more:?}, run {}: {name} {own:?} {number:?}", row.run);
+                assert_eq!(
+                    bits(own),
+                    bits(number),
+                    "{more:?}, run {}: {metric:?} {own:?} {number:?}",
+                    row.run
+                );
             }
         }
     }

@@ -6,7 +6,7 @@ use phea_hydraulics::signal::Signal;
 use phea_workbench::command::{self, Request, SimulateRequest};
 use phea_workbench::project::{self, Loaded};
 use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{ScenarioRun, simulate_checked, simulate_project};
+use phea_workbench::simulate::{Metric, ScenarioRun, simulate_checked, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -64,11 +64,9 @@ fn a_check_is_the_difference_of_two_runs() {
     };
     assert_eq!(force.peak, peak(&plain).max(peak(&tenth)));
     let disturbances = [&plain, &tenth].map(|run| run.windows[1].1.disturbance_peak_n.unwrap());
-    assert_eq!(
-        check.metrics[1].of("disturbance_peak_n"),
-        Some(Ok((disturbances[0] - disturbances[1]).abs()))
-    );
-    assert_eq!(check.metrics[1].of("overshoot_percent"), Some(run_checked.windows[1].1.overshoot_percent));
+    let differences = check.metrics[1].differences;
+    assert_eq!(differences[Metric::DisturbancePeak], Ok((disturbances[0] - disturbances[1]).abs()));
+    assert_eq!(differences[Metric::Overshoot], run_checked.windows[1].1.overshoot_percent);
 }
 
 /// Twice the estimate covers the error against a run that is exact for all that matters here.

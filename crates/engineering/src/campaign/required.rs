@@ -1,8 +1,8 @@
 //! The part of the runs of a campaign that satisfies what is required in time.
 
 use super::plan::Plan;
-use super::row::{METRIC_NAMES, Ran, Row};
-use crate::simulate::{COMPLETED, NotJudged, ReachedStep, TimeRequirement, TrackingWish, concerned};
+use super::row::{Ran, Row};
+use crate::simulate::{COMPLETED, Metric, NotJudged, ReachedStep, TimeRequirement, TrackingWish, concerned};
 
 /// A requirement in time, and how many runs satisfy it.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,17 +91,16 @@ fn judged(plan: &Plan, rows: &[Row], one: &TimeRequirement) -> Result<SatisfiedR
 
 /// The worst of the steps of a run, each property by itself; infinite where it was not completed.
 fn reached(ran: &Ran, windows: &[usize]) -> ReachedStep {
-    let place = |name: &str| METRIC_NAMES.iter().position(|known| *known == name).unwrap_or_default();
-    let most = |name: &str| {
+    let most = |metric: Metric| {
         let values = windows.iter().map(|window| {
-            let number = ran.metrics.get(*window).and_then(|numbers| numbers[place(name)]);
+            let number = ran.metrics.get(*window).and_then(|numbers| numbers[metric]);
             number.filter(|_| ran.status == COMPLETED).unwrap_or(f64::INFINITY)
         });
         values.fold(0.0, f64::max)
     };
     ReachedStep {
-        overshoot_percent: most("overshoot_percent"),
-        settling_time_s: most("settling_time_s"),
-        rise_time_s: most("rise_time_s"),
+        overshoot_percent: most(Metric::Overshoot),
+        settling_time_s: most(Metric::SettlingTime),
+        rise_time_s: most(Metric::RiseTime),
     }
 }

@@ -8,21 +8,21 @@ use phea_quantity::Units;
 use super::csv::{Csv, quoted};
 use super::shortest_number;
 use super::simulate::{
-    COMMAND_LIMIT, COMPLETED, Cause, DIVERGED, ERRORS_AMPLIFIED, LINE_OCCURRENCES, Metrics, OUTSIDE_MODEL,
-    REPEATED, UNDETERMINED, Window,
+    COMMAND_LIMIT, COMPLETED, Cause, DIVERGED, ERRORS_AMPLIFIED, LINE_OCCURRENCES, Metric, Metrics,
+    OUTSIDE_MODEL, PerMetric, REPEATED, UNDETERMINED, Window,
 };
 
-/// Names of the metrics, in the order of a row.
-pub const METRIC_NAMES: [&str; 9] = [
-    "overshoot_percent",
-    "rise_time_s",
-    "settling_time_s",
-    "disturbance_peak_n",
-    "steady_state_error_n",
-    "control_peak_v",
-    "control_rms_v",
-    "tracking_error_peak_n",
-    "force_peak_n",
+/// The metrics in the order of a row, whose columns keep their places.
+pub const ROW_METRICS: [Metric; 9] = [
+    Metric::Overshoot,
+    Metric::RiseTime,
+    Metric::SettlingTime,
+    Metric::DisturbancePeak,
+    Metric::SteadyStateError,
+    Metric::ControlPeak,
+    Metric::ControlRms,
+    Metric::TrackingErrorPeak,
+    Metric::ForcePeak,
 ];
 
 /// Parameters of the linear model that a drawn machine visits: K_H, K_qU, K_c.
@@ -47,13 +47,13 @@ pub const STATUS_WORDS: [&str; 9] = [
 const REFUSED: &str = "refused";
 
 /// Metrics that compare the force with the reference.
-const OF_A_REFERENCE: [&str; 6] = [
-    "overshoot_percent",
-    "rise_time_s",
-    "settling_time_s",
-    "disturbance_peak_n",
-    "steady_state_error_n",
-    "tracking_error_peak_n",
+const OF_A_REFERENCE: [Metric; 6] = [
+    Metric::Overshoot,
+    Metric::RiseTime,
+    Metric::SettlingTime,
+    Metric::DisturbancePeak,
+    Metric::SteadyStateError,
+    Metric::TrackingErrorPeak,
 ];
 
 /// Hexadecimal digits of the sum that ends a row.
@@ -103,8 +103,8 @@ pub struct Ran {
     pub steps: u64,
     /// Events on the way, each kind once: `cavitation_a`, `command_limit` and so on.
     pub occurrences: Vec<&'static str>,
-    /// [`METRIC_NAMES`] of each window; absent where there is no such number.
-    pub metrics: Vec<[Option<f64>; METRIC_NAMES.len()]>,
+    /// The metrics of each window; absent where there is no such number.
+    pub metrics: Vec<PerMetric<Option<f64>>>,
     /// Force at the times of the bands, N; as far as it went.
     pub force_n: Vec<f32>,
 }
@@ -128,27 +128,32 @@ impl Row {
 }
 
 /// The metrics of a window; absent if the window does not exist.
-pub(super) fn numbers(metrics: &Metrics) -> [Option<f64>; METRIC_NAMES.len()] {
-    let all = metrics.named();
-    METRIC_NAMES.map(|name| all.iter().find(|(known, _)| *known == name)?.1.ok())
+pub(super) fn numbers(metrics: &Metrics) -> PerMetric<Option<f64>> {
+    PerMetric::of(|metric| metrics.get(metric).ok())
 }
 
-/// Which of [`METRIC_NAMES`] a window can have; an open loop has no reference.
-pub fn meaningful(window: &Window, open_loop: bool) -> impl Iterator<Item = usize> + use<> {
-    let left_out: &[&str] = match window.cause {
-        Cause::ReferenceStep { .. } => &["disturbance_peak_n", "tracking_error_peak_n", "force_peak_n"],
-        Cause::ReferenceMotion { .. } => {
-            &["overshoot_percent", "rise_time_s", "settling_time_s", "disturbance_peak_n", "force_peak_n"]
+/// The metrics that a window can have, in the order of a row; an open loop has no reference.
+pub fn meaningful(window: &Window, open_loop: bool) -> impl Iterator<Item = Metric> + use<> {
+    let left_out: &[Metric] = match window.cause {
+        Cause::ReferenceStep { .. } => {
+            &[Metric::DisturbancePeak, Metric::TrackingErrorPeak, Metric::ForcePeak]
         }
+        Cause::ReferenceMotion { .. } => &[
+            Metric::Overshoot,
+            Metric::RiseTime,
+            Metric::SettlingTime,
+            Metric::DisturbancePeak,
+            Metric::ForcePeak,
+        ],
         Cause::CommandStep { .. } | Cause::CommandMotion { .. } => &OF_A_REFERENCE,
         Cause::LoadMotion | Cause::ExternalForce { .. } | Cause::SettingChange if open_loop => {
             &OF_A_REFERENCE
         }
         Cause::LoadMotion | Cause::ExternalForce { .. } | Cause::SettingChange => {
-            &["overshoot_percent", "rise_time_s", "tracking_error_peak_n", "force_peak_n"]
+            &[Metric::Overshoot, Metric::RiseTime, Metric::TrackingErrorPeak, Metric::ForcePeak]
         }
     };
-    (0..METRIC_NAMES.len()).filter(move |metric| !left_out.contains(&METRIC_NAMES[*metric]))
+    ROW_METRICS.into_iter().filter(move |metric| !left_out.contains(metric))
 }
 
 /// The columns of a campaign's table.
@@ -177,11 +182,7 @@ impl CampaignColumns {
         }
         for (number, window) in self.windows.iter().enumerate() {
             for metric in meaningful(window, self.open_loop) {
-                csv.cells(&[&format!(
-                    "event{}_{}",
-                    number + 1,
-                    self.units.motion.name(METRIC_NAMES[metric])
-                )]);
+                csv.cells(&[&format!("event{}_{}", number + 1, self.units.motion.name(metric.name()))]);
             }
         }
         for time_s in &self.times_s {
@@ -270,7 +271,7 @@ impl CampaignColumns {
             [Some(one), Some(other), Some(third)] => Some([one, other, third]),
             _ => None,
         };
-        let mut metrics = vec![[None; METRIC_NAMES.len()]; self.windows.len()];
+        let mut metrics = vec![PerMetric::default(); self.windows.len()];
         for (window, numbers) in self.windows.iter().zip(&mut metrics) {
             for metric in meaningful(window, self.open_loop) {
                 numbers[metric] = number(cells.next()?)?;
@@ -364,16 +365,24 @@ mod tests {
         }
     }
 
+    /// The values of a row, in its order.
+    fn in_order(values: [Option<f64>; 9]) -> PerMetric<Option<f64>> {
+        let value = |metric| values[ROW_METRICS.iter().position(|one| *one == metric).unwrap()];
+        PerMetric::of(value)
+    }
+
     fn driven() -> Row {
         let ran = Ran {
             status: "too_many_steps",
             ended_s: Some(2.5),
             steps: 17,
             occurrences: vec![INDICATORS[0], COMMAND_LIMIT],
-            metrics: vec![
+            metrics: [
                 [Some(1.0 / 3.0), Some(0.15), None, None, Some(-2e-7), Some(3.0), Some(0.0), None, None],
                 [None, None, Some(0.25), Some(2015.0), None, Some(-0.0), Some(6e22), None, None],
-            ],
+            ]
+            .map(in_order)
+            .to_vec(),
             force_n: vec![0.1, -4e-9],
         };
         let lumps = Some([2.2e6, 5.6e-5, 6.4e-13]);

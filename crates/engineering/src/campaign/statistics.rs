@@ -2,8 +2,9 @@
 
 use super::plan::Plan;
 use super::required::{CampaignRequirement, required};
-use super::row::{LUMP_NAMES, METRIC_NAMES, Ran, Row, RowOutcome, STATUS_WORDS, meaningful};
+use super::row::{LUMP_NAMES, ROW_METRICS, Ran, Row, RowOutcome, STATUS_WORDS, meaningful};
 use super::spread::{Spread, quantiles, spread};
+use crate::simulate::{Metric, PerMetric};
 use phea_dynamics::order::sort_numbers;
 
 /// Quantiles of the force over time, of all runs that lasted until then.
@@ -20,9 +21,8 @@ pub struct Bands {
 pub struct WorstRun {
     /// Its index.
     pub run: u64,
-    /// For everything it is worst in: the window, counted from 0, and the index in
-    /// [`METRIC_NAMES`].
-    pub of: Vec<(usize, usize)>,
+    /// The windows, counted from 0, and metrics in which it is worst.
+    pub of: Vec<(usize, Metric)>,
 }
 
 /// Statistics of the runs of a campaign.
@@ -36,8 +36,8 @@ pub struct Summary {
     pub ended: Vec<(u64, &'static str, f64)>,
     /// Events on the way: kind, number of runs, and the first of them.
     pub occurrences: Vec<(&'static str, usize, u64)>,
-    /// For each window, the spread of each of [`METRIC_NAMES`] that occurs in it.
-    pub metrics: Vec<[Option<Spread>; METRIC_NAMES.len()]>,
+    /// For each window, the spread of each metric that occurs in it.
+    pub metrics: Vec<PerMetric<Option<Spread>>>,
     /// Spread of each of [`LUMP_NAMES`].
     pub lumps: [Option<Spread>; LUMP_NAMES.len()],
     /// Runs whose machine has one outside its bounds in `[uncertainty]`, where there are bounds.
@@ -59,9 +59,9 @@ impl Summary {
     /// The summary of rows.
     pub fn of(plan: &Plan, rows: &[Row]) -> Summary {
         let driven: Vec<(u64, &Ran)> = rows.iter().filter_map(|row| Some((row.run, row.ran()?))).collect();
-        let metrics: Vec<[Option<Spread>; METRIC_NAMES.len()]> = (0..plan.windows().len())
+        let metrics: Vec<PerMetric<Option<Spread>>> = (0..plan.windows().len())
             .map(|window| {
-                let mut spreads = [None; METRIC_NAMES.len()];
+                let mut spreads = PerMetric::default();
                 let of_window = |window| meaningful(window, plan.is_open_loop());
                 for metric in plan.windows().get(window).into_iter().flat_map(of_window) {
                     spreads[metric] = spread(driven.iter().map(|(run, ran)| {
@@ -124,11 +124,11 @@ fn bands(times_s: &[f64], driven: &[(u64, &Ran)]) -> Bands {
     bands
 }
 
-fn worst(metrics: &[[Option<Spread>; METRIC_NAMES.len()]]) -> Vec<WorstRun> {
+fn worst(metrics: &[PerMetric<Option<Spread>>]) -> Vec<WorstRun> {
     let mut found: Vec<WorstRun> = Vec::new();
     for (window, spreads) in metrics.iter().enumerate() {
-        for (metric, spread) in spreads.iter().enumerate() {
-            let Some((_, run)) = spread.map(|spread| spread.worst) else { continue };
+        for metric in ROW_METRICS {
+            let Some((_, run)) = spreads[metric].map(|spread| spread.worst) else { continue };
             match found.iter_mut().find(|known| known.run == run) {
                 Some(known) => known.of.push((window, metric)),
                 None => found.push(WorstRun { run, of: vec![(window, metric)] }),

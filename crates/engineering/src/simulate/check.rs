@@ -5,8 +5,8 @@ use phea_hydraulics::signal::Signal;
 
 use super::metrics::Measured;
 use super::{
-    Metrics, PassPlan, Record, RunOutput, Sample, ScenarioRun, SimulateError, StoppedRun, Window, prepared,
-    simulate_into,
+    Metric, Metrics, PassPlan, PerMetric, Record, RunOutput, Sample, ScenarioRun, SimulateError, StoppedRun,
+    Window, prepared, simulate_into,
 };
 use crate::number_table::TableFormat;
 use crate::setup::Setup;
@@ -58,15 +58,8 @@ pub struct Difference {
 pub struct MetricDifferences {
     /// The window.
     pub window: Window,
-    /// Name, with its unit, and magnitude of the difference in this unit.
-    pub differences: Vec<(&'static str, Measured)>,
-}
-
-impl MetricDifferences {
-    /// That of this name.
-    pub fn of(&self, name: &str) -> Option<Measured> {
-        self.differences.iter().find(|(found, _)| *found == name).map(|(_, difference)| *difference)
-    }
+    /// Magnitude of the difference of each metric.
+    pub differences: PerMetric<Measured>,
 }
 
 impl Difference {
@@ -183,14 +176,10 @@ fn difference(
 fn metric_differences(
     ((window, one), (_, other)): (&(Window, Metrics), &(Window, Metrics)),
 ) -> MetricDifferences {
-    let apart = |((name, here), (_, there)): ((&'static str, Measured), (&'static str, Measured))| {
-        let difference = match (here, there) {
-            (Ok(here), Ok(there)) => Ok((here - there).abs()),
-            (Err(reason), Err(_)) => Err(reason),
-            _ => Err(NOT_COMPARED),
-        };
-        (name, difference)
+    let difference = |metric: Metric| match (one.get(metric), other.get(metric)) {
+        (Ok(here), Ok(there)) => Ok((here - there).abs()),
+        (Err(reason), Err(_)) => Err(reason),
+        _ => Err(NOT_COMPARED),
     };
-    let differences = one.named().into_iter().zip(other.named()).map(apart).collect();
-    MetricDifferences { window: *window, differences }
+    MetricDifferences { window: *window, differences: PerMetric::of(difference) }
 }

@@ -1,5 +1,7 @@
 //! The metrics of a run: one window for each step of the reference and for the motion of the load.
 
+use super::metric::Metric;
+
 /// Part of a run that is evaluated by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
@@ -131,19 +133,19 @@ pub(super) const STANDS_STILL: &str = "the reference stands still";
 pub(super) const NO_REFERENCE: &str = "the reference is zero: a band around it has no width";
 
 impl Metrics {
-    /// Each available metric with its name, in the order of an answer.
-    pub fn named(&self) -> [(&'static str, Measured); 9] {
-        [
-            ("overshoot_percent", self.overshoot_percent),
-            ("rise_time_s", self.rise_time_s),
-            ("settling_time_s", self.settling_time_s),
-            ("disturbance_peak_n", self.disturbance_peak_n),
-            ("tracking_error_peak_n", self.tracking_error_peak_n),
-            ("force_peak_n", self.force_peak_n),
-            ("steady_state_error_n", self.steady_state_error_n),
-            ("control_peak_v", self.control_peak_v),
-            ("control_rms_v", self.control_rms_v),
-        ]
+    /// The value of a metric.
+    pub fn get(&self, metric: Metric) -> Measured {
+        match metric {
+            Metric::Overshoot => self.overshoot_percent,
+            Metric::RiseTime => self.rise_time_s,
+            Metric::SettlingTime => self.settling_time_s,
+            Metric::DisturbancePeak => self.disturbance_peak_n,
+            Metric::TrackingErrorPeak => self.tracking_error_peak_n,
+            Metric::ForcePeak => self.force_peak_n,
+            Metric::SteadyStateError => self.steady_state_error_n,
+            Metric::ControlPeak => self.control_peak_v,
+            Metric::ControlRms => self.control_rms_v,
+        }
     }
 
     pub(super) fn none(reason: &'static str, settling_band_percent: f64) -> Metrics {

@@ -5,6 +5,7 @@ use phea_dynamics::portable;
 use phea_dynamics::simulation::{Amplification, Status, StepCounts};
 
 use super::check::{FOLD, LARGEST_PART};
+use super::metric::Metric;
 use super::metrics::Measured;
 use super::{Cause, Metrics, StoppedRun, Window};
 
@@ -73,10 +74,8 @@ pub struct Repetition {
 /// What differs most between two passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassSpread {
-    /// The window of the metric, counted from 0; `None` for the force of a run without metrics.
-    pub window: Option<usize>,
-    /// Name of the metric, or `force_n`.
-    pub name: &'static str,
+    /// The window, counted from 0, and its metric; `None` for the force of a run without metrics.
+    pub of: Option<(usize, Metric)>,
     /// In the earlier pass and in the later.
     pub values: [Measured; 2],
     /// The difference over the metric; over the step for an overshoot, over the largest deviation
@@ -205,16 +204,16 @@ pub fn moved(start: &mut [f64], scales: &[f64]) {
 fn spread(one: &PassResult, other: &PassResult) -> Option<PassSpread> {
     let windows = one.metrics.iter().zip(&other.metrics).enumerate();
     let of_metrics = windows.flat_map(|(place, ((window, one), (_, other)))| {
-        let numbers = one.named().into_iter().zip(other.named());
-        numbers.filter_map(move |((name, here), (_, there))| {
+        Metric::ALL.into_iter().filter_map(move |metric| {
+            let (here, there) = (one.get(metric), other.get(metric));
             let part = match (here, there) {
                 (Err(_), Err(_)) => return None,
                 (Ok(here), Ok(there)) => {
-                    part((here - there).abs(), magnitude(name, window, [one, other], [here, there]))
+                    part((here - there).abs(), magnitude(metric, window, [one, other], [here, there]))
                 }
                 _ => f64::INFINITY,
             };
-            Some(PassSpread { window: Some(place), name, values: [here, there], part })
+            Some(PassSpread { of: Some((place, metric)), values: [here, there], part })
         })
     });
     let largest = of_metrics.max_by(|one, other| one.part.total_cmp(&other.part));
@@ -227,7 +226,7 @@ fn of_forces(one: &[f64], other: &[f64]) -> Option<PassSpread> {
     let pairs = one.iter().zip(other);
     let (here, there) = pairs.max_by(|(a, b), (c, d)| (*a - *b).abs().total_cmp(&(*c - *d).abs()))?;
     let part = part((here - there).abs(), peak);
-    Some(PassSpread { window: None, name: "force_n", values: [Ok(*here), Ok(*there)], part })
+    Some(PassSpread { of: None, values: [Ok(*here), Ok(*there)], part })
 }
 
 fn part(difference: f64, magnitude: f64) -> f64 {
@@ -235,11 +234,11 @@ fn part(difference: f64, magnitude: f64) -> f64 {
 }
 
 /// What a difference of a metric is compared with.
-fn magnitude(name: &str, window: &Window, both: [&Metrics; 2], values: [f64; 2]) -> f64 {
+fn magnitude(metric: Metric, window: &Window, both: [&Metrics; 2], values: [f64; 2]) -> f64 {
     let own = values[0].abs().max(values[1].abs());
-    match name {
-        "overshoot_percent" => own.max(100.0),
-        "steady_state_error_n" => {
+    match metric {
+        Metric::Overshoot => own.max(100.0),
+        Metric::SteadyStateError => {
             let step = match window.cause {
                 Cause::ReferenceStep { from_n, to_n } => (to_n - from_n).abs(),
                 _ => 0.0,

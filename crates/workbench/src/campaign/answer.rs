@@ -2,7 +2,7 @@
 
 use super::{CampaignRequirement, RequestedRuns};
 use super::{Draw, Plan};
-use super::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
+use super::{LUMP_NAMES, STATUS_WORDS, meaningful};
 use super::{QUANTILES, Spread};
 use super::{Summary, WorstRun};
 use crate::answer::Object;
@@ -79,13 +79,13 @@ pub(crate) fn run_body(
 
 fn events(plan: &Plan, summary: &Summary) -> Vec<Object> {
     let windows = plan.windows().iter().zip(&summary.metrics);
-    let event = |(window, spreads): (&simulate::Window, &[Option<Spread>; METRIC_NAMES.len()])| {
+    let event = |(window, spreads): (&simulate::Window, &simulate::PerMetric<Option<Spread>>)| {
         Object::new()
             .with("kind", window.cause.word())
             .with("time_s", window.start_s)
             .with("until_s", window.end_s)
             .each("metrics", meaningful(window, plan.is_open_loop()), |metric| {
-                let name = Object::new().with("name", plan.motion().name(METRIC_NAMES[metric]).into_owned());
+                let name = Object::new().with("name", plan.motion().name(metric.name()).into_owned());
                 name.and(spread_row(spreads[metric], summary.driven()))
             })
     };
@@ -158,7 +158,7 @@ fn worst_run(plan: &Plan, worst: &WorstRun) -> Object {
     Object::new()
         .with("run", worst.run)
         .each("of", &worst.of, |(window, metric)| {
-            format!("event {} {}", window + 1, plan.motion().name(METRIC_NAMES[*metric]))
+            format!("event {} {}", window + 1, plan.motion().name(metric.name()))
         })
         .with("settings", plan.settings(&plan.draw(worst.run)))
 }

@@ -3,14 +3,14 @@
 use super::Summary;
 use super::{CampaignRequirement, FamilyBox, RequestedRuns};
 use super::{Draw, Plan};
-use super::{LUMP_NAMES, METRIC_NAMES, STATUS_WORDS, meaningful};
+use super::{LUMP_NAMES, STATUS_WORDS, meaningful};
 use super::{QUANTILES, Spread};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::Loaded;
-use crate::quantity::{DisplayUnit, Units};
+use crate::quantity::DisplayUnit;
 use crate::simulate::not_judged_words;
-use crate::simulate::{self, Metric, ScenarioRun, cause_words, metric_of};
+use crate::simulate::{self, Metric, ScenarioRun, cause_words, shown_in};
 
 /// Largest number of rejected and ended runs that are listed.
 const TOLD: usize = 6;
@@ -18,19 +18,12 @@ const TOLD: usize = 6;
 const LUMP_WORDS: [&str; 3] = ["K_H (N/m)", "K_qU (m3/(s.V))", "K_c (m3/(s.Pa))"];
 
 /// A metric in words, with its unit.
-fn metric_words(metric: usize, plan: &Plan) -> String {
-    let known = METRIC_NAMES.get(metric).and_then(|key| metric_of(key));
-    let word = |metric: &Metric| match metric.key {
-        "settling_time_s" => format!("{} to {} %", metric.word, plan.settling_band_percent()),
-        _ => metric.word.to_string(),
+fn metric_words(metric: Metric, plan: &Plan) -> String {
+    let label = match metric {
+        Metric::SettlingTime => format!("{} to {} %", metric.label(), plan.settling_band_percent()),
+        other => other.label().to_string(),
     };
-    known.map_or(String::new(), |metric| metric.shown_in(plan.units()).title(&word(metric)))
-}
-
-/// The unit of a metric.
-fn unit_of(metric: usize, units: Units) -> DisplayUnit {
-    let known = METRIC_NAMES.get(metric).and_then(|key| metric_of(key));
-    known.map_or(DisplayUnit::ONE, |metric| metric.shown_in(units))
+    shown_in(metric, plan.units()).title(&label)
 }
 
 /// One of [`LUMP_NAMES`] as it is written in equations, with its unit.
@@ -45,11 +38,11 @@ pub(crate) fn counted(runs: usize) -> String {
 
 /// How many of the driven runs are left out of the quantiles of a metric because they have no such
 /// number; `None` if all have one.
-fn without(metric: usize, spread: Option<Spread>, driven: usize) -> Option<String> {
+fn without(metric: Metric, spread: Option<Spread>, driven: usize) -> Option<String> {
     let missing = spread.map_or(driven, |spread| spread.missing);
-    let words = match (METRIC_NAMES.get(metric), missing) {
-        (Some(&"settling_time_s"), 1) => "does not settle within its window",
-        (Some(&"settling_time_s"), _) => "do not settle within their window",
+    let words = match (metric, missing) {
+        (Metric::SettlingTime, 1) => "does not settle within its window",
+        (Metric::SettlingTime, _) => "do not settle within their window",
         (_, 1) => "has none",
         _ => "have none",
     };
@@ -149,7 +142,7 @@ pub(crate) fn metrics(plan: &Plan, summary: &Summary) -> Table {
             let missing = without(metric, spreads[metric], summary.driven());
             let missing = missing.map_or(String::new(), |text| format!("; {text}"));
             let name = Cell::from(format!("{}{missing}", metric_words(metric, plan)));
-            rows.row(std::iter::once(name).chain(spread_cells(spreads[metric], unit_of(metric, units))));
+            rows.row(std::iter::once(name).chain(spread_cells(spreads[metric], shown_in(metric, units))));
         }
     }
     rows

@@ -2,12 +2,12 @@
 
 use super::Plan;
 use super::QUANTILES;
+use super::Row;
 use super::Summary;
 use super::{CampaignError, Effort, Shard};
-use super::{METRIC_NAMES, Row};
 use crate::answer::{OutputFile, part_files};
 use crate::figure::{FanChart, Figure, TimeBand, TimeSeries, Words};
-use crate::simulate::{Cause, Window, around, cause_words};
+use crate::simulate::{Cause, Metric, Window, around, cause_words};
 
 /// The bands over the whole scenario, and around each event; empty if no run was driven.
 ///
@@ -31,7 +31,7 @@ pub(crate) fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<Figure>, Ca
             format!("Enlarged: {}", cause_words(window, plan.units())),
             format!(
                 "The bands around what begins it, and the run with the worst {}.",
-                worst_metric(window, plan.is_open_loop())[1]
+                worst_metric(window, plan.is_open_loop()).1
             ),
         );
         let span = around(window, after_s(summary, index), end);
@@ -46,29 +46,27 @@ const AFTER_S: f64 = 0.5;
 
 /// How much of a window is shown.
 fn after_s(summary: &Summary, index: usize) -> f64 {
-    let place = METRIC_NAMES.iter().position(|name| *name == "settling_time_s");
-    let spread = place.and_then(|place| summary.metrics.get(index).and_then(|spreads| spreads[place]));
+    let spread = summary.metrics.get(index).and_then(|spreads| spreads[Metric::SettlingTime]);
     spread.map_or(AFTER_S, |spread| SETTLING_TIMES * spread.worst.0)
 }
 
 /// The metric by which a window's worst run is chosen, and what it is of.
-fn worst_metric(window: &Window, open_loop: bool) -> [&'static str; 2] {
+fn worst_metric(window: &Window, open_loop: bool) -> (Metric, &'static str) {
     match window.cause {
-        _ if open_loop => ["force_peak_n", "force"],
-        Cause::ReferenceStep { .. } => ["overshoot_percent", "overshoot"],
-        Cause::ReferenceMotion { .. } => ["tracking_error_peak_n", "tracking error"],
-        Cause::CommandStep { .. } | Cause::CommandMotion { .. } => ["force_peak_n", "force"],
+        _ if open_loop => (Metric::ForcePeak, "force"),
+        Cause::ReferenceStep { .. } => (Metric::Overshoot, "overshoot"),
+        Cause::ReferenceMotion { .. } => (Metric::TrackingErrorPeak, "tracking error"),
+        Cause::CommandStep { .. } | Cause::CommandMotion { .. } => (Metric::ForcePeak, "force"),
         Cause::LoadMotion | Cause::ExternalForce { .. } | Cause::SettingChange => {
-            ["disturbance_peak_n", "disturbance"]
+            (Metric::DisturbancePeak, "disturbance")
         }
     }
 }
 
 /// The complete force of a window's worst run.
 fn worst_series(plan: &Plan, summary: &Summary, index: usize) -> Result<Option<TimeSeries>, CampaignError> {
-    let metric = plan.windows().get(index).map(|window| worst_metric(window, plan.is_open_loop())[0]);
-    let place = METRIC_NAMES.iter().position(|name| Some(*name) == metric);
-    let spread = place.and_then(|place| summary.metrics.get(index).and_then(|spreads| spreads[place]));
+    let metric = plan.windows().get(index).map(|window| worst_metric(window, plan.is_open_loop()).0);
+    let spread = metric.and_then(|metric| summary.metrics.get(index)?[metric]);
     let Some((_, run)) = spread.map(|spread| spread.worst) else { return Ok(None) };
     let forces = plan.forces(run..run + 1, Effort { lanes: false, threads: 1 })?;
     let values = forces.into_iter().next().unwrap_or_default();

@@ -6,15 +6,15 @@ use phea_dynamics::watch::{Stopped, Watch};
 use super::chapter::Chapter;
 use crate::answer::significant;
 use crate::campaign::{
-    CampaignError, Effort, METRIC_NAMES, Plan, QUANTILES, RequestedRuns, Row, Shard, Spread, Summary,
-    VariedRange, WorstRun, beyond_box, campaign, counted, left_out, lumps, metrics, pictures, requirement,
+    CampaignError, Effort, Plan, QUANTILES, RequestedRuns, Row, Shard, Spread, Summary, VariedRange,
+    WorstRun, beyond_box, campaign, counted, left_out, lumps, metrics, pictures, requirement,
 };
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
 use crate::figure::Figure;
 use crate::grouped::grouped;
 use crate::project::{Distribution, Loaded};
-use crate::simulate::{Cause, Window, cause_words, metric_of};
+use crate::simulate::{Cause, Metric, PerMetric, Window, cause_words, shown_in};
 use crate::source::Source;
 
 /// Number of runs where the project states none, and their seed.
@@ -118,8 +118,6 @@ pub fn runs_within_budget(asked: u64, [made, steps]: [u64; 2]) -> u64 {
 fn steps(loaded: &Loaded, plan: &Plan, rows: &[Row]) -> Vec<CampaignStep> {
     let scenario = loaded.project.scenarios.iter().find(|one| one.name == plan.scenario());
     let band_percent = scenario.map_or(f64::NAN, |one| one.settling_band_percent);
-    let place = |name: &str| METRIC_NAMES.iter().position(|known| *known == name).unwrap_or_default();
-    let [overshoot, settling, rise] = ["overshoot_percent", "settling_time_s", "rise_time_s"].map(place);
     let completed = rows.iter().filter_map(|row| Some((row.run, row.ran()?)));
     completed
         .filter(|(_, ran)| ran.ended_s.is_none())
@@ -128,17 +126,17 @@ fn steps(loaded: &Loaded, plan: &Plan, rows: &[Row]) -> Vec<CampaignStep> {
         .map(|(run, (numbers, window))| CampaignStep {
             run,
             window: *window,
-            overshoot_percent: numbers[overshoot],
-            settling_time_s: numbers[settling].unwrap_or(f64::INFINITY),
-            rise_time_s: numbers[rise].unwrap_or(f64::INFINITY),
+            overshoot_percent: numbers[Metric::Overshoot],
+            settling_time_s: numbers[Metric::SettlingTime].unwrap_or(f64::INFINITY),
+            rise_time_s: numbers[Metric::RiseTime].unwrap_or(f64::INFINITY),
             band_percent,
         })
         .collect()
 }
 
 /// Metrics of an event that a reader wants first, the best of those that it has.
-const TOLD_FIRST: [&str; 4] =
-    ["disturbance_peak_n", "settling_time_s", "tracking_error_peak_n", "force_peak_n"];
+const TOLD_FIRST: [Metric; 4] =
+    [Metric::DisturbancePeak, Metric::SettlingTime, Metric::TrackingErrorPeak, Metric::ForcePeak];
 /// Number of events in the summary.
 const TOLD_EVENTS: usize = 2;
 
@@ -147,13 +145,11 @@ fn words(runs: u64, plan: &Plan, summary: &Summary) -> String {
     let mut told = vec![format!("{} of {runs} runs completed", summary.statuses[0])];
     let units = plan.units();
     let windows = plan.windows().iter().zip(&summary.metrics);
-    let of_window = |(window, spreads): (&Window, &[Option<Spread>; METRIC_NAMES.len()])| {
-        let place = |name: &&str| METRIC_NAMES.iter().position(|known| known == name);
-        let metric = TOLD_FIRST.iter().filter_map(place).find(|metric| spreads[*metric].is_some())?;
-        let told = metric_of(METRIC_NAMES.get(metric)?)?;
-        let unit = told.shown_in(units);
+    let of_window = |(window, spreads): (&Window, &PerMetric<Option<Spread>>)| {
+        let metric = TOLD_FIRST.into_iter().find(|metric| spreads[*metric].is_some())?;
+        let unit = shown_in(metric, units);
         let [low, .., high] = spreads[metric]?.quantiles.map(|value| unit.number(value, DIGITS));
-        Some(format!("{}: {} {low} to {high} {}", cause_words(window, units), told.word, unit.symbol))
+        Some(format!("{}: {} {low} to {high} {}", cause_words(window, units), metric.label(), unit.symbol))
     };
     told.extend(windows.filter_map(of_window).take(TOLD_EVENTS));
     let [least, .., most] = QUANTILES;
@@ -211,11 +207,8 @@ fn worst(out: &mut Document, plan: &Plan, summary: &Summary) {
 
 /// Event by event, the metrics in which a run is worst, without their units.
 fn worst_in(plan: &Plan, worst: &WorstRun) -> String {
-    let metric = |metric: usize| {
-        METRIC_NAMES.get(metric).and_then(|key| metric_of(key)).map_or("", |metric| metric.word)
-    };
     let of_window = |(index, window)| {
-        let of = worst.of.iter().filter(|(place, _)| *place == index).map(|(_, name)| metric(*name));
+        let of = worst.of.iter().filter(|(place, _)| *place == index).map(|(_, metric)| metric.label());
         let of: Vec<&str> = of.collect();
         (!of.is_empty()).then(|| format!("{}: {}", cause_words(window, plan.units()), of.join(", ")))
     };

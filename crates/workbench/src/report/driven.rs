@@ -5,8 +5,8 @@ use crate::error::CommandError;
 use crate::project::Project;
 use crate::setup::Setup;
 use crate::simulate::{
-    Cause, DIVERGED, NamedRun, OVERSHOOT, SETTLING, ScenarioRun, SimulateError, TimeRequirement,
-    TrackingWish, Window, cause_words, cells_of, concerns, simulate_project, time_requirements,
+    Cause, DIVERGED, Metric, NamedRun, ScenarioRun, SimulateError, TimeRequirement, TrackingWish, Window,
+    cause_words, cells_of, concerns, simulate_project, time_requirements,
 };
 use crate::source::Source;
 use phea_dynamics::watch::{Stopped, Watch};
@@ -128,10 +128,14 @@ fn told(runs: &[ScenarioRun]) -> Option<String> {
     let step = windows().find(|(window, _)| is_step(window)).map(|(window, metrics)| {
         let cells = cells_of(metrics, units);
         let settling = match metrics.settling_time_s {
-            Ok(_) => format!("settling {} ({} %)", cells[SETTLING].text(), metrics.settling_band_percent),
-            Err(_) => cells[SETTLING].text(),
+            Ok(_) => format!(
+                "settling {} ({} %)",
+                cells[Metric::SettlingTime].text(),
+                metrics.settling_band_percent
+            ),
+            Err(_) => cells[Metric::SettlingTime].text(),
         };
-        format!("{}: {} overshoot, {settling}", cause_words(window, units), cells[OVERSHOOT].text())
+        format!("{}: {} overshoot, {settling}", cause_words(window, units), cells[Metric::Overshoot].text())
     });
     let greatest = runs.iter().flat_map(disturbances).max_by(|one, other| one.2.total_cmp(&other.2));
     let disturbed = greatest.map(|(run, window, peak_n)| {

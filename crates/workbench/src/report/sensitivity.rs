@@ -11,7 +11,9 @@ use crate::error::CommandError;
 use crate::figure::DisplayUnit;
 use crate::project::{DeclaredActuator, FrictionLaw, Project, RetractingFriction};
 use crate::setup::Setup;
-use crate::simulate::{METRICS, Metrics, ScenarioRun, Window, cause_words, metrics_row, simulate_project};
+use crate::simulate::{
+    Metrics, ScenarioRun, Window, cause_words, label_within, metrics_row, simulate_project,
+};
 use crate::source::Source;
 
 /// Factors of the sensitivity.
@@ -118,7 +120,7 @@ fn event_table(varied: &[VariedQuantity], event: usize) -> Option<Table> {
     let shown = told(windows.iter());
     let event = cause_words(&windows.first()?.0, units);
     let bands = || windows.iter().map(|(_, metrics)| metrics.settling_band_percent);
-    let heads = std::iter::once(event).chain(shown.iter().map(|place| METRICS[*place].word_within(bands())));
+    let heads = std::iter::once(event).chain(shown.iter().map(|metric| label_within(*metric, bands())));
     let mut rows = Table::grouped_by("quantity", heads);
     let mut quantity = "";
     for varied in varied {

@@ -9,9 +9,9 @@ use crate::figure::Figure;
 use crate::project::{Project, Scenario};
 use crate::quantity::Units;
 use crate::simulate::{
-    METRICS, Metrics, NamedRun, TimeRequirement, TrackingWish, Window, adjustment_sentence, cause_words,
-    cells_of, close_ups, coarse_sentence, gas_sentence, headline, measured, measured_together, metrics_row,
-    occurrence_sentences, pictures, published, published_row, together, turns, windows, wish_of,
+    Metric, Metrics, NamedRun, TimeRequirement, TrackingWish, Window, adjustment_sentence, cause_words,
+    cells_of, close_ups, coarse_sentence, gas_sentence, headline, label_within, measured, measured_together,
+    metrics_row, occurrence_sentences, pictures, published, published_row, together, turns, windows, wish_of,
 };
 
 /// The chapter.
@@ -125,7 +125,7 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, required: Option<&TimeReq
         several => {
             let shown = told(several.iter().flat_map(|named| &named.run.windows));
             let band = first.settling_band_percent;
-            let words = shown.iter().map(|place| METRICS[*place].word_within([band]));
+            let words = shown.iter().map(|metric| label_within(*metric, [band]));
             let heads = std::iter::once(String::new()).chain(words);
             let mut rows = Table::grouped_by("event", heads);
             for (index, (window, _)) in first.windows.iter().enumerate() {
@@ -168,7 +168,10 @@ fn wished(wish: &TrackingWish) -> Option<String> {
 }
 
 /// The metrics that some of these windows can have.
-pub(super) fn told<'a>(windows: impl Iterator<Item = &'a (Window, Metrics)>) -> Vec<usize> {
+pub(super) fn told<'a>(windows: impl Iterator<Item = &'a (Window, Metrics)>) -> Vec<Metric> {
     let cells: Vec<_> = windows.map(|(_, metrics)| cells_of(metrics, Units::default())).collect();
-    (0..METRICS.len()).filter(|place| cells.iter().any(|cells| cells[*place] != Cell::Missing)).collect()
+    Metric::ALL
+        .into_iter()
+        .filter(|metric| cells.iter().any(|cells| cells[*metric] != Cell::Missing))
+        .collect()
 }

@@ -2,13 +2,13 @@
 
 use super::check;
 use super::exceeded_words;
-use super::metrics::{METRICS, OVERSHOOT, SETTLING, cells_of};
+use super::metrics::{cells_of, label_within, metric_cell};
 use super::repetition::{divergence_words, sentences as doubts, work_words};
 use super::required::requirement_sentences;
 use super::{
-    AdjustmentWork, BeyondExpansion, Cause, GasRange, Metrics, OUTSIDE_MODEL, Occurrence, Overlay,
-    ScenarioComparison, ScenarioRun, StoppedRun, TimeRequirement, TrackingWish, UNDETERMINED, Window,
-    concerns,
+    AdjustmentWork, BeyondExpansion, Cause, GasRange, Metric, Metrics, OUTSIDE_MODEL, Occurrence, Overlay,
+    PerMetric, ScenarioComparison, ScenarioRun, StoppedRun, TimeRequirement, TrackingWish, UNDETERMINED,
+    Window, concerns,
 };
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
@@ -81,7 +81,7 @@ fn why(stopped: &StoppedRun) -> String {
 }
 
 /// Metrics that have a column only where some window has them.
-const RARE: [&str; 2] = ["tracking error peak", "force peak"];
+const RARE: [Metric; 2] = [Metric::TrackingErrorPeak, Metric::ForcePeak];
 
 /// The metrics of each event of a run, judged by the wish. Next to published values only metrics
 /// that some event has are shown.
@@ -91,13 +91,12 @@ pub(crate) fn windows(
     declared: Option<&Scenario>,
 ) -> Table {
     let cells: Vec<_> = run.windows.iter().map(|(_, metrics)| cells_of(metrics, run.record.units)).collect();
-    let always = |name: &str| declared.is_none() && !run.open_loop && !RARE.contains(&name);
-    let has = |place: &usize| cells.iter().any(|cells| cells[*place] != Cell::Missing);
-    let shown: Vec<usize> =
-        (0..METRICS.len()).filter(|place| always(METRICS[*place].word) || has(place)).collect();
-    let head = |place: &usize| match METRICS[*place].word {
-        "disturbance peak" => "disturbance".to_string(),
-        _ => METRICS[*place].word_within([run.settling_band_percent]),
+    let always = |metric: &Metric| declared.is_none() && !run.open_loop && !RARE.contains(metric);
+    let has = |metric: &Metric| cells.iter().any(|cells| cells[*metric] != Cell::Missing);
+    let shown: Vec<Metric> = Metric::ALL.into_iter().filter(|metric| always(metric) || has(metric)).collect();
+    let head = |metric: &Metric| match metric {
+        Metric::DisturbancePeak => "disturbance".to_string(),
+        other => label_within(*other, [run.settling_band_percent]),
     };
     let units = run.record.units;
     let mut rows = Table::new(std::iter::once("event".to_string()).chain(shown.iter().map(head)));
@@ -122,26 +121,28 @@ pub(crate) fn wish_of<'r>(
 /// The metrics of one event, those with a wish marked.
 pub(crate) fn metrics_row(
     name: String,
-    shown: &[usize],
+    shown: &[Metric],
     (metrics, units): (&Metrics, Units),
     wish: Option<&TrackingWish>,
 ) -> Vec<Cell> {
     let mut cells = cells_of(metrics, units);
-    for (place, held) in [
-        (OVERSHOOT, wish.and_then(|wish| wish.overshoot(metrics))),
-        (SETTLING, wish.and_then(|wish| wish.settling(metrics))),
+    for (metric, held) in [
+        (Metric::Overshoot, wish.and_then(|wish| wish.overshoot(metrics))),
+        (Metric::SettlingTime, wish.and_then(|wish| wish.settling(metrics))),
     ] {
         if let Some(kept) = held.and_then(|held| held.kept) {
-            cells[place] = std::mem::take(&mut cells[place]).marked(kept);
+            cells[metric] = std::mem::take(&mut cells[metric]).marked(kept);
         }
     }
-    std::iter::once(name.into()).chain(shown.iter().map(|place| std::mem::take(&mut cells[*place]))).collect()
+    std::iter::once(name.into())
+        .chain(shown.iter().map(|metric| std::mem::take(&mut cells[*metric])))
+        .collect()
 }
 
 /// The published values of an event.
-pub(crate) fn published_row(source: &str, shown: &[usize], mut cells: [Cell; METRICS.len()]) -> Vec<Cell> {
+pub(crate) fn published_row(source: &str, shown: &[Metric], mut cells: PerMetric<Cell>) -> Vec<Cell> {
     std::iter::once(source.into())
-        .chain(shown.iter().map(|place| std::mem::take(&mut cells[*place])))
+        .chain(shown.iter().map(|metric| std::mem::take(&mut cells[*metric])))
         .collect()
 }
 
@@ -151,14 +152,15 @@ pub(crate) fn published<'a>(
     declared: &'a Scenario,
     window: &Window,
     units: Units,
-) -> Option<(&'a str, [Cell; METRICS.len()])> {
+) -> Option<(&'a str, PerMetric<Cell>)> {
     let begins = |step: &&InputSignal| matches!(step, InputSignal::Step { at, .. } if *at == window.start_s);
     let step = declared.reference.iter().find(begins)?;
     let published = step.published().filter(|_| matches!(window.cause, Cause::ReferenceStep { .. }))?;
-    let known = [(OVERSHOOT, published.overshoot_percent), (SETTLING, published.settling_time)];
-    let mut cells: [Cell; METRICS.len()] = Default::default();
-    for (place, value) in known {
-        cells[place] = value.map_or(Cell::Missing, |value| METRICS[place].cell(value, units));
+    let known =
+        [(Metric::Overshoot, published.overshoot_percent), (Metric::SettlingTime, published.settling_time)];
+    let mut cells: PerMetric<Cell> = PerMetric::default();
+    for (metric, value) in known {
+        cells[metric] = value.map_or(Cell::Missing, |value| metric_cell(metric, value, units));
     }
     let any = known.iter().any(|(_, value)| value.is_some());
     any.then_some((published.source.as_deref().unwrap_or("published"), cells))
@@ -412,11 +414,11 @@ fn side_by_side(columns: &[Option<&ScenarioRun>], units: Units) -> Table {
         let bands = || windows.iter().flatten().map(|(_, metrics)| metrics.settling_band_percent);
         let cells: Vec<_> =
             windows.iter().map(|window| window.map(|(_, metrics)| cells_of(metrics, units))).collect();
-        for (place, metric) in METRICS.iter().enumerate() {
-            let of = |cells: &Option<[Cell; METRICS.len()]>| cells.as_ref().map(|cells| cells[place].clone());
+        for metric in Metric::ALL {
+            let of = |cells: &Option<PerMetric<Cell>>| cells.as_ref().map(|cells| cells[metric].clone());
             let values: Vec<Cell> = cells.iter().map(|cells| of(cells).unwrap_or_default()).collect();
             if values.iter().any(|value| *value != Cell::Missing) {
-                rows.row(std::iter::once(metric.word_within(bands()).into()).chain(values));
+                rows.row(std::iter::once(label_within(metric, bands()).into()).chain(values));
             }
         }
     }

@@ -1,9 +1,10 @@
 //! Runs that were repeated, and runs that diverge, in an answer and for people.
 
-use super::{Divergence, Pass, PassAgreement, PassSpread, Repetition, ScenarioRun, metric_of};
+use super::{Divergence, Pass, PassAgreement, PassSpread, Repetition, ScenarioRun, shown_in};
 use crate::answer::{Object, significant};
 use crate::quantity::{DisplayUnit, Units, VOLTAGE, display};
 use phea_dynamics::simulation::{GrowthCause, UnfollowedCause, UnfollowedKinks};
+use phea_hydraulics::signal::Signal;
 
 /// The object `repetition` of a scenario.
 pub(super) fn row(repetition: &Repetition) -> Object {
@@ -35,8 +36,8 @@ fn pass(pass: &Pass) -> Object {
 fn spread(spread: &PassSpread) -> Object {
     let [before, after] = spread.values;
     Object::new()
-        .told("event", spread.window.map(|window| window + 1).ok_or("no event has a metric"))
-        .with("metric", spread.name)
+        .told("event", spread.of.map(|(window, _)| window + 1).ok_or("no event has a metric"))
+        .with("metric", spread.of.map_or(Signal::Force.name(), |(_, metric)| metric.name()))
         .told("before", before)
         .told("after", after)
         .with("part", spread.part)
@@ -166,9 +167,9 @@ fn agreement_words(run: &ScenarioRun, repetition: &Repetition) -> String {
 
 /// What differs most, in words.
 fn apart(spread: &PassSpread, units: Units) -> String {
-    let name = metric_of(spread.name).map_or("force", |metric| metric.word);
-    let unit = metric_of(spread.name).map_or(units.force, |metric| metric.shown_in(units));
-    let event = spread.window.map_or(String::new(), |window| format!(" of event {}", window + 1));
+    let name = spread.of.map_or("force", |(_, metric)| metric.label());
+    let unit = spread.of.map_or(units.force, |(_, metric)| shown_in(metric, units));
+    let event = spread.of.map_or(String::new(), |(window, _)| format!(" of event {}", window + 1));
     let number = |value: Result<f64, &'static str>| match value {
         Ok(value) => unit.text(value, 5),
         Err(_) => "none".to_string(),

@@ -129,8 +129,8 @@ impl Judged {
         let error = self.of_metrics.filter(|error| error.part >= LARGEST_ERROR && metrics_known && claims)?;
         let agreed = if reported { "though two passes agree" } else { "and no report of it" };
         Some(format!(
-            "event {:?}: {} is {:?} by CVODE, {:?} by phea, {agreed}",
-            error.window, error.name, error.values[0], error.values[1]
+            "event and metric {:?}: {:?} by CVODE, {:?} by phea, {agreed}",
+            error.of, error.values[0], error.values[1]
         ))
     }
 }

@@ -1,6 +1,6 @@
 //! A check, in an answer and for people.
 
-use super::{Difference, ToleranceCheck};
+use super::{Difference, Metric, ToleranceCheck};
 use crate::answer::{Object, significant};
 use crate::quantity::Units;
 
@@ -24,8 +24,10 @@ pub(crate) fn row(check: &ToleranceCheck) -> Object {
         .each("events", &check.metrics, |found| {
             Object::new().with("kind", found.window.cause.word()).with("time_s", found.window.start_s).each(
                 "metrics",
-                &found.differences,
-                |(name, measured)| Object::new().with("name", *name).told("difference", *measured),
+                Metric::ALL,
+                |metric| {
+                    Object::new().with("name", metric.name()).told("difference", found.differences[metric])
+                },
             )
         })
 }
@@ -60,6 +62,6 @@ pub(crate) fn sentences(check: &ToleranceCheck, units: Units) -> Vec<String> {
 
 /// The difference of the disturbance peak, where the load moves.
 fn of_disturbance(check: &ToleranceCheck, units: Units) -> String {
-    let found = check.metrics.iter().find_map(|metrics| metrics.of("disturbance_peak_n")?.ok());
+    let found = check.metrics.iter().find_map(|metrics| metrics.differences[Metric::DisturbancePeak].ok());
     found.map_or(String::new(), |found| format!("; the disturbance peak by {}", units.force.text(found, 2)))
 }
