@@ -265,8 +265,8 @@ impl ProjectAudit {
             audit.delay_margin = whole_loop::least_delay(problem, &audit).or(audit.delay_margin);
         }
         let caveats: Vec<Caveat> = of_rig.into_iter().chain(problem.caveats.clone()).collect();
-        if audit.verdict == Verdict::Met && caveats.iter().any(|caveat| caveat.unproven) {
-            audit.verdict = Verdict::NotProven;
+        if caveats.iter().any(|caveat| caveat.unproven) {
+            audit.verdict = audit.verdict.max(Verdict::NotProven);
         }
         let (in_time, margins) = both(
             &mut unwatched,
@@ -314,11 +314,7 @@ impl ProjectAudit {
     /// The verdict on the specifications over frequency and on the requirements in time: a step
     /// that misses one violates what was required.
     pub fn verdict(&self) -> Verdict {
-        match self.audit.verdict {
-            _ if self.misses_in_time() => Verdict::Violated,
-            Verdict::Met if self.in_time.iter().any(TimeFinding::is_open) => Verdict::NotProven,
-            own => own,
-        }
+        self.in_time.iter().map(TimeFinding::part_of_verdict).fold(self.audit.verdict, Verdict::max)
     }
 
     /// The evidence for that verdict: the steps of plants that were visited are a search.

@@ -181,10 +181,7 @@ fn joined(
     for finding in &mut specifications {
         without_stability(finding, &stability.finding);
     }
-    let verdicts = specifications.iter().map(|finding| finding.verdict);
-    let verdict = verdicts.fold(stability.finding.verdict, worse);
-    let evidences = specifications.iter().map(|finding| finding.evidence);
-    let evidence = evidences.fold(stability.finding.evidence, Evidence::min);
+    let (verdict, evidence) = together(&stability.finding, &specifications);
     Audit {
         verdict,
         evidence,
@@ -200,12 +197,16 @@ impl Audit {
     pub fn split_off(&self, count: usize) -> (Audit, Vec<SpecificationFinding>) {
         let mut own = self.clone();
         let others = own.specifications.split_off(count.min(own.specifications.len()));
-        let verdicts = own.specifications.iter().map(|finding| finding.verdict);
-        own.verdict = verdicts.fold(own.stability.verdict, worse);
-        let evidences = own.specifications.iter().map(|finding| finding.evidence);
-        own.evidence = evidences.fold(own.stability.evidence, Evidence::min);
+        (own.verdict, own.evidence) = together(&own.stability, &own.specifications);
         (own, others)
     }
+}
+
+/// The worst verdict on stability and specifications, and the weakest evidence.
+fn together(stability: &StabilityFinding, specifications: &[SpecificationFinding]) -> (Verdict, Evidence) {
+    let verdicts = specifications.iter().map(|finding| finding.verdict);
+    let evidences = specifications.iter().map(|finding| finding.evidence);
+    (verdicts.fold(stability.verdict, Verdict::max), evidences.fold(stability.evidence, Evidence::min))
 }
 
 /// The plants at which specifications are worst, each once.
@@ -221,15 +222,6 @@ fn suspects(findings: &[SpecificationFinding]) -> Vec<PlantPoint> {
         }
     }
     plants
-}
-
-/// A violation outweighs an unproven result, which outweighs a specification that is met.
-fn worse(one: Verdict, other: Verdict) -> Verdict {
-    match (one, other) {
-        (Verdict::Violated, _) | (_, Verdict::Violated) => Verdict::Violated,
-        (Verdict::NotProven, _) | (_, Verdict::NotProven) => Verdict::NotProven,
-        (Verdict::Met, Verdict::Met) => Verdict::Met,
-    }
 }
 
 /// Whether a loop of the family is unstable. If stability is violated although all poles of the
@@ -261,9 +253,7 @@ fn without_stability(finding: &mut SpecificationFinding, stability: &StabilityFi
             };
         }
         Verdict::NotProven => {
-            if finding.verdict == Verdict::Met {
-                finding.verdict = Verdict::NotProven;
-            }
+            finding.verdict = finding.verdict.max(Verdict::NotProven);
             finding.remarks.push(Remark::StabilityNotKnown);
         }
     }

@@ -52,7 +52,7 @@ pub use comparison::{CertificateDifference, differences};
 pub use prove::{ProofOptions, prove};
 pub use walk::ProofRegion;
 
-use crate::verification::WorstCase;
+use crate::verification::{Verdict, WorstCase};
 
 /// What was shown about a loop.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,6 +88,17 @@ pub enum Standing {
     Refuted,
     /// Neither.
     NotProven(NotProven),
+}
+
+impl Standing {
+    /// The verdict on the claim.
+    pub fn verdict(&self) -> Verdict {
+        match self {
+            Standing::Proven => Verdict::Met,
+            Standing::NotProven(_) => Verdict::NotProven,
+            Standing::Refuted => Verdict::Violated,
+        }
+    }
 }
 
 /// Why a claim is neither shown nor refuted.

@@ -4,14 +4,17 @@ use crate::family::{Extent, Family};
 
 /// A verdict. `Met` means that the margin is not below the negative of the tolerance, wherever it
 /// was evaluated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+///
+/// Ordered from the best to the worst, so that the verdict on several requirements together is the
+/// greatest: a violation outweighs an unproven result, which outweighs a requirement that is met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// Every plant satisfies it.
     Met,
-    /// At least one plant, named with its frequency, does not.
-    Violated,
     /// It could not be resolved.
     NotProven,
+    /// At least one plant, named with its frequency, does not.
+    Violated,
 }
 
 /// What a verdict rests on.

@@ -108,9 +108,14 @@ impl TimeFinding {
         self.requirement.follows && self.verdict() == Some(Verdict::Violated)
     }
 
-    /// Whether nothing is known of what a specification of its own requires.
-    pub fn is_open(&self) -> bool {
-        self.requirement.limits.is_none() && self.verdict().is_none()
+    /// Its part of the verdict on a project: not proven where no step of a specification of its own
+    /// was computed.
+    pub fn part_of_verdict(&self) -> Verdict {
+        match self.verdict() {
+            Some(Verdict::Violated) if self.requirement.follows => Verdict::Violated,
+            None if self.requirement.limits.is_none() => Verdict::NotProven,
+            _ => Verdict::Met,
+        }
     }
 
     /// The worst of each property that is required, zero where it is not; `None` where no step was

@@ -54,10 +54,8 @@ fn rest_on(view: &mut ProjectAudit, mut proof: Proof, unproven: Verdict) {
     contradicted(&mut proof.stability, audit.stability.verdict);
     let stability = &mut audit.stability;
     let judged = |standing: &Standing, searched: Verdict, evidence: Evidence| match standing {
-        Standing::Proven => (Verdict::Met, Evidence::Proof),
-        Standing::Refuted => (Verdict::Violated, Evidence::Proof),
-        Standing::NotProven(_) if searched == Verdict::Met => (unproven, evidence),
-        Standing::NotProven(_) => (searched, evidence),
+        Standing::Proven | Standing::Refuted => (standing.verdict(), Evidence::Proof),
+        Standing::NotProven(_) => (searched.max(unproven), evidence),
     };
     (stability.verdict, stability.evidence) = judged(&proof.stability, stability.verdict, stability.evidence);
     for (finding, found) in audit.specifications.iter_mut().zip(&proof.specifications) {
@@ -70,13 +68,11 @@ fn rest_on(view: &mut ProjectAudit, mut proof: Proof, unproven: Verdict) {
         let own = [(audit.stability.verdict, audit.stability.evidence)].into_iter();
         own.chain(audit.specifications.iter().map(|finding| (finding.verdict, finding.evidence)))
     };
-    let worst = all().map(|(verdict, _)| rank(verdict)).min();
-    audit.verdict = match worst {
-        Some(0) => Verdict::Violated,
-        Some(1) => Verdict::NotProven,
+    let worst = all().map(|(verdict, _)| verdict).fold(Verdict::Met, Verdict::max);
+    audit.verdict = match (worst, audit.verdict) {
         // effects that are declared but not included
-        _ if audit.verdict == Verdict::NotProven => Verdict::NotProven,
-        _ => Verdict::Met,
+        (Verdict::Met, Verdict::NotProven) => Verdict::NotProven,
+        _ => worst,
     };
     let verdict = audit.verdict;
     let deciding = all().filter(|(own, _)| verdict == Verdict::Met || *own == verdict);
@@ -93,14 +89,6 @@ fn rest_on(view: &mut ProjectAudit, mut proof: Proof, unproven: Verdict) {
 fn contradicted(standing: &mut Standing, searched: Verdict) {
     if *standing == Standing::Proven && searched == Verdict::Violated {
         *standing = Standing::NotProven(NotProven::Contradicted);
-    }
-}
-
-fn rank(verdict: Verdict) -> usize {
-    match verdict {
-        Verdict::Violated => 0,
-        Verdict::NotProven => 1,
-        Verdict::Met => 2,
     }
 }
 

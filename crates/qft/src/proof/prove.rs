@@ -468,11 +468,6 @@ enum PoleLocation {
 impl SpecificationProof {
     /// Both sides together: the worse verdict, and the greater of both suprema.
     fn and(self, other: SpecificationProof) -> SpecificationProof {
-        let rank = |standing: &Standing| match standing {
-            Standing::Refuted => 0,
-            Standing::NotProven(_) => 1,
-            Standing::Proven => 2,
-        };
         if self.least_db.is_none() && self.standing == Standing::Proven {
             return other;
         }
@@ -482,8 +477,10 @@ impl SpecificationProof {
             false => (self.worst, self.least_db),
         };
         let most_db = self.most_db.zip(other.most_db).map(|(one, other)| one.max(other));
-        let standing =
-            if rank(&other.standing) < rank(&self.standing) { other.standing } else { self.standing };
+        let standing = match other.standing.verdict() > self.standing.verdict() {
+            true => other.standing,
+            false => self.standing,
+        };
         SpecificationProof { standing, least_db, most_db, worst }
     }
 }

@@ -9,7 +9,7 @@ use super::{
     closed_loop_symbol, evidence_sentence, finding_sentence, infinity_sentence, place_words,
     remark_sentences, stability_sentence, standing_word, verdict_words, why_not_proven, worst_at_design,
 };
-use crate::document::{Cell, Document, StatusMark, Table};
+use crate::document::{Cell, Document, Table};
 use crate::figure::Figure;
 use crate::grouped::grouped;
 use crate::quantity::{DisplayUnit, significant};
@@ -143,7 +143,7 @@ pub(crate) fn proven(view: &ProjectAudit, title: &str) -> Document {
     let mut out = Document::default();
     let Some(proof) = &view.proof else { return out };
     let mut rows = Table::new(["claim", "standing", "closed loop over limit, at least", "at most"]);
-    let word = |standing: &Standing| Cell::from(standing_word(standing)).marked(mark_of(standing));
+    let word = |standing: &Standing| Cell::from(standing_word(standing)).marked(standing.verdict());
     rows.row(["every plant is stable".into(), word(&proof.stability), Cell::Missing, Cell::Missing]);
     for (index, own) in proof.specifications.iter().enumerate() {
         let [least, most]: [Cell; 2] = [own.least_db, own.most_db].map(|end| end.map(Cell::margin).into());
@@ -175,14 +175,6 @@ fn not_proven(view: &ProjectAudit, proof: &Proof) -> Vec<String> {
     let all = std::iter::once(("stability".to_string(), &proof.stability)).chain(named);
     let told = all.filter_map(|(name, standing)| Some((why_not_proven(view, proof, standing)?, name)));
     grouped(told).into_iter().map(|(reason, names)| format!("{}: {reason}", names.join(", "))).collect()
-}
-
-fn mark_of(standing: &Standing) -> StatusMark {
-    match standing {
-        Standing::Proven => StatusMark::Good,
-        Standing::Refuted => StatusMark::Bad,
-        Standing::NotProven(_) => StatusMark::Note,
-    }
 }
 
 /// The worst plant of each specification, a column each.
