@@ -12,8 +12,8 @@ use phea_dynamics::watch::{Stopped, Watch, part};
 use crate::kept_plants::KeptPlants;
 use crate::stability::{FamilyStability, StabilityAudit};
 use crate::verification::{
-    Audit, AuditEffort, AuditProblem, Evidence, PlantPoint, Remark, SpecificationFinding, StabilityFinding,
-    Verdict, audit_among,
+    Audit, AuditEffort, AuditProblem, Evidence, PlantPoint, Remark, SpecificationFinding,
+    SpecificationMargin, StabilityFinding, Verdict, audit_among,
 };
 
 /// Name of the stage in progress reports.
@@ -213,9 +213,7 @@ fn together(stability: &StabilityFinding, specifications: &[SpecificationFinding
 fn suspects(findings: &[SpecificationFinding]) -> Vec<PlantPoint> {
     let mut plants: Vec<PlantPoint> = Vec::new();
     for finding in findings {
-        let cases = finding.worst.iter().chain(&finding.interior);
-        let cases = cases.chain(finding.violations.iter().map(|band| &band.worst));
-        for plant in cases.flat_map(|case| std::iter::once(&case.plant).chain(&case.other)) {
+        for plant in finding.worst_margins().flat_map(SpecificationMargin::plants) {
             if !plants.contains(plant) {
                 plants.push(plant.clone());
             }

@@ -34,6 +34,7 @@ mod minimum;
 pub mod prefilter;
 pub mod proof;
 pub mod specification;
+mod specification_margin;
 pub mod stability;
 pub mod template;
 mod verdict;

@@ -27,7 +27,7 @@ pub use problem::DesignProblem;
 pub use sample_stability::{SampleJudgement, SampleStability};
 pub use samples::{Samples, SamplesError, search_frequencies};
 pub use search::{Aim, Judgement, MarginRow, SearchProblem, Slopes};
-pub use shaping::{SampledMargin, Shaping};
+pub use shaping::Shaping;
 pub(crate) use start::search_seeing;
 pub use start::{DescentEnd, SearchOptions, SearchResult, SearchStatus, search};
 pub use structure::{Structure, StructureFactor, StructureResponse};

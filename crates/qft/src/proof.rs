@@ -52,7 +52,7 @@ pub use comparison::{CertificateDifference, differences};
 pub use prove::{ProofOptions, prove};
 pub use walk::ProofRegion;
 
-use crate::verification::{Verdict, WorstCase};
+use crate::verification::{SpecificationMargin, Verdict};
 
 /// What was shown about a loop.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,7 +76,7 @@ pub struct SpecificationProof {
     /// Upper bound of this ratio, dB.
     pub most_db: Option<f64>,
     /// Where the least is reached.
-    pub worst: Option<WorstCase>,
+    pub worst: Option<SpecificationMargin>,
 }
 
 /// Whether a claim is shown.

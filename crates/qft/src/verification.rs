@@ -17,25 +17,13 @@ pub(crate) use asymptote::{AxisEnd, tracking_ratio};
 pub(crate) use audit::{AuditEffort, audit_among};
 pub use audit::{AuditProblem, AuditWork, TOLERANCE_DB, TrackingJudgement, audit_specifications};
 
+pub use crate::specification_margin::SpecificationMargin;
 pub use crate::stability::{
     ClosestApproach, DelayMargin, SearchedInfinity, StabilityFinding, StabilityMethod, StabilityReason,
 };
 pub use crate::verdict::{Evidence, PlantPoint, Verdict};
 
 use crate::specification::Requirement;
-
-/// A margin with the frequency and the plant at which it was found.
-#[derive(Clone, Debug, PartialEq)]
-pub struct WorstCase {
-    /// Limit over closed loop in dB; negative where it is violated.
-    pub margin_db: f64,
-    /// rad/s; zero or infinite for a limit.
-    pub frequency_rad_per_s: f64,
-    /// The plant.
-    pub plant: PlantPoint,
-    /// The second plant of a spread: `plant` has the greatest |T| there, this one the least.
-    pub other: Option<PlantPoint>,
-}
 
 /// What was found about one specification.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,22 +36,30 @@ pub struct SpecificationFinding {
     pub evidence: Evidence,
     /// The worst margin over the band and the family; `None` where there is nothing by which to
     /// judge a specification.
-    pub worst: Option<WorstCase>,
+    pub worst: Option<SpecificationMargin>,
     /// The worst minimum that the margin of one plant has inside the band, where the worst one lies
     /// at an end of it: the margin of the family may fall further towards that end.
-    pub interior: Option<WorstCase>,
+    pub interior: Option<SpecificationMargin>,
     /// Other minima whose margin is that of the worst to within 0.05 dB, the worst first: at
     /// another frequency, or with a plant elsewhere in the box.
-    pub as_bad: Vec<WorstCase>,
+    pub as_bad: Vec<SpecificationMargin>,
     /// Bands in which some plant that was examined violates it, with the worst case of each: others
     /// of a box may do so a little beyond.
     pub violations: Vec<ViolatedBand>,
     /// The worst margin of the family at each design frequency.
-    pub at_design_frequencies: Vec<WorstCase>,
+    pub at_design_frequencies: Vec<SpecificationMargin>,
     /// The worst margin over the family at each frequency of a grid, for drawing: (rad/s, dB).
     pub envelope: Vec<(f64, f64)>,
     /// What was not examined; empty if everything was.
     pub remarks: Vec<Remark>,
+}
+
+impl SpecificationFinding {
+    /// The worst margins: over the band, inside of it, and of each violated band.
+    pub fn worst_margins(&self) -> impl Iterator<Item = &SpecificationMargin> {
+        let bands = self.violations.iter().map(|band| &band.worst);
+        self.worst.iter().chain(&self.interior).chain(bands)
+    }
 }
 
 /// What the verdict on a specification leaves out, or how it was found.
@@ -137,7 +133,7 @@ pub struct ViolatedBand {
     /// From and to, rad/s.
     pub band_rad_per_s: [f64; 2],
     /// The worst case within it.
-    pub worst: WorstCase,
+    pub worst: SpecificationMargin,
 }
 
 /// The audit of a controller.

@@ -236,18 +236,19 @@ fn what_a_margin_asks_for_brings_it_to_zero() {
         let elements = vec![gain, lag];
         let margins = chart.margins(&loop_of(elements.clone()), TrackingJudgement::Spread);
         assert_eq!(margins.len(), 3);
-        assert!(margins.windows(2).all(|pair| pair[0].margin_db <= pair[1].margin_db));
+        assert!(margins.windows(2).all(|pair| pair[0].worst.margin_db <= pair[1].worst.margin_db));
         for margin in margins {
             let Placement::Forbidden { nearest_db, .. } = margin.placement else {
-                assert!(margin.margin_db > -1e-9, "{margin:?}");
+                assert!(margin.worst.margin_db > -1e-9, "{margin:?}");
                 continue;
             };
-            violated += usize::from(margin.margin_db < 0.0);
+            violated += usize::from(margin.worst.margin_db < 0.0);
             let Some(change) = nearest_db else { continue };
             let scaled = [elements.clone(), vec![Element::Gain(10_f64.powf(change / 20.0))]].concat();
             let again = chart.margins(&loop_of(scaled), TrackingJudgement::Spread);
-            let again = again.iter().find(|one| one.specification == margin.specification).unwrap();
-            assert!(again.margin_db > -1e-9, "{margin:?} {again:?}");
+            let again =
+                again.iter().find(|one| one.worst.specification == margin.worst.specification).unwrap();
+            assert!(again.worst.margin_db > -1e-9, "{margin:?} {again:?}");
             moved += 1;
         }
     }

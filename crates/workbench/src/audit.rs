@@ -11,7 +11,7 @@ pub use phea_engineering::audit::*;
 
 pub use answer::files;
 pub(crate) use answer::json;
-pub(crate) use answer::{body, stable};
+pub(crate) use answer::{body, margin, stable};
 pub(crate) use certificate::certificate_of;
 pub use certificate::{CERTIFICATE_FILE, CertificateError, check_certificate, check_certificate_of};
 pub use document::output;

@@ -11,11 +11,11 @@ use phea_qft::audit::audit;
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::quantization::{CoefficientFormat, rounded};
 use phea_qft::design::{
-    BindingLimit, Conflict, ControllerChoice, Design, DesignProblem, DesignRound, DesignStatus,
-    NamedStructure, PrefilterChoice, Relaxation, StructureEnding,
+    ControllerChoice, Design, DesignProblem, DesignRound, DesignStatus, NamedStructure, PrefilterChoice,
+    Relaxation, StructureEnding,
 };
 use phea_qft::loop_shaping::{Structure, StructureFactor};
-use phea_qft::verification::{AuditProblem, PlantPoint, TrackingJudgement, Verdict};
+use phea_qft::verification::{AuditProblem, PlantPoint, SpecificationMargin, TrackingJudgement, Verdict};
 use phea_workbench::audit::audit_project;
 use phea_workbench::command::{Request, answer};
 use phea_workbench::design::{
@@ -94,7 +94,7 @@ fn design(problem: &DesignProblem, coefficients: CoefficientFormat, status: Desi
         objective_db: 34.0,
         beside: vec![],
         audit: audit(&asked, &mut unwatched).unwrap(),
-        binding: vec![BindingLimit { specification: 1, frequency_rad_per_s: 1.0, plant, margin_db: 0.0 }],
+        binding: vec![margin(1, 1.0, 0.0, plant)],
         rounds: vec![DesignRound {
             structure,
             objective_db: 34.0,
@@ -124,8 +124,17 @@ fn view(text: &str, status: DesignStatus) -> (Memory, Loaded, ProjectDesign) {
 
 fn infeasible() -> DesignStatus {
     let plant = PlantPoint::Parameters(vec![10.0]);
-    let conflict = Conflict { specification: 0, frequency_rad_per_s: 10.0, plant, margin_db: -1.25 };
-    DesignStatus::Infeasible(Relaxation { relaxation_db: 1.25, conflicts: vec![conflict] })
+    let conflicts = vec![margin(0, 10.0, -1.25, plant)];
+    DesignStatus::Infeasible(Relaxation { relaxation_db: 1.25, conflicts })
+}
+
+fn margin(
+    specification: usize,
+    frequency_rad_per_s: f64,
+    margin_db: f64,
+    plant: PlantPoint,
+) -> SpecificationMargin {
+    SpecificationMargin { specification, frequency_rad_per_s, margin_db, plant, other: None }
 }
 
 #[test]

@@ -7,9 +7,9 @@ use phea_dynamics::time_response::{StepBaseline, StepMetrics, TimeResponseError,
 use phea_qft::closed_loop::Member;
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::stability::{StabilityStatus, member_stability};
-use phea_qft::verification::{Audit, PlantPoint, SpecificationFinding, Verdict};
+use phea_qft::verification::{Audit, PlantPoint, Verdict};
 
-use super::margins::{corners, spread};
+use super::margins::{corners, spread, worst_plants};
 use crate::linear_step::{KnownResponses, StepResponse, StepSignal, linear_step_knowing};
 use crate::robust::RobustProblem;
 use crate::simulate::{ReachedStep, TimeRequirement, TrackingWish};
@@ -230,11 +230,6 @@ pub(crate) fn visited(family: &UncertainFamily, audit: &Audit) -> Vec<Vec<f64>> 
         }
     }
     distinct
-}
-
-fn worst_plants(finding: &SpecificationFinding) -> impl Iterator<Item = &PlantPoint> {
-    let cases = finding.worst.iter().chain(&finding.interior);
-    cases.flat_map(|case| std::iter::once(&case.plant).chain(&case.other))
 }
 
 /// Steps of plants: overshoot in percent, settling time and rise time in s, each computed once.

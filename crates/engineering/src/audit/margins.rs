@@ -14,7 +14,7 @@ use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_qft::closed_loop::Member;
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::stability::{StabilityStatus, member_stability};
-use phea_qft::verification::{Audit, PlantPoint, SpecificationFinding, Verdict};
+use phea_qft::verification::{Audit, PlantPoint, SpecificationFinding, SpecificationMargin, Verdict};
 
 use super::whole_loop;
 use crate::robust::RobustProblem;
@@ -244,9 +244,9 @@ pub(super) fn corners(family: &UncertainFamily) -> Vec<Vec<f64>> {
     (0..1_usize << dimension).map(|mask| family.values(&shares(mask))).collect()
 }
 
-fn worst_plants(finding: &SpecificationFinding) -> impl Iterator<Item = &PlantPoint> {
-    let cases = finding.worst.iter().chain(&finding.interior);
-    cases.flat_map(|case| std::iter::once(&case.plant).chain(&case.other))
+/// The plants at which a specification is worst.
+pub(super) fn worst_plants(finding: &SpecificationFinding) -> impl Iterator<Item = &PlantPoint> {
+    finding.worst.iter().chain(&finding.interior).flat_map(SpecificationMargin::plants)
 }
 
 /// The worst of each margin so far.

@@ -2,7 +2,7 @@
 
 use phea_dynamics::portable;
 use phea_qft::specification::{ClosedLoop, Requirement};
-use phea_qft::verification::{Evidence, SpecificationFinding, Verdict, WorstCase};
+use phea_qft::verification::{Evidence, SpecificationFinding, SpecificationMargin, Verdict};
 
 use super::{LimitSide, ProjectAudit, ReachedLimit};
 use crate::quantity::significant;
@@ -108,7 +108,7 @@ pub fn frequency_number(frequency_rad_per_s: f64) -> String {
 }
 
 /// The worst margin among the design frequencies.
-pub fn worst_at_design(finding: &SpecificationFinding) -> Option<&WorstCase> {
+pub fn worst_at_design(finding: &SpecificationFinding) -> Option<&SpecificationMargin> {
     finding.at_design_frequencies.iter().min_by(|a, b| a.margin_db.total_cmp(&b.margin_db))
 }
 

@@ -3,7 +3,7 @@
 mod words;
 
 use phea_qft::design::{Finding, FindingSeverity};
-use phea_qft::verification::PlantPoint;
+use phea_qft::verification::{PlantPoint, SpecificationMargin};
 
 /// One sentence on what is impossible or hard for a controller.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,11 +56,9 @@ fn frequency(finding: &Finding) -> Option<f64> {
 
 fn plants(finding: &Finding) -> Vec<PlantPoint> {
     match finding {
-        Finding::Contradiction { parties, .. } => parties
-            .iter()
-            .flat_map(|party| [Some(party.plant.clone()), party.other.clone()])
-            .flatten()
-            .collect(),
+        Finding::Contradiction { conflicts, .. } => {
+            conflicts.iter().flat_map(SpecificationMargin::plants).cloned().collect()
+        }
         Finding::GainSign { plants, .. } => plants.to_vec(),
         Finding::SumBelowOne { plant, .. }
         | Finding::PoleOnTheAxis { plant, .. }

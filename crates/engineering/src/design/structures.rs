@@ -8,7 +8,8 @@ use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{
     BINDING_DB, ControllerChoice, NamedStructure, Objective, PrefilterChoice, StructureEnding, TriedStructure,
 };
-use phea_qft::loop_shaping::{SampledMargin, Structure};
+use phea_qft::loop_shaping::Structure;
+use phea_qft::verification::SpecificationMargin;
 
 use super::{DesignError, DesignRun, ManualLaw, ManualPart, NominalMargins, ProjectDesign};
 use crate::audit::{nominal_margins, steps_of_members};
@@ -33,7 +34,7 @@ pub struct ReachedStructure {
     pub is_chosen: bool,
     /// The least margin, to the limits that were searched with, of the plants and frequencies that
     /// were searched with; absent where no controller makes them stable.
-    pub least: Option<SampledMargin>,
+    pub least: Option<SpecificationMargin>,
     /// What that limit is called, where it leaves the loop no room.
     pub binding: Option<String>,
     /// The lowest frequency that a zero was looked for at, where one ended there, rad/s.
@@ -72,7 +73,7 @@ pub(super) fn led(
     run: &DesignRun,
     before: &ProjectDesign,
     led: &ProjectDesign,
-    least: Option<SampledMargin>,
+    least: Option<SpecificationMargin>,
 ) -> Result<Vec<ReachedStructure>, DesignError> {
     let design = &led.design;
     let own = TriedStructure {
@@ -124,11 +125,11 @@ fn reached_by(
     let audited = if is_chosen { audited_least(told) } else { None };
     let least = tried.least.clone().map(|sampled| audited.unwrap_or(sampled));
     let own = run.aimed.specifications.len() - run.aimed.design_limits.len();
-    let name_of = |margin: &SampledMargin| match margin.specification {
+    let name_of = |margin: &SpecificationMargin| match margin.specification {
         index if index < own => Some(told.named(index)),
         index => run.aimed.specification_names.get(index).cloned(),
     };
-    let leaves_no_room = |margin: &&SampledMargin| match told.options.objective {
+    let leaves_no_room = |margin: &&SpecificationMargin| match told.options.objective {
         Objective::BestWorstMargin => true,
         Objective::LeastHighFrequencyGain | Objective::LeastBandwidth => {
             margin.margin_db <= told.options.reserve_db + BINDING_DB
@@ -169,21 +170,12 @@ fn words_of_no_pid(law: &Controller) -> Option<String> {
 }
 
 /// The least margin that the audit of a design found to anything that it is judged by.
-fn audited_least(told: &ProjectDesign) -> Option<SampledMargin> {
+fn audited_least(told: &ProjectDesign) -> Option<SpecificationMargin> {
     let of_project = told.designed.view.audit.specifications.iter().map(|finding| (true, finding));
     let of_design = told.limit_findings.iter().map(|(kind, finding)| (!kind.is_led_to(), finding));
-    let judged = of_project.chain(of_design).enumerate().filter(|(_, (is_judged, _))| *is_judged);
-    let margins = judged.filter_map(|(specification, (_, finding))| {
-        let worst = finding.worst.as_ref()?;
-        Some(SampledMargin {
-            specification,
-            frequency_rad_per_s: worst.frequency_rad_per_s,
-            margin_db: worst.margin_db,
-            plant: worst.plant.clone(),
-            other: worst.other.clone(),
-        })
-    });
-    margins.min_by(|one, other| one.margin_db.total_cmp(&other.margin_db))
+    let judged = of_project.chain(of_design).filter(|(is_judged, _)| *is_judged);
+    let margins = judged.filter_map(|(_, finding)| finding.worst.as_ref());
+    margins.min_by(|one, other| one.margin_db.total_cmp(&other.margin_db)).cloned()
 }
 
 /// The largest gain from the noise of the sensor to the command of the nominal loop, by which

@@ -2,8 +2,7 @@
 
 use super::Objective;
 use super::problem::DesignOptions;
-use super::result::{BindingLimit, Conflict};
-use crate::verification::{Audit, PlantPoint, WorstCase};
+use crate::verification::{Audit, PlantPoint, SpecificationMargin};
 use phea_dynamics::order::sort_by_number;
 
 /// A limit that leaves the loop less room than this, dB, leaves it none.
@@ -16,21 +15,21 @@ const SAME_FREQUENCY: f64 = 0.05;
 /// is worst over its band or as bad, in order of increasing frequency: those within [`BINDING_DB`]
 /// of the limit less the reserve that the design keeps to it, and those beyond. A design for the
 /// best worst margin is bound by the limits within as much of that margin.
-pub(super) fn binding_limits(audit: &Audit, options: &DesignOptions) -> Vec<BindingLimit> {
-    let mut cases: Vec<(f64, BindingLimit)> = Vec::new();
-    for (specification, finding) in audit.specifications.iter().enumerate() {
+pub(super) fn binding_limits(audit: &Audit, options: &DesignOptions) -> Vec<SpecificationMargin> {
+    let mut cases: Vec<(f64, SpecificationMargin)> = Vec::new();
+    for finding in &audit.specifications {
         let own = finding.at_design_frequencies.iter().chain(&finding.worst).map(|case| (case, 0.0));
         for (case, apart) in own.chain(finding.as_bad.iter().map(|case| (case, SAME_FREQUENCY))) {
             let is_known = cases.iter().any(|(_, one)| {
                 let [known, own] = [one.frequency_rad_per_s, case.frequency_rad_per_s];
                 let is_near = (known - own).abs() <= apart * own && one.plant == case.plant;
-                one.specification == specification && (known == own || is_near)
+                one.specification == case.specification && (known == own || is_near)
             });
             let reserve_db = finding.requirement.reserve_at_db(options.reserve_db, case.frequency_rad_per_s);
             // a spread has two limits
             let limits = if case.other.is_some() { 2.0 } else { 1.0 };
             if !is_known {
-                cases.push((case.margin_db - limits * reserve_db, binding(specification, case)));
+                cases.push((case.margin_db - limits * reserve_db, case.clone()));
             }
         }
     }
@@ -39,29 +38,18 @@ pub(super) fn binding_limits(audit: &Audit, options: &DesignOptions) -> Vec<Bind
         Objective::LeastHighFrequencyGain | Objective::LeastBandwidth => 0.0,
     };
     let is_bound = |room_db: f64| room_db <= least_db.max(0.0) + BINDING_DB;
-    let mut limits: Vec<BindingLimit> =
+    let mut limits: Vec<SpecificationMargin> =
         cases.into_iter().filter(|(room_db, _)| is_bound(*room_db)).map(|(_, limit)| limit).collect();
     sort_by_number(&mut limits, |limit| limit.frequency_rad_per_s);
     limits
 }
 
-fn binding(specification: usize, case: &WorstCase) -> BindingLimit {
-    BindingLimit {
-        specification,
-        frequency_rad_per_s: case.frequency_rad_per_s,
-        plant: case.plant.clone(),
-        margin_db: case.margin_db,
-    }
-}
-
 /// The worst violations of the family and of the additional plants.
-pub(super) fn all_conflicts(audit: &Audit, beside: &[Audit], tolerance_db: f64) -> Vec<Conflict> {
+pub(super) fn all_conflicts(audit: &Audit, beside: &[Audit], tolerance_db: f64) -> Vec<SpecificationMargin> {
     let mut found = conflicts(audit, tolerance_db);
     for (index, audit) in beside.iter().enumerate() {
-        let plant = PlantPoint::Beside(index);
-        found.extend(
-            conflicts(audit, tolerance_db).into_iter().map(|one| Conflict { plant: plant.clone(), ..one }),
-        );
+        let of_plant = |one| SpecificationMargin { plant: PlantPoint::Beside(index), other: None, ..one };
+        found.extend(conflicts(audit, tolerance_db).into_iter().map(of_plant));
     }
     sort_by_number(&mut found, |conflict| conflict.margin_db);
     found
@@ -69,19 +57,10 @@ pub(super) fn all_conflicts(audit: &Audit, beside: &[Audit], tolerance_db: f64) 
 
 /// The worst violation of every violated specification, the worst first: the limits that conflict
 /// where the common relaxation is as small as possible.
-fn conflicts(audit: &Audit, tolerance_db: f64) -> Vec<Conflict> {
-    let mut found: Vec<Conflict> = Vec::new();
-    for (specification, finding) in audit.specifications.iter().enumerate() {
-        let bands = finding.violations.iter().map(|band| &band.worst);
-        for case in bands.filter(|case| case.margin_db < -tolerance_db) {
-            found.push(Conflict {
-                specification,
-                frequency_rad_per_s: case.frequency_rad_per_s,
-                plant: case.plant.clone(),
-                margin_db: case.margin_db,
-            });
-        }
-    }
+fn conflicts(audit: &Audit, tolerance_db: f64) -> Vec<SpecificationMargin> {
+    let bands = audit.specifications.iter().flat_map(|finding| &finding.violations);
+    let violated = bands.map(|band| &band.worst).filter(|case| case.margin_db < -tolerance_db);
+    let mut found: Vec<SpecificationMargin> = violated.cloned().collect();
     sort_by_number(&mut found, |conflict| conflict.margin_db);
     found
 }

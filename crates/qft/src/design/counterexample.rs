@@ -5,7 +5,7 @@ use phea_dynamics::portable;
 use crate::loop_shaping::DesignProblem;
 use crate::specification::ClosedLoop;
 use crate::verification::{
-    Audit, DelayMargin, PlantPoint, SpecificationFinding, TrackingJudgement, Verdict, WorstCase,
+    Audit, DelayMargin, PlantPoint, SpecificationFinding, SpecificationMargin, TrackingJudgement, Verdict,
 };
 
 /// A plant, or the pair of a spread, and the frequency at which it violates a limit (0 and infinity
@@ -40,14 +40,12 @@ pub(super) fn counterexamples(
             ClosedLoop::Tracking => limits * of_tracking_db,
             _ => tolerance_db,
         };
-        let least = |case: &WorstCase| {
+        let least = |case: &SpecificationMargin| {
             limits * finding.requirement.reserve_at_db(reserve_db, case.frequency_rad_per_s) - tolerance
         };
-        let bands = finding.violations.iter().map(|band| &band.worst);
-        let cases = finding.worst.iter().chain(&finding.interior).chain(bands);
-        let cases = cases.chain(&finding.at_design_frequencies);
+        let cases = finding.worst_margins().chain(&finding.at_design_frequencies);
         for case in cases.filter(|case| case.margin_db < least(case)) {
-            let plants = std::iter::once(&case.plant).chain(&case.other).cloned().collect();
+            let plants = case.plants().cloned().collect();
             let example = Counterexample { plants, frequency_rad_per_s: Some(case.frequency_rad_per_s) };
             if !found.contains(&example) {
                 found.push(example);

@@ -12,7 +12,7 @@ mod pointwise;
 
 use phea_dynamics::controller::Controller;
 
-pub use finding::{Constraint, ConstraintPlace, Finding, FindingSeverity, Party, SharedLimit};
+pub use finding::{Constraint, ConstraintPlace, Finding, FindingSeverity, SharedLimit};
 
 use self::candidate::{PlantWithinLoop, candidates};
 use self::ceiling::Ceilings;

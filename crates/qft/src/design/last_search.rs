@@ -44,7 +44,7 @@ pub fn sample_beside_worst(shaping: &mut Shaping, x: &[f64]) -> Result<(), LoopD
             continue;
         }
         known.push(margin.specification);
-        let plants: Vec<PlantPoint> = std::iter::once(margin.plant).chain(margin.other).collect();
+        let plants: Vec<PlantPoint> = margin.plants().cloned().collect();
         for factor in NEIGHBOURS {
             shaping.add(&plants, (factor * margin.frequency_rad_per_s).clamp(lowest, highest))?;
         }

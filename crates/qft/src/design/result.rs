@@ -6,7 +6,7 @@ use phea_dynamics::order::sort_numbers;
 use super::binding::binding_limits;
 use super::{DesignOptions, NamedStructure};
 use crate::loop_shaping::{SearchProblem, SearchResult, Shaping, Structure};
-use crate::verification::{Audit, PlantPoint, Verdict};
+use crate::verification::{Audit, SpecificationMargin, Verdict};
 
 /// Why a design ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,34 +30,8 @@ pub enum DesignStatus {
 pub struct Relaxation {
     /// dB by which every upper limit is raised and every lower one lowered.
     pub relaxation_db: f64,
-    /// The limits that conflict at this relaxation.
-    pub conflicts: Vec<Conflict>,
-}
-
-/// A limit that is reached where the design cannot be improved.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Conflict {
-    /// Index of the specification.
-    pub specification: usize,
-    /// rad/s
-    pub frequency_rad_per_s: f64,
-    /// The plant.
-    pub plant: PlantPoint,
-    /// Its margin to the original limit, dB.
-    pub margin_db: f64,
-}
-
-/// What the specification costs: the limits that the loop of the design touches.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BindingLimit {
-    /// Index of the specification.
-    pub specification: usize,
-    /// rad/s
-    pub frequency_rad_per_s: f64,
-    /// The plant with the least margin.
-    pub plant: PlantPoint,
-    /// That margin, dB.
-    pub margin_db: f64,
+    /// The limits that conflict at this relaxation: the margins to the original limits.
+    pub conflicts: Vec<SpecificationMargin>,
 }
 
 /// One search with the audit that followed it.
@@ -144,8 +118,8 @@ pub struct Design {
     pub audit: Audit,
     /// The same for each additional plant.
     pub beside: Vec<Audit>,
-    /// The limits that it touches, by frequency.
-    pub binding: Vec<BindingLimit>,
+    /// The limits that it touches, which is what the specifications cost, by frequency.
+    pub binding: Vec<SpecificationMargin>,
     /// How it came about.
     pub rounds: Vec<DesignRound>,
 }

@@ -6,7 +6,8 @@ use phea_dynamics::controller::Controller;
 
 use super::attempt::{Attempt, AttemptEnding};
 use super::{BINDING_DB, NamedStructure};
-use crate::loop_shaping::{SampledMargin, Structure};
+use crate::loop_shaping::Structure;
+use crate::verification::SpecificationMargin;
 
 /// How the trial of a structure ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +40,7 @@ pub struct TriedStructure {
     /// The controller that it ended with; `None` where it found none.
     pub law: Option<Controller>,
     /// The least margin of the plants and frequencies that it was searched with: what binds.
-    pub least: Option<SampledMargin>,
+    pub least: Option<SpecificationMargin>,
     /// The specifications whose least margins are within [`BINDING_DB`](super::BINDING_DB) of it.
     pub binding: Vec<usize>,
     /// What a longer structure is compared by, dB, the less the better: see

@@ -13,7 +13,7 @@ use super::structure::{Structure, StructureResponse};
 use super::{Judgement, SearchProblem, Slopes};
 use crate::closed_loop::Compensation;
 use crate::specification::Specification;
-use crate::verification::{PlantPoint, TrackingJudgement};
+use crate::verification::{PlantPoint, SpecificationMargin, TrackingJudgement};
 use least_margins::Looked;
 
 /// The measure of instability for a loop for which it is too expensive to compute.
@@ -98,21 +98,6 @@ struct JudgedLoop {
     x: Vec<f64>,
     forward: Vec<[Complex64; 2]>,
     looked: Looked,
-}
-
-/// The least margin to one specification at one frequency.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SampledMargin {
-    /// Index of the specification.
-    pub specification: usize,
-    /// rad/s
-    pub frequency_rad_per_s: f64,
-    /// dB, to the original limit.
-    pub margin_db: f64,
-    /// The plant.
-    pub plant: PlantPoint,
-    /// The second plant of a spread, with the least magnitude.
-    pub other: Option<PlantPoint>,
 }
 
 impl Shaping {
@@ -253,9 +238,9 @@ impl Shaping {
         }
     }
 
-    /// The least margin to each specification at each frequency, by frequency; empty for a
-    /// controller without a response.
-    pub fn margins(&self, x: &[f64]) -> Vec<SampledMargin> {
+    /// The least margin to the original limits of each specification at each frequency, by
+    /// frequency; empty for a controller without a response.
+    pub fn margins(&self, x: &[f64]) -> Vec<SpecificationMargin> {
         let Some(forward) = self.forward(x) else { return vec![] };
         let mut around = ColumnLoop::default();
         let mut margins = Vec::new();
@@ -264,7 +249,7 @@ impl Shaping {
             around.close(column, feedback, prefilter);
             for demand in column.demands.iter().filter(|demand| !demand.is_reserve()) {
                 let worst = candidates(demand, column, &around, feedback).into_iter().next();
-                margins.extend(worst.map(|worst| SampledMargin {
+                margins.extend(worst.map(|worst| SpecificationMargin {
                     specification: demand.specification,
                     frequency_rad_per_s: column.frequency,
                     margin_db: worst.margin_db,

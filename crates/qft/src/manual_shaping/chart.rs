@@ -10,7 +10,7 @@ use crate::closed_loop::Compensation;
 use crate::family::Family;
 use crate::specification::{LoopResponse, Specification};
 use crate::template::{Template, TemplatePoint};
-use crate::verification::{PlantPoint, TrackingJudgement};
+use crate::verification::{PlantPoint, SpecificationMargin, TrackingJudgement};
 
 /// Templates and bounds at the design frequencies, which no controller changes.
 ///
@@ -52,8 +52,8 @@ use crate::verification::{PlantPoint, TrackingJudgement};
 /// let built = template(&family, &loop_of(1.0)?, 1.0, &TemplateOptions::default())?;
 /// let chart = DesignChart::new(&family, vec![built.template], &[specification])?;
 /// let [margin] = &chart.margins(&loop_of(2.0)?, TrackingJudgement::Spread)[..] else { panic!() };
-/// assert!((margin.margin_db - 20.0 * 1.5_f64.log10()).abs() < 1e-12); // 1/2 over 1/3
-/// assert_eq!(margin.plant, PlantPoint::Parameters(vec![1.0]));
+/// assert!((margin.worst.margin_db - 20.0 * 1.5_f64.log10()).abs() < 1e-12); // 1/2 over 1/3
+/// assert_eq!(margin.worst.plant, PlantPoint::Parameters(vec![1.0]));
 /// let Placement::Allowed { slack_db } = margin.placement else { panic!() };
 /// assert!((slack_db - 20.0 * 2_f64.log10()).abs() < 1e-9); // from L0 = 8 down to 4
 /// # Ok(())
@@ -79,17 +79,8 @@ struct Station {
 /// The worst margin of one specification at one design frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignMargin {
-    /// Index of the specification.
-    pub specification: usize,
-    /// rad/s
-    pub frequency_rad_per_s: f64,
-    /// Limit over closed loop of the worst plant of the template, dB; negative where it is
-    /// violated.
-    pub margin_db: f64,
-    /// The plant; for a spread, the one with the greatest |T|.
-    pub plant: PlantPoint,
-    /// For a spread, the plant with the least |T|.
-    pub other: Option<PlantPoint>,
+    /// The margin of the worst plant of the template.
+    pub worst: SpecificationMargin,
     /// Where the nominal loop lies among the gains that this specification allows at its phase, the
     /// interior of the template counting as plants: how far it may, or must, move. Tracking is
     /// judged by its spread.
@@ -136,7 +127,7 @@ impl DesignChart {
     pub fn margins(&self, compensation: &Compensation, tracking: TrackingJudgement) -> Vec<DesignMargin> {
         let mut margins: Vec<DesignMargin> =
             self.stations.iter().flat_map(|station| self.at(station, compensation, tracking)).collect();
-        sort_by_number(&mut margins, |margin| margin.margin_db);
+        sort_by_number(&mut margins, |margin| margin.worst.margin_db);
         margins
     }
 
@@ -171,24 +162,17 @@ impl DesignChart {
         let nominal_loop = station.nominal_loop(compensation);
         let margin = |(index, bounds): &(usize, FrequencyBounds)| {
             let specification = self.specifications.get(*index)?;
-            let (margin_db, plant, other) = match tracking {
-                TrackingJudgement::Spread if is_tracking(specification) => {
-                    let (margin, plant, other) = spread(specification, frequency_rad_per_s, &plants)?;
-                    (margin, plant, Some(self.plant(other)))
-                }
-                _ => {
-                    let (margin, plant) = worst(specification, frequency_rad_per_s, &plants)?;
-                    (margin, plant, None)
-                }
-            };
-            Some(DesignMargin {
+            let is_spread = tracking == TrackingJudgement::Spread && specification.requirement.is_tracking();
+            let judge = if is_spread { spread } else { worst };
+            let (margin_db, plant, other) = judge(specification, frequency_rad_per_s, &plants)?;
+            let worst = SpecificationMargin {
                 specification: *index,
                 frequency_rad_per_s,
                 margin_db,
                 plant: self.plant(plant),
-                other,
-                placement: bounds.placement(nominal_loop),
-            })
+                other: other.map(|other| self.plant(other)),
+            };
+            Some(DesignMargin { worst, placement: bounds.placement(nominal_loop) })
         };
         station.each.iter().filter_map(margin).collect()
     }
@@ -214,21 +198,20 @@ fn demands(specification: &Specification, frequency: f64) -> bool {
         && lower.into_iter().chain([upper]).all(|limit| limit.magnitude(frequency).is_some())
 }
 
-fn is_tracking(specification: &Specification) -> bool {
-    specification.requirement.is_tracking()
-}
-
 type ChartPlants<'a> = [(LoopResponse, &'a TemplatePoint)];
+
+/// The least margin in dB with its plant, or with both plants of a spread.
+type ChartMargin<'a> = (f64, &'a TemplatePoint, Option<&'a TemplatePoint>);
 
 /// The plant with the least margin.
 fn worst<'a>(
     specification: &Specification,
     frequency: f64,
     plants: &ChartPlants<'a>,
-) -> Option<(f64, &'a TemplatePoint)> {
+) -> Option<ChartMargin<'a>> {
     let margins = plants
         .iter()
-        .filter_map(|(response, point)| Some((specification.margin_db(response, frequency)?, *point)));
+        .filter_map(|(response, point)| Some((specification.margin_db(response, frequency)?, *point, None)));
     margins.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
@@ -237,7 +220,7 @@ fn spread<'a>(
     specification: &Specification,
     frequency: f64,
     plants: &ChartPlants<'a>,
-) -> Option<(f64, &'a TemplatePoint, &'a TemplatePoint)> {
+) -> Option<ChartMargin<'a>> {
     let (lower, upper) = specification.requirement.limits();
     let allowed = upper.magnitude(frequency)? / lower?.magnitude(frequency)?;
     let without_prefilter =
@@ -250,5 +233,5 @@ fn spread<'a>(
     };
     let (greatest, plant) = magnitudes().max_by(|a, b| a.0.total_cmp(&b.0))?;
     let (least, other) = magnitudes().min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some((decibels(allowed * least / greatest), plant, other))
+    Some((decibels(allowed * least / greatest), plant, Some(other)))
 }

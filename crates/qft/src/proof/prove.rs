@@ -22,7 +22,7 @@ use super::{NotProven, Proof, SpecificationProof, Standing};
 use crate::family::Family;
 use crate::specification::{Limit, Specification};
 use crate::verification::{
-    Audit, AuditProblem, PlantPoint, SpecificationFinding, TrackingJudgement, WorstCase,
+    Audit, AuditProblem, PlantPoint, SpecificationFinding, SpecificationMargin, TrackingJudgement,
 };
 
 /// How far a proof goes.
@@ -136,14 +136,14 @@ pub fn prove(
     let mut certified = prover.certificate;
     // each specification is shown of the same loop, and needs no claim of another
     let mut found: Vec<Option<(SpecificationProof, Vec<Claim>)>> = vec![None; problem.specifications.len()];
-    let each = found.iter_mut().zip(problem.specifications.iter().zip(&audit.specifications));
-    let pieces = each.map(|(place, (specification, finding))| {
+    let each = found.iter_mut().zip(&audit.specifications).enumerate();
+    let pieces = each.map(|(index, (place, finding))| {
         let (certificate, stability) = (&certificate, &stability);
         let piece: WorkPiece<'_> = Box::new(move |watch: Watch<'_>| {
             let budget = &ProofBudget::new(options.points_maximum);
             let effort = ProofEffort { leaves, depth: DEPTH_MAXIMUM, room: ROOMS[0], budget };
             let mut prover = Prover { problem, certificate: certificate.clone(), options, effort };
-            let proof = prover.specification(specification, finding, stability, watch)?;
+            let proof = prover.specification(index, finding, stability, watch)?;
             *place = Some((proof, prover.certificate.claims));
             Ok(())
         });
@@ -331,11 +331,12 @@ impl Prover<'_> {
 
     fn specification(
         &mut self,
-        specification: &Specification,
+        index: usize,
         finding: &SpecificationFinding,
         stability: &Standing,
         watch: Watch<'_>,
     ) -> Result<SpecificationProof, Stopped> {
+        let specification = &self.problem.specifications[index];
         let requirement = &specification.requirement;
         let highest = self.problem.compensation.highest_frequency_rad_per_s();
         if specification.band_rad_per_s[0] >= highest {
@@ -347,15 +348,15 @@ impl Prover<'_> {
         let hints: Vec<PlantAtFrequency> = self.hints(finding);
         let mut whole = SpecificationProof::without(Standing::Proven);
         for limited in limited_loops(specification) {
-            whole = whole.and(self.side(&limited, &hints, stability, watch)?);
+            whole = whole.and(self.side((index, &limited), &hints, stability, watch)?);
         }
         Ok(whole)
     }
 
-    /// One side of a specification.
+    /// One side of a specification, which is given by its index.
     fn side(
         &mut self,
-        limited: &LimitedLoop,
+        (specification, limited): (usize, &LimitedLoop),
         hints: &[PlantAtFrequency],
         stability: &Standing,
         watch: Watch<'_>,
@@ -403,9 +404,10 @@ impl Prover<'_> {
             _ => Standing::NotProven(open.map_or(NotProven::Unbounded, NotProven::Budget)),
         };
         let values = values_of(&self.certificate.plant, &at.member);
-        let worst = is_reached.then(|| WorstCase {
-            margin_db: -db(least),
+        let worst = is_reached.then(|| SpecificationMargin {
+            specification,
             frequency_rad_per_s: at.frequency_rad_per_s,
+            margin_db: -db(least),
             plant: PlantPoint::Parameters(values),
             other: None,
         });
@@ -426,9 +428,7 @@ impl Prover<'_> {
 
     /// Where the audit found the specification to be worst.
     fn hints(&self, finding: &SpecificationFinding) -> Vec<PlantAtFrequency> {
-        let bands = finding.violations.iter().map(|band| &band.worst);
-        let cases =
-            finding.worst.iter().chain(&finding.interior).chain(bands).chain(&finding.at_design_frequencies);
+        let cases = finding.worst_margins().chain(&finding.at_design_frequencies);
         cases.filter_map(|case| self.place(&case.plant, case.frequency_rad_per_s)).collect()
     }
 

@@ -6,7 +6,7 @@ use super::evaluator::Evaluator;
 use super::remark::remarks;
 use super::response::decibels;
 use super::scan::{Scan, ScannedPlant, WorstPlant};
-use super::{Evidence, PlantPoint, SpecificationFinding, Verdict, ViolatedBand, WorstCase};
+use super::{Evidence, PlantPoint, SpecificationFinding, SpecificationMargin, Verdict, ViolatedBand};
 use crate::family::Family;
 use crate::specification::Specification;
 use phea_dynamics::order::sort_by_number;
@@ -37,14 +37,12 @@ pub(super) struct SpecificationCriteria {
 /// A margin that was found.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FoundMargin {
-    pub(super) margin_db: f64,
-    /// What it is at most for every plant within a disc of measurement: the same without one.
+    pub(super) margin: SpecificationMargin,
+    /// Upper bound of the margin over the discs of a measurement, dB; the margin itself without
+    /// discs.
     pub(super) certain_db: f64,
-    pub(super) frequency: f64,
     /// The criterion; both for a spread.
     pub(super) criteria: Vec<usize>,
-    /// The plant; for a spread, the one with the greatest |T| and the one with the least.
-    pub(super) points: Vec<PlantPoint>,
     /// Whether the margin has a minimum here, at a frequency inside the band.
     pub(super) interior: bool,
 }
@@ -57,6 +55,32 @@ pub(super) struct EnvelopePoint {
     pub(super) certain_db: f64,
     pub(super) criteria: Vec<usize>,
     pub(super) plants: Vec<usize>,
+}
+
+impl FoundMargin {
+    fn is_at(&self, frequency_rad_per_s: f64) -> bool {
+        self.margin.frequency_rad_per_s == frequency_rad_per_s
+    }
+}
+
+impl EnvelopePoint {
+    /// The margin of the specification with this index.
+    pub(super) fn found(&self, specification: usize, plants: &[ScannedPlant]) -> Option<FoundMargin> {
+        let points = self.plants.iter().filter_map(|plant| plants.get(*plant));
+        let mut points = points.map(|plant| plant.point.clone());
+        Some(FoundMargin {
+            margin: SpecificationMargin {
+                specification,
+                frequency_rad_per_s: self.frequency,
+                margin_db: self.margin_db,
+                plant: points.next()?,
+                other: points.next(),
+            },
+            certain_db: self.certain_db,
+            criteria: self.criteria.clone(),
+            interior: false,
+        })
+    }
 }
 
 impl SpecificationCriteria {
@@ -133,14 +157,11 @@ pub(super) fn local_minima(envelope: &[EnvelopePoint]) -> Vec<[f64; 3]> {
     minima.into_iter().map(|minimum| minimum.1).collect()
 }
 
-pub(super) fn points(plants: &[ScannedPlant], chosen: &[usize]) -> Vec<PlantPoint> {
-    chosen.iter().filter_map(|plant| plants.get(*plant)).map(|plant| plant.point.clone()).collect()
-}
-
 /// All data of a finding.
 pub(super) struct Joining<'a> {
     pub(super) part: SpecificationCriteria,
     pub(super) family: &'a Family,
+    pub(super) index: usize,
     pub(super) specification: &'a Specification,
     pub(super) evaluator: &'a Evaluator<'a>,
     pub(super) plants: &'a [ScannedPlant],
@@ -153,18 +174,19 @@ pub(super) struct Joining<'a> {
 impl Joining<'_> {
     pub(super) fn finding(&self, scan: &mut Scan) -> SpecificationFinding {
         let envelope = envelope(self.part, scan);
-        let all: Vec<FoundMargin> =
-            envelope.iter().map(|point| self.case(point)).chain(self.cases.iter().cloned()).collect();
+        let own = envelope.iter().filter_map(|point| point.found(self.index, self.plants));
+        let all: Vec<FoundMargin> = own.chain(self.cases.iter().cloned()).collect();
         let worst = least(all.iter());
         let ends = [envelope.first(), envelope.last()].map(|end| end.map(|point| point.frequency));
-        let at_an_end = worst.is_some_and(|worst| ends.contains(&Some(worst.frequency)));
+        let at_an_end = worst.is_some_and(|worst| ends.contains(&Some(worst.margin.frequency_rad_per_s)));
         let minima: Vec<f64> = local_minima(&envelope).iter().map(|bracket| bracket[1]).collect();
-        let interior = |case: &&FoundMargin| case.interior || minima.contains(&case.frequency);
+        let interior =
+            |case: &&FoundMargin| case.interior || minima.contains(&case.margin.frequency_rad_per_s);
         let interior = least(all.iter().filter(interior)).filter(|_| at_an_end);
         let unresolved = self.part.criteria().find_map(|criterion| scan.unresolved(criterion));
         let certain_db = all.iter().map(|case| case.certain_db).fold(f64::INFINITY, f64::min);
         let violated = certain_db < -self.tolerance();
-        let is_open = !violated && worst.is_some_and(|worst| worst.margin_db < -self.tolerance());
+        let is_open = !violated && worst.is_some_and(|worst| worst.margin.margin_db < -self.tolerance());
         SpecificationFinding {
             requirement: self.specification.requirement.clone(),
             verdict: match (
@@ -176,16 +198,16 @@ impl Joining<'_> {
                 (false, false) => Verdict::NotProven,
             },
             evidence: Evidence::of(self.family),
-            worst: worst.map(worst_case),
-            interior: interior.map(worst_case),
+            worst: worst.map(margin),
+            interior: interior.map(margin),
             as_bad: self.as_bad(worst, &all, &minima),
             violations: self.violations(scan, &envelope, &all),
             at_design_frequencies: self
                 .specification
                 .frequencies_rad_per_s
                 .iter()
-                .filter_map(|&frequency| least(all.iter().filter(|case| case.frequency == frequency)))
-                .map(worst_case)
+                .filter_map(|&frequency| least(all.iter().filter(|case| case.is_at(frequency))))
+                .map(margin)
                 .collect(),
             envelope: self.drawn(&envelope),
             remarks: remarks(self, worst, unresolved, is_open.then_some(certain_db)),
@@ -193,34 +215,39 @@ impl Joining<'_> {
     }
 
     /// The minima that are as bad as the worst, one for each place.
-    fn as_bad(&self, worst: Option<&FoundMargin>, all: &[FoundMargin], minima: &[f64]) -> Vec<WorstCase> {
+    fn as_bad(
+        &self,
+        worst: Option<&FoundMargin>,
+        all: &[FoundMargin],
+        minima: &[f64],
+    ) -> Vec<SpecificationMargin> {
         let Some(worst) = worst else { return vec![] };
-        let is_minimum = |case: &&FoundMargin| case.interior || minima.contains(&case.frequency);
-        let mut near: Vec<&FoundMargin> = all
-            .iter()
-            .filter(is_minimum)
-            .filter(|case| case.margin_db <= worst.margin_db + AS_BAD_DB)
-            .collect();
-        sort_by_number(&mut near, |case| case.margin_db);
+        let most_db = worst.margin.margin_db + AS_BAD_DB;
+        let is_minimum =
+            |case: &&FoundMargin| case.interior || minima.contains(&case.margin.frequency_rad_per_s);
+        let mut near: Vec<&FoundMargin> =
+            all.iter().filter(is_minimum).filter(|case| case.margin.margin_db <= most_db).collect();
+        sort_by_number(&mut near, |case| case.margin.margin_db);
         let mut places = vec![worst];
         for case in near {
             if places.len() <= PLACES_MAXIMUM && !places.iter().any(|known| self.is_same_place(known, case)) {
                 places.push(case);
             }
         }
-        places.into_iter().skip(1).map(worst_case).collect()
+        places.into_iter().skip(1).map(margin).collect()
     }
 
     /// Whether two margins are of one minimum: at about one frequency, with plants that are near
     /// each other in most coordinates of the box.
     fn is_same_place(&self, one: &FoundMargin, other: &FoundMargin) -> bool {
-        let apart = (one.frequency - other.frequency).abs() > SAME_FREQUENCY * one.frequency;
-        if apart {
+        let [one, other] = [&one.margin, &other.margin];
+        let [own, second] = [one.frequency_rad_per_s, other.frequency_rad_per_s];
+        if (own - second).abs() > SAME_FREQUENCY * own {
             return false;
         }
-        let Family::Uncertain(family) = self.family else { return one.points == other.points };
-        let shares = |case: &FoundMargin| match case.points.first() {
-            Some(PlantPoint::Parameters(values)) => family.shares(values),
+        let Family::Uncertain(family) = self.family else { return one.plants().eq(other.plants()) };
+        let shares = |margin: &SpecificationMargin| match &margin.plant {
+            PlantPoint::Parameters(values) => family.shares(values),
             _ => vec![],
         };
         let (one, other) = (shares(one), shares(other));
@@ -238,22 +265,11 @@ impl Joining<'_> {
         self.tolerance_db.max(ROUNDING_DB)
     }
 
-    fn case(&self, point: &EnvelopePoint) -> FoundMargin {
-        FoundMargin {
-            margin_db: point.margin_db,
-            certain_db: point.certain_db,
-            frequency: point.frequency,
-            criteria: point.criteria.clone(),
-            points: points(self.plants, &point.plants),
-            interior: false,
-        }
-    }
-
     /// The envelope, including what searches found between the plants.
     fn drawn(&self, envelope: &[EnvelopePoint]) -> Vec<(f64, f64)> {
         let margin = |point: &EnvelopePoint| {
-            let here = self.cases.iter().filter(|case| case.frequency == point.frequency);
-            here.map(|case| case.margin_db).fold(point.margin_db, f64::min)
+            let here = self.cases.iter().filter(|case| case.is_at(point.frequency));
+            here.map(|case| case.margin.margin_db).fold(point.margin_db, f64::min)
         };
         envelope.iter().map(|point| (point.frequency, margin(point))).collect()
     }
@@ -287,10 +303,10 @@ impl Joining<'_> {
                 self.edge(scan, low, first.checked_sub(1).and_then(frequency)),
                 self.edge(scan, high, frequency(last + 1)),
             ];
-            let within = all.iter().filter(|case| band[0] <= case.frequency && case.frequency <= band[1]);
-            found.extend(
-                least(within).map(|case| ViolatedBand { band_rad_per_s: band, worst: worst_case(case) }),
-            );
+            let is_within = |frequency: f64| band[0] <= frequency && frequency <= band[1];
+            let within = all.iter().filter(|case| is_within(case.margin.frequency_rad_per_s));
+            found
+                .extend(least(within).map(|case| ViolatedBand { band_rad_per_s: band, worst: margin(case) }));
         }
         found
     }
@@ -313,15 +329,9 @@ impl Joining<'_> {
 }
 
 fn least<'a>(cases: impl Iterator<Item = &'a FoundMargin>) -> Option<&'a FoundMargin> {
-    cases.min_by(|left, right| left.margin_db.total_cmp(&right.margin_db))
+    cases.min_by(|left, right| left.margin.margin_db.total_cmp(&right.margin.margin_db))
 }
 
-fn worst_case(case: &FoundMargin) -> WorstCase {
-    let mut points = case.points.iter().cloned();
-    WorstCase {
-        margin_db: case.margin_db,
-        frequency_rad_per_s: case.frequency,
-        plant: points.next().unwrap_or(PlantPoint::Parameters(Vec::new())),
-        other: points.next(),
-    }
+fn margin(case: &FoundMargin) -> SpecificationMargin {
+    case.margin.clone()
 }

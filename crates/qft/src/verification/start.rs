@@ -82,8 +82,8 @@ pub(super) fn tasks(
         |case: &&FoundMargin| case.criteria.iter().all(|criterion| part.criteria().contains(criterion));
     tasks.extend(diverse(cases.iter().filter(of_part)).into_iter().map(|case| SearchTask {
         criteria: case.criteria.clone(),
-        shares: case.points.iter().map(|point| self::shares(family, Some(point))).collect(),
-        frequency: case.frequency,
+        shares: case.margin.plants().map(|point| self::shares(family, Some(point))).collect(),
+        frequency: case.margin.frequency_rad_per_s,
         range: Some(range),
         resonances: false,
     }));
@@ -103,12 +103,12 @@ fn shares(family: &UncertainFamily, point: Option<&PlantPoint>) -> Vec<f64> {
 /// own.
 fn diverse<'a>(cases: impl Iterator<Item = &'a FoundMargin>) -> Vec<&'a FoundMargin> {
     let apart = |case: &FoundMargin, other: &&FoundMargin| {
-        let ratio = case.frequency / other.frequency;
+        let ratio = case.margin.frequency_rad_per_s / other.margin.frequency_rad_per_s;
         !(1.0 / FREQUENCY_RATIO..=FREQUENCY_RATIO).contains(&ratio)
     };
     let mut chosen: Vec<&FoundMargin> = Vec::new();
     for case in cases {
-        let new_plant = chosen.iter().all(|other| other.points != case.points);
+        let new_plant = chosen.iter().all(|other| other.margin.plants().ne(case.margin.plants()));
         let wanted = chosen.len() < STARTS || chosen.iter().all(|other| apart(case, other));
         if new_plant && wanted && chosen.len() < 2 * STARTS {
             chosen.push(case);

@@ -6,12 +6,12 @@ use phea_qft::design::quantization::{
     CoefficientFormat, Converter, Quantization, QuantizationError, rounded,
 };
 use phea_qft::design::{
-    BindingLimit, Design, DesignOptions, DesignProblem, DesignStatus, LoopDesignError, Objective, design,
+    Design, DesignOptions, DesignProblem, DesignStatus, LoopDesignError, Objective, design,
 };
 use phea_qft::family::{Family, Spacing};
 use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::specification::{ClosedLoop, Requirement};
-use phea_qft::verification::{TrackingJudgement, Verdict};
+use phea_qft::verification::{SpecificationMargin, TrackingJudgement, Verdict};
 
 use super::problems::{
     EVERYWHERE, assert_met, audited, boxed, demand, designed, least_gain, problem, rational, stability,
@@ -97,13 +97,13 @@ fn binding_limits_are_touched_ones() {
         assert!(design.binding.iter().all(|one| one.margin_db <= base + 0.05), "{:?}", design.binding);
         // each specification where it is worst, if it leaves no room there
         for (index, case) in worst.enumerate().filter(|(_, case)| case.margin_db <= base + 0.05) {
-            let is_it = |one: &BindingLimit| {
+            let is_it = |one: &SpecificationMargin| {
                 (one.specification, one.frequency_rad_per_s) == (index, case.frequency_rad_per_s)
             };
             assert!(design.binding.iter().any(is_it), "{case:?} of {:?}", design.binding);
         }
         // the search ended at a limit, which lies between the design frequencies
-        let at_design = |one: &BindingLimit| [0.1, 1.0, 10.0].contains(&one.frequency_rad_per_s);
+        let at_design = |one: &SpecificationMargin| [0.1, 1.0, 10.0].contains(&one.frequency_rad_per_s);
         assert!(design.binding.iter().any(|one| !at_design(one)), "{:?}", design.binding);
     }
 }

@@ -36,12 +36,12 @@ fn sensitivity_against_complementary_sensitivity() {
     assert_eq!([sensitivity.specification, complementary.specification], [0, 1]);
     assert!((relaxation_db - decibels(1.0 / 0.8)).abs() < 1e-3);
     // the bounds at the design frequency say the same
-    let [Finding::Contradiction { frequency_rad_per_s: 2.0, parties, relaxation_db, .. }] = rest else {
+    let [Finding::Contradiction { frequency_rad_per_s: 2.0, conflicts, relaxation_db, .. }] = rest else {
         panic!("{rest:?}")
     };
     assert!(relaxation_db[0] <= decibels(1.0 / 0.8) && decibels(1.0 / 0.8) <= relaxation_db[1] + 1e-3);
     assert!(relaxation_db[1] - relaxation_db[0] < 0.1);
-    assert_eq!(parties.iter().map(|party| party.specification).collect::<Vec<_>>(), [0, 1]);
+    assert_eq!(conflicts.iter().map(|margin| margin.specification).collect::<Vec<_>>(), [0, 1]);
 }
 
 /// Control effort bounds |T| by |G S| |P|, a disturbance at the plant's input |S| by |P S|/|P|.
@@ -80,12 +80,13 @@ fn spread_against_stability_takes_two_plants() {
     };
     // |G| must be small: the spread stays near 10, whatever the limits of |T|
     let found = impossibilities(&of(1.2));
-    let Some(Finding::Contradiction { parties, relaxation_db, frequency_rad_per_s: 1.0, .. }) = found.first()
+    let Some(Finding::Contradiction { conflicts, relaxation_db, frequency_rad_per_s: 1.0, .. }) =
+        found.first()
     else {
         panic!("{found:?}")
     };
-    assert_eq!(parties.iter().map(|party| party.specification).collect::<Vec<_>>(), [0, 1]);
-    assert!(parties[0].other.is_some() && parties[0].plant != *parties[0].other.as_ref().unwrap());
+    assert_eq!(conflicts.iter().map(|margin| margin.specification).collect::<Vec<_>>(), [0, 1]);
+    assert!(conflicts[0].other.is_some() && conflicts[0].plant != *conflicts[0].other.as_ref().unwrap());
     assert!(relaxation_db[0] > 1.0);
     assert_eq!(impossibilities(&of(5.0)), []);
 }

@@ -7,7 +7,7 @@ use phea_qft::closed_loop::Compensation;
 use phea_qft::family::{Family, Spacing};
 use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{
-    PlantPoint, Remark, SpecificationFinding, TrackingJudgement, Verdict, WorstCase,
+    PlantPoint, Remark, SpecificationFinding, SpecificationMargin, TrackingJudgement, Verdict,
 };
 
 use super::plants::{along, audited, compensation, on_grid, parameter, rational, specification, stability};
@@ -52,14 +52,14 @@ pub(crate) fn thesis_specifications() -> Vec<Specification> {
     ]
 }
 
-fn values(case: &WorstCase) -> &[f64] {
+fn values(case: &SpecificationMargin) -> &[f64] {
     match &case.plant {
         PlantPoint::Parameters(values) => values,
         PlantPoint::Measured(_) | PlantPoint::Beside(_) => panic!("a plant with parameters"),
     }
 }
 
-fn at(finding: &SpecificationFinding, frequency: f64) -> &WorstCase {
+fn at(finding: &SpecificationFinding, frequency: f64) -> &SpecificationMargin {
     finding.at_design_frequencies.iter().find(|case| case.frequency_rad_per_s == frequency).unwrap()
 }
 

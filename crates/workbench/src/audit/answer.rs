@@ -1,6 +1,6 @@
 use phea_qft::proof::{Certificate, Proof, Standing};
 use phea_qft::verification::{
-    Evidence, SearchedInfinity, SpecificationFinding, StabilityFinding, Verdict, WorstCase,
+    Evidence, SearchedInfinity, SpecificationFinding, SpecificationMargin, StabilityFinding, Verdict,
 };
 
 use super::below_design;
@@ -164,17 +164,17 @@ fn specification(view: &ProjectAudit, index: usize, finding: &SpecificationFindi
                 Object::new().with("magnitude", magnitude).with("limit", limit)
             }),
         )
-        .maybe("interior", finding.interior.as_ref().map(|worst| case(names, worst)))
+        .maybe("interior", finding.interior.as_ref().map(|worst| margin(names, worst)))
         .and(specification_proof(view, index).unwrap_or_default())
         .maybe("in_time", view.in_time_of(index).map(|finding| in_time(names, finding)))
         .each("violations", &finding.violations, |band| {
-            Object::new().with("band_rad_per_s", band.band_rad_per_s).and(case(names, &band.worst))
+            Object::new().with("band_rad_per_s", band.band_rad_per_s).and(margin(names, &band.worst))
         })
-        .each("at_design_frequencies", &finding.at_design_frequencies, |worst| case(names, worst))
+        .each("at_design_frequencies", &finding.at_design_frequencies, |worst| margin(names, worst))
         .with("remarks", remark_sentences(finding, names))
 }
 
-fn case(names: &PlantNames, worst: &WorstCase) -> Object {
+pub(crate) fn margin(names: &PlantNames, worst: &SpecificationMargin) -> Object {
     Object::new()
         .with("frequency_rad_per_s", worst.frequency_rad_per_s)
         .with("margin_db", worst.margin_db)

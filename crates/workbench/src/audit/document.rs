@@ -2,7 +2,7 @@
 
 use phea_dynamics::portable;
 use phea_qft::proof::{Proof, Standing};
-use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
+use phea_qft::verification::{SpecificationFinding, SpecificationMargin, Verdict};
 
 use super::{DelayedPaths, NominalMargins, ProjectAudit, below_design, in_time, margins};
 use super::{
@@ -91,7 +91,7 @@ fn delayed_words(paths: DelayedPaths) -> &'static str {
 }
 
 /// A margin, and where.
-fn margin_at(worst: Option<&WorstCase>) -> [Cell; 2] {
+fn margin_at(worst: Option<&SpecificationMargin>) -> [Cell; 2] {
     match worst {
         Some(worst) => [Cell::margin(worst.margin_db), Cell::frequency(worst.frequency_rad_per_s)],
         None => [Cell::Missing, Cell::Missing],

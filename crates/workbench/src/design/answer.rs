@@ -3,9 +3,9 @@ mod rounding;
 
 use phea_dynamics::controller::Controller;
 use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
-use phea_qft::design::{Conflict, DesignRound, DesignStatus};
+use phea_qft::design::{DesignRound, DesignStatus};
 use phea_qft::loop_shaping::{Structure, StructureFactor};
-use phea_qft::verification::PlantPoint;
+use phea_qft::verification::SpecificationMargin;
 
 use super::AuditedController;
 use super::{DesignPart, Explanation, ProjectDesign};
@@ -61,9 +61,7 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
         .maybe("published_reason", why_not_published(view))
         .each("rounds", &design.rounds, round)
         .known("starts", starts, "no search ended")
-        .each("binding", &design.binding, |limit| {
-            limit_row(view, limit.specification, limit.frequency_rad_per_s, limit.margin_db, &limit.plant)
-        })
+        .each("binding", &design.binding, |limit| limit_row(view, limit))
         .with("relaxations", relaxed::rows(view))
         .known(
             "relaxation_db",
@@ -204,30 +202,20 @@ fn round(round: &DesignRound) -> Object {
 /// What conflicts where the search can do no better.
 fn conflicts(view: &ProjectDesign) -> Vec<Object> {
     let DesignStatus::Infeasible(relaxation) = &view.design.status else { return vec![] };
-    let row = |conflict: &Conflict| {
-        let Conflict { specification, frequency_rad_per_s, margin_db, plant, .. } = conflict;
-        limit_row(view, *specification, *frequency_rad_per_s, *margin_db, plant)
-    };
-    relaxation.conflicts.iter().map(row).collect()
+    relaxation.conflicts.iter().map(|conflict| limit_row(view, conflict)).collect()
 }
 
 /// A limit that is touched or in the way; specifications are counted from 0, in file order.
-fn limit_row(
-    view: &ProjectDesign,
-    specification: usize,
-    frequency_rad_per_s: f64,
-    margin_db: f64,
-    plant: &PlantPoint,
-) -> Object {
-    let side = &view.designed;
+fn limit_row(view: &ProjectDesign, margin: &SpecificationMargin) -> Object {
+    let (side, specification) = (&view.designed, margin.specification);
     let requirement = side.problem.specifications.get(specification).map(|one| &one.requirement);
     Object::new()
         .with("specification", specification)
         .with("name", view.named(specification))
         .with("kind", requirement.map_or("", crate::specification::kind_key))
-        .with("frequency_rad_per_s", frequency_rad_per_s)
-        .with("margin_db", margin_db)
-        .with("plant", side.view.names.named(plant))
+        .with("frequency_rad_per_s", margin.frequency_rad_per_s)
+        .with("margin_db", margin.margin_db)
+        .with("plant", side.view.names.named(&margin.plant))
 }
 
 fn explanation(view: &ProjectDesign, explanation: &Explanation) -> Object {

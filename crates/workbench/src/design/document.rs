@@ -4,7 +4,7 @@ use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
 use phea_engineering::design::LedBy;
 use phea_qft::design::quantization::CoefficientFormat;
 use phea_qft::design::{BINDING_DB, DesignRound, DesignStatus, Objective, Starts};
-use phea_qft::verification::{PlantPoint, Verdict};
+use phea_qft::verification::{SpecificationMargin, Verdict};
 
 use super::compared;
 use super::factored;
@@ -184,13 +184,7 @@ pub(crate) fn costs(view: &ProjectDesign) -> Document {
             significant(relaxation.relaxation_db, 3)
         ));
     }
-    let binding = limits(
-        view,
-        view.design
-            .binding
-            .iter()
-            .map(|one| (one.specification, one.frequency_rad_per_s, one.margin_db, &one.plant)),
-    );
+    let binding = limits(view, &view.design.binding);
     let touched = match view.options.objective {
         Objective::BestWorstMargin => "the worst margin, which is as large as the search made it",
         _ if view.options.reserve_db > 0.0 => "its limit with the reserve",
@@ -317,16 +311,15 @@ fn before_repair(view: &ProjectDesign) -> Option<&ProjectDesign> {
 /// The limits at which the smallest relaxation is found, with their plants.
 fn conflicts(view: &ProjectDesign) -> Table {
     let DesignStatus::Infeasible(relaxation) = &view.design.status else { return Table::default() };
-    let rows = relaxation.conflicts.iter();
-    limits(view, rows.map(|one| (one.specification, one.frequency_rad_per_s, one.margin_db, &one.plant)))
+    limits(view, &relaxation.conflicts)
 }
 
-fn limits<'a>(view: &ProjectDesign, rows: impl Iterator<Item = (usize, f64, f64, &'a PlantPoint)>) -> Table {
+fn limits(view: &ProjectDesign, margins: &[SpecificationMargin]) -> Table {
     let names = &view.designed.view.names;
     let mut found = Table::new(["specification", "rad/s", "margin"].into_iter().chain(names.headings()));
-    for (specification, frequency, margin, plant) in rows {
-        let name = view.named(specification).into();
-        let row = [name, Cell::frequency(frequency), Cell::margin(margin)];
+    for SpecificationMargin { specification, frequency_rad_per_s, margin_db, plant, .. } in margins {
+        let name = view.named(*specification).into();
+        let row = [name, Cell::frequency(*frequency_rad_per_s), Cell::margin(*margin_db)];
         found.row(row.into_iter().chain(names.cells(plant).into_iter().map(Cell::from)));
     }
     found

@@ -6,7 +6,7 @@ use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::portable;
 use phea_qft::closed_loop::Member;
 use phea_qft::specification::{Limit, Requirement, Specification};
-use phea_qft::verification::{SpecificationFinding, Verdict, WorstCase};
+use phea_qft::verification::{SpecificationFinding, SpecificationMargin, Verdict};
 
 use super::specifications::titled;
 use crate::answer::significant;
@@ -243,7 +243,7 @@ fn mark(
     problem: &RobustProblem,
     requirement: &Requirement,
     finding: &SpecificationFinding,
-    worst: &WorstCase,
+    worst: &SpecificationMargin,
 ) -> Option<MagnitudeMark> {
     let frequency = worst.frequency_rad_per_s;
     if !(frequency > 0.0 && frequency.is_finite()) {
@@ -270,7 +270,7 @@ fn mark(
 
 /// `19.2 dB over at 1304 rad/s`; a value that cannot be distinguished from the limit is at the
 /// limit.
-fn distance_words(worst: &WorstCase, word: &str) -> String {
+fn distance_words(worst: &SpecificationMargin, word: &str) -> String {
     const DISTINGUISHED_DB: f64 = 2e-3;
     let (size, place) = (worst.margin_db.abs(), frequency_words(worst.frequency_rad_per_s));
     if size < DISTINGUISHED_DB {

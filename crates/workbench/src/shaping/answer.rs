@@ -1,9 +1,10 @@
 use phea_qft::bound::Placement;
+use phea_qft::manual_shaping::DesignMargin;
 
 use super::ProjectShaping;
 use super::document::polar;
 use crate::answer::{Csv, Object, OutputFile};
-use crate::audit::{stability_reason, stable, verdict_key};
+use crate::audit::{self, stability_reason, stable, verdict_key};
 use crate::specification::kind_key;
 
 /// What `shape` says to programs.
@@ -26,14 +27,12 @@ pub(crate) fn body(view: &ProjectShaping) -> Object {
         .and(stable(stability))
         .with("stability", of_stability)
         .each("margins", &view.margins, |margin| {
+            let DesignMargin { worst, placement } = margin;
             Object::new()
-                .with("specification", margin.specification + 1)
-                .with("kind", kind(view, margin.specification))
-                .with("frequency_rad_per_s", margin.frequency_rad_per_s)
-                .with("margin_db", margin.margin_db)
-                .with("plant", view.names.named(&margin.plant))
-                .maybe("other_plant", margin.other.as_ref().map(|other| view.names.named(other)))
-                .and(placement(&margin.placement))
+                .with("specification", worst.specification + 1)
+                .with("kind", kind(view, worst.specification))
+                .and(audit::margin(&view.names, worst))
+                .and(self::placement(placement))
         })
         .each("loop", &view.points, |point| {
             let (decibels, degrees) = polar(point.nominal_loop);
@@ -71,9 +70,10 @@ pub const SHAPED_PROJECT: &str = "shaped.toml";
 pub fn files(view: &ProjectShaping) -> Vec<OutputFile> {
     let mut csv = Csv::new("specification,kind,frequency_rad_per_s,margin_db,allowed");
     for margin in &view.margins {
-        let (number, kind) = (margin.specification + 1, kind(view, margin.specification));
-        let allowed = matches!(margin.placement, Placement::Allowed { .. });
-        csv.row(&[&number, &kind, &margin.frequency_rad_per_s, &margin.margin_db, &allowed]);
+        let DesignMargin { worst, placement } = margin;
+        let (number, kind) = (worst.specification + 1, kind(view, worst.specification));
+        let allowed = matches!(placement, Placement::Allowed { .. });
+        csv.row(&[&number, &kind, &worst.frequency_rad_per_s, &worst.margin_db, &allowed]);
     }
     vec![OutputFile::new(SHAPED_PROJECT, view.saved.clone()), OutputFile::new("margins.csv", csv.text())]
 }

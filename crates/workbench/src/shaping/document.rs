@@ -58,12 +58,12 @@ pub(crate) fn document(view: &ProjectShaping) -> Document {
 
 fn margins(view: &ProjectShaping) -> Table {
     let row = |margin: &DesignMargin| {
-        let plants = [Some(&margin.plant), margin.other.as_ref()].into_iter().flatten();
-        let plants: Vec<String> = plants.map(|plant| view.names.text(plant)).collect();
+        let worst = &margin.worst;
+        let plants: Vec<String> = worst.plants().map(|plant| view.names.text(plant)).collect();
         [
-            Cell::frequency(margin.frequency_rad_per_s),
-            format!("{} {}", margin.specification + 1, view.problem.name_of(margin.specification)).into(),
-            Cell::margin(margin.margin_db),
+            Cell::frequency(worst.frequency_rad_per_s),
+            format!("{} {}", worst.specification + 1, view.problem.name_of(worst.specification)).into(),
+            Cell::margin(worst.margin_db),
             placement(&margin.placement).into(),
             plants.join("; ").into(),
         ]

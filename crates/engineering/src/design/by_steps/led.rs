@@ -5,7 +5,8 @@ use phea_dynamics::watch::{Watch, part, within};
 use phea_qft::audit::{audit_by, audit_of_known_plants_by};
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{Design, DesignProblem, DesignStatus, name_of};
-use phea_qft::loop_shaping::{Aim, DescentOptions, SampledMargin, Samples, SearchProblem, Shaping, descend};
+use phea_qft::loop_shaping::{Aim, DescentOptions, Samples, SearchProblem, Shaping, descend};
+use phea_qft::verification::SpecificationMargin;
 
 use super::shaping::{RESERVE_DB, StepShaping, StepWishes};
 use super::starts::SearchReach;
@@ -56,7 +57,7 @@ pub(super) struct AuditedStep {
     /// How far its steps are from what is aimed at, 1 where they reach it.
     excess: f64,
     /// The least margin to a limit of the samples.
-    pub(super) least: Option<SampledMargin>,
+    pub(super) least: Option<SpecificationMargin>,
 }
 
 /// The part of a family that is audited.

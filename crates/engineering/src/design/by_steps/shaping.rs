@@ -7,8 +7,8 @@ use phea_dynamics::time_response::{StepBaseline, step_metrics};
 use phea_qft::closed_loop::Compensation;
 use phea_qft::design::{Design, LoopDesignError};
 use phea_qft::family::Family;
-use phea_qft::loop_shaping::{Judgement, MarginRow, SampledMargin, SearchProblem, Shaping, Slopes};
-use phea_qft::verification::PlantPoint;
+use phea_qft::loop_shaping::{Judgement, MarginRow, SearchProblem, Shaping, Slopes};
+use phea_qft::verification::{PlantPoint, SpecificationMargin};
 
 use super::commands::StepCommands;
 use super::plants::{SteppedPlant, SteppedPlants};
@@ -162,7 +162,7 @@ impl StepShaping<'_> {
     }
 
     /// The least margin to a limit of the samples.
-    pub(super) fn least_of_limits(&self, x: &[f64]) -> Option<SampledMargin> {
+    pub(super) fn least_of_limits(&self, x: &[f64]) -> Option<SpecificationMargin> {
         let margins = self.shaping.margins(x).into_iter();
         margins.min_by(|one, other| one.margin_db.total_cmp(&other.margin_db))
     }
@@ -172,12 +172,10 @@ impl StepShaping<'_> {
     pub(super) fn take_worst(&mut self, design: &Design) -> Result<bool, DesignError> {
         let mut is_new = false;
         for finding in &design.audit.specifications {
-            let bands = finding.violations.iter().map(|band| &band.worst);
-            for case in finding.worst.iter().chain(&finding.interior).chain(bands) {
+            for case in finding.worst_margins() {
                 let frequency = case.frequency_rad_per_s;
                 if case.margin_db < RESERVE_DB && frequency > 0.0 && frequency.is_finite() {
-                    let plants: Vec<PlantPoint> =
-                        std::iter::once(&case.plant).chain(&case.other).cloned().collect();
+                    let plants: Vec<PlantPoint> = case.plants().cloned().collect();
                     is_new |= self.shaping.add(&plants, frequency).map_err(LoopDesignError::from)?;
                 }
             }

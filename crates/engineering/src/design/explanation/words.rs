@@ -5,7 +5,8 @@ use std::fmt::{Display, Formatter, Result};
 
 use num_complex::Complex64;
 
-use phea_qft::design::{Constraint, ConstraintPlace, Finding, Party};
+use phea_qft::design::{Constraint, ConstraintPlace, Finding};
+use phea_qft::verification::SpecificationMargin;
 
 use crate::audit::rounded;
 
@@ -47,12 +48,12 @@ impl Display for FindingWords<'_> {
                 rounded(complementary.limit),
                 relaxed(*relaxation_db)
             ),
-            Finding::Contradiction { frequency_rad_per_s, phase_rad, gain, parties, relaxation_db } => {
+            Finding::Contradiction { frequency_rad_per_s, phase_rad, gain, conflicts, relaxation_db } => {
                 contradiction(
                     f,
                     *frequency_rad_per_s,
                     [*phase_rad, *gain],
-                    (parties, name_of),
+                    (conflicts, name_of),
                     *relaxation_db,
                 )
             }
@@ -166,10 +167,10 @@ fn contradiction(
     f: &mut Formatter<'_>,
     frequency: f64,
     [phase_rad, gain]: [f64; 2],
-    (parties, name_of): (&[Party], Names<'_>),
+    (conflicts, name_of): (&[SpecificationMargin], Names<'_>),
     [low, high]: [f64; 2],
 ) -> Result {
-    let specifications: Vec<usize> = parties.iter().map(|party| party.specification).collect();
+    let specifications: Vec<usize> = conflicts.iter().map(|margin| margin.specification).collect();
     write!(f, "at {} rad/s the bounds leave no loop", rounded(frequency))?;
     if !high.is_finite() {
         return write!(f, ", however far the limits are relaxed");

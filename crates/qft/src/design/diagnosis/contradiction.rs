@@ -19,14 +19,14 @@ use phea_dynamics::portable;
 
 use super::candidate::PlantWithinLoop;
 use super::ceiling::{Ceilings, demanded};
-use super::finding::{Finding, Party};
+use super::finding::Finding;
 use super::interpolation::least_relaxation_db;
 use super::plane::BoundaryCells;
 use crate::bound::{Bound, Feasibility, FrequencyBounds, PhaseGrid, TemplateFill};
 use crate::closed_loop::MemberResponse;
 use crate::specification::{Limit, LoopResponse, Requirement, Specification};
 use crate::template::{Resolution, Template, TemplatePoint};
-use crate::verification::PlantPoint;
+use crate::verification::{PlantPoint, SpecificationMargin};
 
 /// Design frequencies that are examined.
 const FREQUENCIES_MAXIMUM: usize = 64;
@@ -171,7 +171,7 @@ impl<'a> DemandedPlants<'a> {
             frequency_rad_per_s: self.frequency,
             phase_rad,
             gain,
-            parties: nearest.map_or_else(Vec::new, |nearest| self.parties(nearest, high)),
+            conflicts: nearest.map_or_else(Vec::new, |nearest| self.conflicts(nearest, high)),
             relaxation_db: [low, high],
         };
         Some(([low, high], finding))
@@ -202,18 +202,23 @@ impl<'a> DemandedPlants<'a> {
         Some([phase, gain])
     }
 
-    /// Which specifications that loop violates, each with its worst plant.
-    fn parties(&self, [phase_rad, gain]: [f64; 2], relaxation_db: f64) -> Vec<Party> {
+    /// The specifications that this loop violates, each with its worst plant.
+    fn conflicts(&self, [phase_rad, gain]: [f64; 2], relaxation_db: f64) -> Vec<SpecificationMargin> {
         let nominal = Complex64::new(gain * portable::cos(phase_rad), gain * portable::sin(phase_rad));
-        let parties = self.specifications.iter().filter_map(|(index, specification)| {
-            let (party, rate) = self.party(*index, specification, nominal)?;
-            (party.margin_db < -0.5 * rate * relaxation_db).then_some(party)
+        let conflicts = self.specifications.iter().filter_map(|(index, specification)| {
+            let (margin, rate) = self.margin(*index, specification, nominal)?;
+            (margin.margin_db < -0.5 * rate * relaxation_db).then_some(margin)
         });
-        parties.collect()
+        conflicts.collect()
     }
 
     /// The worst margin of one specification, and how much 1 dB of relaxation improves it.
-    fn party(&self, index: usize, specification: &Specification, nominal: Complex64) -> Option<(Party, f64)> {
+    fn margin(
+        &self,
+        index: usize,
+        specification: &Specification,
+        nominal: Complex64,
+    ) -> Option<(SpecificationMargin, f64)> {
         let one = Complex64::new(1.0, 0.0);
         let size_db = |(point, plant): &(&'a PlantPoint, MemberResponse)| {
             let own = plant.plant * plant.sensor;
@@ -234,8 +239,14 @@ impl<'a> DemandedPlants<'a> {
         let spread = specification.requirement.is_tracking();
         let (size, other, rate) =
             if spread { (greatest.1 - least.1, Some(least.0.clone()), 2.0) } else { (greatest.1, None, 1.0) };
-        let margin_db = limit_db - size;
-        Some((Party { specification: index, plant: greatest.0.clone(), other, margin_db }, rate))
+        let margin = SpecificationMargin {
+            specification: index,
+            frequency_rad_per_s: self.frequency,
+            margin_db: limit_db - size,
+            plant: greatest.0.clone(),
+            other,
+        };
+        Some((margin, rate))
     }
 }
 

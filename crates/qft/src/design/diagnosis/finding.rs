@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-use crate::verification::PlantPoint;
+use crate::verification::{PlantPoint, SpecificationMargin};
 
 /// How much a finding says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -44,19 +44,6 @@ pub struct Constraint {
     pub crossover_rad_per_s: Option<f64>,
     /// The specifications that matter.
     pub specifications: Vec<usize>,
-}
-
-/// A specification that takes part in a contradiction, with the plant that it concerns.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Party {
-    /// Index of the specification.
-    pub specification: usize,
-    /// The plant with the least margin; for tracking, the one with the greatest |T|.
-    pub plant: PlantPoint,
-    /// For tracking, the plant with the least |T|.
-    pub other: Option<PlantPoint>,
-    /// Its margin where the contradiction is least, dB.
-    pub margin_db: f64,
 }
 
 /// One limit with the specification that sets it.
@@ -106,8 +93,8 @@ pub enum Finding {
         phase_rad: f64,
         /// Its gain there.
         gain: f64,
-        /// What conflicts with what there.
-        parties: Vec<Party>,
+        /// The margin of each specification in conflict there.
+        conflicts: Vec<SpecificationMargin>,
         /// Lower and upper bound on the least relaxation of every limit that would allow a loop at
         /// this frequency, dB.
         relaxation_db: [f64; 2],
@@ -220,8 +207,8 @@ impl Finding {
             Finding::SumBelowOne { sensitivity, complementary, .. } => {
                 vec![sensitivity.specification, complementary.specification]
             }
-            Finding::Contradiction { parties, .. } => {
-                parties.iter().map(|party| party.specification).collect()
+            Finding::Contradiction { conflicts, .. } => {
+                conflicts.iter().map(|margin| margin.specification).collect()
             }
             Finding::PoleOnTheAxis { complementary: limit, .. } | Finding::ZeroOnTheAxis { limit, .. } => {
                 vec![limit.specification]

@@ -11,7 +11,7 @@ use super::super::response::decibels;
 use super::super::scan::{Scan, ScannedPlant, WORTH_POLISHING};
 use super::super::search::{SearchOutcome, SearchTask, search};
 use super::super::start::{STARTS, interior_range, tasks};
-use super::super::{PlantPoint, SpecificationFinding};
+use super::super::{PlantPoint, SpecificationFinding, SpecificationMargin};
 use super::{AuditEffort, STAGE, SpecificationAudit, plant_at};
 use crate::family::{Extent, Family, UncertainFamily};
 use crate::kept_plants::KeptPlants;
@@ -71,11 +71,15 @@ impl SpecificationAudit<'_> {
                     let certain = member
                         .and_then(|member| self.evaluator.certain_margin_db(criterion, member, frequency));
                     cases.push(FoundMargin {
-                        margin_db,
+                        margin: SpecificationMargin {
+                            specification: number,
+                            frequency_rad_per_s: frequency,
+                            margin_db,
+                            plant: plant.point.clone(),
+                            other: None,
+                        },
                         certain_db: certain.unwrap_or(margin_db),
-                        frequency,
                         criteria: vec![criterion],
-                        points: vec![plant.point.clone()],
                         interior: true,
                     });
                 }
@@ -91,7 +95,7 @@ impl SpecificationAudit<'_> {
             tell(watch, STAGE, number, self.parts.len())?;
             self.look_at_cases(number);
             if part.spread {
-                let polished = self.polished_spread(part);
+                let polished = self.polished_spread(number, part);
                 if let Some(cases) = self.cases.get_mut(number) {
                     *cases = polished;
                 }
@@ -105,19 +109,19 @@ impl SpecificationAudit<'_> {
     /// worst.
     fn look_at_cases(&mut self, number: usize) {
         let Some(cases) = self.cases.get_mut(number) else { return };
-        sort_by_number(cases, |case| case.margin_db);
+        sort_by_number(cases, |case| case.margin.margin_db);
         let mut frequencies: Vec<f64> = Vec::new();
-        for case in cases.iter() {
-            let apart = |other: &f64| (case.frequency / other - 1.0).abs() > FREQUENCY_DISTANCE;
+        for frequency in cases.iter().map(|case| case.margin.frequency_rad_per_s) {
+            let apart = |other: &f64| (frequency / other - 1.0).abs() > FREQUENCY_DISTANCE;
             if frequencies.len() < FREQUENCIES && frequencies.iter().all(apart) {
-                frequencies.push(case.frequency);
-                self.scan.add_frequency(&self.evaluator, &self.plants, case.frequency);
+                frequencies.push(frequency);
+                self.scan.add_frequency(&self.evaluator, &self.plants, frequency);
             }
         }
     }
 
     /// The worst local minima of the margin of the spread, each polished over the whole family.
-    fn polished_spread(&mut self, part: SpecificationCriteria) -> Vec<FoundMargin> {
+    fn polished_spread(&mut self, number: usize, part: SpecificationCriteria) -> Vec<FoundMargin> {
         let envelope = finding::envelope(part, &self.scan);
         let mut cases = Vec::new();
         for bracket in finding::local_minima(&envelope).into_iter().take(STARTS) {
@@ -131,14 +135,9 @@ impl SpecificationAudit<'_> {
             let (logarithm, _) = minimum::between(margin, [low, high], start, FREQUENCY_TOLERANCE);
             let frequency = portable::exp(logarithm);
             let worst = self.scan.family_at(&self.evaluator, &self.plants, frequency);
-            cases.extend(part.combined(frequency, &worst).map(|point| FoundMargin {
-                margin_db: point.margin_db,
-                certain_db: point.certain_db,
-                frequency,
-                criteria: point.criteria,
-                points: finding::points(&self.plants, &point.plants),
-                interior: true,
-            }));
+            let point = part.combined(frequency, &worst);
+            let found = point.and_then(|point| point.found(number, &self.plants));
+            cases.extend(found.map(|found| FoundMargin { interior: true, ..found }));
         }
         cases
     }
@@ -230,7 +229,7 @@ impl SpecificationAudit<'_> {
     fn worst_known_db(&self, number: usize) -> f64 {
         let envelope = self.parts.get(number).map(|part| finding::envelope(*part, &self.scan));
         let of_plants = envelope.iter().flatten().map(|point| point.margin_db);
-        let cases = self.cases.get(number).into_iter().flatten().map(|case| case.margin_db);
+        let cases = self.cases.get(number).into_iter().flatten().map(|case| case.margin.margin_db);
         of_plants.chain(cases).fold(f64::INFINITY, f64::min)
     }
 
@@ -265,13 +264,18 @@ impl SpecificationAudit<'_> {
         }
         let Some(found) = found else { return };
         let inside = |[low, high]: [f64; 2]| low < found.frequency && found.frequency < high;
-        if let Some(cases) = self.cases.get_mut(number) {
+        let mut points = found.values.iter().cloned().map(PlantPoint::Parameters);
+        if let (Some(cases), Some(plant)) = (self.cases.get_mut(number), points.next()) {
             cases.push(FoundMargin {
-                margin_db: found.margin_db,
+                margin: SpecificationMargin {
+                    specification: number,
+                    frequency_rad_per_s: found.frequency,
+                    margin_db: found.margin_db,
+                    plant,
+                    other: points.next(),
+                },
                 certain_db: found.margin_db,
-                frequency: found.frequency,
                 criteria: task.criteria.clone(),
-                points: found.values.iter().cloned().map(PlantPoint::Parameters).collect(),
                 interior: task.range.is_some_and(inside),
             });
         }
@@ -297,6 +301,7 @@ impl SpecificationAudit<'_> {
             let joining = finding::Joining {
                 part,
                 family: self.problem.family,
+                index: number,
                 specification,
                 evaluator: &self.evaluator,
                 plants: &self.plants,
