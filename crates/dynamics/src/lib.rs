@@ -8,6 +8,7 @@
 //! Element -> Compensator -> Controller -> SampledController                    the controller
 //! System + InputSchedule + SimulationSettings -> simulate -> Trajectory, Outcome
 //! Plant -> Sensed -> CommandedPlant -> System                                  the closed loop
+//! f, ends, start -> x, f(x)                                                    the minimum of one variable
 //! residuals, derivatives -> Minimum -> Uncertainty                             what data determine
 //! recorded signals -> Blocks -> SpectralPoint                                  measured frequency responses
 //! ```
@@ -22,6 +23,7 @@ pub mod expression;
 pub mod frequency;
 pub mod least_squares;
 pub mod linear;
+pub mod minimum;
 pub mod order;
 pub mod pieces;
 pub mod portable;

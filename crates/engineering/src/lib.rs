@@ -28,7 +28,6 @@ pub mod design;
 pub mod family;
 mod followed;
 pub mod friction;
-mod golden_section;
 pub mod identify;
 pub mod impossible;
 mod impossible_steps;

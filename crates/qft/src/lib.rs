@@ -30,7 +30,6 @@ pub mod inner_loop;
 mod kept_plants;
 pub mod loop_shaping;
 pub mod manual_shaping;
-mod minimum;
 pub mod prefilter;
 pub mod proof;
 pub mod specification;

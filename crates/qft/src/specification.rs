@@ -3,7 +3,6 @@
 
 mod limit;
 mod margin;
-mod minimum;
 mod time_domain;
 
 use num_complex::Complex64;

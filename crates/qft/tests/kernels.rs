@@ -26,10 +26,6 @@ mod interval;
 mod kept_plants;
 #[path = "../src/specification/limit.rs"]
 mod limit;
-#[path = "../src/specification/minimum.rs"]
-mod minimum_of_a_limit;
-#[path = "../src/minimum.rs"]
-mod minimum_of_a_margin;
 #[path = "../src/design/stabilising/placement.rs"]
 mod placement;
 #[path = "../src/design/diagnosis/plane.rs"]

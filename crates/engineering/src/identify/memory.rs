@@ -9,6 +9,7 @@
 //! coefficients are fitted anew with it, until it stays.
 
 use phea_dynamics::least_squares::{Settings, loss};
+use phea_dynamics::minimum::golden_section;
 use phea_dynamics::portable;
 use phea_dynamics::watch::Watch;
 use phea_hydraulics::servovalve::TestInput;
@@ -18,7 +19,6 @@ use super::channels::Channel;
 use super::evidence::{DECISIVE, criteria, independent_share};
 use super::fit::{self, Fit};
 use super::recording::Recording;
-use crate::golden_section::least_between;
 
 /// Fits with other memories at most.
 const PASSES: usize = 6;
@@ -127,7 +127,7 @@ fn memories(fit: &Fit<'_>) -> Vec<Option<FirstMemory>> {
         let tried = (-TRIED / 2..=TRIED / 2).map(|place| (place, begun.loss(at(place))));
         let (place, _) = tried.min_by(|one, other| one.1.total_cmp(&other.1))?;
         let near = [at(place - 1).max(-half), at(place + 1).min(half)];
-        let memory = least_between(near, SECTIONS, |memory| begun.loss(memory));
+        let memory = golden_section(near, SECTIONS, |memory| begun.loss(memory));
         let rows = begun.inputs.len() as f64;
         let gain = 2.0 * share * (begun.loss(0.0) - begun.loss(memory)) - portable::ln(rows.max(1.0));
         (rows > 0.0).then_some(FirstMemory { memory, gain })

@@ -1,13 +1,13 @@
 //! Compliance from a slow rise of the pressure.
 
 use nalgebra::{DMatrix, DVector};
+use phea_dynamics::minimum::golden_section;
 use phea_dynamics::order::ends;
 use phea_dynamics::portable::{exp, ln};
 use phea_hydraulics::fluid::EntrainedAir;
 
 use super::rise_air::AeratedOil;
 use super::rise_noise::{Whitened, whitened};
-use crate::golden_section::least_between;
 
 /// Where a displaced volume is from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -255,7 +255,7 @@ fn fitted(record: &RiseRecord, pressures: [f64; 2], model: RiseModel) -> Option<
     let step = (most - least) / coarse as f64;
     let grid = (0..=coarse).map(|index| least + step * index as f64);
     let best = grid.map(|ratio| (ratio, cost(ratio))).min_by(|one, other| one.1.total_cmp(&other.1))?.0;
-    let ratio = least_between([best - step, best + step], fine, cost);
+    let ratio = golden_section([best - step, best + step], fine, cost);
     let solved = at(ratio)?;
     let of_first = |column: &Vec<f64>| column.first().copied().unwrap_or(0.0);
     let (volume, others) = columns.split_last()?;

@@ -3,11 +3,11 @@
 
 use phea_dynamics::controller::InnerFeedback;
 use phea_dynamics::linear::LinearError;
+use phea_dynamics::minimum;
 use phea_dynamics::portable;
 
 use super::limits::PlantsBehind;
 use super::{FoundInnerFeedback, InnerLoopProblem, InnerLoopReach};
-use crate::minimum::between;
 
 /// Corners of the grid.
 const CORNERS: usize = 17;
@@ -76,7 +76,7 @@ fn best_of(
     }
     let ends = [(start.0 - cell).max(low), (start.0 + cell).min(high)];
     let mut failed = None;
-    between(
+    minimum::between(
         |corner| match at(corner) {
             Ok(value) => -value,
             Err(error) => {
@@ -119,7 +119,7 @@ fn best_gain(
         }
     }
     let ends = [start.0 - cell, (start.0 + cell).min(most)];
-    let (gain, _) = between(|gain| -value(gain), ends, (start.0, -start.1), CELL_SHARE * cell);
+    let (gain, _) = minimum::between(|gain| -value(gain), ends, (start.0, -start.1), CELL_SHARE * cell);
     let feedback = InnerFeedback { gain: portable::exp(gain), ..unit };
     Ok(shaped.reach(feedback.gain).map(|reach| (feedback, reach)))
 }

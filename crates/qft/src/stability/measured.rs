@@ -12,12 +12,12 @@ mod low_end;
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
+use phea_dynamics::minimum;
 use phea_dynamics::portable;
 
 use super::{Approach, CriticalDelay, Instability, Irresolution, MemberStability, StabilityStatus};
 use crate::closed_loop::{Compensation, Member};
 use crate::family::MeasuredPlant;
-use crate::minimum::between;
 use low_end::{LowEnd, opening};
 
 /// Largest turn between two points, rad.
@@ -263,7 +263,7 @@ impl<'a> OpenLoop<'a> {
         let at = |frequency: f64| self.at(frequency).map_or(f64::INFINITY, |point| point.distance());
         let start = (nearest.frequency, least.distance);
         let ends = [before.frequency, after.frequency];
-        let (frequency_rad_per_s, found) = between(at, ends, start, POLISHED * nearest.frequency);
+        let (frequency_rad_per_s, found) = minimum::between(at, ends, start, POLISHED * nearest.frequency);
         if found < least.distance { Approach { distance: found, frequency_rad_per_s } } else { least }
     }
 

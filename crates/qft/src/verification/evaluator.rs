@@ -5,6 +5,7 @@ use std::cell::Cell;
 
 use num_complex::Complex64;
 use phea_dynamics::linear::Polynomial;
+use phea_dynamics::minimum;
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::UncertainPlant;
 
@@ -13,7 +14,6 @@ use super::criterion::Criterion;
 use super::response::{LoopAround, LoopAt, decibels};
 use crate::closed_loop::{Compensation, Member, TrialPlant};
 use crate::kept_plants::KeptPlants;
-use crate::minimum;
 
 /// Relative accuracy of polished frequencies.
 pub(super) const FREQUENCY_TOLERANCE: f64 = 1e-7;

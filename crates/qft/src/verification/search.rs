@@ -5,12 +5,11 @@ mod resonance;
 
 use std::cell::Cell;
 
-use phea_dynamics::portable;
+use phea_dynamics::{minimum, portable};
 
 use super::evaluator::{Evaluator, FREQUENCY_TOLERANCE};
 use crate::closed_loop::TrialPlant;
 use crate::family::UncertainFamily;
-use crate::minimum::{self, At};
 
 /// Largest number of sweeps over the coordinates.
 const SWEEPS_MAXIMUM: usize = 20;
@@ -175,7 +174,7 @@ impl MarginDescent<'_> {
     }
 
     /// The margin at the frequency nearest to this one at which it has a minimum: (rad/s, dB).
-    fn margin(&self, members: &[Option<TrialPlant>], frequency: f64) -> Option<At> {
+    fn margin(&self, members: &[Option<TrialPlant>], frequency: f64) -> Option<(f64, f64)> {
         let at = |frequency: f64| {
             let mut margins = self.task.criteria.iter().zip(members);
             let sum = margins.try_fold(0.0, |sum, (&criterion, member)| {

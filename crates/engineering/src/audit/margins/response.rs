@@ -2,10 +2,10 @@
 
 use num_complex::Complex64;
 use phea_dynamics::frequency::{GainMargin, Margins, ModulusMargin, PhaseMargin, logarithmic_grid};
+use phea_dynamics::minimum::golden_section;
 use phea_dynamics::portable::{argument, magnitude};
 use phea_qft::closed_loop::Member;
 
-use crate::golden_section::least_between;
 use crate::robust::RobustProblem;
 
 /// Frequencies of an even grid, before it is refined.
@@ -13,7 +13,7 @@ const GRID_POINTS: usize = 300;
 /// Turn of L from one frequency to the next, rad; where |L| is not small.
 const TURN_RAD: f64 = 0.3;
 const SMALL_GAIN: f64 = 1e-3;
-/// Thirds by which the place of the least |1 + L| is narrowed.
+/// Golden sections by which the place of the least |1 + L| is narrowed.
 const REFINEMENTS: usize = 50;
 /// Ratio of two frequencies between which no more are taken.
 const CLOSEST: f64 = 1.0 + 1e-6;
@@ -76,7 +76,7 @@ fn nearest(points: &[KnownPoint], at: &dyn Fn(f64) -> Option<KnownPoint>) -> Opt
     let ends =
         [least.saturating_sub(1), least + 1].map(|index| points.get(index).map_or(own.0, |point| point.0));
     let of = |frequency: f64| at(frequency).as_ref().map_or(f64::INFINITY, distance);
-    let refined = at(least_between(ends, REFINEMENTS, of)).filter(|point| distance(point) < distance(&own));
+    let refined = at(golden_section(ends, REFINEMENTS, of)).filter(|point| distance(point) < distance(&own));
     let found = refined.unwrap_or(own);
     Some((found.0, distance(&found)))
 }

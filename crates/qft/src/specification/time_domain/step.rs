@@ -1,12 +1,15 @@
 use num_complex::Complex64;
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
+use phea_dynamics::minimum;
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable::{ln, magnitude};
 use phea_dynamics::time_response::{Settling, step_response};
 
-use super::super::minimum::minimum_between;
 use super::TimeDomainError;
 use super::check::{Reached, TOLERANCE};
+
+/// Accuracy of the time of an extreme, relative to that between two samples.
+const EXTREME_TOLERANCE: f64 = 1e-8;
 
 /// Overshoot and settling time of the unit step response of any stable continuous function,
 /// measured against one.
@@ -93,8 +96,10 @@ impl Response {
 
     /// The extreme between the neighbours of a sample: a maximum for direction 1, a minimum for -1.
     fn extreme_near(&self, index: usize, direction: f64) -> (f64, f64) {
-        let (low, high) = (self.at(index.saturating_sub(1)).0, self.at(index + 1).0);
-        let (time, lowest) = minimum_between(low, high, |time| -direction * self.value(time));
+        let (time, value) = self.at(index);
+        let ends = [self.at(index.saturating_sub(1)).0, self.at(index + 1).0];
+        let (start, tolerance) = ((time, -direction * value), EXTREME_TOLERANCE * (ends[1] - ends[0]));
+        let (time, lowest) = minimum::between(|time| -direction * self.value(time), ends, start, tolerance);
         (time, -direction * lowest)
     }
 

@@ -1,5 +1,6 @@
 //! What is done in each stage of an audit.
 
+use phea_dynamics::minimum;
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch, part, tell};
@@ -15,7 +16,6 @@ use super::super::{PlantPoint, SpecificationFinding, SpecificationMargin};
 use super::{AuditEffort, STAGE, SpecificationAudit, plant_at};
 use crate::family::{Extent, Family, UncertainFamily};
 use crate::kept_plants::KeptPlants;
-use crate::minimum;
 
 /// Number of cases of each specification whose frequencies are examined for the whole family.
 const FREQUENCIES: usize = 8;

@@ -6,9 +6,9 @@
 //! halved; from the resonance, a share follows its minimum as the frequency does in other searches.
 
 use num_complex::Complex64;
+use phea_dynamics::minimum;
 
 use super::{MarginDescent, SearchCoordinate, SearchPoint, better};
-use crate::minimum;
 use crate::verification::scan::{HALVINGS, turns};
 
 /// Initial number of intervals of a line.

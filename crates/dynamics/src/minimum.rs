@@ -1,15 +1,40 @@
 //! Minima of functions of one variable.
+//!
+//! A point of a function is (x, f(x)); an f(x) that is NaN counts as infinite.
 
-/// Golden section of an interval, as a share of its longer part.
-const GOLDEN: f64 = 0.381_966_011_250_105_1;
+/// The parts of an interval divided by the golden section, (3 - sqrt(5))/2 and (sqrt(5) - 1)/2 of
+/// it.
+const SMALLER_PART: f64 = 0.381_966_011_250_105_1;
+const LARGER_PART: f64 = 0.618_033_988_749_895;
 const STEPS_MAXIMUM: usize = 80;
 
-/// A point and the value there.
-pub(crate) type At = (f64, f64);
-
-/// A local minimum between two ends, from a point between them: parabolas through the last points,
-/// golden sections where they fail (Brent 1973, chapter 5). NaN counts as infinite.
-pub(crate) fn between<F: FnMut(f64) -> f64>(mut f: F, ends: [f64; 2], start: At, tolerance: f64) -> At {
+/// The local minimum between two ends, from a point of the function between them, by Brent's
+/// method: parabolas through the last points, golden sections where these fail.
+///
+/// ```text
+/// x <- x + (p d3 - q d2)/(2 (p - q)),   d2 = x2 - x,   d3 = x3 - x,   p = (f(x2) - f(x)) d3,   q = (f(x3) - f(x)) d2
+/// ```
+///
+/// Its x is within twice the tolerance of a local minimum, at most 80 values of f later; where f
+/// rises to both sides of its least value, of that one. It is never worse than the start. f is
+/// evaluated at most a tolerance beyond the ends. Near the minimum f is flat: a tolerance below
+/// sqrt(2 e/f''), e being the rounding error of f, gains nothing. Source: Brent 1973, chapter 5.
+///
+/// # Example
+/// x - ln x is least at 1, where it is 1:
+/// ```
+/// use phea_dynamics::minimum;
+///
+/// let f = |x: f64| x - x.ln();
+/// let (x, least) = minimum::between(f, [0.1, 4.0], (2.0, f(2.0)), 1e-7);
+/// assert!((x - 1.0).abs() < 2e-7 && (least - 1.0).abs() < 1e-13);
+/// ```
+pub fn between(
+    mut f: impl FnMut(f64) -> f64,
+    ends: [f64; 2],
+    start: (f64, f64),
+    tolerance: f64,
+) -> (f64, f64) {
     let [mut low, mut high] = ends;
     let (mut best, mut second, mut third) = (start, start, start);
     let (mut step, mut before_last): (f64, f64) = (0.0, 0.0);
@@ -26,7 +51,7 @@ pub(crate) fn between<F: FnMut(f64) -> f64>(mut f: F, ends: [f64; 2], start: At,
             Some(offset) => (step, offset),
             None => {
                 let longer = if best.0 < middle { high - best.0 } else { low - best.0 };
-                (longer, GOLDEN * longer)
+                (longer, SMALLER_PART * longer)
             }
         };
         let moved = if step.abs() >= tolerance { step } else { tolerance.copysign(step) };
@@ -48,7 +73,7 @@ pub(crate) fn between<F: FnMut(f64) -> f64>(mut f: F, ends: [f64; 2], start: At,
 }
 
 /// From the best point to the vertex of the parabola through three.
-fn parabola(best: At, second: At, third: At) -> Option<f64> {
+fn parabola(best: (f64, f64), second: (f64, f64), third: (f64, f64)) -> Option<f64> {
     let (x, y) = (second.0 - best.0, third.0 - best.0);
     let (p, q) = ((second.1 - best.1) * y, (third.1 - best.1) * x);
     let curvature = p - q;
@@ -56,15 +81,26 @@ fn parabola(best: At, second: At, third: At) -> Option<f64> {
     (offset.is_finite() && curvature != 0.0).then_some(offset)
 }
 
-/// Downhill from a point, in steps that double, until the function rises or an end is met; then the
-/// minimum between.
-pub(super) fn downhill<F: FnMut(f64) -> f64>(
-    mut f: F,
+/// The local minimum downhill from a point: in steps that double until the function rises or an end
+/// is met, then [`between`] the last ones.
+///
+/// # Example
+/// From 0 the sine falls to -pi/2:
+/// ```
+/// use std::f64::consts::FRAC_PI_2;
+///
+/// use phea_dynamics::minimum;
+///
+/// let (x, least) = minimum::downhill(f64::sin, [-10.0, 10.0], (0.0, 0.0), 0.1, 1e-7);
+/// assert!((x + FRAC_PI_2).abs() < 2e-7 && (least + 1.0).abs() < 1e-13);
+/// ```
+pub fn downhill(
+    mut f: impl FnMut(f64) -> f64,
     ends: [f64; 2],
-    start: At,
+    start: (f64, f64),
     first_step: f64,
     tolerance: f64,
-) -> At {
+) -> (f64, f64) {
     let clamped = |x: f64| x.max(ends[0]).min(ends[1]);
     let mut at = |x: f64| (x, f(x));
     let (right, left) = (at(clamped(start.0 + first_step)), at(clamped(start.0 - first_step)));
@@ -85,6 +121,32 @@ pub(super) fn downhill<F: FnMut(f64) -> f64>(
     between(f, [behind.0.min(ahead.0), behind.0.max(ahead.0)], here, tolerance)
 }
 
+/// The x between two ends at which a function is least that falls and then rises, by the golden
+/// section.
+///
+/// ```text
+/// |x - x*| <= (high - low)/2 * 0.618^steps
+/// ```
+///
+/// It takes two values of f for each step, and none to begin with; [`between`] takes fewer, where a
+/// point of the function is known.
+///
+/// # Example
+/// x - ln x is least at 1:
+/// ```
+/// use phea_dynamics::minimum::golden_section;
+///
+/// let x = golden_section([0.1, 4.0], 30, |x| x - x.ln());
+/// assert!((x - 1.0).abs() < 1.1e-6);
+/// ```
+pub fn golden_section([mut low, mut high]: [f64; 2], steps: usize, f: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..steps {
+        let [left, right] = [high - LARGER_PART * (high - low), low + LARGER_PART * (high - low)];
+        if f(left) < f(right) { high = right } else { low = left }
+    }
+    f64::midpoint(low, high)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -100,6 +162,22 @@ mod tests {
         assert!((found.0 - 0.3).abs() < 1e-7 && count < 12, "{found:?} {count}");
         let found = between(|x: f64| (x - 0.3).abs(), [-1.0, 2.0], (0.0, 0.3), 1e-8);
         assert!((found.0 - 0.3).abs() < 1e-7);
+    }
+
+    /// The vertex of a parabola within the ends, and the end nearer to one beyond them, from either
+    /// end.
+    #[test]
+    fn the_least_is_the_vertex_or_an_end() {
+        for (vertex, least) in [(0.3, 0.3), (-2.0, -1.0), (5.0, 4.0)] {
+            for start in [-1.0, 4.0] {
+                let f = |x: f64| (x - vertex) * (x - vertex);
+                let found = between(f, [-1.0, 4.0], (start, f(start)), 1e-6);
+                assert!((found.0 - least).abs() < 2e-6, "{vertex} from {start}: {found:?}");
+            }
+            let found = golden_section([-1.0, 4.0], 30, |x| (x - vertex) * (x - vertex));
+            // half of 5 times 0.618 to the power of 30, and as much again
+            assert!((found - least).abs() < 2.7e-6, "{vertex}: {found}");
+        }
     }
 
     #[test]
