@@ -1,7 +1,6 @@
 //! The audit of a given controller: family, loop and specifications from the project, findings from
 //! `phea_qft`, and their wording.
 
-mod alone;
 mod dead_time;
 mod in_time;
 mod margins;
@@ -9,6 +8,7 @@ mod nominal;
 mod prefilter;
 mod proven;
 mod remark;
+mod rig_outside_family;
 mod signal_noise;
 mod stability;
 mod whole_loop;
@@ -18,7 +18,6 @@ pub(crate) use words::rounded;
 pub use words::{evidence_key, evidence_sentence, finding_sentence, place_words};
 
 pub use crate::common_position::CommonPosition;
-pub(crate) use alone::{caveat as caveat_of_rig, unexamined as unexamined_rig};
 pub use dead_time::LoopDeadTime;
 pub use in_time::{TimeFinding, TimeOutcome, Unexamined, WorstStep};
 pub(crate) use in_time::{VisitedPlant, spread_over, steps_of_members, visited, worst_beside};
@@ -29,6 +28,7 @@ pub use nominal::{Crossovers, NominalMargins};
 pub use prefilter::PrefilterGain;
 pub use proven::{prove_audit, standing_word, try_to_prove, why_not_proven};
 pub use remark::remark_sentences;
+pub(crate) use rig_outside_family::{caveat as caveat_of_rig, unexamined as unexamined_rig};
 pub use stability::{infinity_sentence, stability_reason, stability_sentence};
 pub use whole_loop::DelayedPaths;
 pub use words::{
