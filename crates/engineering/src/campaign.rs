@@ -15,11 +15,11 @@ mod plan;
 mod prepared;
 mod queue;
 mod range;
+mod remaining_runs;
 mod required;
 mod row;
 mod spread;
 mod statistics;
-mod supply;
 mod varied;
 mod workers;
 

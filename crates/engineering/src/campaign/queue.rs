@@ -13,7 +13,7 @@ use phea_machine::{Control, Fleet, Lanewise, Watcher};
 use super::plan::Plan;
 use super::prepared::{DrivenPass, Prepared, Watched, prepared};
 use super::row::{Row, RowOutcome};
-use super::supply::RemainingRuns;
+use super::remaining_runs::RemainingRuns;
 use crate::simulate::{Repetition, SimulateError, repeated};
 
 use super::CampaignError;
