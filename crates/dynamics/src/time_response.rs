@@ -17,19 +17,19 @@
 
 mod cosine_sums;
 mod delayed_loop;
+mod linear_response;
 mod of_frequency_response;
 mod sampled_loop;
 mod second_order;
 mod signal;
-mod simulation;
 mod step_metrics;
 
 pub use delayed_loop::delayed_loop_step;
+pub use linear_response::{forced_response, forced_response_of_states, step_response};
 pub use of_frequency_response::{step_of_frequency_response, weights_of_frequency_response};
 pub use sampled_loop::sampled_loop_step;
 pub use second_order::{SecondOrder, SettlingRule, damping_ratio_from_overshoot};
 pub use signal::{Interpolation, SampledSignal, uniform_times};
-pub use simulation::{forced_response, forced_response_of_states, step_response};
 pub use step_metrics::{Settling, StepBaseline, StepMetrics, step_metrics};
 
 use crate::linear::LinearError;
