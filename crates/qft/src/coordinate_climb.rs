@@ -1,7 +1,8 @@
-//! The largest value of a function over the unit box, from one start.
+//! The largest value of a function over the unit box, climbed to along its coordinates from one
+//! start.
 
 /// The first step of a climb, as a share of the box.
-pub(super) const LONGEST_STEP: f64 = 0.25;
+pub(crate) const LONGEST_STEP: f64 = 0.25;
 /// The smallest step of a climb, as a share of the box.
 const SMALLEST_STEP: f64 = 1e-7;
 /// The smallest step of a climb that has ended in a corner.
@@ -20,12 +21,12 @@ struct Climb<'a> {
 /// Climbs to a local maximum: along one coordinate after the other, to the better of two neighbours
 /// or to the top of the parabola over three values, with steps that shrink once they are longer
 /// than the distance moved.
-pub(super) fn climb(start: &[f64], objective: &mut dyn FnMut(&[f64]) -> f64) -> (Vec<f64>, f64) {
+pub(crate) fn climb(start: &[f64], objective: &mut dyn FnMut(&[f64]) -> f64) -> (Vec<f64>, f64) {
     climb_by(LONGEST_STEP, start, objective)
 }
 
 /// The same with another first step.
-pub(super) fn climb_by(
+pub(crate) fn climb_by(
     first_step: f64,
     start: &[f64],
     objective: &mut dyn FnMut(&[f64]) -> f64,

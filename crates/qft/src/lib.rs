@@ -24,6 +24,7 @@
 pub mod audit;
 pub mod bound;
 pub mod closed_loop;
+mod coordinate_climb;
 pub mod design;
 pub mod family;
 pub mod inner_loop;

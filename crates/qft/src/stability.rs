@@ -29,7 +29,6 @@ mod product;
 mod record;
 mod resampled;
 mod responding;
-mod search;
 
 use phea_dynamics::linear::LinearError;
 

@@ -8,6 +8,8 @@ mod descent;
 mod ceiling;
 #[path = "../src/stability/characteristic.rs"]
 mod characteristic;
+#[path = "../src/coordinate_climb.rs"]
+mod coordinate_climb;
 #[path = "../src/bound/covering.rs"]
 mod covering;
 #[path = "../src/manual_shaping/edit.rs"]
@@ -38,8 +40,6 @@ mod product;
 mod prominent;
 #[path = "../src/bound/quadratic.rs"]
 mod quadratic;
-#[path = "../src/stability/search.rs"]
-mod search_of_a_box;
 #[path = "../src/loop_shaping/start/spread.rs"]
 mod spread;
 #[path = "../src/loop_shaping/subproblem.rs"]

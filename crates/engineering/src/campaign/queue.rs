@@ -12,8 +12,8 @@ use phea_machine::{Control, Fleet, Lanewise, Watcher};
 
 use super::plan::Plan;
 use super::prepared::{DrivenPass, Prepared, Watched, prepared};
-use super::row::{Row, RowOutcome};
 use super::remaining_runs::RemainingRuns;
+use super::row::{Row, RowOutcome};
 use crate::simulate::{Repetition, SimulateError, repeated};
 
 use super::CampaignError;

@@ -23,8 +23,8 @@ use phea_dynamics::scalar::{Interval, Scalar};
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
 
 use super::finding::SearchedInfinity;
-use super::search::climb;
 use crate::closed_loop::Compensation;
+use crate::coordinate_climb::climb;
 use crate::family::{UncertainFamily, corners};
 use crate::verdict::PlantPoint;
 

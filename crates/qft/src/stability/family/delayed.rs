@@ -7,10 +7,10 @@ use phea_dynamics::watch::{Stopped, Watch, part, tell};
 use super::judged::JudgedFamily;
 use super::{STAGE, STARTS, StabilityAudit};
 use crate::closed_loop::Compensation;
+use crate::coordinate_climb::climb;
 use crate::family::{Extent, Family, UncertainFamily};
 use crate::kept_plants::KeptPlants;
 use crate::stability::characteristic::FeedbackPath;
-use crate::stability::search::climb;
 use crate::stability::{CriticalDelay, DelayMargin, StabilityStatus, of_member, resampled};
 use crate::verdict::PlantPoint;
 

@@ -4,12 +4,12 @@
 use phea_dynamics::linear::LinearError;
 
 use crate::closed_loop::{Compensation, Member};
+use crate::coordinate_climb::climb_by;
 use crate::family::Family;
 use crate::kept_plants::KeptPlants;
 use crate::stability::badness::Badness;
 use crate::stability::characteristic::FeedbackPath;
 use crate::stability::responding::PoleCounting;
-use crate::stability::search::climb_by;
 use crate::stability::{Irresolution, MemberStability, characteristic, of_member, responding};
 use crate::verdict::PlantPoint;
 
