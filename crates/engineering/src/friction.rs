@@ -34,7 +34,7 @@ pub use reading::{FrictionRecording, KnownCylinder, friction_recordings, recorde
 pub use reasons::{ROWS_OF_RINGING, UntoldFriction};
 pub use shaking::ShakenRows;
 pub use shown::{PressedCurve, SteadyPoint};
-pub use told::FrictionEstimate;
+pub use told::OpenCoefficient;
 pub use varying::VaryingVelocity;
 
 use phea_dynamics::least_squares::{Ending, Minimum};
@@ -42,6 +42,7 @@ use phea_dynamics::watch::{Stopped, Watch};
 use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, LuGre, Stribeck};
 
 use self::problem::{FrictionProblem, KeptShapes};
+use crate::estimate::Estimate;
 use crate::identify::IdentifyError;
 use crate::quantity::{VELOCITY, display};
 
@@ -78,17 +79,17 @@ pub struct FrictionIdentification {
     pub shakes: Vec<ShakenRows>,
     /// Each coefficient, in the order of [`FRICTION_NAMES`]; where friction differs by direction,
     /// those of extending.
-    pub estimates: [FrictionEstimate; BOTH_WAYS],
+    pub estimates: [Result<Estimate, OpenCoefficient>; BOTH_WAYS],
     /// Levels of retracting, in the order of [`RETRACTING_NAMES`]; `None` where friction is the
     /// same both ways.
-    pub retracting: Option<[FrictionEstimate; FRICTION_COEFFICIENTS - BOTH_WAYS]>,
+    pub retracting: Option<[Result<Estimate, OpenCoefficient>; FRICTION_COEFFICIENTS - BOTH_WAYS]>,
     /// Comparison of one friction with one for each direction; `None` where nothing slides in one.
     pub evidence: Option<DirectionEvidence>,
     /// The friction of the minimum, with numbers for what is open.
     pub lugre: LuGre,
     /// N, that the instruments show without friction; `None` where the recordings go one way, and
     /// where friction differs by direction.
-    pub zero: Option<FrictionEstimate>,
+    pub zero: Option<Estimate>,
     /// N, root mean square of what is left of the force, each block as one row; and m of the
     /// position of what was pressed.
     pub residual_rms: [Option<f64>; 2],

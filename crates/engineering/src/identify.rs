@@ -37,7 +37,7 @@ pub use joint::{COVERAGE, JointRegion, JointRegionError, SMALLEST_EFFECT, joint_
 pub use misfit::{Misfit, MisfitPlace};
 pub use reading::recordings;
 pub use recording::{RecordedSignal, Recording, SignalKind, TestBranch};
-pub use simple::{CurveReading, NullMethod, NullReading, SimpleCalculations};
+pub use simple::{NullMethod, NullReading, SimpleCalculations};
 pub use terms::{TermEvidence, ValveTerm};
 pub use told::Untold;
 pub use warm::TestOil;
@@ -50,6 +50,7 @@ use phea_hydraulics::servovalve::{
 
 use self::fit::Fit;
 use self::variables::Variables;
+use crate::estimate::Estimate;
 use crate::project::{Project, RatedFlow, Refusal, ValveCoefficients};
 
 /// Names of the coefficients, in order, and their units.
@@ -188,8 +189,8 @@ pub struct Identification {
     pub recordings: Vec<Recording>,
     /// Its coefficients.
     pub coefficients: StaticCoefficients,
-    /// 95 % confidence interval of each, linearised; `None` where the data do not determine it.
-    pub intervals: [Option<[f64; 2]>; STATIC_COEFFICIENTS],
+    /// Each of them with its linearised interval; `None` where the data do not determine it.
+    pub estimates: [Option<Estimate>; STATIC_COEFFICIENTS],
     /// Standard deviation of each, in its own unit; infinite where nothing depends on it.
     pub deviations: [f64; STATIC_COEFFICIENTS],
     /// Intervals by the bootstrap, if requested.
@@ -334,13 +335,13 @@ pub fn identify(
     let shared = instruments::shared_changes(&found.together, &found.minimum.variables, oil.as_ref());
     let told = intervals::told(&found.minimum.linearised, (&groups, &shared), &variables, &coefficients);
     let signals = found.signals_with(&instruments::without_errors(&found.minimum.linearised, &shared));
-    let mut intervals = intervals::intervals(&variables, &coefficients, &told.deviations);
-    intervals::lowered_tare_flow(&mut intervals, &recordings, &signals);
+    let mut estimates = intervals::estimates(&variables, &coefficients, &told.deviations);
+    intervals::lowered_tare_flow(&mut estimates, &recordings, &signals);
     let mut deviations = variables.scales(&coefficients);
     for (scale, deviation) in deviations.iter_mut().zip(&told.deviations) {
         *scale = if deviation.is_finite() { *scale * deviation } else { f64::INFINITY };
     }
-    let usual = usual(&coefficients, &intervals, &first_guess);
+    let usual = usual(&coefficients, &estimates, &first_guess);
     let bootstrap = match search.bootstrap {
         0 => None,
         repetitions => Some(bootstrap::bootstrap(&found, repetitions, search.seed, watch)?),
@@ -349,7 +350,7 @@ pub fn identify(
     let recordings = found.together.recordings.to_vec();
     Ok(Identification {
         coefficients,
-        intervals,
+        estimates,
         deviations,
         bootstrap,
         untold: told::untold(&told, &usual, &variables.scales(&usual), (&recordings, &tested)),
@@ -374,12 +375,12 @@ pub fn identify(
 /// anywhere, and has its usual value.
 fn usual(
     coefficients: &StaticCoefficients,
-    intervals: &[Option<[f64; 2]>; STATIC_COEFFICIENTS],
+    estimates: &[Option<Estimate>; STATIC_COEFFICIENTS],
     first_guess: &StaticCoefficients,
 ) -> StaticCoefficients {
     let mut usual = coefficients.to_array();
-    for ((number, interval), start) in usual.iter_mut().zip(intervals).zip(first_guess.to_array()) {
-        *number = if interval.is_some() { *number } else { start };
+    for ((number, estimate), start) in usual.iter_mut().zip(estimates).zip(first_guess.to_array()) {
+        *number = if estimate.is_some() { *number } else { start };
     }
     StaticCoefficients::from_array(usual)
 }

@@ -25,6 +25,7 @@ mod common_position;
 pub mod csv;
 pub mod derived;
 pub mod design;
+pub mod estimate;
 pub mod family;
 mod followed;
 pub mod friction;

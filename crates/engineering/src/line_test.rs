@@ -21,7 +21,7 @@ mod rise_noise;
 mod shaken;
 mod stand;
 
-pub use found::{LineIdentification, LineNumber, Undetermined, identify_line};
+pub use found::{LineIdentification, Undetermined, identify_line};
 pub use known::KnownLine;
 pub use misfit::LineMisfit;
 pub use reading::{LineRecord, line_records};

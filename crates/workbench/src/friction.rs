@@ -15,13 +15,14 @@ pub(crate) use figures::pictures;
 pub use files::files;
 
 use crate::answer::significant;
+use crate::estimate::Estimate;
 use crate::project::DeclaredMisfit;
 use crate::quantity::{DisplayUnit, TIME, VELOCITY, display};
 
 /// Reasons for which a coefficient is not determined, in words.
-pub(crate) fn because(estimate: &FrictionEstimate) -> Option<String> {
-    let reasons: Vec<String> = estimate.untold.iter().map(|reason| in_words(*reason)).collect();
-    (!reasons.is_empty()).then(|| reasons.join("; "))
+pub(crate) fn because(open: &OpenCoefficient) -> String {
+    let reasons: Vec<String> = open.reasons.iter().map(|reason| in_words(*reason)).collect();
+    reasons.join("; ")
 }
 
 fn in_words(reason: UntoldFriction) -> String {
@@ -65,7 +66,7 @@ fn in_words(reason: UntoldFriction) -> String {
 /// Each coefficient with the path of its key below `[cylinder.friction]`, and its unit.
 pub(crate) fn coefficients(
     found: &FrictionIdentification,
-) -> impl Iterator<Item = (String, &'static str, &FrictionEstimate)> {
+) -> impl Iterator<Item = (String, &'static str, &Result<Estimate, OpenCoefficient>)> {
     let both = FRICTION_NAMES.iter().zip(&found.estimates);
     let both = both.map(|((name, unit), one)| ((*name).to_string(), *unit, one));
     let back = RETRACTING_NAMES.iter().zip(found.retracting.iter().flatten());

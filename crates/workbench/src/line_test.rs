@@ -13,6 +13,7 @@ pub(crate) use figures::pictures;
 pub use files::files;
 
 use crate::answer::significant;
+use crate::estimate::Estimate;
 
 /// What the line does not explain.
 pub(crate) fn misfit_in_words(misfit: &LineMisfit) -> String {
@@ -30,7 +31,7 @@ pub(crate) fn misfit_in_words(misfit: &LineMisfit) -> String {
 /// The numbers of a line in the order in which they are printed: key, what it is, and the number.
 pub(crate) fn numbers(
     found: &LineIdentification,
-) -> [(&'static str, &'static str, &Result<LineNumber, Undetermined>); 9] {
+) -> [(&'static str, &'static str, &Result<Estimate, Undetermined>); 9] {
     [
         ("effective_bulk_modulus_pa", "effective bulk modulus at rest", &found.effective_bulk_modulus),
         ("dynamic_stiffening", "dynamic stiffening of the wall", &found.dynamic_stiffening),

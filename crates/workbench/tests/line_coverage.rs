@@ -5,9 +5,10 @@
 
 use crate::ask::{HOSE, load};
 use phea_hydraulics::line::{Conduit, Line, Stiffening, StiffeningMember};
+use phea_workbench::estimate::Estimate;
 use phea_workbench::line_test::{
-    KnownLine, LineIdentification, LineNumber, LineRecord, LineRun, LineSeries, RiseRecord, Undetermined,
-    VolumeSource, clean_line_runs, identify_line, recorded,
+    KnownLine, LineIdentification, LineRecord, LineRun, LineSeries, RiseRecord, Undetermined, VolumeSource,
+    clean_line_runs, identify_line, recorded,
 };
 use phea_workbench::project::{Bench, Loaded};
 use phea_workbench::response::{ResponseSettings, SampledPair};
@@ -38,7 +39,7 @@ const SETTINGS: ResponseSettings =
     ResponseSettings { period: None, settling: None, segment: None, coherence: 0.0 };
 
 /// Requirements on an identification, and what is true.
-type Sought = (&'static str, fn(&LineIdentification) -> &Result<LineNumber, Undetermined>, f64);
+type Sought = (&'static str, fn(&LineIdentification) -> &Result<Estimate, Undetermined>, f64);
 
 /// Each 95 % interval covers the truth as often as a binomial distribution allows.
 #[test]

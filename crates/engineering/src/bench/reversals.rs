@@ -6,6 +6,7 @@ use phea_dynamics::watch::{Stopped, Watch, tell};
 use phea_hydraulics::servovalve::{SlowSpool, SpoolImperfection};
 
 use super::command_path::least_judged;
+use crate::estimate::{Estimate, NORMAL_95};
 use crate::project::Reversals;
 
 /// Hysteresis and threshold in V, each with its 95 % interval.
@@ -13,9 +14,9 @@ use crate::project::Reversals;
 pub struct ReversalReading {
     /// Greatest difference of two commands that give the same flow over the cycle, threshold
     /// included.
-    pub hysteresis: (f64, [f64; 2]),
+    pub hysteresis: Estimate,
     /// Change of command that a reversal takes before the spool moves.
-    pub threshold: (f64, [f64; 2]),
+    pub threshold: Estimate,
     /// V, command of full opening.
     pub nominal_voltage: f64,
 }
@@ -73,8 +74,10 @@ pub(super) fn read(
     let [of_threshold, of_rest] = [deviation(0), deviation(1)];
     let together =
         of_threshold * of_threshold + of_rest * of_rest + 2.0 * correlation * of_threshold * of_rest;
-    let around =
-        |value: f64, deviation: f64| (value, [(value - 1.96 * deviation).max(0.0), value + 1.96 * deviation]);
+    let around = |value: f64, deviation: f64| {
+        let half = NORMAL_95 * deviation;
+        Estimate { value, interval: [(value - half).max(0.0), value + half] }
+    };
     Ok(Some(ReversalReading {
         threshold: around(threshold, of_threshold),
         hysteresis: around(threshold + rest, together.max(0.0).sqrt()),

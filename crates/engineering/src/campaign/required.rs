@@ -2,6 +2,7 @@
 
 use super::plan::Plan;
 use super::row::{Ran, Row};
+use crate::estimate::NORMAL_95;
 use crate::simulate::{COMPLETED, Metric, NotJudged, ReachedStep, TimeRequirement, TrackingWish, concerned};
 
 /// A requirement in time, and how many runs satisfy it.
@@ -27,9 +28,6 @@ pub struct SatisfiedRuns {
     pub worst: Option<(u64, ReachedStep)>,
 }
 
-/// Standard normal quantile of 97.5 percent.
-const TWO_SIDED_95: f64 = 1.959_963_984_540_054;
-
 impl SatisfiedRuns {
     /// Bounds of the probability p that a drawn run satisfies the requirement, with 95 percent
     /// confidence, by Wilson's interval: the p with
@@ -52,7 +50,7 @@ impl SatisfiedRuns {
             return [0.0, 1.0];
         }
         let (count, part) = (self.runs as f64, self.satisfied as f64 / self.runs as f64);
-        let square = TWO_SIDED_95 * TWO_SIDED_95 / count;
+        let square = NORMAL_95 * NORMAL_95 / count;
         let middle = (part + 0.5 * square) / (1.0 + square);
         let half = (square * (part * (1.0 - part) + 0.25 * square)).sqrt() / (1.0 + square);
         [

@@ -13,9 +13,10 @@ use nalgebra::{DMatrix, DVector};
 use phea_dynamics::least_squares::{Ending, Linearised, Minimum, Settings, minimise};
 
 use super::problem::{FrictionProblem, LevelVariables, SHARED};
+use crate::estimate::NORMAL_95;
 
 /// Increase of the sum at the ends of a 95 % interval, over the efficiency of the loss.
-const AT_THE_END: f64 = 1.96 * 1.96 / 2.0 / 0.95;
+const AT_THE_END: f64 = NORMAL_95 * NORMAL_95 / 2.0 / 0.95;
 
 /// Evaluations of a search with one coefficient held.
 const EVALUATIONS: usize = 30;

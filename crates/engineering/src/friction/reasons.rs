@@ -7,7 +7,7 @@ use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, LuGre};
 
 use super::directions::DirectionModel;
 use super::problem::FrictionProblem;
-use super::told::FrictionEstimate;
+use super::told::OpenCoefficient;
 use super::{ConstantVelocity, PressedRows};
 
 /// Reason for which the recordings do not determine a coefficient.
@@ -67,11 +67,11 @@ const UP_TO_NOISE: f64 = 0.98;
 /// Residual over noise beyond which recordings are not explained.
 const EXPLAINED: f64 = 1.5;
 
-impl FrictionEstimate {
+impl OpenCoefficient {
     /// Adds a reason. What to record says more than that noise hides it.
     fn leave_open(&mut self, reason: UntoldFriction) {
-        self.untold.retain(|known| *known != UntoldFriction::Hidden && *known != reason);
-        self.untold.push(reason);
+        self.reasons.retain(|known| *known != UntoldFriction::Hidden && *known != reason);
+        self.reasons.push(reason);
     }
 }
 
@@ -84,7 +84,7 @@ pub(super) struct Fall {
 
 /// Coulomb and static friction of a direction, and what shows them.
 struct LoadedDirection<'a> {
-    levels: [&'a mut FrictionEstimate; 2],
+    levels: [&'a mut OpenCoefficient; 2],
     fall: Fall,
     slides: Vec<&'a ConstantVelocity>,
     presses: Vec<&'a PressedRows>,
@@ -93,7 +93,7 @@ struct LoadedDirection<'a> {
 /// Adds to each coefficient why it is open, as far as it is known.
 pub(super) fn reasons(
     (problem, lugre): (&FrictionProblem<'_>, &LuGre),
-    found: &mut [FrictionEstimate; FRICTION_COEFFICIENTS],
+    found: &mut [OpenCoefficient; FRICTION_COEFFICIENTS],
     falls: [Fall; 2],
 ) {
     let [coulomb, breaking, velocity, exponent, viscous, stiffness, damping, back_coulomb, back_breaking, _] =
@@ -123,7 +123,7 @@ pub(super) fn reasons(
     }
     let breaking = directions.first().and_then(|one| {
         let [_, breaking] = &one.levels;
-        breaking.is_determined().then_some(breaking.value)
+        breaking.is_determined().then_some(breaking.estimate.value)
     });
     of_the_bristles(problem, [stiffness, damping], breaking);
 }
@@ -132,14 +132,15 @@ pub(super) fn reasons(
 fn of_the_fall(
     problem: &FrictionProblem<'_>,
     directions: &[LoadedDirection<'_>],
-    [velocity, exponent]: [&mut FrictionEstimate; 2],
+    [velocity, exponent]: [&mut OpenCoefficient; 2],
 ) {
     let falls = directions.iter().any(|direction| {
         let [coulomb, breaking] = &direction.levels;
-        direction.fall.value > 2.0 * direction.fall.deviation || breaking.interval[0] > coulomb.interval[1]
+        direction.fall.value > 2.0 * direction.fall.deviation
+            || breaking.estimate.interval[0] > coulomb.estimate.interval[1]
     });
     let fastest = problem.slides.iter().map(|slide| slide.velocity.abs()).fold(0.0, f64::max);
-    let below = (2.0 * velocity.interval[1]).min(fastest);
+    let below = (2.0 * velocity.estimate.interval[1]).min(fastest);
     for one in [velocity, exponent] {
         if problem.slides.is_empty() {
             one.leave_open(UntoldFriction::NothingSlides);
@@ -163,7 +164,8 @@ fn of_levels(problem: &FrictionProblem<'_>, lugre: &LuGre, direction: &mut Loade
         let slowest = slides.iter().map(|slide| slide.velocity);
         let slowest = slowest.min_by(|one, other| one.abs().total_cmp(&other.abs())).unwrap_or(0.0);
         let shown = UP_TO_NOISE * lugre.curve.sliding_force(slowest);
-        breaking.interval[0] = breaking.interval[0].min(shown);
+        let [low, _] = &mut breaking.estimate.interval;
+        *low = low.min(shown);
     }
     if problem.presses.is_empty() && problem.slides.is_empty() {
         breaking.leave_open(UntoldFriction::NothingPressed);
@@ -173,7 +175,7 @@ fn of_levels(problem: &FrictionProblem<'_>, lugre: &LuGre, direction: &mut Loade
 /// Reasons of stiffness and damping of the bristles.
 fn of_the_bristles(
     problem: &FrictionProblem<'_>,
-    [stiffness, damping]: [&mut FrictionEstimate; 2],
+    [stiffness, damping]: [&mut OpenCoefficient; 2],
     breaking: Option<f64>,
 ) {
     let explained = problem.channels.get(problem.sliding_channels()..).unwrap_or_default();
@@ -183,7 +185,7 @@ fn of_the_bristles(
             one.leave_open(UntoldFriction::NotExplained { residual });
         }
     }
-    let ringing = (stiffness.value / problem.mass).sqrt();
+    let ringing = (stiffness.estimate.value / problem.mass).sqrt();
     let longest = 2.0 * PI / (ROWS_OF_RINGING * ringing);
     if shaken_time_step(problem).is_some_and(|time_step| time_step > longest) {
         damping.leave_open(UntoldFriction::TooFewRows { time_step: longest });
@@ -191,7 +193,7 @@ fn of_the_bristles(
     let is_quick = presses_quickly(problem, stiffness, damping);
     if problem.shakes.is_empty() {
         let ringing = stiffness.is_determined().then_some(ringing);
-        damping.interval = [0.0, f64::INFINITY];
+        damping.estimate.interval = [0.0, f64::INFINITY];
         damping.leave_open(UntoldFriction::NothingShaken { ringing, breaking });
     } else if is_quick {
         damping.leave_open(UntoldFriction::QuickForce);
@@ -211,11 +213,11 @@ fn shaken_time_step(problem: &FrictionProblem<'_>) -> Option<f64> {
 /// that is taken for granted, which delays the mass.
 fn presses_quickly(
     problem: &FrictionProblem<'_>,
-    stiffness: &FrictionEstimate,
-    damping: &FrictionEstimate,
+    stiffness: &OpenCoefficient,
+    damping: &OpenCoefficient,
 ) -> bool {
     let is_searched = !problem.shakes.is_empty() && damping.is_determined();
-    let delay = if is_searched { 0.0 } else { damping.value / stiffness.value };
+    let delay = if is_searched { 0.0 } else { damping.estimate.value / stiffness.estimate.value };
     problem.presses.iter().any(|press| {
         let time_step = problem.recordings.get(press.recording).map_or(0.0, |one| one.time_step);
         press.has_quick_force || press.rows as f64 * time_step < SLOW * delay

@@ -9,34 +9,35 @@ use super::directions::DirectionModel;
 use super::problem::{Around, DAMPING, EXTENDING, FrictionProblem, LevelVariables, RETRACTING, ZERO};
 use super::profile::{HeldCoefficient, SlidingProfile};
 use super::reasons::{Fall, UntoldFriction, reasons};
+use crate::estimate::{Estimate, NORMAL_95};
 
-/// A coefficient as determined by the recordings. SI.
+/// A coefficient that the recordings do not determine, with what they say of it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FrictionEstimate {
-    /// Where the sum of squares has its minimum.
-    pub value: f64,
-    /// Ends of the 95 % interval; the upper one is infinite where nothing limits it.
-    pub interval: [f64; 2],
-    /// Reasons for which it is not determined, each once; empty where it is.
-    pub untold: Vec<UntoldFriction>,
+pub struct OpenCoefficient {
+    /// Minimum of the sum of squares, and the interval that the recordings leave.
+    pub estimate: Estimate,
+    /// Reasons, each once.
+    pub reasons: Vec<UntoldFriction>,
 }
 
-impl FrictionEstimate {
-    /// True where the recordings determine it.
-    pub fn is_determined(&self) -> bool {
-        self.untold.is_empty()
+impl OpenCoefficient {
+    /// True while there is no reason against the estimate.
+    pub(super) fn is_determined(&self) -> bool {
+        self.reasons.is_empty()
+    }
+
+    /// The estimate, where there is no reason against it.
+    fn judged(self) -> Result<Estimate, OpenCoefficient> {
+        if self.is_determined() { Ok(self.estimate) } else { Err(self) }
     }
 }
 
 /// All coefficients.
 pub(super) struct Estimates {
-    pub(super) estimates: [FrictionEstimate; BOTH_WAYS],
-    pub(super) retracting: Option<[FrictionEstimate; FRICTION_COEFFICIENTS - BOTH_WAYS]>,
-    pub(super) zero: Option<FrictionEstimate>,
+    pub(super) estimates: [Result<Estimate, OpenCoefficient>; BOTH_WAYS],
+    pub(super) retracting: Option<[Result<Estimate, OpenCoefficient>; FRICTION_COEFFICIENTS - BOTH_WAYS]>,
+    pub(super) zero: Option<Estimate>,
 }
-
-/// Half width of a 95 % interval of a normal distribution, in standard deviations.
-const NORMAL_95: f64 = 1.96;
 
 /// Standard deviation over the value beyond which a coefficient is not determined, as for a valve.
 const UNTOLD: f64 = 0.5;
@@ -108,19 +109,19 @@ pub(super) fn estimates(problem: &FrictionProblem<'_>, minimum: &Minimum) -> Est
     let of = |index: usize| match differs || index < BOTH_WAYS {
         true => estimate(values[index], forms[index], &told, profile.as_ref()),
         // the same as that of extending, which comes first
-        false => FrictionEstimate { value: values[index], interval: [0.0, f64::INFINITY], untold: vec![] },
+        false => {
+            let estimate = Estimate { value: values[index], interval: [0.0, f64::INFINITY] };
+            OpenCoefficient { estimate, reasons: vec![] }
+        }
     };
-    let mut all: [FrictionEstimate; FRICTION_COEFFICIENTS] = std::array::from_fn(of);
+    let mut all: [OpenCoefficient; FRICTION_COEFFICIENTS] = std::array::from_fn(of);
     let falls = [EXTENDING, RETRACTING].map(|levels| {
         let at = |index: usize| minimum.variables.get(index).copied().unwrap_or(0.0);
         Fall { value: force * at(levels.fall), deviation: force * deviation_of(&told, levels.fall) }
     });
     reasons((problem, &lugre), &mut all, falls);
-    let [a, b, c, d, e, f, g, back @ ..] = all;
-    let zero = problem.finds_zero().then(|| {
-        let half = NORMAL_95 * force * deviation_of(&told, ZERO);
-        FrictionEstimate { value: zero, interval: [zero - half, zero + half], untold: vec![] }
-    });
+    let [a, b, c, d, e, f, g, back @ ..] = all.map(OpenCoefficient::judged);
+    let zero = problem.finds_zero().then(|| Estimate::of(zero, force * deviation_of(&told, ZERO)));
     Estimates { estimates: [a, b, c, d, e, f, g], retracting: differs.then_some(back), zero }
 }
 
@@ -134,7 +135,7 @@ fn estimate(
     form: CoefficientForm,
     told: &Uncertainty,
     profile: Option<&SlidingProfile<'_>>,
-) -> FrictionEstimate {
+) -> OpenCoefficient {
     let deviation = match form.held {
         // F_C is F_S less the fall
         HeldCoefficient::Coulomb(of) => difference(told, of.static_friction, of.fall),
@@ -154,14 +155,14 @@ fn estimate(
             VariableScale::Logarithmic(_) => portable::ln(interval[1] / interval[0]) / (2.0 * NORMAL_95),
         };
     }
-    let untold = match relative {
+    let reasons = match relative {
         relative if relative <= UNTOLD => vec![],
         relative if is_damping && relative.is_finite() => {
             vec![UntoldFriction::ShakenTooLittle { factor: relative / UNTOLD }]
         }
         _ => vec![UntoldFriction::Hidden],
     };
-    FrictionEstimate { value, interval, untold }
+    OpenCoefficient { estimate: Estimate { value, interval }, reasons }
 }
 
 /// The minimum without what was not searched for.

@@ -13,6 +13,7 @@ use super::{
     COEFFICIENT_NAMES, Identification, IdentifyError, JointRegion, Known, RecordedFiles, SMALLEST_EFFECT,
     Search, identify, joint_region, recordings,
 };
+use crate::estimate::Estimate;
 use crate::project::{
     self, FromRecordings, HashedFile, IdentifiedFamily, IdentifiedNumber, IdentifiedUse, KeptNumber,
     LEAKAGE_MODELS, Loaded, Origin, Project, RecordedTest, UncertaintyDirection, sha256, word_of,
@@ -103,10 +104,10 @@ fn determined(found: &Identification) -> Result<(), IdentifyError> {
         return refused("the recordings lead to no valve: the search did not converge".to_string());
     }
     let plant = found.of_plant().filter_map(|index| {
-        Some((COEFFICIENT_NAMES.get(index)?.0, found.intervals.get(index).copied().flatten()))
+        Some((COEFFICIENT_NAMES.get(index)?.0, found.estimates.get(index).copied().flatten()))
     });
     let open: Vec<String> = plant
-        .filter(|(name, interval)| interval.is_none() || found.at_bounds.contains(name))
+        .filter(|(name, estimate)| estimate.is_none() || found.at_bounds.contains(name))
         .map(|(name, _)| format!("`{name}`"))
         .collect();
     match open.as_slice() {
@@ -126,20 +127,15 @@ fn region(found: &Identification, project: &Project) -> Result<JointRegion, Iden
 /// What takes the place of declared numbers, and what stays.
 fn numbers(found: &Identification, project: &Project) -> (Vec<IdentifiedNumber>, Vec<KeptNumber>) {
     let (mut numbers, mut kept) = (Vec::new(), Vec::new());
-    let all: Vec<_> =
-        COEFFICIENT_NAMES.iter().zip(found.coefficients.to_array()).zip(found.intervals).collect();
-    for ((name, unit), value, interval) in found
-        .in_model()
-        .filter_map(|index| all.get(index))
-        .map(|((named, value), interval)| (*named, *value, *interval))
-    {
+    let of = |index: usize| Some((*COEFFICIENT_NAMES.get(index)?, *found.estimates.get(index)?));
+    for ((name, unit), estimate) in found.in_model().filter_map(of) {
         let path = found.path(name);
-        match interval {
+        match estimate {
             None => kept.push(KeptNumber { path, reason: "the recordings do not determine it" }),
-            Some([low, _]) if *name == "hysteresis" && low == 0.0 => {
+            Some(Estimate { interval: [low, _], .. }) if name == "hysteresis" && low == 0.0 => {
                 kept.push(KeptNumber { path, reason: "the recordings cannot distinguish it from zero" });
             }
-            Some(interval) => {
+            Some(Estimate { value, interval }) => {
                 let declared = project.number(&path);
                 numbers.push(IdentifiedNumber { path, unit, value, interval, declared });
             }

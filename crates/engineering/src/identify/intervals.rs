@@ -7,9 +7,7 @@ use phea_hydraulics::servovalve::StaticCoefficients;
 use super::SignalFit;
 use super::recording::{Recording, SignalKind};
 use super::variables::{COUNT, Kind, TARE_FLOW, Variables, over};
-
-/// Half width of a 95 % interval of a normal distribution, in standard deviations.
-const NORMAL_95: f64 = 1.96;
+use crate::estimate::{Estimate, NORMAL_95};
 
 /// Half width, over the change that matters, beyond which an interval carries no information: a
 /// factor of a million.
@@ -54,7 +52,7 @@ const OF_MAGNITUDE: f64 = 0.62;
 /// taken from the scale of the residuals as if all of them were magnitudes, which is the most it
 /// can be.
 pub(super) fn lowered_tare_flow(
-    intervals: &mut [Option<[f64; 2]>; COUNT],
+    estimates: &mut [Option<Estimate>; COUNT],
     recordings: &[Recording],
     signals: &[SignalFit],
 ) {
@@ -64,7 +62,7 @@ pub(super) fn lowered_tare_flow(
     };
     let of_leakage = signals.iter().filter(|fit| fit.kind == SignalKind::LeakFlow).filter(is_unsigned);
     let noise = of_leakage.map(|fit| fit.scale / OF_MAGNITUDE).fold(0.0, f64::max);
-    if let Some(Some([low, _])) = intervals.get_mut(TARE_FLOW) {
+    if let Some(Some(Estimate { interval: [low, _], .. })) = estimates.get_mut(TARE_FLOW) {
         *low = without_magnitude(*low, noise);
     }
 }
@@ -87,26 +85,26 @@ fn without_magnitude(shown: f64, noise: f64) -> f64 {
     if low > 0.0 { high } else { 0.0 }
 }
 
-/// The interval of each coefficient, from its standard deviation over the change that matters.
+/// Each coefficient with its interval, from its standard deviation over the change that matters.
 ///
 /// For a positive coefficient both ends are positive. For one that may vanish the negative part of
 /// the interval is cut off: where its lower end is zero, the interval is an upper bound.
-pub(super) fn intervals(
+pub(super) fn estimates(
     variables: &Variables,
     coefficients: &StaticCoefficients,
     deviations: &[f64],
-) -> [Option<[f64; 2]>; COUNT] {
+) -> [Option<Estimate>; COUNT] {
     let scales = variables.scales(coefficients);
     let mut found = [None; COUNT];
     let all = found.iter_mut().zip(coefficients.to_array()).zip(scales).zip(deviations);
-    for (index, (((found, number), scale), deviation)) in all.enumerate() {
+    for (index, (((found, value), scale), deviation)) in all.enumerate() {
         let half = NORMAL_95 * deviation;
-        let ends = [-half, half].map(|by| match Kind::of(index) {
-            Kind::Positive => number * portable::exp(by),
-            Kind::MayVanish => (number + by * scale).max(0.0),
-            Kind::EitherSign | Kind::InSeries => number + by * scale,
+        let interval = [-half, half].map(|by| match Kind::of(index) {
+            Kind::Positive => value * portable::exp(by),
+            Kind::MayVanish => (value + by * scale).max(0.0),
+            Kind::EitherSign | Kind::InSeries => value + by * scale,
         });
-        *found = (half < NOTHING_SAID).then_some(ends);
+        *found = (half < NOTHING_SAID).then_some(Estimate { value, interval });
     }
     found
 }

@@ -93,8 +93,8 @@ pub fn joint_region(
     let plant: Vec<usize> = found.of_plant().collect();
     let name = |index: usize| COEFFICIENT_NAMES.get(index).map_or("", |(name, _)| *name);
     for index in &plant {
-        let interval = found.intervals.get(*index).copied().flatten();
-        if interval.is_none() || !found.deviations.get(*index).is_some_and(|one| one.is_finite()) {
+        let estimate = found.estimates.get(*index).copied().flatten();
+        if estimate.is_none() || !found.deviations.get(*index).is_some_and(|one| one.is_finite()) {
             return Err(JointRegionError::NotTold(name(*index)));
         }
     }
@@ -149,8 +149,8 @@ pub fn with_valve(project: &Project, found: &Identification) -> Option<Project> 
     valve.nominal_voltage = found.tested.nominal_voltage;
     (valve.tare_flow, valve.tare_pressure) = (all.tare_flow, Some(found.tested.tare_reference_drop));
     valve.null_bias = all.null_bias;
-    let width = found.intervals.get(HYSTERESIS).copied().flatten();
-    let may_vanish = width.is_none_or(|[least, _]| least == 0.0);
+    let width = found.estimates.get(HYSTERESIS).copied().flatten();
+    let may_vanish = width.is_none_or(|width| width.interval[0] == 0.0);
     valve.hysteresis = (!may_vanish).then_some(all.hysteresis_width);
     Some(project)
 }

@@ -2,18 +2,15 @@
 
 mod gains;
 mod half_height;
-mod reading;
 mod straight_line;
 
-use phea_dynamics::order::sort_numbers;
+use phea_dynamics::order::{median, sort_numbers};
 use phea_hydraulics::servovalve::{PortCircuit, TestedValve, flow_coefficient_from_rating};
-
-pub use reading::CurveReading;
 
 use self::half_height::{Flank, peak};
 use self::straight_line::straight_line;
 use super::recording::{Recording, SignalKind, usual_drop};
-use phea_dynamics::order::median;
+use crate::estimate::Estimate;
 
 /// What shows where null is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +28,7 @@ pub enum NullMethod {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NullReading {
     /// V.
-    pub command: CurveReading,
+    pub command: Estimate,
     /// What shows it.
     pub method: NullMethod,
 }
@@ -42,68 +39,68 @@ pub struct NullReading {
 pub struct SimpleCalculations {
     /// K_vp by (4.12), corrected, for positive commands (edges 3 and 6) and negative ones (4 and
     /// 5).
-    pub flow_coefficients: [Option<CurveReading>; 2],
+    pub flow_coefficients: [Option<Estimate>; 2],
     /// Flow of this valve over the rated one at the rated drop.
-    pub share_of_nominal: Option<CurveReading>,
+    pub share_of_nominal: Option<Estimate>,
     /// q_vin, the peak of the leakage above its base.
-    pub null_leakage: Option<CurveReading>,
+    pub null_leakage: Option<Estimate>,
     /// p_S - p_T of the leakage test.
     pub leakage_pressure: Option<f64>,
     /// q_tare, the base of the leakage curve.
-    pub tare_flow: Option<CurveReading>,
+    pub tare_flow: Option<Estimate>,
     /// lambda of (4.14), by the width of the curve at half its height.
     pub leakage_shape: Option<f64>,
     /// Command of null with a rising and a falling command, in V.
     pub nulls: [Option<NullReading>; 2],
     /// dq/dU near null at the usual supply pressure, for positive and negative commands, in m3/(s
     /// V).
-    pub flow_gains: [Option<CurveReading>; 2],
+    pub flow_gains: [Option<Estimate>; 2],
     /// Commands from null, to either side, between which the flow gains are read, in V.
     pub flow_gain_commands: Option<[f64; 2]>,
     /// p_S - p_T that they are stated at.
     pub flow_gain_pressure: f64,
     /// d(p_A - p_B)/dU at null with blocked ports, in Pa/V.
-    pub pressure_sensitivity: Option<CurveReading>,
+    pub pressure_sensitivity: Option<Estimate>,
 }
 
 impl SimpleCalculations {
     /// Mean of both nulls.
-    pub fn null_bias(&self) -> Option<CurveReading> {
+    pub fn null_bias(&self) -> Option<Estimate> {
         let [rising, falling] = self.nulls;
-        CurveReading::mean(&[rising?.command, falling?.command])
+        Estimate::mean(&[rising?.command, falling?.command])
     }
 
     /// Takes a null where nothing better showed it before.
-    fn add_null(&mut self, rising: bool, method: NullMethod, read: impl FnOnce() -> Option<CurveReading>) {
+    fn add_null(&mut self, rising: bool, method: NullMethod, read: impl FnOnce() -> Option<Estimate>) {
         let null = &mut self.nulls[usize::from(!rising)];
         *null = null.or_else(|| read().map(|command| NullReading { command, method }));
     }
 
     /// Their difference.
-    pub fn hysteresis(&self) -> Option<CurveReading> {
+    pub fn hysteresis(&self) -> Option<Estimate> {
         let [rising, falling] = self.nulls;
         Some(rising?.command.minus(&falling?.command))
     }
 
     /// K_vinp by (4.13).
-    pub fn leakage_coefficient(&self) -> Option<CurveReading> {
+    pub fn leakage_coefficient(&self) -> Option<Estimate> {
         Some(self.null_leakage?.times(1.0 / (2.0 * self.leakage_pressure?).sqrt()))
     }
 
     /// Share of the tare flow in the whole leakage at null, which errs as the peak does.
-    pub fn tare_share(&self) -> Option<CurveReading> {
+    pub fn tare_share(&self) -> Option<Estimate> {
         let tare = self.tare_flow?;
         Some(tare.over(&self.null_leakage?.plus(tare.value)))
     }
 
     /// Mean flow gain of both directions.
-    pub fn flow_gain(&self) -> Option<CurveReading> {
+    pub fn flow_gain(&self) -> Option<Estimate> {
         let [extending, retracting] = self.flow_gains;
-        CurveReading::mean(&[extending?, retracting?])
+        Estimate::mean(&[extending?, retracting?])
     }
 
     /// K_c = K_qU/K_pU, in m3/(s Pa).
-    pub fn flow_pressure_coefficient(&self) -> Option<CurveReading> {
+    pub fn flow_pressure_coefficient(&self) -> Option<Estimate> {
         Some(self.flow_gain()?.over(&self.pressure_sensitivity?))
     }
 }
@@ -156,7 +153,7 @@ pub(super) fn simple_calculations(
     found.flow_gain_pressure = usual_drop;
     found.pressure_sensitivity = gains::pressure_sensitivity(recordings);
     let both = found.flow_coefficients.into_iter().flatten().collect::<Vec<_>>();
-    let mean = CurveReading::mean(&both).filter(|_| both.len() == 2);
+    let mean = Estimate::mean(&both).filter(|_| both.len() == 2);
     found.share_of_nominal =
         mean.zip(rated_flow).map(|(mean, [flow, drop])| mean.times((drop / 2.0).sqrt() / flow));
     found
@@ -206,12 +203,12 @@ fn leakage(recording: &Recording, tested: &TestedValve, found: &mut SimpleCalcul
     let peaks = [true, false].map(|rising| {
         peak(&branch(rising, 0).into_iter().filter(|(_, leak)| *leak > half).collect::<Vec<_>>(), noise)
     });
-    let peaks: Vec<CurveReading> = peaks.into_iter().flatten().collect();
-    found.null_leakage = CurveReading::mean(&peaks).map(|peak| peak.plus(-tare));
+    let peaks: Vec<Estimate> = peaks.into_iter().flatten().collect();
+    found.null_leakage = Estimate::mean(&peaks).map(|peak| peak.plus(-tare));
     let mut widths = Vec::new();
     for (null, rising) in found.nulls.iter_mut().zip([true, false]) {
         if let Some([low, high]) = edges(rising) {
-            let centre = CurveReading::mean(&[low, high]);
+            let centre = Estimate::mean(&[low, high]);
             *null = centre.map(|command| NullReading { command, method: NullMethod::LeakageCentre });
             widths.push((high.value - low.value) / 2.0);
         }
@@ -223,14 +220,14 @@ fn leakage(recording: &Recording, tested: &TestedValve, found: &mut SimpleCalcul
 
 /// Flow of the base, and the noise of one of its rows. Where the meter stands still there, it is
 /// below the least flow that the meter shows anywhere.
-fn base_flow(base: &[f64], least: f64) -> (CurveReading, f64) {
+fn base_flow(base: &[f64], least: f64) -> (Estimate, f64) {
     if base.is_empty() {
-        let interval = Some([0.0, least.max(0.0)]);
-        return (CurveReading { value: 0.0, interval }, f64::INFINITY);
+        let estimate = Estimate { value: 0.0, interval: [0.0, least.max(0.0)] };
+        return (estimate, f64::INFINITY);
     }
     let middle = median(base.to_vec());
     let deviation = deviation_of_median(base, middle);
-    (CurveReading::of(middle, deviation), deviation * (base.len() as f64).sqrt())
+    (Estimate::of(middle, deviation), deviation * (base.len() as f64).sqrt())
 }
 
 /// Whether the command rises at a row; `None` where it does not change.
@@ -241,7 +238,7 @@ pub(super) fn direction(recording: &Recording, row: usize) -> Option<bool> {
 }
 
 /// Command at which p_A and p_B are equal, going up or down, in V.
-fn crossing(recording: &Recording, rising: bool) -> Option<CurveReading> {
+fn crossing(recording: &Recording, rising: bool) -> Option<Estimate> {
     let a = recording.signal(SignalKind::PressureA)?;
     let b = recording.signal(SignalKind::PressureB)?;
     let load = |row: usize| Some((*a.values.get(row)?)? - (*b.values.get(row)?)?);
@@ -261,7 +258,7 @@ fn crossing(recording: &Recording, rising: bool) -> Option<CurveReading> {
     let square = |one: f64| one * one;
     let apart = |(now, before): &(f64, f64)| square(now - middle) + square(now - before);
     let deviation = (crossed.iter().map(apart).sum::<f64>() / crossed.len() as f64).sqrt();
-    (!crossed.is_empty()).then(|| CurveReading::of(middle, deviation))
+    (!crossed.is_empty()).then(|| Estimate::of(middle, deviation))
 }
 
 /// Both branches of the flow as straight lines, going up and down: their slopes are the flow
@@ -291,11 +288,11 @@ fn flow(recording: &Recording, tested: &TestedValve, found: &mut SimpleCalculati
             slopes.extend(line.map(|line| line.slope.times(sign * tested.nominal_voltage)));
             zeros.extend(line.map(|line| line.zero));
         }
-        let middle = CurveReading::mean(&zeros).filter(|_| zeros.len() == 2);
+        let middle = Estimate::mean(&zeros).filter(|_| zeros.len() == 2);
         found.add_null(rising, NullMethod::FlowLines, || middle);
     }
     for (coefficient, slopes) in found.flow_coefficients.iter_mut().zip(slopes) {
-        *coefficient = coefficient.or(CurveReading::mean(&slopes));
+        *coefficient = coefficient.or(Estimate::mean(&slopes));
     }
 }
 

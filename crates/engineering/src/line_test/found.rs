@@ -1,4 +1,4 @@
-use phea_dynamics::portable::{exp, ln, pow};
+use phea_dynamics::portable::{ln, pow};
 use phea_dynamics::watch::Watch;
 use phea_hydraulics::line::{Line, LineModel};
 use phea_quantity::significant;
@@ -6,17 +6,9 @@ use phea_quantity::significant;
 use super::rise::rise_fit;
 use super::shaken::response_fit;
 use super::{KnownLine, LineRecord, ResponseFit, RiseFit};
+use crate::estimate::{Estimate, NORMAL_95};
 use crate::identify::IdentifyError;
 use crate::response::{ResponseSettings, SampledPair, members};
-
-/// An estimate with its 95 % confidence interval. SI.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LineNumber {
-    /// The most likely value.
-    pub value: f64,
-    /// What holds the truth with 95 % confidence.
-    pub interval: [f64; 2],
-}
 
 /// Why the recordings do not determine a number.
 pub type Undetermined = String;
@@ -33,27 +25,25 @@ pub struct LineIdentification {
     /// The fast one.
     pub response: Option<ResponseFit>,
     /// Pa, at rest.
-    pub effective_bulk_modulus: Result<LineNumber, Undetermined>,
+    pub effective_bulk_modulus: Result<Estimate, Undetermined>,
     /// Pa, between both ends of the slow test.
-    pub secant_bulk_modulus: Result<LineNumber, Undetermined>,
+    pub secant_bulk_modulus: Result<Estimate, Undetermined>,
     /// 1, by which the modulus at rest grows with the pressure: d beta/dp.
-    pub modulus_slope: Result<LineNumber, Undetermined>,
+    pub modulus_slope: Result<Estimate, Undetermined>,
     /// Pa, under fast changes.
-    pub dynamic_bulk_modulus: Result<LineNumber, Undetermined>,
+    pub dynamic_bulk_modulus: Result<Estimate, Undetermined>,
     /// r_beta, of the wall of a hose.
-    pub dynamic_stiffening: Result<LineNumber, Undetermined>,
+    pub dynamic_stiffening: Result<Estimate, Undetermined>,
     /// s, in which pressure relaxes while the volume is held.
-    pub relaxation_time: Result<LineNumber, Undetermined>,
+    pub relaxation_time: Result<Estimate, Undetermined>,
     /// m/s, of a fast wave.
-    pub wave_speed: Result<LineNumber, Undetermined>,
+    pub wave_speed: Result<Estimate, Undetermined>,
     /// 1, volume of free air at atmospheric pressure over that of the mixture.
-    pub entrained_air: Result<LineNumber, Undetermined>,
+    pub entrained_air: Result<Estimate, Undetermined>,
     /// kg/m3, of the oil, as its inertance shows it with the declared length and bore.
-    pub density: Result<LineNumber, Undetermined>,
+    pub density: Result<Estimate, Undetermined>,
 }
 
-/// Normal quantile of 97.5 %.
-pub(super) const QUANTILE: f64 = 1.959_963_984_540_054;
 /// Standard deviation of a logarithm beyond which a number is not determined: a factor of one and a
 /// half either way.
 const TOLD: f64 = 0.2;
@@ -62,26 +52,6 @@ const TOLD: f64 = 0.2;
 const SHOWN: f64 = 0.1;
 /// Share of the range of a pressure rise by which it may be extrapolated.
 const BEYOND: f64 = 0.1;
-
-impl LineNumber {
-    /// From the logarithm of a positive number and its standard deviation.
-    pub(super) fn of_logarithm(logarithm: f64, deviation: f64) -> LineNumber {
-        let edge = QUANTILE * deviation;
-        LineNumber { value: exp(logarithm), interval: [exp(logarithm - edge), exp(logarithm + edge)] }
-    }
-
-    /// Standard deviation of its logarithm.
-    fn deviation(&self) -> f64 {
-        let [low, high] = self.interval;
-        ln(high / low) / (2.0 * QUANTILE)
-    }
-
-    /// One over it, times a number.
-    fn under(&self, number: f64) -> LineNumber {
-        let [low, high] = self.interval;
-        LineNumber { value: number / self.value, interval: [number / high, number / low] }
-    }
-}
 
 /// Finds what recordings determine of a line: at most one slow test and one fast one.
 ///
@@ -194,9 +164,9 @@ fn combined(known: KnownLine, rise: Option<RiseFit>, response: Option<ResponseFi
         (None, None) => known.pressure,
     };
     let at_rest = compliance_at_rest(&known, pressure, rise.as_ref(), response.as_ref());
-    let told = |number: LineNumber, what: &str| {
+    let told = |number: Estimate, what: &str| {
         let wide = format!("{what} is known to no better than a factor of one and a half");
-        if number.deviation() < TOLD { Ok(number) } else { Err(wide) }
+        if number.deviation_of_logarithm() < TOLD { Ok(number) } else { Err(wide) }
     };
     let fast = response.as_ref().ok_or_else(no_response);
     let fast_compliance = fast.clone().map(|fit| fit.of(|line| line.compliance));
@@ -235,9 +205,9 @@ fn no_rise() -> Undetermined {
 }
 
 /// A number of this standard deviation, by its logarithm.
-fn relative(value: f64, deviation: f64) -> Result<LineNumber, Undetermined> {
+fn relative(value: f64, deviation: f64) -> Result<Estimate, Undetermined> {
     if value > 0.0 && deviation.is_finite() {
-        return Ok(LineNumber::of_logarithm(ln(value), deviation / value));
+        return Ok(Estimate::of_logarithm(ln(value), deviation / value));
     }
     Err("the pressure does not rise with the volume".to_string())
 }
@@ -249,7 +219,7 @@ fn compliance_at_rest(
     pressure: f64,
     rise: Option<&RiseFit>,
     response: Option<&ResponseFit>,
-) -> Result<LineNumber, Undetermined> {
+) -> Result<Estimate, Undetermined> {
     let from_rise = rise.filter(|rise| rise.reaches(pressure)).map(|rise| {
         let [value, deviation] = rise.compliance(pressure);
         relative(value, deviation)
@@ -260,7 +230,7 @@ fn compliance_at_rest(
         (_, Some(fit), _) if fit.parameters.creep.is_some() => {
             Ok(fit.of(|line| line.compliance + line.creep.map_or(0.0, |[creep, _]| creep)))
         }
-        (Some(Ok(rise)), _, Some(moving)) if !is_hose => Ok(mean(rise, moving)),
+        (Some(Ok(rise)), _, Some(moving)) if !is_hose => Ok(Estimate::combined(rise, moving)),
         (None | Some(Err(_)), _, Some(moving)) if !is_hose => Ok(moving),
         (Some(rise), ..) => rise,
         (None, Some(_), _) => {
@@ -270,41 +240,34 @@ fn compliance_at_rest(
     }
 }
 
-/// Two estimates of one number, by the inverse of the variances of their logarithms.
-fn mean(one: LineNumber, other: LineNumber) -> LineNumber {
-    let [first, second] = [one, other].map(|number| 1.0 / (number.deviation() * number.deviation()));
-    let logarithm = (first * ln(one.value) + second * ln(other.value)) / (first + second);
-    LineNumber::of_logarithm(logarithm, pow(first + second, -0.5))
-}
-
 /// The fraction of free air.
-fn air(rise: &RiseFit) -> Result<LineNumber, Undetermined> {
+fn air(rise: &RiseFit) -> Result<Estimate, Undetermined> {
     let [value, deviation] = rise
         .air_fraction()
         .ok_or("the pressure rise is explained as well without free air in the declared oil")?;
-    let edge = QUANTILE * deviation;
-    Ok(LineNumber { value, interval: [(value - edge).max(0.0), value + edge] })
+    let edge = NORMAL_95 * deviation;
+    Ok(Estimate { value, interval: [(value - edge).max(0.0), value + edge] })
 }
 
 /// d beta/dp at a pressure, where the compliance changes.
-fn slope(rise: &RiseFit, volume: f64, pressure: f64) -> Result<LineNumber, Undetermined> {
+fn slope(rise: &RiseFit, volume: f64, pressure: f64) -> Result<Estimate, Undetermined> {
     if rise.terms() < 2 && rise.air_fraction().is_none() {
         return Err("the compliance does not change with the pressure beyond its noise".to_string());
     }
     let [compliance, _] = rise.compliance(pressure);
     let [slope, deviation] = rise.compliance_slope(pressure);
     let factor = -volume / (compliance * compliance);
-    let (value, edge) = (factor * slope, QUANTILE * factor.abs() * deviation);
-    Ok(LineNumber { value, interval: [value - edge, value + edge] })
+    let (value, edge) = (factor * slope, NORMAL_95 * factor.abs() * deviation);
+    Ok(Estimate { value, interval: [value - edge, value + edge] })
 }
 
 /// r_beta of a hose.
 fn stiffening(
     known: &KnownLine,
     pressure: f64,
-    at_rest: Result<&LineNumber, &Undetermined>,
+    at_rest: Result<&Estimate, &Undetermined>,
     response: Option<&ResponseFit>,
-) -> Result<LineNumber, Undetermined> {
+) -> Result<Estimate, Undetermined> {
     if !matches!(known.line, Line::Hose { .. }) {
         return Err("only the wall of a hose stiffens".to_string());
     }
@@ -323,13 +286,13 @@ fn stiffening(
             (fast + line.creep.map_or(0.0, |[creep, _]| creep)) / fast
         }));
     }
-    let of_fast = fit.of(|line| line.compliance - oil).deviation();
-    let of_slow = rest.deviation() * rest.value / slow;
-    Ok(LineNumber::of_logarithm(ln(slow / fast), pow(of_fast * of_fast + of_slow * of_slow, 0.5)))
+    let of_fast = fit.of(|line| line.compliance - oil).deviation_of_logarithm();
+    let of_slow = rest.deviation_of_logarithm() * rest.value / slow;
+    Ok(Estimate::of_logarithm(ln(slow / fast), pow(of_fast * of_fast + of_slow * of_slow, 0.5)))
 }
 
 /// tau of a creeping wall, with the declared oil.
-fn relaxation(known: &KnownLine, fit: &ResponseFit) -> Result<LineNumber, Undetermined> {
+fn relaxation(known: &KnownLine, fit: &ResponseFit) -> Result<Estimate, Undetermined> {
     if fit.parameters.creep.is_none() {
         return Err("the declared model of the line has no creep (`line.relaxation_time`)".to_string());
     }
@@ -342,21 +305,21 @@ fn relaxation(known: &KnownLine, fit: &ResponseFit) -> Result<LineNumber, Undete
     if !found.value.is_finite() {
         return Err("the line yields less than the declared oil alone".to_string());
     }
-    if found.deviation() < SHOWN {
+    if found.deviation_of_logarithm() < SHOWN {
         return Ok(found);
     }
     Err("the frequencies of the response are not around the corner of the creep".to_string())
 }
 
 /// I A/L.
-fn density(known: &KnownLine, fit: &ResponseFit) -> Result<LineNumber, Undetermined> {
+fn density(known: &KnownLine, fit: &ResponseFit) -> Result<Estimate, Undetermined> {
     wave_speed(known, fit)?;
     let stated = known.inertance().unwrap_or(f64::NAN);
     Ok(fit.of(|line| known.fluid.density * line.inertance.unwrap_or(f64::NAN) / stated))
 }
 
 /// c of a fast wave.
-fn wave_speed(known: &KnownLine, fit: &ResponseFit) -> Result<LineNumber, Undetermined> {
+fn wave_speed(known: &KnownLine, fit: &ResponseFit) -> Result<Estimate, Undetermined> {
     let Some([length, _]) = known.dimensions() else {
         return Err("a plain volume has no length".to_string());
     };
@@ -370,7 +333,7 @@ fn wave_speed(known: &KnownLine, fit: &ResponseFit) -> Result<LineNumber, Undete
     }
     let found = fit.of(|line| length / pow(line.inertance.unwrap_or(f64::NAN) * line.compliance, 0.5));
     let quarter = found.value / (4.0 * length);
-    if found.deviation() < SHOWN {
+    if found.deviation_of_logarithm() < SHOWN {
         return Ok(found);
     }
     Err(format!(

@@ -11,10 +11,10 @@ use phea_hydraulics::line::{
     friction_factor,
 };
 
-use super::found::QUANTILE;
+use super::KnownLine;
 use super::known::EXACT;
 use super::response_noise::smoothed_deviations;
-use super::{KnownLine, LineNumber};
+use crate::estimate::{Estimate, NORMAL_95};
 use crate::response::ResponseMember;
 
 /// What the response of a blocked line follows from. SI.
@@ -300,7 +300,7 @@ fn blocked(known: &KnownLine, model: LineModel, parameters: &LineParameters) -> 
 
 impl ResponseFit {
     /// Of the logarithm of a function of the parameters, the value and the standard deviation.
-    pub(super) fn of(&self, function: impl Fn(&LineParameters) -> f64) -> LineNumber {
+    pub(super) fn of(&self, function: impl Fn(&LineParameters) -> f64) -> Estimate {
         let LineParameters { compliance, creep, inertance } = self.parameters;
         let mut values = vec![compliance];
         values.extend(creep.into_iter().flatten());
@@ -324,7 +324,7 @@ impl ResponseFit {
         };
         let slopes = nalgebra::DVector::from_fn(values.len(), |index, _| slope(index));
         let variance = (slopes.transpose() * &self.covariance * &slopes).x;
-        LineNumber::of_logarithm(at(&values), variance.max(0.0).sqrt())
+        Estimate::of_logarithm(at(&values), variance.max(0.0).sqrt())
     }
 
     /// The model's response at a frequency in rad/s, pressure over flow.
@@ -345,7 +345,7 @@ impl ResponseFit {
             CompliancePoint {
                 frequency: point.frequency,
                 measured: over(point.response),
-                edge: QUANTILE * spread,
+                edge: NORMAL_95 * spread,
                 model: self.model_response(known, point.frequency).map_or(f64::NAN, over),
                 coherence: point.coherence,
             }

@@ -4,6 +4,7 @@ use super::line::line_test;
 use super::table::{BenchColumn, BenchTable};
 use super::{BenchRow, BenchRun, BenchSeries, FrictionRun, ReversalReading, friction};
 use crate::answer::{Json, Object, OutputFile};
+use crate::estimate::Estimate;
 use crate::line_test::LineRun;
 use crate::quantity::DisplayUnit;
 
@@ -46,14 +47,12 @@ fn title(series: BenchSeries) -> &'static str {
 }
 
 fn reversals(found: &ReversalReading) -> Object {
-    let reading = |(value, confidence_95): (f64, [f64; 2])| {
-        Object::new().with("value", value).with("confidence_95", confidence_95)
-    };
+    let reading = |one: Estimate| Object::new().with("value", one.value).with("confidence_95", one.interval);
     Object::new()
         .with("hysteresis_v", reading(found.hysteresis))
         .with("threshold_v", reading(found.threshold))
-        .with("hysteresis_share_of_nominal", found.hysteresis.0 / found.nominal_voltage)
-        .with("threshold_share_of_nominal", found.threshold.0 / found.nominal_voltage)
+        .with("hysteresis_share_of_nominal", found.hysteresis.value / found.nominal_voltage)
+        .with("threshold_share_of_nominal", found.threshold.value / found.nominal_voltage)
 }
 
 /// What `bench` says to programs.

@@ -4,6 +4,7 @@ use super::answer::recorded;
 use super::{BenchRun, BenchSeries, FrictionRun, ReversalReading, friction, line};
 use crate::answer::significant;
 use crate::document::Document;
+use crate::estimate::Estimate;
 use crate::line_test::LineRun;
 use crate::project::Loaded;
 use crate::quantity::{PRESSURE, display};
@@ -52,7 +53,7 @@ fn reversals(found: Option<&ReversalReading>) -> Vec<String> {
         ];
     };
     let share = |value: f64| significant(100.0 * value / found.nominal_voltage, 3);
-    let sentence = |name: &str, (value, [low, high]): (f64, [f64; 2])| {
+    let sentence = |name: &str, Estimate { value, interval: [low, high] }: Estimate| {
         format!(
             "{name}: {} V, {} % of the nominal voltage (95 %: {} to {} %).",
             significant(value, 3),

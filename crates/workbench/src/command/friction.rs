@@ -1,9 +1,7 @@
 //! `identify --of friction`: the friction that explains recorded runs of the cylinder.
 
 use crate::answer::{Answer, picture_files};
-use crate::friction::{
-    self, FrictionEstimate, KnownCylinder, friction_recordings, identify_friction, recorded_runs,
-};
+use crate::friction::{self, KnownCylinder, friction_recordings, identify_friction, recorded_runs};
 use crate::identify::IdentifyError;
 use crate::project::Loaded;
 use crate::source::Source;
@@ -52,10 +50,6 @@ pub fn friction_watched(
         json: friction::json(loaded, &found),
         files,
         affirmative: found.has_converged()
-            && found
-                .estimates
-                .iter()
-                .chain(found.retracting.iter().flatten())
-                .all(FrictionEstimate::is_determined),
+            && found.estimates.iter().chain(found.retracting.iter().flatten()).all(Result::is_ok),
     })
 }

@@ -1,8 +1,9 @@
 use super::{
-    ExplainedByDirections, FRICTION_NAMES, FrictionEstimate, FrictionIdentification, FrictionMisfit,
+    ExplainedByDirections, FRICTION_NAMES, FrictionIdentification, FrictionMisfit, OpenCoefficient,
     RETRACTING_NAMES, ShakenRows, because, misfit_in_words,
 };
 use crate::answer::{Json, Object, envelope};
+use crate::estimate::Estimate;
 use crate::project::Loaded;
 use crate::quantity::DisplayUnit;
 
@@ -34,7 +35,7 @@ pub fn json(loaded: &Loaded, found: &FrictionIdentification) -> String {
     };
     let body = Object::new()
         .with("friction", friction.with("retracting", retracting))
-        .known("force_zero_n", found.zero.as_ref().map(estimate), no_zero)
+        .known("force_zero_n", found.zero.map(|zero| estimate(&Ok(zero))), no_zero)
         .each("direction_models", found.evidence.iter().flat_map(|evidence| &evidence.models), model)
         .with("direction_models_difference", found.evidence.map(|evidence| evidence.difference()))
         .each("recordings", 0..found.recordings.len(), |index| recording(found, index))
@@ -51,10 +52,12 @@ pub fn json(loaded: &Loaded, found: &FrictionIdentification) -> String {
     envelope("identify", loaded).and(body).print()
 }
 
-fn estimate(one: &FrictionEstimate) -> Object {
-    let reason = because(one);
-    let value = reason.is_none().then_some(one.value);
-    let ends = one.interval.map(Json::Number).to_vec();
+fn estimate(one: &Result<Estimate, OpenCoefficient>) -> Object {
+    let (value, interval, reason) = match one {
+        Ok(Estimate { value, interval }) => (Some(*value), interval, None),
+        Err(open) => (None, &open.estimate.interval, Some(because(open))),
+    };
+    let ends = interval.map(Json::Number).to_vec();
     Object::new().with("value", value).with("confidence_95", Json::List(ends)).with("reason", reason)
 }
 

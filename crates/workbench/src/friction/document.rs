@@ -1,11 +1,12 @@
 //! The friction of a cylinder for people.
 
 use super::{
-    DirectionEvidence, DirectionModel, FrictionEstimate, FrictionIdentification, ShakenRows, VaryingVelocity,
+    DirectionEvidence, DirectionModel, FrictionIdentification, OpenCoefficient, ShakenRows, VaryingVelocity,
     because, coefficients, misfit_in_words,
 };
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
+use crate::estimate::Estimate;
 use crate::identify::DECISIVE;
 use crate::quantity::DisplayUnit;
 
@@ -92,9 +93,12 @@ fn file(found: &FrictionIdentification, recording: usize) -> String {
 }
 
 fn rows(found: &FrictionIdentification) -> Vec<[Cell; 5]> {
-    let row = |(name, unit, one): (String, &'static str, &FrictionEstimate)| {
-        let value = if one.is_determined() { Cell::number(one.value, 4) } else { Cell::Missing };
-        let [low, high] = one.interval.map(|end| match end.is_finite() {
+    let row = |(name, unit, one): (String, &'static str, &Result<Estimate, OpenCoefficient>)| {
+        let (value, interval) = match one {
+            Ok(Estimate { value, interval }) => (Cell::number(*value, 4), interval),
+            Err(open) => (Cell::Missing, &open.estimate.interval),
+        };
+        let [low, high] = interval.map(|end| match end.is_finite() {
             true => Cell::number(end, 4),
             false => Cell::Missing,
         });
@@ -105,8 +109,9 @@ fn rows(found: &FrictionIdentification) -> Vec<[Cell; 5]> {
 
 /// What is open, and the zero of the force.
 fn remarks(found: &FrictionIdentification) -> Vec<String> {
-    let open = coefficients(found)
-        .filter_map(|(name, _, one)| Some(format!("`{name}` is not determined: {}.", because(one)?)));
+    let open = coefficients(found).filter_map(|(name, _, one)| {
+        Some(format!("`{name}` is not determined: {}.", because(one.as_ref().err()?)))
+    });
     let zero = match &found.zero {
         Some(zero) => {
             let [value, low, high] =

@@ -1,7 +1,8 @@
 use super::{
-    FrictionEstimate, FrictionIdentification, RETRACTING_NAMES, because, declared_misfit, misfit_in_words,
+    FrictionIdentification, OpenCoefficient, RETRACTING_NAMES, because, declared_misfit, misfit_in_words,
 };
 use crate::answer::{OutputFile, in_toml};
+use crate::estimate::Estimate;
 
 /// The table `[cylinder.friction]` of a project with what was identified: what the data do not
 /// determine is a comment.
@@ -22,19 +23,22 @@ pub fn files(found: &FrictionIdentification) -> Vec<OutputFile> {
 }
 
 /// A key with its value and interval.
-fn line(((name, unit), one): (&(&str, &str), &FrictionEstimate)) -> String {
-    let [low, high] = one.interval.map(|end| in_toml(end, 4));
-    let value = in_toml(one.value, 5);
-    match because(one) {
-        Some(reason) => format!("# {name}: not determined, {reason}\n"),
-        None if *unit == "1" => format!("{name} = {value}    # 95 %: {low} to {high}\n"),
-        None => format!("{name} = \"{value} {unit}\"    # 95 %: {low} to {high}\n"),
+fn line(((name, unit), one): (&(&str, &str), &Result<Estimate, OpenCoefficient>)) -> String {
+    let Estimate { value, interval } = match one {
+        Err(open) => return format!("# {name}: not determined, {}\n", because(open)),
+        Ok(estimate) => estimate,
+    };
+    let [low, high] = interval.map(|end| in_toml(end, 4));
+    let value = in_toml(*value, 5);
+    match *unit {
+        "1" => format!("{name} = {value}    # 95 %: {low} to {high}\n"),
+        unit => format!("{name} = \"{value} {unit}\"    # 95 %: {low} to {high}\n"),
     }
 }
 
 /// The table of what differs while the rod retracts, and the range of the plant's viscous friction
 /// that has both directions.
-fn retracting(found: &FrictionIdentification, back: &[FrictionEstimate]) -> String {
+fn retracting(found: &FrictionIdentification, back: &[Result<Estimate, OpenCoefficient>]) -> String {
     let lines: String = RETRACTING_NAMES.iter().zip(back).map(line).collect();
     let levels = found.lugre.curve.both_levels().map(|levels| levels.viscous);
     let [low, high] = [levels[0].min(levels[1]), levels[0].max(levels[1])].map(|end| in_toml(end, 5));

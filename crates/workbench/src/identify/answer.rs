@@ -24,18 +24,18 @@ struct IdentifyAnswer<'a> {
     warnings: Vec<WarningBody<'a>>,
     flow_coefficients: EdgesBody,
     leakage_coefficients: EdgesBody,
-    leakage_shape: Estimate,
-    tare_flow_m3_per_s: Estimate,
+    leakage_shape: EstimateBody,
+    tare_flow_m3_per_s: EstimateBody,
     tare_pressure_pa: f64,
     oil_temperature: Option<OilBody>,
-    null_bias_v: Estimate,
-    hysteresis_v: Estimate,
+    null_bias_v: EstimateBody,
+    hysteresis_v: EstimateBody,
     leakage_model: &'static str,
     leakage_models: Vec<ModelBody>,
     leakage_models_difference: Number,
     leakage_model_preferred: Option<&'static str>,
     lap: Option<LapBody>,
-    saturation: Option<Estimate>,
+    saturation: Option<EstimateBody>,
     leakage_shapes: Option<EdgesBody>,
     terms: Vec<TermBody>,
     bootstrap: Option<BootstrapBody>,
@@ -73,20 +73,20 @@ struct TermBody {
 
 #[derive(Serialize)]
 struct LapBody {
-    positive: Estimate,
-    negative: Estimate,
+    positive: EstimateBody,
+    negative: EstimateBody,
 }
 
 #[derive(Serialize)]
 struct EdgesBody {
-    supply_to_a: Estimate,
-    a_to_tank: Estimate,
-    supply_to_b: Estimate,
-    b_to_tank: Estimate,
+    supply_to_a: EstimateBody,
+    a_to_tank: EstimateBody,
+    supply_to_b: EstimateBody,
+    b_to_tank: EstimateBody,
 }
 
 #[derive(Clone, Serialize)]
-struct Estimate {
+struct EstimateBody {
     value: f64,
     confidence_95: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -224,26 +224,26 @@ pub fn json(
 struct EstimatesOfValve {
     flow: EdgesBody,
     leakage: EdgesBody,
-    tare_flow: Estimate,
-    null_bias: Estimate,
-    hysteresis: Estimate,
+    tare_flow: EstimateBody,
+    null_bias: EstimateBody,
+    hysteresis: EstimateBody,
     lap: LapBody,
-    saturation: Estimate,
+    saturation: EstimateBody,
     shapes: EdgesBody,
 }
 
 fn estimates(found: &Identification) -> EstimatesOfValve {
     let numbers = found.coefficients.to_array();
     let bootstrap = |index: usize| found.bootstrap.as_ref()?.intervals.get(index).copied();
-    let all = numbers.into_iter().zip(found.intervals).enumerate();
-    let mut estimates = all.map(|(index, (value, confidence_95))| Estimate {
+    let all = numbers.into_iter().zip(found.estimates).enumerate();
+    let mut estimates = all.map(|(index, (value, estimate))| EstimateBody {
         value,
-        confidence_95,
-        bootstrap_95: confidence_95.and(bootstrap(index)).map(|ends| ends.map(Number)),
-        reason: confidence_95.is_none().then_some("the data do not determine it"),
+        confidence_95: estimate.map(|estimate| estimate.interval),
+        bootstrap_95: estimate.and(bootstrap(index)).map(|ends| ends.map(Number)),
+        reason: estimate.is_none().then_some("the data do not determine it"),
     });
     let mut next = || {
-        let none = Estimate { value: f64::NAN, confidence_95: None, bootstrap_95: None, reason: None };
+        let none = EstimateBody { value: f64::NAN, confidence_95: None, bootstrap_95: None, reason: None };
         estimates.next().unwrap_or(none)
     };
     let mut edges =
@@ -333,7 +333,7 @@ pub(super) fn correlations(found: &Identification) -> Vec<([&'static str; 2], f6
     let mut listed: Vec<([&'static str; 2], f64)> = pairs
         .filter_map(|(i, j, both)| {
             let correlation = *found.correlations.get(i * COEFFICIENT_NAMES.len() + j)?;
-            let told = found.intervals.get(i)?.is_some() && found.intervals.get(j)?.is_some();
+            let told = found.estimates.get(i)?.is_some() && found.estimates.get(j)?.is_some();
             (told && correlation.abs() > REMARKABLE).then_some((both, correlation))
         })
         .collect();
@@ -362,7 +362,7 @@ pub fn files(found: &Identification) -> Vec<OutputFile> {
             "1" | "m3/(s.Pa^0.5)" => in_toml(value, 5),
             unit => format!("\"{} {unit}\"", in_toml(value, 5)),
         };
-        match found.intervals.get(index).copied().flatten() {
+        match found.estimates.get(index).copied().flatten().map(|estimate| estimate.interval) {
             Some([low, high]) if low == 0.0 && name == HYSTERESIS => {
                 format!("# {key}: at most {} V\n", in_toml(high, 4))
             }

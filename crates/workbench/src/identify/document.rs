@@ -179,12 +179,11 @@ fn bootstrap(found: &Bootstrap) -> String {
 }
 
 fn coefficients(found: &Identification) -> Vec<Vec<Cell>> {
-    let numbers = found.coefficients.to_array();
     let by_hand = by_hand(found);
-    let all = COEFFICIENT_NAMES.iter().zip(numbers).zip(found.intervals).zip(by_hand).enumerate();
+    let all = COEFFICIENT_NAMES.iter().zip(found.estimates).zip(by_hand).enumerate();
     let in_model: Vec<usize> = found.in_model().collect();
     all.filter(|(index, _)| in_model.contains(index))
-        .map(|(index, ((((name, unit), value), interval), by_hand))| {
+        .map(|(index, (((name, unit), estimate), by_hand))| {
             let number = |value: Option<f64>| value.map_or(Cell::Missing, |value| Cell::number(value, 4));
             let ends = |interval: Option<[f64; 2]>| match interval {
                 Some([low, high]) => [Some(low), Some(high)].map(number),
@@ -192,10 +191,10 @@ fn coefficients(found: &Identification) -> Vec<Vec<Cell>> {
             };
             let path = found.path(name);
             let name = path.strip_prefix("valve.").unwrap_or(name);
-            let mut row = vec![Cell::Code(name.to_string()), number(interval.map(|_| value))];
-            row.extend(ends(interval));
+            let mut row = vec![Cell::Code(name.to_string()), number(estimate.map(|one| one.value))];
+            row.extend(ends(estimate.map(|one| one.interval)));
             if let Some(bootstrap) = &found.bootstrap {
-                row.extend(ends(interval.and(bootstrap.intervals.get(index).copied())));
+                row.extend(ends(estimate.and(bootstrap.intervals.get(index).copied())));
             }
             row.extend([number(by_hand), Cell::unit(*unit)]);
             row
@@ -253,12 +252,10 @@ fn remarks(found: &Identification) -> Vec<String> {
     if !found.at_bounds.is_empty() {
         remarks.push(format!("At a bound of the search: {}.", found.at_bounds.join(", ")));
     }
-    let zero = COEFFICIENT_NAMES.iter().zip(found.intervals).filter(|((name, _), interval)| {
-        !EITHER_SIGN.contains(name) && interval.is_some_and(|[low, _]| low == 0.0)
-    });
-    let zero = zero.filter_map(|((name, unit), interval)| {
-        let [_, most] = interval?;
-        Some(format!("{name}, at most {} {unit}", significant(most, 3)))
+    let zero = COEFFICIENT_NAMES.iter().zip(found.estimates).filter_map(|((name, unit), estimate)| {
+        let [least, most] = estimate?.interval;
+        let may_vanish = !EITHER_SIGN.contains(name) && least == 0.0;
+        may_vanish.then(|| format!("{name}, at most {} {unit}", significant(most, 3)))
     });
     let zero: Vec<String> = zero.collect();
     if !zero.is_empty() {

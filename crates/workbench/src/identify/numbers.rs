@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{COEFFICIENT_NAMES, CurveReading, Identification, NullMethod, NullReading};
+use super::{COEFFICIENT_NAMES, Identification, NullMethod, NullReading};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
+use crate::estimate::Estimate;
 use crate::project::DeclaredActuator;
 use crate::quantity::{PRESSURE, VOLTAGE, display};
 
@@ -44,8 +45,8 @@ pub(super) struct SimpleBody {
 pub(super) fn simple_body(identified: &Identification) -> SimpleBody {
     let found = &identified.simple;
     let mut confidence_95 = BTreeMap::new();
-    let mut read = |name: &'static str, reading: Option<CurveReading>| {
-        confidence_95.extend(reading.and_then(|reading| Some((name, reading.interval?))));
+    let mut read = |name: &'static str, reading: Option<Estimate>| {
+        confidence_95.extend(reading.and_then(|reading| Some((name, reading.bounds()?))));
         reading.map(|reading| reading.value)
     };
     let [extending, retracting] = found.flow_coefficients;
@@ -77,7 +78,7 @@ pub(super) fn simple_body(identified: &Identification) -> SimpleBody {
 }
 
 /// K_c, which is that at null where the flow gain that is read is: of edges without lap.
-fn coefficient_at_null(found: &Identification) -> Option<CurveReading> {
+fn coefficient_at_null(found: &Identification) -> Option<Estimate> {
     found.simple.flow_pressure_coefficient().filter(|_| !found.tested.terms.lap)
 }
 
@@ -105,7 +106,7 @@ pub(crate) fn tell(found: &Identification, of_thesis: bool, out: &mut Document) 
     let rows = lines(found).into_iter().filter_map(|(line, reading)| {
         let reading = reading?;
         let number = |value: f64| Cell::from(significant(value, 4));
-        let ends = reading.interval.map(|ends| ends.map(number));
+        let ends = reading.bounds().map(|ends| ends.map(number));
         let [low, high] = ends.unwrap_or([Cell::Missing, Cell::Missing]);
         let mut cells = vec![
             Cell::from(line.name),
@@ -171,14 +172,14 @@ fn null_equation(null: Option<NullReading>) -> &'static str {
 fn null_offset(found: &Identification) -> Option<String> {
     let read = found.simple.null_bias()?;
     let null_bias = COEFFICIENT_NAMES.iter().position(|(name, _)| *name == "null_bias")?;
-    found.intervals.get(null_bias)?.as_ref()?;
+    found.estimates.get(null_bias)?.as_ref()?;
     let offset = read.value - found.coefficients.null_bias;
     let reason = match found.simple.nulls[0]?.method {
         NullMethod::LeakageCentre => "the leakage curve of unequal edges is not even about null",
         NullMethod::FlowLines => "where the straight lines begin the spool still remembers its last reversal",
         NullMethod::EqualPressures => "unequal edges balance the ports away from null",
     };
-    let [low, high] = read.interval?;
+    let [low, high] = read.interval;
     (!(low..=high).contains(&found.coefficients.null_bias)).then(|| {
         format!(
             "Null as read lies {} mV {} the identified null bias: {reason}.",
@@ -204,15 +205,13 @@ fn slopes(has_lap: bool) -> [&'static str; 3] {
     }
 }
 
-fn lines(found: &Identification) -> Vec<(NumberLine, Option<CurveReading>)> {
+fn lines(found: &Identification) -> Vec<(NumberLine, Option<Estimate>)> {
     const COEFFICIENT: &str = "m3/(s.Pa^0.5)";
     let simple = &found.simple;
     let line = |name, equation, unit, thesis| NumberLine { name, equation, unit, thesis };
-    let percent = |reading: Option<CurveReading>| {
-        reading.map(|one| CurveReading {
-            value: 100.0 * one.value,
-            interval: one.interval.map(|ends| ends.map(|end| 100.0 * end)),
-        })
+    let percent = |reading: Option<Estimate>| {
+        reading
+            .map(|one| Estimate { value: 100.0 * one.value, interval: one.interval.map(|end| 100.0 * end) })
     };
     let [extending, retracting] = simple.flow_coefficients;
     let [gain_extending, gain_retracting] = simple.flow_gains;

@@ -1,8 +1,6 @@
-use super::{
-    LineIdentification, LineNumber, ResponseFit, RiseFit, Undetermined, VolumeSource, misfit_in_words,
-    numbers,
-};
+use super::{LineIdentification, ResponseFit, RiseFit, Undetermined, VolumeSource, misfit_in_words, numbers};
 use crate::answer::{self, Object};
+use crate::estimate::Estimate;
 use crate::project::{LineSide, Loaded};
 
 /// The JSON object of `identify --of line`.
@@ -41,10 +39,10 @@ pub fn json(loaded: &Loaded, found: &LineIdentification) -> String {
         .print()
 }
 
-fn told(number: &Result<LineNumber, Undetermined>) -> Object {
+fn told(number: &Result<Estimate, Undetermined>) -> Object {
     let object = Object::new();
     match number {
-        Ok(LineNumber { value, interval }) => object
+        Ok(Estimate { value, interval }) => object
             .with("value", *value)
             .with("confidence_95", interval.to_vec())
             .with("reason", None::<String>),

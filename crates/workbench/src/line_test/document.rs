@@ -1,6 +1,7 @@
-use super::{LineIdentification, LineNumber, ResponseFit, RiseFit, misfit_in_words, numbers};
+use super::{LineIdentification, ResponseFit, RiseFit, misfit_in_words, numbers};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
+use crate::estimate::Estimate;
 use crate::project::LineSide;
 use crate::quantity::{DisplayUnit, FLOW, PRESSURE, VOLUME, display};
 use crate::response::resampling;
@@ -9,7 +10,7 @@ use crate::response::resampling;
 pub(crate) fn document(found: &LineIdentification) -> Document {
     let mut out = Document::default();
     let rows = numbers(found).into_iter().filter_map(|(key, what, number)| {
-        let LineNumber { value, interval: [low, high] } = *number.as_ref().ok()?;
+        let Estimate { value, interval: [low, high] } = *number.as_ref().ok()?;
         let unit = unit(key);
         let shown = |value: f64| Cell::number(unit.of(value), 4);
         Some([Cell::from(what), shown(value), shown(low), shown(high), Cell::from(unit.symbol)])

@@ -6,7 +6,8 @@ use phea_dynamics::portable;
 use phea_hydraulics::servovalve::{PortCircuit, TestedValve, flow_coefficient_from_rating};
 
 use super::straight_line::straight_line;
-use super::{CurveReading, direction, largest_command};
+use super::{direction, largest_command};
+use crate::estimate::Estimate;
 use crate::identify::evidence::DECISIVE;
 use crate::identify::recording::{Recording, SignalKind};
 
@@ -34,7 +35,7 @@ pub(super) fn flow_gains(
     tested: &TestedValve,
     null: Option<f64>,
     drop: f64,
-) -> ([Option<CurveReading>; 2], Option<[f64; 2]>) {
+) -> ([Option<Estimate>; 2], Option<[f64; 2]>) {
     let mut metered: Vec<&Recording> =
         recordings.iter().filter(|one| one.circuit == PortCircuit::Connected).collect();
     sort_by_number(&mut metered, |one| largest_command(std::slice::from_ref(*one)));
@@ -42,8 +43,8 @@ pub(super) fn flow_gains(
     let of = |recording: &Recording| {
         [1.0, -1.0].map(|sign| {
             let ways = [true, false].map(|rising| branch(recording, tested, null, (sign, rising)));
-            let lines: Vec<CurveReading> = ways.into_iter().flatten().collect();
-            CurveReading::mean(&lines).map(|slope| slope.times((drop / 2.0).sqrt()))
+            let lines: Vec<Estimate> = ways.into_iter().flatten().collect();
+            Estimate::mean(&lines).map(|slope| slope.times((drop / 2.0).sqrt()))
         })
     };
     let mut found = metered.into_iter().map(|one| (of(one), Some(gain_window(one, tested))));
@@ -63,7 +64,7 @@ fn branch(
     tested: &TestedValve,
     null: f64,
     (sign, rising): (f64, bool),
-) -> Option<CurveReading> {
+) -> Option<Estimate> {
     let kinds = [SignalKind::PortFlow, SignalKind::PortFlowMagnitude];
     let signal = kinds.into_iter().find_map(|kind| recording.signal(kind))?;
     let values = signal.despiked();
@@ -97,7 +98,7 @@ type NearNull = (f64, f64, f64);
 /// hysteresis lies between those of either way, and a branch that begins without the memory of a
 /// reversal lies elsewhere again. Such a branch is left out where others tell, as its spool may
 /// begin by standing still.
-pub(super) fn pressure_sensitivity(recordings: &[Recording]) -> Option<CurveReading> {
+pub(super) fn pressure_sensitivity(recordings: &[Recording]) -> Option<Estimate> {
     let blocked = || recordings.iter().filter(|one| one.circuit == PortCircuit::Blocked);
     let told = |first: usize| -> Vec<Vec<NearNull>> {
         let all = blocked().flat_map(|one| {
@@ -172,20 +173,20 @@ impl NullBend {
 const KINKS: i32 = 10;
 
 /// 1/(dU/dp_L) at p_L = 0 over these branches, by the bend that the information criterion favours.
-fn inverse_slope(branches: &[Vec<NearNull>]) -> Option<CurveReading> {
+fn inverse_slope(branches: &[Vec<NearNull>]) -> Option<Estimate> {
     let rows = branches.iter().map(Vec::len).sum::<usize>();
     let fits = NullBend::all().filter(|bend| rows > bend.numbers() + 1 + branches.len());
-    let found: Vec<(CurveReading, f64)> = fits.filter_map(|bend| bent(branches, bend)).collect();
+    let found: Vec<(Estimate, f64)> = fits.filter_map(|bend| bent(branches, bend)).collect();
     let (best, least) = found.iter().copied().min_by(|one, other| one.1.total_cmp(&other.1))?;
     // what another bend says that explains the rows about as well is possible too
     let likely = found.iter().filter(|(_, criterion)| criterion - least < DECISIVE);
-    let ends = likely.filter_map(|(reading, _)| reading.interval);
-    let [low, high] = ends.fold(best.interval?, |[low, high], [from, to]| [low.min(from), high.max(to)]);
-    (rows >= FEWEST).then_some(CurveReading { interval: Some([low, high]), ..best })
+    let ends = likely.filter_map(|(reading, _)| reading.bounds());
+    let [low, high] = ends.fold(best.bounds()?, |[low, high], [from, to]| [low.min(from), high.max(to)]);
+    (rows >= FEWEST).then_some(Estimate { interval: [low, high], ..best })
 }
 
 /// The same with this bend, and the criterion of Schwarz.
-fn bent(branches: &[Vec<NearNull>], bend: NullBend) -> Option<(CurveReading, f64)> {
+fn bent(branches: &[Vec<NearNull>], bend: NullBend) -> Option<(Estimate, f64)> {
     let all = branches.iter().enumerate();
     let points: Vec<(usize, NearNull)> =
         all.flat_map(|(branch, points)| points.iter().map(move |point| (branch, *point))).collect();
@@ -215,5 +216,5 @@ fn bent(branches: &[Vec<NearNull>], bend: NullBend) -> Option<(CurveReading, f64
     let mean_square = (2.0 * found.cost / rows).max(f64::MIN_POSITIVE);
     let numbers = (1 + bend.numbers() + branches.len()) as f64;
     let criterion = rows * portable::ln(mean_square) + numbers * portable::ln(rows);
-    (slope > 0.0).then(|| (CurveReading::of(value, value * deviation / slope), criterion))
+    (slope > 0.0).then(|| (Estimate::of(value, value * deviation / slope), criterion))
 }

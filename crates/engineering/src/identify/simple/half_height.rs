@@ -1,7 +1,8 @@
 //! The peak of the leakage, and where the curve is half as high.
 
-use super::CurveReading;
 use phea_dynamics::order::sort_by_number;
+
+use crate::estimate::Estimate;
 
 /// The curve of the leakage: its base, its peak, and the noise of a row.
 pub(super) struct Flank {
@@ -18,7 +19,7 @@ impl Flank {
 
     /// Commands at which a branch, from below through its peak and below again, crosses half of its
     /// height.
-    pub(super) fn half_height(&self, points: &[(f64, f64)]) -> Option<[CurveReading; 2]> {
+    pub(super) fn half_height(&self, points: &[(f64, f64)]) -> Option<[Estimate; 2]> {
         let mut sorted = points.to_vec();
         sort_by_number(&mut sorted, |point| point.0);
         let ends = crossings(&sorted, self.height(0.5))?;
@@ -29,7 +30,7 @@ impl Flank {
             self.noise * run / (0.5 * (self.peak - self.base))
         };
         let [low, high] = ends;
-        Some([CurveReading::of(low, deviation(0)), CurveReading::of(high, deviation(1))])
+        Some([Estimate::of(low, deviation(0)), Estimate::of(high, deviation(1))])
     }
 }
 
@@ -46,11 +47,11 @@ fn crossings(sorted: &[(f64, f64)], height: f64) -> Option<[f64; 2]> {
 }
 
 /// Highest mean of a twenty-fourth of these rows, neighbours over the command.
-pub(super) fn peak(points: &[(f64, f64)], noise: f64) -> Option<CurveReading> {
+pub(super) fn peak(points: &[(f64, f64)], noise: f64) -> Option<Estimate> {
     let mut sorted = points.to_vec();
     sort_by_number(&mut sorted, |point| point.0);
     let width = (sorted.len() / 24).max(1);
     let means =
         sorted.windows(width).map(|rows| rows.iter().map(|(_, leak)| leak).sum::<f64>() / width as f64);
-    means.reduce(f64::max).map(|peak| CurveReading::of(peak, noise / (width as f64).sqrt()))
+    means.reduce(f64::max).map(|peak| Estimate::of(peak, noise / (width as f64).sqrt()))
 }

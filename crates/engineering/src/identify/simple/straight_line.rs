@@ -1,12 +1,13 @@
-use super::CurveReading;
 use phea_dynamics::order::median;
+
+use crate::estimate::Estimate;
 
 /// A straight line through points.
 #[derive(Clone, Copy)]
 pub(in crate::identify) struct StraightLine {
     /// Where it is zero.
-    pub(in crate::identify) zero: CurveReading,
-    pub(in crate::identify) slope: CurveReading,
+    pub(in crate::identify) zero: Estimate,
+    pub(in crate::identify) slope: Estimate,
 }
 
 /// The straight line through points; points far from the others' line do not count.
@@ -25,8 +26,8 @@ pub(in crate::identify) fn straight_line(points: &[(f64, f64)]) -> Option<Straig
         let away = y / slope;
         let of_zero = noise / slope.abs() * (1.0 / count + away * away / square).sqrt();
         (points.len() >= FEWEST && square > 0.0 && slope != 0.0).then(|| StraightLine {
-            zero: CurveReading::of(x - away, of_zero),
-            slope: CurveReading::of(slope, noise / square.sqrt()),
+            zero: Estimate::of(x - away, of_zero),
+            slope: Estimate::of(slope, noise / square.sqrt()),
         })
     };
     let StraightLine { zero, slope } = fitted(points)?;
