@@ -13,6 +13,7 @@
 mod found;
 mod known;
 mod misfit;
+mod not_identifiable;
 mod reading;
 mod response_noise;
 mod rise;
@@ -21,9 +22,10 @@ mod rise_noise;
 mod shaken;
 mod stand;
 
-pub use found::{LineIdentification, Undetermined, identify_line};
+pub use found::{LineIdentification, identify_line};
 pub use known::KnownLine;
 pub use misfit::LineMisfit;
+pub use not_identifiable::{NotIdentifiableLine, WideQuantity};
 pub use reading::{LineRecord, line_records};
 pub use rise::{RiseFit, RiseRecord, VolumeSource};
 pub use shaken::{CompliancePoint, LineParameters, ResponseFit};

@@ -30,7 +30,16 @@ pub struct KeptNumber {
     /// Path of the number in the project.
     pub path: String,
     /// Why.
-    pub reason: &'static str,
+    pub reason: KeptReason,
+}
+
+/// Reason for which a number stays as declared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeptReason {
+    /// The recordings do not determine it.
+    NotIdentifiable,
+    /// Its interval contains zero.
+    MayVanish,
 }
 
 /// The family that takes the place of the declared one: the directions of the project.

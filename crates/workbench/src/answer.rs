@@ -21,7 +21,7 @@ pub use crate::source::OutputFile;
 use chosen_lines::body_of_lines;
 pub use pictures::picture_of;
 pub(crate) use pictures::{part_files, picture_files};
-pub(crate) use recorded::body_in_use;
+pub(crate) use recorded::{body_in_use, kept_because};
 
 use crate::project::Loaded;
 

@@ -8,7 +8,7 @@ mod table;
 
 pub use phea_engineering::bench::*;
 
-use crate::line_test::KnownLine;
+use crate::line_test::{KnownLine, remark};
 use crate::project::IdentifiedUse;
 use crate::setup::Setup;
 
@@ -23,6 +23,6 @@ pub(crate) fn remarks(setup: &Setup<'_>) -> Vec<&'static str> {
     let valve = (takes != IdentifiedUse::Nothing).then_some(
         "The valve under test is the declared one: `identify.use` takes the recordings in every command but this.",
     );
-    let line = setup.project.bench.line.and_then(|bench| KnownLine::of(setup, bench.side).ok()?.remark());
+    let line = setup.project.bench.line.and_then(|bench| remark(&KnownLine::of(setup, bench.side).ok()?));
     valve.into_iter().chain(line).collect()
 }

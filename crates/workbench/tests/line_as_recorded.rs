@@ -111,7 +111,7 @@ fn free_air_is_found_with_the_modulus() {
     let mut covered = [0; 2];
     for seed in 1..=40 {
         let found = found(rise(&known, 0.02, seed), &known);
-        let air = found.entrained_air.as_ref().unwrap_or_else(|why| panic!("{seed}: {why}"));
+        let air = found.entrained_air.as_ref().unwrap_or_else(|why| panic!("{seed}: {why:?}"));
         let modulus = found.effective_bulk_modulus.as_ref().unwrap();
         assert!((modulus.value / truth - 1.0).abs() < 0.01, "{seed}: {modulus:?} {truth}");
         for (count, (number, truth)) in covered.iter_mut().zip([(air, 0.02), (modulus, truth)]) {
@@ -215,7 +215,7 @@ fn the_speed_of_an_exact_wave_is_within_its_interval() {
         let mut covered = 0;
         for seed in 1..=20 {
             let found = found(response(&known, [535.0, 0.0], seed), &known);
-            let speed = found.wave_speed.as_ref().unwrap_or_else(|why| panic!("{seed}: {why}"));
+            let speed = found.wave_speed.as_ref().unwrap_or_else(|why| panic!("{seed}: {why:?}"));
             assert!((speed.value / 535.0 - 1.0).abs() < 3e-3, "{seed}: {speed:?}");
             assert!(found.response.as_ref().unwrap().is_explained(), "{seed}");
             covered += usize::from(speed.interval[0] <= 535.0 && 535.0 <= speed.interval[1]);

@@ -7,8 +7,8 @@ use crate::ask::{HOSE, load};
 use phea_hydraulics::line::{Conduit, Line, Stiffening, StiffeningMember};
 use phea_workbench::estimate::Estimate;
 use phea_workbench::line_test::{
-    KnownLine, LineIdentification, LineRecord, LineRun, LineSeries, RiseRecord, Undetermined, VolumeSource,
-    clean_line_runs, identify_line, recorded,
+    KnownLine, LineIdentification, LineRecord, LineRun, LineSeries, NotIdentifiableLine, RiseRecord,
+    VolumeSource, clean_line_runs, identify_line, recorded,
 };
 use phea_workbench::project::{Bench, Loaded};
 use phea_workbench::response::{ResponseSettings, SampledPair};
@@ -39,7 +39,7 @@ const SETTINGS: ResponseSettings =
     ResponseSettings { period: None, settling: None, segment: None, coherence: 0.0 };
 
 /// Requirements on an identification, and what is true.
-type Sought = (&'static str, fn(&LineIdentification) -> &Result<Estimate, Undetermined>, f64);
+type Sought = (&'static str, fn(&LineIdentification) -> &Result<Estimate, NotIdentifiableLine>, f64);
 
 /// Each 95 % interval covers the truth as often as a binomial distribution allows.
 #[test]
@@ -177,7 +177,7 @@ fn check(
     let mut wrong = Vec::new();
     for (name, of, truth) in sought(&known) {
         let numbers =
-            || found.iter().map(|one| of(one).as_ref().unwrap_or_else(|why| panic!("{name}: {why}")));
+            || found.iter().map(|one| of(one).as_ref().unwrap_or_else(|why| panic!("{name}: {why:?}")));
         let covered = numbers().filter(|one| one.interval[0] <= truth && truth <= one.interval[1]).count();
         let widths = numbers().map(|one| (one.interval[1] - one.interval[0]) / 2.0 / truth);
         let width = 100.0 * widths.sum::<f64>() / found.len() as f64;

@@ -4,14 +4,15 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may panic")]
 
 use phea_workbench::estimate::Estimate;
+use phea_workbench::line_test::NotIdentifiableLine;
 
 use crate::line_as_recorded::{OfVolume, Rise, compliance, found, of_oil, response, rise_of};
 use crate::line_coverage::{WAVES, known, project};
 
 /// Holds the truth, with three standard deviations for two.
 #[track_caller]
-fn holds(number: &Result<Estimate, String>, truth: f64) {
-    let Estimate { value, interval: [low, high] } = *number.as_ref().unwrap_or_else(|why| panic!("{why}"));
+fn holds(number: &Result<Estimate, NotIdentifiableLine>, truth: f64) {
+    let Estimate { value, interval: [low, high] } = *number.as_ref().unwrap_or_else(|why| panic!("{why:?}"));
     let [low, high] = [value + 1.5 * (low - value), value + 1.5 * (high - value)];
     assert!(low <= truth && truth <= high, "{truth}: {value}, {low} to {high}");
 }
@@ -64,11 +65,16 @@ fn air_is_a_fraction_of_the_mixture_at_atmospheric_pressure() {
 /// The speed of a wave in a line of which a fraction of the compliance is at each end, within
 /// three thousandths.
 #[track_caller]
-fn the_speed_is_found(settings: &[&str], speed: f64, end_share: f64, seed: u64) -> Result<Estimate, String> {
+fn the_speed_is_found(
+    settings: &[&str],
+    speed: f64,
+    end_share: f64,
+    seed: u64,
+) -> Result<Estimate, NotIdentifiableLine> {
     let loaded = project(&[&WAVES[..], settings].concat());
     let known = known(&loaded);
     let found = found(response(&known, [speed, end_share], seed), &known);
-    let value = found.wave_speed.as_ref().unwrap_or_else(|why| panic!("{why}")).value;
+    let value = found.wave_speed.as_ref().unwrap_or_else(|why| panic!("{why:?}")).value;
     assert!((value / speed - 1.0).abs() < 3e-3, "{value} {speed}");
     assert!(found.misfits().is_empty(), "{:?}", found.misfits());
     found.wave_speed

@@ -16,7 +16,7 @@ use super::{
 use crate::estimate::Estimate;
 use crate::project::{
     self, FromRecordings, HashedFile, IdentifiedFamily, IdentifiedNumber, IdentifiedUse, KeptNumber,
-    LEAKAGE_MODELS, Loaded, Origin, Project, RecordedTest, UncertaintyDirection, sha256, word_of,
+    KeptReason, LEAKAGE_MODELS, Loaded, Origin, Project, RecordedTest, UncertaintyDirection, sha256, word_of,
 };
 use crate::source::{Memory, Source};
 
@@ -131,9 +131,9 @@ fn numbers(found: &Identification, project: &Project) -> (Vec<IdentifiedNumber>,
     for ((name, unit), estimate) in found.in_model().filter_map(of) {
         let path = found.path(name);
         match estimate {
-            None => kept.push(KeptNumber { path, reason: "the recordings do not determine it" }),
+            None => kept.push(KeptNumber { path, reason: KeptReason::NotIdentifiable }),
             Some(Estimate { interval: [low, _], .. }) if name == "hysteresis" && low == 0.0 => {
-                kept.push(KeptNumber { path, reason: "the recordings cannot distinguish it from zero" });
+                kept.push(KeptNumber { path, reason: KeptReason::MayVanish });
             }
             Some(Estimate { value, interval }) => {
                 let declared = project.number(&path);

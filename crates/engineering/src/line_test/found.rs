@@ -1,17 +1,13 @@
 use phea_dynamics::portable::{ln, pow};
 use phea_dynamics::watch::Watch;
 use phea_hydraulics::line::{Line, LineModel};
-use phea_quantity::significant;
 
 use super::rise::rise_fit;
 use super::shaken::response_fit;
-use super::{KnownLine, LineRecord, ResponseFit, RiseFit};
+use super::{KnownLine, LineRecord, NotIdentifiableLine, ResponseFit, RiseFit, WideQuantity};
 use crate::estimate::{Estimate, NORMAL_95};
 use crate::identify::IdentifyError;
 use crate::response::{ResponseSettings, SampledPair, members};
-
-/// Why the recordings do not determine a number.
-pub type Undetermined = String;
 
 /// A line as identified from recordings.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,23 +21,23 @@ pub struct LineIdentification {
     /// The fast one.
     pub response: Option<ResponseFit>,
     /// Pa, at rest.
-    pub effective_bulk_modulus: Result<Estimate, Undetermined>,
+    pub effective_bulk_modulus: Result<Estimate, NotIdentifiableLine>,
     /// Pa, between both ends of the slow test.
-    pub secant_bulk_modulus: Result<Estimate, Undetermined>,
+    pub secant_bulk_modulus: Result<Estimate, NotIdentifiableLine>,
     /// 1, by which the modulus at rest grows with the pressure: d beta/dp.
-    pub modulus_slope: Result<Estimate, Undetermined>,
+    pub modulus_slope: Result<Estimate, NotIdentifiableLine>,
     /// Pa, under fast changes.
-    pub dynamic_bulk_modulus: Result<Estimate, Undetermined>,
+    pub dynamic_bulk_modulus: Result<Estimate, NotIdentifiableLine>,
     /// r_beta, of the wall of a hose.
-    pub dynamic_stiffening: Result<Estimate, Undetermined>,
+    pub dynamic_stiffening: Result<Estimate, NotIdentifiableLine>,
     /// s, in which pressure relaxes while the volume is held.
-    pub relaxation_time: Result<Estimate, Undetermined>,
+    pub relaxation_time: Result<Estimate, NotIdentifiableLine>,
     /// m/s, of a fast wave.
-    pub wave_speed: Result<Estimate, Undetermined>,
+    pub wave_speed: Result<Estimate, NotIdentifiableLine>,
     /// 1, volume of free air at atmospheric pressure over that of the mixture.
-    pub entrained_air: Result<Estimate, Undetermined>,
+    pub entrained_air: Result<Estimate, NotIdentifiableLine>,
     /// kg/m3, of the oil, as its inertance shows it with the declared length and bore.
-    pub density: Result<Estimate, Undetermined>,
+    pub density: Result<Estimate, NotIdentifiableLine>,
 }
 
 /// Standard deviation of a logarithm beyond which a number is not determined: a factor of one and a
@@ -70,7 +66,9 @@ const BEYOND: f64 = 0.1;
 /// # Example
 /// A rigid volume of a litre filled by hand.
 /// ```
-/// use phea_engineering::line_test::{KnownLine, LineRecord, RiseRecord, VolumeSource, identify_line};
+/// use phea_engineering::line_test::{
+///     KnownLine, LineRecord, NotIdentifiableLine, RiseRecord, VolumeSource, identify_line,
+/// };
 /// use phea_hydraulics::fluid::Fluid;
 /// use phea_hydraulics::line::Line;
 /// # use phea_project::{LineMotion, LineSide};
@@ -90,7 +88,7 @@ const BEYOND: f64 = 0.1;
 /// let record = RiseRecord { file: "hand.csv".to_string(), source: VolumeSource::Volume, times: vec![], volumes, pressures };
 /// let found = identify_line(vec![LineRecord::Rise(record)], known, &settings, &mut |_| true).unwrap();
 /// assert!((found.effective_bulk_modulus.unwrap().value / 1.2e9 - 1.0).abs() < 1e-9);
-/// assert!(found.wave_speed.unwrap_err().contains("no frequency response"));
+/// assert_eq!(found.wave_speed, Err(NotIdentifiableLine::NoResponse));
 /// ```
 pub fn identify_line(
     records: Vec<LineRecord>,
@@ -164,30 +162,25 @@ fn combined(known: KnownLine, rise: Option<RiseFit>, response: Option<ResponseFi
         (None, None) => known.pressure,
     };
     let at_rest = compliance_at_rest(&known, pressure, rise.as_ref(), response.as_ref());
-    let told = |number: Estimate, what: &str| {
-        let wide = format!("{what} is known to no better than a factor of one and a half");
-        if number.deviation_of_logarithm() < TOLD { Ok(number) } else { Err(wide) }
-    };
-    let fast = response.as_ref().ok_or_else(no_response);
-    let fast_compliance = fast.clone().map(|fit| fit.of(|line| line.compliance));
-    let secant = rise.as_ref().ok_or_else(no_rise).and_then(|rise| {
+    let fast = response.as_ref().ok_or(NotIdentifiableLine::NoResponse);
+    let fast_compliance = fast.map(|fit| fit.of(|line| line.compliance));
+    let slow = rise.as_ref().ok_or(NotIdentifiableLine::NoRise);
+    let secant = slow.and_then(|rise| {
         let [value, deviation] = rise.secant();
-        told(relative(value, deviation)?.under(volume), "the secant modulus")
+        narrow(relative(value, deviation)?.under(volume), WideQuantity::SecantModulus)
     });
     LineIdentification {
         effective_bulk_modulus: at_rest
-            .clone()
-            .and_then(|compliance| told(compliance.under(volume), "the modulus at rest")),
+            .and_then(|compliance| narrow(compliance.under(volume), WideQuantity::ModulusAtRest)),
         secant_bulk_modulus: secant,
-        entrained_air: rise.as_ref().ok_or_else(no_rise).and_then(air),
-        modulus_slope: rise.as_ref().ok_or_else(no_rise).and_then(|rise| slope(rise, volume, pressure)),
+        entrained_air: slow.and_then(air),
+        modulus_slope: slow.and_then(|rise| slope(rise, volume, pressure)),
         dynamic_bulk_modulus: fast_compliance
-            .clone()
-            .and_then(|compliance| told(compliance.under(volume), "the dynamic modulus")),
-        dynamic_stiffening: stiffening(&known, pressure, at_rest.as_ref(), response.as_ref())
-            .and_then(|number| told(number, "the dynamic stiffening")),
-        relaxation_time: fast.clone().and_then(|fit| relaxation(&known, fit)),
-        density: fast.clone().and_then(|fit| density(&known, fit)),
+            .and_then(|compliance| narrow(compliance.under(volume), WideQuantity::DynamicModulus)),
+        dynamic_stiffening: stiffening(&known, pressure, at_rest, response.as_ref())
+            .and_then(|number| narrow(number, WideQuantity::DynamicStiffening)),
+        relaxation_time: fast.and_then(|fit| relaxation(&known, fit)),
+        density: fast.and_then(|fit| density(&known, fit)),
         wave_speed: fast.and_then(|fit| wave_speed(&known, fit)),
         pressure,
         known,
@@ -196,20 +189,18 @@ fn combined(known: KnownLine, rise: Option<RiseFit>, response: Option<ResponseFi
     }
 }
 
-fn no_response() -> Undetermined {
-    "there is no frequency response among the recordings".to_string()
-}
-
-fn no_rise() -> Undetermined {
-    "there is no slow pressure rise among the recordings".to_string()
+/// An estimate that is known to a factor of one and a half.
+fn narrow(estimate: Estimate, quantity: WideQuantity) -> Result<Estimate, NotIdentifiableLine> {
+    let deviation = estimate.deviation_of_logarithm();
+    if deviation < TOLD { Ok(estimate) } else { Err(NotIdentifiableLine::Wide { quantity, deviation }) }
 }
 
 /// A number of this standard deviation, by its logarithm.
-fn relative(value: f64, deviation: f64) -> Result<Estimate, Undetermined> {
+fn relative(value: f64, deviation: f64) -> Result<Estimate, NotIdentifiableLine> {
     if value > 0.0 && deviation.is_finite() {
         return Ok(Estimate::of_logarithm(ln(value), deviation / value));
     }
-    Err("the pressure does not rise with the volume".to_string())
+    Err(NotIdentifiableLine::PressureDoesNotRise { slope: value })
 }
 
 /// m3/Pa: of a creeping wall, oil and wall after the creep. What is not a hose yields at rest as it
@@ -219,7 +210,7 @@ fn compliance_at_rest(
     pressure: f64,
     rise: Option<&RiseFit>,
     response: Option<&ResponseFit>,
-) -> Result<Estimate, Undetermined> {
+) -> Result<Estimate, NotIdentifiableLine> {
     let from_rise = rise.filter(|rise| rise.reaches(pressure)).map(|rise| {
         let [value, deviation] = rise.compliance(pressure);
         relative(value, deviation)
@@ -233,26 +224,22 @@ fn compliance_at_rest(
         (Some(Ok(rise)), _, Some(moving)) if !is_hose => Ok(Estimate::combined(rise, moving)),
         (None | Some(Err(_)), _, Some(moving)) if !is_hose => Ok(moving),
         (Some(rise), ..) => rise,
-        (None, Some(_), _) => {
-            Err(format!("{}; in motion the wall of a hose is stiffer than at rest", no_rise()))
-        }
-        (None, None, _) => Err(no_rise()),
+        (None, Some(_), _) => Err(NotIdentifiableLine::NoRiseOfHose),
+        (None, None, _) => Err(NotIdentifiableLine::NoRise),
     }
 }
 
 /// The fraction of free air.
-fn air(rise: &RiseFit) -> Result<Estimate, Undetermined> {
-    let [value, deviation] = rise
-        .air_fraction()
-        .ok_or("the pressure rise is explained as well without free air in the declared oil")?;
+fn air(rise: &RiseFit) -> Result<Estimate, NotIdentifiableLine> {
+    let [value, deviation] = rise.air_fraction().ok_or(NotIdentifiableLine::NoAir)?;
     let edge = NORMAL_95 * deviation;
     Ok(Estimate { value, interval: [(value - edge).max(0.0), value + edge] })
 }
 
 /// d beta/dp at a pressure, where the compliance changes.
-fn slope(rise: &RiseFit, volume: f64, pressure: f64) -> Result<Estimate, Undetermined> {
+fn slope(rise: &RiseFit, volume: f64, pressure: f64) -> Result<Estimate, NotIdentifiableLine> {
     if rise.terms() < 2 && rise.air_fraction().is_none() {
-        return Err("the compliance does not change with the pressure beyond its noise".to_string());
+        return Err(NotIdentifiableLine::ConstantCompliance);
     }
     let [compliance, _] = rise.compliance(pressure);
     let [slope, deviation] = rise.compliance_slope(pressure);
@@ -265,20 +252,18 @@ fn slope(rise: &RiseFit, volume: f64, pressure: f64) -> Result<Estimate, Undeter
 fn stiffening(
     known: &KnownLine,
     pressure: f64,
-    at_rest: Result<&Estimate, &Undetermined>,
+    at_rest: Result<Estimate, NotIdentifiableLine>,
     response: Option<&ResponseFit>,
-) -> Result<Estimate, Undetermined> {
+) -> Result<Estimate, NotIdentifiableLine> {
     if !matches!(known.line, Line::Hose { .. }) {
-        return Err("only the wall of a hose stiffens".to_string());
+        return Err(NotIdentifiableLine::NoHose);
     }
-    let fit = response.ok_or_else(no_response)?;
-    let rest = at_rest.map_err(Clone::clone)?;
+    let fit = response.ok_or(NotIdentifiableLine::NoResponse)?;
+    let rest = at_rest?;
     let oil = known.fluid_compliance(pressure).unwrap_or(0.0);
     let [fast, slow] = [fit.parameters.compliance - oil, rest.value - oil];
     if fast <= 0.0 || slow <= 0.0 {
-        return Err(
-            "the line yields less than the declared oil alone: `fluid.bulk_modulus` is too low".to_string()
-        );
+        return Err(NotIdentifiableLine::StifferThanOil { wall: [fast, slow] });
     }
     if fit.parameters.creep.is_some() {
         return Ok(fit.of(|line| {
@@ -292,9 +277,9 @@ fn stiffening(
 }
 
 /// tau of a creeping wall, with the declared oil.
-fn relaxation(known: &KnownLine, fit: &ResponseFit) -> Result<Estimate, Undetermined> {
+fn relaxation(known: &KnownLine, fit: &ResponseFit) -> Result<Estimate, NotIdentifiableLine> {
     if fit.parameters.creep.is_none() {
-        return Err("the declared model of the line has no creep (`line.relaxation_time`)".to_string());
+        return Err(NotIdentifiableLine::NoCreep);
     }
     let oil = known.fluid_compliance(fit.pressure).unwrap_or(0.0);
     let of = |line: &super::LineParameters| {
@@ -303,41 +288,34 @@ fn relaxation(known: &KnownLine, fit: &ResponseFit) -> Result<Estimate, Undeterm
     };
     let found = fit.of(of);
     if !found.value.is_finite() {
-        return Err("the line yields less than the declared oil alone".to_string());
+        return Err(NotIdentifiableLine::NoWallCompliance);
     }
-    if found.deviation_of_logarithm() < SHOWN {
-        return Ok(found);
-    }
-    Err("the frequencies of the response are not around the corner of the creep".to_string())
+    let deviation = found.deviation_of_logarithm();
+    if deviation < SHOWN { Ok(found) } else { Err(NotIdentifiableLine::AwayFromCreep { deviation }) }
 }
 
 /// I A/L.
-fn density(known: &KnownLine, fit: &ResponseFit) -> Result<Estimate, Undetermined> {
+fn density(known: &KnownLine, fit: &ResponseFit) -> Result<Estimate, NotIdentifiableLine> {
     wave_speed(known, fit)?;
     let stated = known.inertance().unwrap_or(f64::NAN);
     Ok(fit.of(|line| known.fluid.density * line.inertance.unwrap_or(f64::NAN) / stated))
 }
 
 /// c of a fast wave.
-fn wave_speed(known: &KnownLine, fit: &ResponseFit) -> Result<Estimate, Undetermined> {
+fn wave_speed(known: &KnownLine, fit: &ResponseFit) -> Result<Estimate, NotIdentifiableLine> {
     let Some([length, _]) = known.dimensions() else {
-        return Err("a plain volume has no length".to_string());
+        return Err(NotIdentifiableLine::NoLength);
     };
     if matches!(known.declared_model(), LineModel::TwoWave { .. }) {
-        return Err("two waves travel in the declared model: `two_wave`".to_string());
+        return Err(NotIdentifiableLine::TwoWaves);
     }
-    let last = fit.member.points.last().map_or(0.0, |point| point.frequency);
-    let hertz = |value: f64| significant(value / (2.0 * std::f64::consts::PI), 4);
+    let highest = fit.member.points.last().map_or(0.0, |point| point.frequency);
     if fit.without_waves {
-        return Err(format!("the response shows no wave up to {} Hz", hertz(last)));
+        return Err(NotIdentifiableLine::NoWave { highest });
     }
     let found = fit.of(|line| length / pow(line.inertance.unwrap_or(f64::NAN) * line.compliance, 0.5));
-    let quarter = found.value / (4.0 * length);
     if found.deviation_of_logarithm() < SHOWN {
         return Ok(found);
     }
-    Err(format!(
-        "the frequencies end at {} Hz, too far below the quarter wave at about {quarter:.0} Hz",
-        hertz(last)
-    ))
+    Err(NotIdentifiableLine::BelowQuarterWave { highest, quarter_wave: found.value / (4.0 * length) })
 }

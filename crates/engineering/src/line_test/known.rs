@@ -76,13 +76,6 @@ impl KnownLine {
         if known.volume() > 0.0 { Ok(known) } else { Err("the line holds no oil".to_string()) }
     }
 
-    /// That its accumulator is left out, in a sentence, where it has one.
-    pub fn remark(&self) -> Option<&'static str> {
-        self.leaves_accumulator.then_some(
-            "The accumulator at the chamber is not part of the blocked line: neither test nor result includes it.",
-        )
-    }
-
     /// m3, of the oil that it holds at the operating pressure: its moduli refer to it.
     pub fn volume(&self) -> f64 {
         self.line.filled().volume()

@@ -3,7 +3,7 @@
 use phea_engineering::identify::COVERAGE;
 
 use super::Object;
-use crate::project::FromRecordings;
+use crate::project::{FromRecordings, KeptReason};
 
 /// The files, what is from them, what stays as declared, and the family.
 pub(crate) fn body_in_use(recorded: &FromRecordings) -> Object {
@@ -29,9 +29,17 @@ pub(crate) fn body_in_use(recorded: &FromRecordings) -> Object {
                 .with("declared", one.declared)
         })
         .each("kept", &recorded.kept, |one| {
-            Object::new().with("path", one.path.as_str()).with("reason", one.reason)
+            Object::new().with("path", one.path.as_str()).with("reason", kept_because(one.reason))
         })
         .with("tare_pressure_pa", recorded.tare_pressures[0])
         .with("declared_tare_pressure_pa", recorded.tare_pressures[1])
         .maybe("family", family)
+}
+
+/// Reason for which a number stays as declared.
+pub(crate) fn kept_because(reason: KeptReason) -> &'static str {
+    match reason {
+        KeptReason::NotIdentifiable => "the recordings do not determine it",
+        KeptReason::MayVanish => "the recordings cannot distinguish it from zero",
+    }
 }

@@ -1,7 +1,7 @@
 //! What recordings gave in place of what a project declares: for people.
 
 use super::COVERAGE;
-use crate::answer::significant;
+use crate::answer::{kept_because, significant};
 use crate::document::{Cell, Document, Table};
 use crate::project::{FromRecordings, IdentifiedFamily, Loaded};
 use crate::quantity::{PRESSURE, display};
@@ -36,7 +36,10 @@ pub(crate) fn tell_in_use(recorded: &FromRecordings, out: &mut Document) {
     });
     out.table(Table::new(headings).with(rows));
     out.sentences(tare_pressure(recorded));
-    let kept = recorded.kept.iter().map(|one| format!("{} stays as declared: {}.", one.path, one.reason));
+    let kept = recorded
+        .kept
+        .iter()
+        .map(|one| format!("{} stays as declared: {}.", one.path, kept_because(one.reason)));
     out.sentences(kept.chain(recorded.family.as_ref().map(family)));
 }
 

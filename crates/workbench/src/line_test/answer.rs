@@ -1,4 +1,7 @@
-use super::{LineIdentification, ResponseFit, RiseFit, Undetermined, VolumeSource, misfit_in_words, numbers};
+use super::{
+    LineIdentification, NotIdentifiableLine, ResponseFit, RiseFit, VolumeSource, because, misfit_in_words,
+    numbers, remark,
+};
 use crate::answer::{self, Object};
 use crate::estimate::Estimate;
 use crate::project::{LineSide, Loaded};
@@ -27,7 +30,7 @@ pub fn json(loaded: &Loaded, found: &LineIdentification) -> String {
         .each("warnings", found.misfits(), |one| {
             Object::new().with("message", misfit_in_words(&one)).with("file", one.file.as_str())
         })
-        .maybe("remark", found.known.remark())
+        .maybe("remark", remark(&found.known))
         .with("pressure_rise", found.rise.as_ref().map(rise))
         .with("frequency_response", found.response.as_ref().map(|fit| response(found, fit)));
     Object::new()
@@ -39,7 +42,7 @@ pub fn json(loaded: &Loaded, found: &LineIdentification) -> String {
         .print()
 }
 
-fn told(number: &Result<Estimate, Undetermined>) -> Object {
+fn told(number: &Result<Estimate, NotIdentifiableLine>) -> Object {
     let object = Object::new();
     match number {
         Ok(Estimate { value, interval }) => object
@@ -49,7 +52,7 @@ fn told(number: &Result<Estimate, Undetermined>) -> Object {
         Err(reason) => object
             .with("value", None::<f64>)
             .with("confidence_95", None::<f64>)
-            .with("reason", reason.as_str()),
+            .with("reason", because(*reason)),
     }
 }
 

@@ -1,4 +1,4 @@
-use super::{LineIdentification, ResponseFit, RiseFit, misfit_in_words, numbers};
+use super::{LineIdentification, ResponseFit, RiseFit, because, misfit_in_words, numbers, remark};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::estimate::Estimate;
@@ -19,11 +19,11 @@ pub(crate) fn document(found: &LineIdentification) -> Document {
     let title = format!("The line to chamber {} at {pressure}", chamber(found.known.side));
     out.section(title, Table::new(["quantity", "value", "95 % from", "to", "unit"]).with(rows));
     let open = numbers(found).into_iter().filter_map(|(_, what, number)| {
-        let reason = number.as_ref().err()?;
-        Some(format!("Not determined: {what}: {reason}."))
+        let reason = number.err()?;
+        Some(format!("Not determined: {what}: {}.", because(reason)))
     });
     out.sentences(open);
-    out.sentences(found.known.remark().map(str::to_string));
+    out.sentences(remark(&found.known).map(str::to_string));
     out.sentences(found.rise.iter().flat_map(rise));
     out.sentences(found.response.iter().flat_map(response));
     out.sentences(found.misfits().iter().map(|one| format!("Misfit: {}.", misfit_in_words(one))));
