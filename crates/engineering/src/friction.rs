@@ -12,6 +12,7 @@
 //! explains all.
 
 mod directions;
+mod estimates;
 mod guess;
 mod misfit;
 mod motion;
@@ -23,18 +24,17 @@ mod reasons;
 mod shaking;
 mod shown;
 mod signs;
-mod told;
 mod varying;
 
 pub use directions::{DirectionEvidence, DirectionModel, ExplainedByDirections};
+pub use estimates::OpenCoefficient;
 pub use misfit::{FrictionMisfit, FrictionSignal};
 pub use motion::ConstantVelocity;
 pub use pressing::PressedRows;
 pub use reading::{FrictionRecording, KnownCylinder, friction_recordings, recorded_runs};
-pub use reasons::{ROWS_OF_RINGING, UntoldFriction};
+pub use reasons::{NotIdentifiableFriction, ROWS_OF_RINGING};
 pub use shaking::ShakenRows;
 pub use shown::{PressedCurve, SteadyPoint};
-pub use told::OpenCoefficient;
 pub use varying::VaryingVelocity;
 
 use phea_dynamics::least_squares::{Ending, Minimum};
@@ -67,15 +67,15 @@ pub const RETRACTING_NAMES: [(&str, &str); FRICTION_COEFFICIENTS - BOTH_WAYS] =
 /// The friction that explains the recordings best.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrictionIdentification {
-    /// What was recorded.
+    /// Recorded runs.
     pub recordings: Vec<FrictionRecording>,
-    /// Where it slides at a constant velocity, in the order of the recordings.
+    /// Rows that slide at a constant velocity, in the order of the recordings.
     pub slides: Vec<ConstantVelocity>,
-    /// Where it slides at a velocity that is constant on average alone: left out.
+    /// Rows that slide at a velocity that is constant on average only: left out.
     pub varying: Vec<VaryingVelocity>,
-    /// Where it is pressed and does not slide.
+    /// Rows that are pressed and do not slide.
     pub presses: Vec<PressedRows>,
-    /// Where it is shaken.
+    /// Rows that are shaken.
     pub shakes: Vec<ShakenRows>,
     /// Each coefficient, in the order of [`FRICTION_NAMES`]; where friction differs by direction,
     /// those of extending.
@@ -95,11 +95,11 @@ pub struct FrictionIdentification {
     pub residual_rms: [Option<f64>; 2],
     /// Misfits that are not noise, the greatest first.
     pub misfits: Vec<FrictionMisfit>,
-    /// Share of the residuals that are independent, the least of all signals.
+    /// Fraction of the residuals that are independent, the least of all signals.
     pub independent: f64,
     /// kg.
     pub moving_mass: f64,
-    /// How the search ended.
+    /// Ending of the search.
     pub ending: Ending,
     /// For each press, the force at its knots in N, and where the position began in m.
     pressed: Vec<(Vec<f64>, f64)>,
@@ -108,7 +108,7 @@ pub struct FrictionIdentification {
 }
 
 impl FrictionIdentification {
-    /// Whether no further step explains more.
+    /// True where no further step explains more.
     pub fn has_converged(&self) -> bool {
         self.ending == Ending::Converged
     }
@@ -120,7 +120,8 @@ const ROUNDS: usize = 3;
 /// Relative decrease of the sum at which an intermediate search ends.
 const ROUGH: f64 = 1e-4;
 
-/// The same of the last one: a thousandth of what one standard deviation changes.
+/// Relative decrease at which the last search ends: a thousandth of what one standard deviation
+/// changes.
 const FINE: f64 = 1e-7;
 
 /// Searches to that end at most, each from the minimum of the one before.
@@ -156,7 +157,7 @@ pub fn identify_friction(
     let (best, evidence) = SearchedFriction::by_evidence(problem, curves, &mut kept, watch)?;
     let SearchedFriction { problem, minimum } = best;
     let (lugre, _) = problem.friction(&minimum.variables);
-    let told::Estimates { estimates, retracting, zero } = told::estimates(&problem, &minimum);
+    let estimates::Estimates { estimates, retracting, zero } = estimates::estimates(&problem, &minimum);
     let residual_rms = shown::residual_rms(&problem, &minimum);
     let misfits = misfit::misfits(&problem, &minimum.linearised.residuals);
     let independent = problem.channels.iter().map(|channel| channel.independent).fold(1.0, f64::min);
@@ -283,7 +284,7 @@ fn nothing(recordings: &[FrictionRecording], varying: &[VaryingVelocity]) -> Str
 
 const NOTHING: &str = "no recording determines the friction: there is neither a constant velocity for 20 rows or more, nor a force that presses the piston from rest or shakes it while its position is recorded";
 
-/// Whether friction acts both ways, so that it differs from a force that is always there.
+/// True where friction acts both ways, so that it differs from a force that is always there.
 fn goes_both_ways(slides: &[ConstantVelocity], presses: &[PressedRows]) -> bool {
     let broken = presses.iter().filter(|press| press.breaks_away).map(PressedRows::way);
     let ways: Vec<f64> = slides.iter().map(|slide| slide.velocity).chain(broken).collect();

@@ -20,12 +20,12 @@ mod intervals;
 mod joint;
 mod memory;
 mod misfit;
+mod not_identifiable;
 mod reading;
 mod recording;
 mod residuals;
 mod simple;
 mod terms;
-mod told;
 mod variables;
 mod warm;
 
@@ -35,11 +35,11 @@ pub use evidence::{DECISIVE, ExplainedBy, ModelEvidence};
 pub use in_use::{in_use, recorded_files};
 pub use joint::{COVERAGE, JointRegion, JointRegionError, SMALLEST_EFFECT, joint_region, with_valve};
 pub use misfit::{Misfit, MisfitPlace};
+pub use not_identifiable::NotIdentifiableCombination;
 pub use reading::recordings;
 pub use recording::{RecordedSignal, Recording, SignalKind, TestBranch};
 pub use simple::{NullMethod, NullReading, SimpleCalculations};
 pub use terms::{TermEvidence, ValveTerm};
-pub use told::Untold;
 pub use warm::TestOil;
 
 use phea_dynamics::least_squares::Ending;
@@ -75,7 +75,7 @@ pub const COEFFICIENT_NAMES: [(&str, &str); STATIC_COEFFICIENTS] = [
     ("leakage_shapes.b_to_tank", "1"),
 ];
 
-/// What is known in addition to the files.
+/// Facts that are known in addition to the files.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Known {
     /// V, command of full opening.
@@ -122,7 +122,8 @@ impl Default for Known {
 }
 
 impl Known {
-    /// What a project states of its valve and of its supply; the defaults where it has no actuator.
+    /// Facts that a project states of its valve and of its supply; the defaults where it has no
+    /// actuator.
     pub fn of(project: &Project) -> Known {
         let temperature = project.identify.as_ref().map(|one| one.oil_temperature).unwrap_or_default();
         let oil =
@@ -162,7 +163,7 @@ fn path_coefficients(flow: &ValveCoefficients<RatedFlow>) -> [f64; 2] {
 /// Difference of the criterion that no further search makes up for.
 const FAR: f64 = 1000.0;
 
-/// How thoroughly is searched.
+/// Extent of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Search {
     /// Number of starting points, including the first guess.
@@ -185,7 +186,7 @@ impl Default for Search {
 /// The valve that explains the files best.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identification {
-    /// What was recorded.
+    /// Recorded tests.
     pub recordings: Vec<Recording>,
     /// Its coefficients.
     pub coefficients: StaticCoefficients,
@@ -198,29 +199,29 @@ pub struct Identification {
     /// Correlation of each pair, row by row.
     pub correlations: Vec<f64>,
     /// Combinations that the data do not determine, the least known first.
-    pub untold: Vec<Untold>,
+    pub not_identifiable: Vec<NotIdentifiableCombination>,
     /// By the calculations of section 5.2, for comparison.
     pub simple: SimpleCalculations,
-    /// Where the search began.
+    /// First guess, at which the search began.
     pub first_guess: StaticCoefficients,
     /// Both models of the leakage compared.
     pub evidence: ModelEvidence,
     /// Evidence for each term of the valve.
     pub terms: Vec<TermEvidence>,
-    /// How well each signal is explained, with the instruments wrong as explains most, within their
+    /// Fit of each signal, with the instruments wrong as explains most, within their
     /// stated accuracies.
     pub signals: Vec<SignalFit>,
     /// Root mean square of all residuals, each over the range of its signal.
     pub residual_rms: f64,
-    /// What was minimised: the sum of the losses of all residuals over their scales.
+    /// Minimised cost: the sum of the losses of all residuals over their scales.
     pub cost: f64,
     /// Coefficients that ended at a bound of the search.
     pub at_bounds: Vec<&'static str>,
     /// Number of starting points, and how many of them lead to this minimum.
     pub starts: [usize; 2],
-    /// How the search ended.
+    /// Ending of the search.
     pub ending: Ending,
-    /// What was taken as known.
+    /// Valve and conditions that were taken as known.
     pub tested: TestedValve,
     /// The oil, where its temperature was recorded.
     pub oil: Option<TestOil>,
@@ -254,13 +255,13 @@ impl Identification {
         self.in_model().filter(|index| !variables::OF_TEST_ALONE.contains(index))
     }
 
-    /// Whether no further step explains more.
+    /// True where no further step explains more.
     pub fn has_converged(&self) -> bool {
         self.ending == Ending::Converged
     }
 }
 
-/// How well a signal is explained. SI.
+/// Fit of a signal. SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SignalFit {
     /// Index of the recording.
@@ -289,7 +290,7 @@ pub enum IdentifyError {
     /// The files contain nothing from which coefficients follow.
     #[error("{0}")]
     Data(String),
-    /// Whoever watched stopped it.
+    /// Stopped by the progress callback.
     #[error("stopped")]
     Stopped,
 }
@@ -333,28 +334,28 @@ pub fn identify(
     let coefficients = found.coefficients();
     let groups = found.together.groups(found.block_rows());
     let shared = instruments::shared_changes(&found.together, &found.minimum.variables, oil.as_ref());
-    let told = intervals::told(&found.minimum.linearised, (&groups, &shared), &variables, &coefficients);
+    let uncertainty =
+        intervals::uncertainty(&found.minimum.linearised, (&groups, &shared), &variables, &coefficients);
     let signals = found.signals_with(&instruments::without_errors(&found.minimum.linearised, &shared));
-    let mut estimates = intervals::estimates(&variables, &coefficients, &told.deviations);
+    let mut estimates = intervals::estimates(&variables, &coefficients, &uncertainty.deviations);
     intervals::lowered_tare_flow(&mut estimates, &recordings, &signals);
-    let mut deviations = variables.scales(&coefficients);
-    for (scale, deviation) in deviations.iter_mut().zip(&told.deviations) {
-        *scale = if deviation.is_finite() { *scale * deviation } else { f64::INFINITY };
-    }
+    let deviations = intervals::deviations(&variables, &coefficients, &uncertainty.deviations);
     let usual = usual(&coefficients, &estimates, &first_guess);
+    let scales = variables.scales(&usual);
     let bootstrap = match search.bootstrap {
         0 => None,
         repetitions => Some(bootstrap::bootstrap(&found, repetitions, search.seed, watch)?),
     };
     let tested = found.together.tested;
     let recordings = found.together.recordings.to_vec();
+    let combinations = not_identifiable::combinations(&uncertainty, &usual, &scales, (&recordings, &tested));
     Ok(Identification {
         coefficients,
         estimates,
         deviations,
         bootstrap,
-        untold: told::untold(&told, &usual, &variables.scales(&usual), (&recordings, &tested)),
-        correlations: told.correlations,
+        not_identifiable: combinations,
+        correlations: uncertainty.correlations,
         simple,
         first_guess,
         evidence,
@@ -389,28 +390,28 @@ fn usual(
 /// proportion; and the fit of the wanted model, or else the preferred one, or else the usual one.
 ///
 /// A term of the valve may make one model of the leakage look like the other: where one is taken,
-/// both are compared again beside it.
+/// both are compared again with it.
 fn best_model<'a>(
     first: Fit<'a>,
     models: (Option<LeakageModel>, LeakageModel),
     watch: Watch<'_>,
 ) -> Result<(ModelEvidence, Fit<'a>, Vec<TermEvidence>), IdentifyError> {
     let (evidence, found) = better_leakage(first, models, watch)?;
-    // beside a model that the recordings contradict, a term would stand for what that model has not
+    // next to a model that the recordings contradict, a term would replace what that model lacks
     if evidence.preferred().is_some_and(|preferred| preferred != found.together.tested.leakage_model) {
         return Ok((evidence, found, Vec::new()));
     }
-    let (found, told) = terms::with_terms(found, watch)?;
+    let (found, terms) = terms::with_terms(found, watch)?;
     if found.together.tested.terms == ValveTerms::default() || found.together.tested.terms.leakage_by_edge {
-        return Ok((evidence, found, told));
+        return Ok((evidence, found, terms));
     }
     let model = found.together.tested.leakage_model;
     let (evidence, found) = better_leakage(found, models, watch)?;
     match found.together.tested.leakage_model == model {
-        true => Ok((evidence, found, told)),
+        true => Ok((evidence, found, terms)),
         false => {
             let (found, again) = terms::with_terms(found, watch)?;
-            let before = told.into_iter().filter(|one| one.taken);
+            let before = terms.into_iter().filter(|one| one.taken);
             Ok((evidence, found, before.chain(again).collect()))
         }
     }

@@ -27,7 +27,7 @@ use phea_dynamics::watch::{Watch, tell};
 
 use crate::identify::IdentifyError;
 
-/// How responses are estimated.
+/// Settings of the estimation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ResponseSettings {
     /// s, of a periodic input; absent: it is found.

@@ -10,7 +10,7 @@ pub use phea_engineering::friction::*;
 
 pub use answer::json;
 pub(crate) use document::document;
-pub(crate) use document::tell;
+pub(crate) use document::write;
 pub(crate) use figures::pictures;
 pub use files::files;
 
@@ -25,41 +25,41 @@ pub(crate) fn because(open: &OpenCoefficient) -> String {
     reasons.join("; ")
 }
 
-fn in_words(reason: UntoldFriction) -> String {
+fn in_words(reason: NotIdentifiableFriction) -> String {
     match reason {
-        UntoldFriction::NothingSlides => "nothing slides at a constant velocity".to_string(),
-        UntoldFriction::NoFall => {
+        NotIdentifiableFriction::NothingSlides => "nothing slides at a constant velocity".to_string(),
+        NotIdentifiableFriction::NoFall => {
             "no fall of the friction from static to sliding is seen: record slower runs".to_string()
         }
-        UntoldFriction::FewOnFall { below } => format!(
+        NotIdentifiableFriction::FewOnFall { below } => format!(
             "too few runs slide on the fall from static to Coulomb friction: record more constant velocities up to {}",
             display(below, &VELOCITY, 2)
         ),
-        UntoldFriction::NotApproached => {
+        NotIdentifiableFriction::NotApproached => {
             "no run is slow enough for it and no piston breaks away: press the piston from rest until it moves"
                 .to_string()
         }
-        UntoldFriction::NothingPressed => {
+        NotIdentifiableFriction::NothingPressed => {
             "nothing is pressed from rest while its position is recorded".to_string()
         }
-        UntoldFriction::NothingShaken { ringing, breaking } => not_shaken(ringing, breaking),
-        UntoldFriction::TooFewRows { time_step } => format!(
+        NotIdentifiableFriction::NothingShaken { ringing, breaking } => not_shaken(ringing, breaking),
+        NotIdentifiableFriction::TooFewRows { time_step } => format!(
             "the shaken piston has too few rows in a period of its ringing: record one every {} or oftener",
             display(time_step, &TIME, 2)
         ),
-        UntoldFriction::ShakenTooLittle { factor } => format!(
+        NotIdentifiableFriction::ShakenTooLittle { factor } => format!(
             "noise hides it: a force {} times as great around the frequency of the ringing, below the static friction, or a recording {} times as long, would show it",
             significant(factor, 2),
             significant(factor * factor, 2)
         ),
-        UntoldFriction::QuickForce => {
+        NotIdentifiableFriction::QuickForce => {
             "the force changes too quickly: record one that rises slowly".to_string()
         }
-        UntoldFriction::NotExplained { residual } => format!(
+        NotIdentifiableFriction::NotExplained { residual } => format!(
             "no bristles explain what is recorded before breakaway: {} times the noise is left",
             significant(residual, 2)
         ),
-        UntoldFriction::Hidden => "noise hides its effect in these recordings".to_string(),
+        NotIdentifiableFriction::Hidden => "noise hides its effect in these recordings".to_string(),
     }
 }
 
@@ -73,7 +73,7 @@ pub(crate) fn coefficients(
     both.chain(back.map(|((name, unit), one)| (format!("retracting.{name}"), *unit, one)))
 }
 
-/// What the friction does not explain.
+/// Misfit of the friction, in a sentence.
 pub(crate) fn misfit_in_words(found: &FrictionIdentification, misfit: &FrictionMisfit) -> String {
     let file = found.recordings.get(misfit.recording).map_or("", |one| one.file.as_str());
     let at = misfit.place.map_or_else(String::new, |[velocity, more]| {
@@ -83,7 +83,7 @@ pub(crate) fn misfit_in_words(found: &FrictionIdentification, misfit: &FrictionM
     });
     format!(
         "the model leaves {} % of the range unexplained of the {} of {file}{at}: neighbouring residuals are alike (correlation {})",
-        significant(100.0 * misfit.share, 3),
+        significant(100.0 * misfit.fraction, 3),
         misfit.signal.name(),
         significant(misfit.correlation, 2)
     )
@@ -97,10 +97,10 @@ pub(crate) fn declared_misfit(found: &FrictionIdentification) -> Option<Declared
         .place
         .map_or_else(String::new, |[velocity, _]| format!(", most at {}", display(velocity, &VELOCITY, 3)));
     let at = Some(format!("{} of {file}{most}", misfit.signal.name()));
-    Some(DeclaredMisfit { share: misfit.share, at })
+    Some(DeclaredMisfit { share: misfit.fraction, at })
 }
 
-/// What would show the damping of the bristles.
+/// Test that would show the damping of the bristles.
 fn not_shaken(ringing: Option<f64>, breaking: Option<f64>) -> String {
     let below = breaking.map_or("below the static friction".to_string(), |force| {
         format!("below the static friction of {} N", significant(force, 3))

@@ -12,10 +12,10 @@ pub use phea_engineering::identify::*;
 
 pub use answer::{files, json};
 pub(crate) use document::document;
-pub(crate) use document::{tell_coefficients, tell_signals};
+pub(crate) use document::{write_coefficients, write_signals};
 pub(crate) use figures::ValveFigures;
 pub use files::Read;
-pub(crate) use in_use::{in_use_above, tell_in_use};
-pub(crate) use numbers::{is_valve_of_thesis, tell as tell_numbers};
+pub(crate) use in_use::{in_use_above, write_in_use};
+pub(crate) use numbers::{is_valve_of_thesis, write as write_numbers};
 pub use region::FoundRegion;
 pub(crate) use region::file;

@@ -74,16 +74,18 @@ pub(crate) fn because(reason: NotIdentifiableLine) -> String {
     text.to_string()
 }
 
-/// What the line does not explain.
+/// Misfit of the line, in a sentence.
 pub(crate) fn misfit_in_words(misfit: &LineMisfit) -> String {
-    let share = significant(100.0 * misfit.share, 3);
+    let percent = significant(100.0 * misfit.fraction, 3);
     let LineMisfit { file, signal, .. } = misfit;
     match misfit.correlation {
         Some(correlation) => format!(
-            "the model leaves {share} % of the range unexplained of the {signal} of {file}: neighbouring residuals are alike (correlation {})",
+            "the model leaves {percent} % of the range unexplained of the {signal} of {file}: neighbouring residuals are alike (correlation {})",
             significant(correlation, 2)
         ),
-        None => format!("the model leaves {share} % of the {signal} of {file} unexplained beyond its noise"),
+        None => {
+            format!("the model leaves {percent} % of the {signal} of {file} unexplained beyond its noise")
+        }
     }
 }
 

@@ -29,7 +29,8 @@ const OPPOSITE: f64 = -0.5;
 /// Degrees by which a reversed force lags the opposite of its command.
 const REVERSED_LAG: [f64; 2] = [-15.0, 105.0];
 
-/// Size of an output at lines that are not excited, over that at the excited ones, that is told.
+/// Size of an output at lines that are not excited, over that at the excited ones, from which on it
+/// is reported.
 const DISTORTED: f64 = 0.01;
 
 /// A member, and the linear plant of a project at its frequencies.
@@ -42,7 +43,7 @@ pub struct Compared {
 }
 
 impl Compared {
-    /// Beside the plant of a rig.
+    /// With the plant of a rig.
     pub(crate) fn with(member: ResponseMember, rig: Option<&Rig>) -> Compared {
         let is_plant = member.units == ["V", "N"];
         let plant = rig.filter(|_| is_plant);
@@ -51,7 +52,7 @@ impl Compared {
         Compared { member, plant }
     }
 
-    /// Whether the output goes against the input at the lowest frequencies: with a plant, in
+    /// True where the output goes against the input at the lowest frequencies: with a plant, in
     /// comparison with it; without, a valve that fills a chamber leads to a force that lags its
     /// command by 0 to 90 degrees, and a reversed one by 180 degrees more.
     pub(crate) fn is_reversed(&self) -> bool {

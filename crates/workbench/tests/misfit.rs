@@ -64,7 +64,10 @@ fn a_flow_that_no_valve_of_the_model_has_is_told() {
         let first = misfits.first().unwrap_or_else(|| panic!("{what}: {:?}", found.signals));
         assert_eq!(first.kind, SignalKind::PortFlowMagnitude, "{what}");
         assert!(found.recordings[first.recording].file.starts_with("metering"), "{what}");
-        assert!(first.correlation > 0.9 && first.share > 5e-3 && first.share < 0.3, "{what}: {first:?}");
+        assert!(
+            first.correlation > 0.9 && first.fraction > 5e-3 && first.fraction < 0.3,
+            "{what}: {first:?}"
+        );
     }
     // what is lost is greatest where the flow is
     let misfits = limited.misfits();
@@ -73,7 +76,7 @@ fn a_flow_that_no_valve_of_the_model_has_is_told() {
     let greatest = inputs.iter().map(|input| input.command.abs()).fold(0.0, f64::max);
     let farthest = place.command.iter().fold(0.0, |most: f64, end| most.max(end.abs()));
     assert!((farthest / greatest - 1.0).abs() < 1e-9, "{place:?} of {greatest} V");
-    assert!(place.share > 0.0, "the model shows more there: {place:?}");
+    assert!(place.fraction > 0.0, "the model shows more there: {place:?}");
 }
 
 /// A verdict stands beside a small misfit, which is told, and not beside a large one.

@@ -185,12 +185,12 @@ fn what_is_known_exactly_has_no_directions() {
 }
 
 #[test]
-fn no_family_is_written_of_what_the_recordings_do_not_tell() {
+fn no_family_is_written_of_what_the_recordings_do_not_determine() {
     let mut found = identification().clone();
     found.estimates[4] = None;
     assert_eq!(
         joint_region(&found, &rig(), 0.0),
-        Err(JointRegionError::NotTold("leakage_coefficients.supply_to_a"))
+        Err(JointRegionError::NotIdentifiable("leakage_coefficients.supply_to_a"))
     );
     let mut found = identification().clone();
     found.deviations[4] = found.coefficients.to_array()[4];

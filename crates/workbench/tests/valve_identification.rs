@@ -181,8 +181,8 @@ fn metering_alone_does_not_tell_the_leakage() {
     assert!(!answer.affirmative);
     let found: Value = serde_json::from_str(&answer.json).unwrap();
     assert!(interval(&found, "/tare_flow_m3_per_s").is_none());
-    let untold = found["not_told"].as_array().unwrap();
-    let names: Vec<&str> = untold
+    let not_identifiable = found["not_identifiable"].as_array().unwrap();
+    let names: Vec<&str> = not_identifiable
         .iter()
         .flat_map(|one| one["coefficients"].as_array().unwrap())
         .filter_map(Value::as_str)
@@ -191,10 +191,12 @@ fn metering_alone_does_not_tell_the_leakage() {
         names.contains(&"tare_flow") && names.iter().any(|name| name.starts_with("leakage_coefficients")),
         "{names:?}"
     );
-    let by_leakage = |one: &Value| one["told_by"].as_array().unwrap().iter().any(|test| test == "leakage");
+    let by_leakage =
+        |one: &Value| one["identifiable_by"].as_array().unwrap().iter().any(|test| test == "leakage");
     let of_tare =
         |one: &&Value| one["coefficients"].as_array().unwrap().iter().any(|name| name == "tare_flow");
-    assert!(untold.iter().filter(of_tare).all(by_leakage) && untold.iter().any(by_leakage), "{untold:?}");
+    let of_tare_by_leakage = not_identifiable.iter().filter(of_tare).all(by_leakage);
+    assert!(of_tare_by_leakage && not_identifiable.iter().any(by_leakage), "{not_identifiable:?}");
     assert!(answer.text.contains("a test of leakage"));
     // what it does determine
     let flow = interval(&found, "/flow_coefficients/supply_to_a").unwrap();
@@ -218,7 +220,7 @@ fn a_flow_alone_does_not_tell_edges_in_series_apart() {
     for path in ["/flow_coefficients/supply_to_a", "/flow_coefficients/b_to_tank"] {
         assert!(interval(&found, path).is_none(), "{path}");
     }
-    assert!(found["not_told"].as_array().unwrap().len() > 1);
+    assert!(found["not_identifiable"].as_array().unwrap().len() > 1);
     let [three, six] =
         ["/flow_coefficients/supply_to_a", "/flow_coefficients/b_to_tank"].map(|path| value(&found, path));
     let series = three * six / (three * three + six * six).sqrt();

@@ -73,19 +73,20 @@ impl DirectionEvidence {
     /// both models share are left out.
     pub(super) fn of(fits: [&SearchedFriction<'_>; 2]) -> DirectionEvidence {
         let [_, differs] = fits;
-        let shares: Vec<f64> = differs.problem.channels.iter().map(|channel| channel.independent).collect();
+        let fractions: Vec<f64> =
+            differs.problem.channels.iter().map(|channel| channel.independent).collect();
         let rows: f64 = differs
             .problem
             .channels
             .iter()
-            .zip(&shares)
-            .map(|(channel, share)| share * rows_of(channel))
+            .zip(&fractions)
+            .map(|(channel, fraction)| fraction * rows_of(channel))
             .sum();
         let models = fits.map(|fit| {
             let (lugre, zero) = fit.problem.friction(&fit.minimum.variables);
             let loss: f64 = losses(&fit.problem, &fit.minimum.linearised.residuals)
-                .zip(&shares)
-                .map(|(loss, share)| loss * share)
+                .zip(&fractions)
+                .map(|(loss, fraction)| loss * fraction)
                 .sum();
             let searched = (super::problem::SHARED - fit.problem.known_variables().len()) as f64;
             let criterion = searched * portable::ln(rows) + 2.0 * loss;

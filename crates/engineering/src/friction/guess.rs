@@ -1,4 +1,4 @@
-//! Where the search begins.
+//! First guess, at which the search begins.
 
 use nalgebra::{DMatrix, DVector};
 use phea_dynamics::portable;
@@ -30,7 +30,7 @@ const DAMPING_RATIO: f64 = 0.5;
 const SETTLED: f64 = 0.05;
 
 /// Distance over which what a reversal leaves decays, over the shortest way at a constant velocity,
-/// at most: a run whose force still changes is none.
+/// at most: a run whose force still changes is not steady.
 const LEFT_BY_REVERSAL: f64 = 0.2;
 
 pub(super) fn guess(
@@ -66,7 +66,7 @@ pub(super) fn guess(
     if presses.is_empty() && slides.is_empty() && shakes.is_empty() {
         return None;
     }
-    // springs and dampers that answer as the shaken piston did
+    // springs and dampers that respond as the shaken piston did
     let alike: Vec<[f64; 2]> = shakes.iter().map(|shake| shake.spring_and_damper(mass)).collect();
     let mean = |place: usize| alike.iter().map(|one| one[place]).sum::<f64>() / alike.len().max(1) as f64;
     let bristle_stiffness = match compliances.is_empty() {
@@ -104,7 +104,8 @@ fn greatest_force(forces: &[f64]) -> f64 {
     (largest - 3.0 * noise(forces)).max(0.0)
 }
 
-/// Where nothing slides: as good as Coulomb friction, at velocities below which it is not recorded.
+/// Curve without sliding: as good as Coulomb friction, at velocities below which nothing is
+/// recorded.
 fn without_sliding(static_friction: f64) -> Stribeck {
     Stribeck {
         coulomb: 0.8 * static_friction,
@@ -128,7 +129,7 @@ fn shortest_way(slides: &[ConstantVelocity], recordings: &[FrictionRecording]) -
 /// Velocity at which a piston breaks away, over the slowest at which it slides.
 const AT_REST: f64 = 1e-6;
 
-/// Slowest Stribeck velocity that is tried, over the slowest at which the piston slides.
+/// Slowest Stribeck velocity that is evaluated, over the slowest at which the piston slides.
 const BELOW_SLOWEST: f64 = 0.1;
 
 /// Static friction over the greatest recorded force at most: few speeds are explained by any fall
@@ -209,7 +210,8 @@ fn steady_curve(points: &[(f64, f64)], velocity: f64, exponent: f64) -> Option<(
     (typical > 0.0).then_some((cost, curve, zero))
 }
 
-/// From the forces alone at which the piston breaks away: those of both ways separate the zero.
+/// Curve from the forces at which the piston breaks away only: those of both ways separate the
+/// zero.
 fn without_slides(breakaways: &[Breakaway]) -> Option<(Stribeck, f64)> {
     let mean = |way: f64| {
         let own = breakaways.iter().filter(|one| one.way == way).map(|one| one.force);

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! m_k = mean residual of a constant velocity, s_k its standard deviation by the noise of the rows
-//! misfit^2 = mean of m_k^2 - s_k^2                    told where sum m_k^2/s_k^2 is beyond chance and both halves agree
+//! misfit^2 = mean of m_k^2 - s_k^2                reported where sum m_k^2/s_k^2 is beyond chance and both halves agree
 //! misfit^2 = r rms^2                                  of what is pressed or shaken, r the correlation of neighbours
 //! ```
 
@@ -21,7 +21,7 @@ pub struct FrictionMisfit {
     /// Correlation of neighbouring residuals: of both halves of each constant velocity, or of rows.
     pub correlation: f64,
     /// Root mean square of the misfit over the range of the signal.
-    pub share: f64,
+    pub fraction: f64,
     /// Constant velocity in m/s at which the misfit is greatest, and what the model shows there
     /// more than was recorded, in N; `None` of what is pressed or shaken.
     pub place: Option<[f64; 2]>,
@@ -32,7 +32,7 @@ pub struct FrictionMisfit {
 pub enum FrictionSignal {
     /// A_A p_A - A_B p_B - F_e.
     Force,
-    /// Of the piston.
+    /// Position of the piston.
     Position,
 }
 
@@ -55,8 +55,8 @@ const CHANCE: f64 = 5.0;
 /// Standard deviations up to which a sum of squares is chance, as for a line.
 const SUM_BY_CHANCE: f64 = 4.0;
 
-/// Misfits of a smaller share of the range are not reported, as for a valve.
-const SMALLEST_SHARE: f64 = 1e-3;
+/// Misfits of a smaller fraction of the range are not reported, as for a valve.
+const SMALLEST_FRACTION: f64 = 1e-3;
 
 /// Constant velocities that the steady curve and the zero, or the curves of both directions,
 /// explain whatever they are.
@@ -85,16 +85,16 @@ pub(super) fn misfits(problem: &FrictionProblem<'_>, residuals: &[f64]) -> Vec<F
             let Some(channel) = channels.next() else { break };
             let values = values.get(..rows).unwrap_or_default();
             let misfit = of_rows(values, channel, residuals);
-            found.extend(misfit.map(|[correlation, share]| FrictionMisfit {
+            found.extend(misfit.map(|[correlation, fraction]| FrictionMisfit {
                 recording,
                 signal,
                 correlation,
-                share,
+                fraction,
                 place: None,
             }));
         }
     }
-    found.sort_by(|one, other| other.share.total_cmp(&one.share));
+    found.sort_by(|one, other| other.fraction.total_cmp(&one.fraction));
     found
 }
 
@@ -147,14 +147,14 @@ fn of_slides(
     let excess: f64 = all.iter().map(|one| square(one.mean) - square(one.deviation)).sum();
     let forces = slides.iter().flat_map(|slide| slide.blocks.iter().map(|block| block.force));
     let [least, greatest] = ends(forces);
-    let share = (excess.max(0.0) / all.len() as f64).sqrt() / (greatest - least);
+    let fraction = (excess.max(0.0) / all.len() as f64).sqrt() / (greatest - least);
     let is_chance = sum <= freedom + SUM_BY_CHANCE * (2.0 * freedom).sqrt();
     let most = all.iter().max_by(|one, other| one.mean.abs().total_cmp(&other.mean.abs()))?;
-    (!is_chance && correlation > OF_NOISE && share >= SMALLEST_SHARE).then_some(FrictionMisfit {
+    (!is_chance && correlation > OF_NOISE && fraction >= SMALLEST_FRACTION).then_some(FrictionMisfit {
         recording,
         signal: FrictionSignal::Force,
         correlation,
-        share,
+        fraction,
         place: Some([most.velocity, most.mean]),
     })
 }
@@ -167,7 +167,7 @@ fn of_rows(values: &[f64], channel: &FrictionChannel, residuals: &[f64]) -> Opti
     let correlation = if squares > 0.0 { products / squares } else { 0.0 };
     let rms = channel.effective_scale() * (squares / own.len().max(1) as f64).sqrt();
     let [least, greatest] = ends(values.iter().copied());
-    let share = rms * correlation.max(0.0).sqrt() / (greatest - least);
+    let fraction = rms * correlation.max(0.0).sqrt() / (greatest - least);
     let is_chance = correlation * (own.len() as f64).sqrt() <= CHANCE;
-    (correlation > OF_NOISE && !is_chance && share >= SMALLEST_SHARE).then_some([correlation, share])
+    (correlation > OF_NOISE && !is_chance && fraction >= SMALLEST_FRACTION).then_some([correlation, fraction])
 }

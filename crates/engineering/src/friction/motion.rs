@@ -1,4 +1,4 @@
-//! Where a recorded run slides at a constant velocity.
+//! Rows at which a recorded run slides at a constant velocity.
 
 use std::ops::Range;
 
@@ -36,16 +36,16 @@ const FEWEST_ROWS: usize = 20;
 /// Most blocks of one.
 const BLOCKS: usize = 40;
 
-/// Share of the rows that is left out at either end, where the velocity may still change.
+/// Fraction of the rows that is left out at either end, where the velocity may still change.
 const ENDS: f64 = 0.05;
 
-/// Share by which a constant velocity may change from its beginning to its end.
+/// Fraction by which a constant velocity may change from its beginning to its end.
 const CHANGE: f64 = 0.02;
 
-/// The same, with twice its standard deviation.
+/// Fraction by which it may change with twice the standard deviation of the change.
 const CERTAIN_CHANGE: f64 = 0.05;
 
-/// Share by which the force may still change in the second half.
+/// Fraction by which the force may still change in the second half.
 const SETTLED: f64 = 0.05;
 
 /// Standard deviations of the slope of a force beyond which it is no noise.
@@ -98,13 +98,13 @@ impl RowLine {
     }
 }
 
-/// Rows in pieces over each of which the values are straight, within noise or within a share of
+/// Rows in pieces over each of which the values are straight, within noise or within a fraction of
 /// what they change by.
-fn straight_pieces(values: &[f64], noise: f64, share: f64) -> Vec<Range<usize>> {
+fn straight_pieces(values: &[f64], noise: f64, fraction: f64) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut open = vec![Range { start: 0, end: values.len() }];
     while let Some(rows) = open.pop() {
-        match bend(values, &rows, noise, share) {
+        match bend(values, &rows, noise, fraction) {
             Some(at) => {
                 open.push(at..rows.end);
                 open.push(rows.start..at);
@@ -112,7 +112,7 @@ fn straight_pieces(values: &[f64], noise: f64, share: f64) -> Vec<Range<usize>> 
             None => found.push(rows),
         }
     }
-    joined(found, |rows| bend(values, rows, noise, share).is_none())
+    joined(found, |rows| bend(values, rows, noise, fraction).is_none())
 }
 
 /// Neighbouring pieces joined where they are one: a search may have split one next to a jump.
@@ -133,8 +133,8 @@ fn joined(pieces: Vec<Range<usize>>, is_straight: impl Fn(&Range<usize>) -> bool
     found
 }
 
-/// Where these rows are bent most, if they are.
-fn bend(values: &[f64], rows: &Range<usize>, noise: f64, share: f64) -> Option<usize> {
+/// Row at which these rows are bent most, if they are.
+fn bend(values: &[f64], rows: &Range<usize>, noise: f64, fraction: f64) -> Option<usize> {
     const SHORTEST: usize = 3;
     let count = rows.len();
     if count < 2 * SHORTEST {
@@ -161,15 +161,15 @@ fn bend(values: &[f64], rows: &Range<usize>, noise: f64, share: f64) -> Option<u
     };
     let means = residuals.windows(width).enumerate().map(mean);
     let (at, most) = means.fold((0, 0.0), |best, one| if one.1 > best.1 { one } else { best });
-    let allowed = share / 12.0 * (line.slope * count as f64).abs();
+    let allowed = fraction / 12.0 * (line.slope * count as f64).abs();
     (most > allowed).then(|| rows.start + at.clamp(SHORTEST, count - SHORTEST))
 }
 
-/// Where a recording slides along a line.
+/// Rows at which a recording slides along a line.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SlidingRuns {
     pub(super) constant: Vec<ConstantVelocity>,
-    /// Runs whose velocity is constant on average alone.
+    /// Runs whose velocity is constant on average only.
     pub(super) varying: Vec<VaryingVelocity>,
 }
 
@@ -218,7 +218,7 @@ fn between(mut taken: Vec<Range<usize>>, count: usize) -> Vec<Range<usize>> {
     starts.zip(ends).map(|(start, end)| start..end.max(start)).collect()
 }
 
-/// Whether the piston certainly moves, and certainly at one velocity.
+/// True where the piston certainly moves, and certainly at one velocity.
 fn is_constant(positions: &[f64], rows: &Range<usize>, noise: f64) -> bool {
     let count = rows.len() as f64;
     let line = RowLine::through(positions, rows);
@@ -237,7 +237,7 @@ fn is_constant(positions: &[f64], rows: &Range<usize>, noise: f64) -> bool {
     change <= CERTAIN_CHANGE * line.slope.abs() && line.slope.abs() * count > 20.0 * noise
 }
 
-/// Whether the force no longer changes: while a seal is only deformed, it does.
+/// True where the force no longer changes: while a seal is only deformed, it does.
 fn is_settled(forces: &[f64], rows: &Range<usize>, noise: f64) -> bool {
     let quarter = rows.len() / 4;
     let mean = |start: usize| {

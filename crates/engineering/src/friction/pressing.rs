@@ -12,13 +12,13 @@ use super::motion::noise;
 pub struct PressedRows {
     /// Index of the recording.
     pub recording: usize,
-    /// How many rows, from the first.
+    /// Number of rows, from the first.
     pub rows: usize,
-    /// Whether the piston breaks away then.
+    /// True where the piston breaks away then.
     pub breaks_away: bool,
-    /// Whether the force changes within a few rows.
+    /// True where the force changes within a few rows.
     pub has_quick_force: bool,
-    /// The force as it is guessed, with a knot wherever it bends.
+    /// Guess of the force, with a knot wherever it bends.
     pub(super) force: KnottedForce,
     /// N and m, noise of both signals.
     pub(super) noise: [f64; 2],
@@ -35,7 +35,7 @@ const FIRST_ROWS: usize = 10;
 /// force more than on anything else.
 const EXPLAINED: f64 = 2.0;
 
-/// The same at which the piston has broken away.
+/// Displacement at which the piston has broken away.
 const BROKEN_AWAY: f64 = 8.0;
 
 /// Fewest rows from knot to knot, where the force is not bent.
@@ -47,13 +47,13 @@ const PIECES: usize = 20;
 /// Knots beyond which no further ones are sought.
 const MOST_KNOTS: usize = 120;
 
-/// How often further knots are sought.
+/// Number of searches for further knots.
 const REFINEMENTS: usize = 40;
 
 /// Part of the static friction up to which the compliance is read.
 const ELASTIC: f64 = 0.5;
 
-/// Where a recording begins: mean position in m and force in N.
+/// Beginning of a recording: mean position in m and force in N.
 fn beginning(recording: &FrictionRecording) -> [f64; 2] {
     [&recording.positions, &recording.forces].map(|values| {
         let first = values.get(..FIRST_ROWS.min(values.len())).unwrap_or_default();
@@ -71,16 +71,17 @@ pub(super) fn compliance(recording: &FrictionRecording, static_friction: f64) ->
     let position_noise = noise(&recording.positions);
     let smooth = knotted(&recording.forces, noise(&recording.forces));
     let knot = |index: usize| smooth.forces.get(index).copied().unwrap_or(0.0);
-    let shares = smooth.shares().into_iter();
-    let forces = shares.map(|(before, share)| knot(before) * (1.0 - share) + knot(before + 1) * share);
+    let fractions = smooth.shares().into_iter();
+    let forces =
+        fractions.map(|(before, fraction)| knot(before) * (1.0 - fraction) + knot(before + 1) * fraction);
     let [position, _] = beginning(recording);
     let force = knot(0);
     let both = recording.positions.iter().zip(forces);
     let near = both.take_while(|(_, now)| (now - force).abs() <= ELASTIC * static_friction);
     let (mut product, mut square, mut rows) = (0.0, 0.0, 0.0);
     for (at, now) in near {
-        let share = (now - force) / static_friction;
-        let slipping = -static_friction * share.signum() * portable::log1p(-share.abs());
+        let fraction = (now - force) / static_friction;
+        let slipping = -static_friction * fraction.signum() * portable::log1p(-fraction.abs());
         product += (at - position) * slipping;
         square += slipping * slipping;
         rows += 1.0;
@@ -98,7 +99,7 @@ pub(super) struct Breakaway {
     pub(super) force: f64,
 }
 
-/// Where the piston breaks away; `None` where it does not.
+/// Row and force at which the piston breaks away; `None` where it does not.
 pub(super) fn breakaway(recording: &FrictionRecording) -> Option<Breakaway> {
     let position_noise = noise(&recording.positions);
     let smooth = knotted(&recording.forces, noise(&recording.forces));
@@ -108,15 +109,16 @@ pub(super) fn breakaway(recording: &FrictionRecording) -> Option<Breakaway> {
     let [start, _] = beginning(recording);
     let moved = recording.positions.iter().map(|position| position - start);
     let (row, moved) = moved.enumerate().find(|(_, moved)| moved.abs() > limit)?;
-    let shares = smooth.shares().into_iter().take(row + 1);
+    let fractions = smooth.shares().into_iter().take(row + 1);
     let knot = |index: usize| smooth.forces.get(index).copied().unwrap_or(0.0);
-    let forces = shares.map(|(before, share)| knot(before) * (1.0 - share) + knot(before + 1) * share);
+    let forces =
+        fractions.map(|(before, fraction)| knot(before) * (1.0 - fraction) + knot(before + 1) * fraction);
     let way = moved.signum();
     let force = forces.max_by(|one, other| (way * one).total_cmp(&(way * other)))?;
     Some(Breakaway { way, force })
 }
 
-/// What was recorded until the piston breaks away; `None` of too few rows.
+/// Rows until the piston breaks away; `None` of too few rows.
 pub(super) fn pressed_rows(
     recording: &FrictionRecording,
     index: usize,
@@ -165,7 +167,7 @@ fn knotted(forces: &[f64], noise: f64) -> KnottedForce {
     through(knots, forces)
 }
 
-/// Whether two knots are those of neighbouring rows.
+/// True where two knots are those of neighbouring rows.
 fn is_quick(knots: &[usize]) -> bool {
     matches!(knots, [one, next] if next - one == 1)
 }
@@ -176,8 +178,8 @@ fn through(knots: Vec<usize>, forces: &[f64]) -> KnottedForce {
     let found = KnottedForce { knots, forces: vec![0.0; count] };
     let mut normal = DMatrix::<f64>::zeros(count, count);
     let mut right = DVector::<f64>::zeros(count);
-    for ((knot, share), force) in found.shares().into_iter().zip(forces) {
-        let weights = [(knot, 1.0 - share), (knot + 1, share)];
+    for ((knot, fraction), force) in found.shares().into_iter().zip(forces) {
+        let weights = [(knot, 1.0 - fraction), (knot + 1, fraction)];
         for (i, first) in weights {
             right[i] += first * force;
             for (j, second) in weights {
@@ -192,8 +194,10 @@ fn through(knots: Vec<usize>, forces: &[f64]) -> KnottedForce {
 
 fn residuals(found: &KnottedForce, forces: &[f64]) -> Vec<f64> {
     let at = |knot: usize| found.forces.get(knot).copied().unwrap_or(0.0);
-    let shares = found.shares().into_iter().zip(forces);
-    shares.map(|((knot, share), force)| force - at(knot) * (1.0 - share) - at(knot + 1) * share).collect()
+    let fractions = found.shares().into_iter().zip(forces);
+    fractions
+        .map(|((knot, fraction), force)| force - at(knot) * (1.0 - fraction) - at(knot + 1) * fraction)
+        .collect()
 }
 
 /// The rows around the neighbours whose residuals are most beyond noise, if any are.

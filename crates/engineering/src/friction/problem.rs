@@ -38,7 +38,7 @@ const FINEST: f64 = 1e-5;
 /// more than the noise, a search that is robust against outliers takes all rows for such.
 const FIRST_SCALE: f64 = 0.1;
 
-/// Static friction over its guess from which a search is tried again where it does not start.
+/// Static friction over its guess from which a search is repeated where it does not start.
 const RAISED: [f64; 5] = [1.05, 1.1, 1.2, 1.5, 2.0];
 
 /// The friction around which is searched, and the sizes of the variables.
@@ -66,7 +66,7 @@ pub(super) struct FrictionChannel {
     pub(super) scale: f64,
     /// First residual, and the one after the last.
     pub(super) residuals: [usize; 2],
-    /// Share of the residuals that are independent.
+    /// Fraction of the residuals that are independent.
     pub(super) independent: f64,
     /// Noise of each row, by its differences.
     pub(super) noise: f64,
@@ -74,7 +74,7 @@ pub(super) struct FrictionChannel {
     pub(super) finest: f64,
 }
 
-/// What is explained, and how.
+/// Recordings that are explained, and the model.
 #[derive(Clone, Debug)]
 pub(super) struct FrictionProblem<'a> {
     pub(super) recordings: &'a [FrictionRecording],
@@ -137,7 +137,7 @@ impl<'a> FrictionProblem<'a> {
         }
     }
 
-    /// How many channels belong to what slides; force and position of each press and shake follow.
+    /// Number of channels of what slides; force and position of each press and shake follow.
     pub(super) fn sliding_channels(&self) -> usize {
         self.channels.len() - 2 * (self.presses.len() + self.shakes.len())
     }
@@ -177,7 +177,7 @@ impl<'a> FrictionProblem<'a> {
         Some(rows.found)
     }
 
-    /// The same of what slides alone, over the shared variables and those of the slides.
+    /// Linearisation of what slides only, over the shared variables and those of the slides.
     pub(super) fn slides_linearised(&self, variables: &[f64]) -> Option<Linearised> {
         let friction = self.friction(variables);
         if !slides_at_all(&friction.0) {
@@ -244,12 +244,12 @@ impl<'a> FrictionProblem<'a> {
         let measured: Vec<f64> = knots.iter().map(|value| value * force).collect();
         let acting = measured.iter().map(|value| value - zero).collect();
         let acting = KnottedForce { knots: press.force.knots.clone(), forces: acting };
-        let shares = acting.shares();
-        for ((knot, share), shown) in shares.iter().zip(&recording.forces) {
+        let fractions = acting.shares();
+        for ((knot, fraction), shown) in fractions.iter().zip(&recording.forces) {
             let at = |index: usize| measured.get(index).copied().unwrap_or(0.0);
-            let modelled = at(*knot) * (1.0 - share) + at(knot + 1) * share;
+            let modelled = at(*knot) * (1.0 - fraction) + at(knot + 1) * fraction;
             let row = rows.next((modelled - shown) / force_scale);
-            for (index, weight) in [(*knot, 1.0 - share), (knot + 1, *share)] {
+            for (index, weight) in [(*knot, 1.0 - fraction), (knot + 1, *fraction)] {
                 if let Some(to) = row.get_mut(first + 1 + index) {
                     *to += weight * force / force_scale;
                 }
@@ -281,7 +281,7 @@ impl<'a> FrictionProblem<'a> {
         Some(())
     }
 
-    /// Where a search from here ends.
+    /// Minimum of a search from here.
     pub(super) fn searched(
         &self,
         start: &[f64],
@@ -385,7 +385,7 @@ impl FrictionChannel {
     }
 }
 
-/// Share of some residuals that are independent, where neighbours correlate by more than chance.
+/// Fraction of some residuals that are independent, where neighbours correlate by more than chance.
 fn independent(residuals: &[f64], scale: f64) -> f64 {
     let inside = |residual: &f64| residual.clamp(-3.0 * scale, 3.0 * scale);
     let squares: f64 = residuals.iter().map(|residual| inside(residual) * inside(residual)).sum();

@@ -49,7 +49,7 @@ pub(super) enum HeldCoefficient {
     Variable(usize),
 }
 
-/// What slides, and what all else says of the shared variables.
+/// Runs that slide, and the information of all else on the shared variables.
 pub(super) struct SlidingProfile<'a> {
     problem: &'a FrictionProblem<'a>,
     /// Shared variables of the minimum.
@@ -224,8 +224,8 @@ fn exchanged(variables: &[f64], of: LevelVariables) -> Vec<f64> {
     exchanged
 }
 
-/// What is pressed and shaken says of the shared variables: residuals that are as well explained
-/// with all variables of their own free.
+/// Information of pressed and shaken rows on the shared variables: residuals that are as well
+/// explained with all variables of their own free.
 ///
 /// ```text
 /// I = J_s'J_s - J_s'J_o (J_o'J_o)^-1 J_o'J_s        g likewise        R'R = I,  R'b = g
@@ -274,8 +274,8 @@ fn information_of_others(problem: &FrictionProblem<'_>, at: &Linearised) -> Vec<
         .collect()
 }
 
-/// The same with Stribeck velocity and exponent free: a piston that breaks away depends on them by
-/// a straight line only over changes much smaller than those of a profile.
+/// Information with Stribeck velocity and exponent free: a piston that breaks away depends on them
+/// by a straight line only over changes much smaller than those of a profile.
 fn without_the_shape(shared: &DMatrix<f64>, slope: &DVector<f64>) -> (DMatrix<f64>, DVector<f64>) {
     let across = shared.columns(STRIBECK_VELOCITY, 2).into_owned();
     let own = across.rows(STRIBECK_VELOCITY, 2).into_owned();

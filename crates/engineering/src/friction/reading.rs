@@ -7,7 +7,7 @@ use crate::setup::Setup;
 use crate::source::Source;
 use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES};
 
-/// What is known of the cylinder in addition to the files.
+/// Facts that are known of the cylinder in addition to the files.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KnownCylinder {
     /// m², A_A and A_B.
@@ -52,7 +52,7 @@ pub struct FrictionRecording {
     pub time_step: f64,
     /// m, of each row: recorded, or the integral of the recorded velocity.
     pub positions: Vec<f64>,
-    /// Whether the position itself was recorded.
+    /// True where the position itself was recorded.
     pub has_position: bool,
     /// N, of each row: A_A p_A - A_B p_B - F_e, what drives the mass against its friction.
     pub forces: Vec<f64>,

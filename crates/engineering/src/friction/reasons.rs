@@ -6,13 +6,13 @@ use std::f64::consts::PI;
 use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, LuGre};
 
 use super::directions::DirectionModel;
+use super::estimates::OpenCoefficient;
 use super::problem::FrictionProblem;
-use super::told::OpenCoefficient;
 use super::{ConstantVelocity, PressedRows};
 
 /// Reason for which the recordings do not determine a coefficient.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum UntoldFriction {
+pub enum NotIdentifiableFriction {
     /// Nothing slides at a constant velocity.
     NothingSlides,
     /// The force is the same at all slow velocities: no fall from static friction is seen.
@@ -69,8 +69,8 @@ const EXPLAINED: f64 = 1.5;
 
 impl OpenCoefficient {
     /// Adds a reason. What to record says more than that noise hides it.
-    fn leave_open(&mut self, reason: UntoldFriction) {
-        self.reasons.retain(|known| *known != UntoldFriction::Hidden && *known != reason);
+    fn leave_open(&mut self, reason: NotIdentifiableFriction) {
+        self.reasons.retain(|known| *known != NotIdentifiableFriction::Hidden && *known != reason);
         self.reasons.push(reason);
     }
 }
@@ -90,7 +90,7 @@ struct LoadedDirection<'a> {
     presses: Vec<&'a PressedRows>,
 }
 
-/// Adds to each coefficient why it is open, as far as it is known.
+/// Adds to each coefficient why it is open, as far as that is known.
 pub(super) fn reasons(
     (problem, lugre): (&FrictionProblem<'_>, &LuGre),
     found: &mut [OpenCoefficient; FRICTION_COEFFICIENTS],
@@ -116,10 +116,10 @@ pub(super) fn reasons(
         of_levels(problem, lugre, direction);
     }
     if problem.slides.is_empty() {
-        viscous.leave_open(UntoldFriction::NothingSlides);
+        viscous.leave_open(NotIdentifiableFriction::NothingSlides);
     }
     if problem.presses.is_empty() && problem.shakes.is_empty() && !stiffness.is_determined() {
-        stiffness.leave_open(UntoldFriction::NothingPressed);
+        stiffness.leave_open(NotIdentifiableFriction::NothingPressed);
     }
     let breaking = directions.first().and_then(|one| {
         let [_, breaking] = &one.levels;
@@ -143,11 +143,11 @@ fn of_the_fall(
     let below = (2.0 * velocity.estimate.interval[1]).min(fastest);
     for one in [velocity, exponent] {
         if problem.slides.is_empty() {
-            one.leave_open(UntoldFriction::NothingSlides);
+            one.leave_open(NotIdentifiableFriction::NothingSlides);
         } else if !falls {
-            one.leave_open(UntoldFriction::NoFall);
+            one.leave_open(NotIdentifiableFriction::NoFall);
         } else if !one.is_determined() {
-            one.leave_open(UntoldFriction::FewOnFall { below });
+            one.leave_open(NotIdentifiableFriction::FewOnFall { below });
         }
     }
 }
@@ -156,10 +156,10 @@ fn of_the_fall(
 fn of_levels(problem: &FrictionProblem<'_>, lugre: &LuGre, direction: &mut LoadedDirection<'_>) {
     let LoadedDirection { levels: [coulomb, breaking], slides, presses, .. } = direction;
     if slides.is_empty() {
-        coulomb.leave_open(UntoldFriction::NothingSlides);
+        coulomb.leave_open(NotIdentifiableFriction::NothingSlides);
     }
     if presses.is_empty() && !slides.is_empty() && !breaking.is_determined() {
-        breaking.leave_open(UntoldFriction::NotApproached);
+        breaking.leave_open(NotIdentifiableFriction::NotApproached);
         // it is no less than what the slowest run shows, up to noise
         let slowest = slides.iter().map(|slide| slide.velocity);
         let slowest = slowest.min_by(|one, other| one.abs().total_cmp(&other.abs())).unwrap_or(0.0);
@@ -168,7 +168,7 @@ fn of_levels(problem: &FrictionProblem<'_>, lugre: &LuGre, direction: &mut Loade
         *low = low.min(shown);
     }
     if problem.presses.is_empty() && problem.slides.is_empty() {
-        breaking.leave_open(UntoldFriction::NothingPressed);
+        breaking.leave_open(NotIdentifiableFriction::NothingPressed);
     }
 }
 
@@ -182,24 +182,24 @@ fn of_the_bristles(
     let residual = explained.iter().map(|channel| channel.scale / channel.noise).fold(0.0, f64::max);
     if residual > EXPLAINED {
         for one in [&mut *stiffness, &mut *damping] {
-            one.leave_open(UntoldFriction::NotExplained { residual });
+            one.leave_open(NotIdentifiableFriction::NotExplained { residual });
         }
     }
     let ringing = (stiffness.estimate.value / problem.mass).sqrt();
     let longest = 2.0 * PI / (ROWS_OF_RINGING * ringing);
     if shaken_time_step(problem).is_some_and(|time_step| time_step > longest) {
-        damping.leave_open(UntoldFriction::TooFewRows { time_step: longest });
+        damping.leave_open(NotIdentifiableFriction::TooFewRows { time_step: longest });
     }
     let is_quick = presses_quickly(problem, stiffness, damping);
     if problem.shakes.is_empty() {
         let ringing = stiffness.is_determined().then_some(ringing);
         damping.estimate.interval = [0.0, f64::INFINITY];
-        damping.leave_open(UntoldFriction::NothingShaken { ringing, breaking });
+        damping.leave_open(NotIdentifiableFriction::NothingShaken { ringing, breaking });
     } else if is_quick {
-        damping.leave_open(UntoldFriction::QuickForce);
+        damping.leave_open(NotIdentifiableFriction::QuickForce);
     }
     if is_quick {
-        stiffness.leave_open(UntoldFriction::QuickForce);
+        stiffness.leave_open(NotIdentifiableFriction::QuickForce);
     }
 }
 

@@ -1,4 +1,4 @@
-//! Where a force of several frequencies shakes the piston on its bristles.
+//! Rows in which a force of several frequencies shakes the piston on its bristles.
 
 mod sines;
 
@@ -12,7 +12,7 @@ use sines::{fitted, sines, white_noise};
 pub struct ShakenRows {
     /// Index of the recording.
     pub recording: usize,
-    /// The force as it is guessed.
+    /// Guess of the force.
     pub force: MultisineForce,
     /// Cosine and sine of the position for each frequency, in m.
     responses: Vec<[f64; 2]>,
@@ -54,7 +54,7 @@ impl ShakenRows {
         self.responses.iter().map(|[cosine, sine]| (cosine * cosine + sine * sine) / 2.0).sum::<f64>().sqrt()
     }
 
-    /// Stiffness in N/m and damping in N s/m of a spring and a damper that answer alike.
+    /// Stiffness in N/m and damping in N s/m of a spring and a damper that respond alike.
     ///
     /// ```text
     /// F_k = (sigma_0 - M omega_k^2 + j omega_k c) X_k        least squares over all k

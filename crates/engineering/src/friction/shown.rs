@@ -29,9 +29,9 @@ pub struct PressedCurve {
     pub forces: Vec<f64>,
     /// As recorded, from the beginning.
     pub positions: Vec<f64>,
-    /// Force as it is explained.
+    /// Explained force.
     pub modelled_forces: Vec<f64>,
-    /// Position as it is explained.
+    /// Explained position.
     pub modelled_positions: Vec<f64>,
 }
 
@@ -66,7 +66,7 @@ impl FrictionIdentification {
         self.slides.iter().map(point).collect()
     }
 
-    /// What is recorded and explained of a shake.
+    /// Recorded and explained curve of a shake.
     pub fn shaken_curve(&self, index: usize) -> Option<&PressedCurve> {
         self.shaken.get(index)
     }
@@ -83,7 +83,7 @@ impl FrictionIdentification {
         let moved = pressed.sensitive_displacements(&self.lugre, &acting).displacements;
         let start = recording.positions.first()? + begins;
         let at = |index: usize| acting.forces.get(index).copied().unwrap_or(0.0);
-        let along = |(knot, share): (usize, f64)| at(knot) * (1.0 - share) + at(knot + 1) * share;
+        let along = |(knot, fraction): (usize, f64)| at(knot) * (1.0 - fraction) + at(knot + 1) * fraction;
         Some(PressedCurve {
             forces: recording.forces.iter().take(press.rows).map(|force| force - zero).collect(),
             positions: recording.positions.iter().take(press.rows).map(|at| at - start).collect(),
@@ -135,7 +135,7 @@ pub(super) fn residual_rms(problem: &FrictionProblem<'_>, minimum: &Minimum) -> 
     sums.map(|(sum, count)| (count > 0.0).then(|| f64::sqrt(sum / count)))
 }
 
-/// Of each press, the measured force at its knots in N, and where its position began in m.
+/// Measured force of each press at its knots in N, and the beginning of its position in m.
 pub(super) fn pressed(problem: &FrictionProblem<'_>, minimum: &Minimum) -> Vec<(Vec<f64>, f64)> {
     let mut first = SHARED + problem.slides.len();
     let of = |press: &PressedRows| {

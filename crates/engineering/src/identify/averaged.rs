@@ -10,7 +10,7 @@ use phea_dynamics::order::median;
 const NEAR: usize = 1500;
 const OTHERS: usize = 2500;
 
-/// Share of the greatest command within which a row is near null.
+/// Fraction of the greatest command within which a row is near null.
 const NEAR_NULL: f64 = 0.1;
 
 /// Distances from the median, over the median distance, beyond which a value is an outlier.
@@ -18,7 +18,7 @@ const OUTLYING: f64 = 6.0;
 
 /// A recording with one row for each block of neighbouring rows whose command goes one way.
 ///
-/// Where noise is white, the averages determine the coefficients as well as all rows do; what they
+/// Averages of white noise determine the coefficients as well as all rows do; what they
 /// change is the curvature of a signal within a block, and its outliers.
 pub(super) fn averaged(recording: &Recording) -> Recording {
     let blocks = blocks(recording);

@@ -23,7 +23,7 @@ pub struct Bootstrap {
     pub intervals: [[f64; 2]; COUNT],
     /// Repetitions that were made.
     pub repetitions: usize,
-    /// Those of them whose fit did not converge: they are left out.
+    /// Repetitions whose fit did not converge: they are left out.
     pub failed: usize,
     /// Rows of a block.
     pub block_rows: usize,
@@ -74,7 +74,7 @@ pub(super) fn bootstrap(
         intervals.iter_mut().zip(&mut estimates).zip(lowest).enumerate()
     {
         sort_numbers(estimates);
-        *ends = [0.025, 0.975].map(|share| percentile(estimates, share));
+        *ends = [0.025, 0.975].map(|fraction| percentile(estimates, fraction));
         // a coefficient that ends at the bound of the search may be zero
         if Kind::vanishes(index) && ends[0] <= least {
             ends[0] = 0.0;
@@ -122,8 +122,8 @@ fn replace<'s>(
 }
 
 /// Percentile of sorted numbers; NaN if there are none.
-fn percentile(sorted: &[f64], share: f64) -> f64 {
-    let place = share * sorted.len().saturating_sub(1) as f64;
+fn percentile(sorted: &[f64], fraction: f64) -> f64 {
+    let place = fraction * sorted.len().saturating_sub(1) as f64;
     let below = place.floor();
     let at = |index: usize| sorted.get(index).or(sorted.last()).copied().unwrap_or(f64::NAN);
     let (low, high) = (at(below as usize), at(below as usize + 1));

@@ -18,7 +18,7 @@ const RESOLUTION: f64 = 1e-6;
 /// Evaluations of a search whose end is the start of another.
 const FEW_EVALUATIONS: usize = 60;
 
-/// Evaluations that tell whether a search is worth its time.
+/// Evaluations after which a search is judged to be worth its time.
 const FIRST_STEPS: usize = 6;
 
 /// Evaluations of the last search. Where the recordings hardly distinguish coefficients, the sum
@@ -32,7 +32,7 @@ const NO_EVIDENCE: f64 = 1e-3;
 /// Damping of a search that begins near its end.
 const UNDAMPED: f64 = 1e-10;
 
-/// Rows of a recording from which the noise of its command is told.
+/// Rows of a recording from which the noise of its command is estimated.
 const FEWEST_STEEP: usize = 10;
 
 /// A row is steep where the noise of the command shows in a signal by this many of its scales.
@@ -51,9 +51,9 @@ struct SteepRow {
     scale: f64,
 }
 
-/// The noise of the command with which half of the residuals of steep rows lie within what is
+/// The noise of the command with which half of the residuals of steep rows are within what is
 /// normal; at most as much as its record has.
-fn told_noise(steep: &[SteepRow], most: f64) -> f64 {
+fn noise_of_steep_rows(steep: &[SteepRow], most: f64) -> f64 {
     let middle = |noise: f64| {
         let of = |row: &SteepRow| row.residual.abs() / portable::hypot(row.scale, noise * row.slope);
         median(steep.iter().map(of).collect())
@@ -95,7 +95,7 @@ impl Channel {
         self.by_command.get(row).map_or(self.scale, |own| portable::hypot(self.scale, *own))
     }
 
-    /// What no instrument resolves, and the standard deviation of rounding to the converter's
+    /// Resolution of the instrument, and the standard deviation of rounding to the converter's
     /// steps: where most rows are rounded to one value, their residuals say nothing of the noise.
     pub(super) fn least_scale(&self) -> f64 {
         (RESOLUTION * self.range).max(self.step / 12.0_f64.sqrt())
@@ -165,7 +165,7 @@ impl<'a> Together<'a> {
         found
     }
 
-    /// The same residuals without derivatives.
+    /// Residuals without derivatives.
     pub(super) fn residuals(&self, variables: &[f64]) -> Vec<f64> {
         let coefficients = self.variables.coefficients(variables);
         let of = |one: &Recording| self.tested.outputs(&coefficients, one.circuit, &one.inputs);
@@ -200,7 +200,7 @@ impl<'a> Together<'a> {
         groups
     }
 
-    /// Where a search from here ends, at this relative decrease of the sum, or soon.
+    /// Minimum of a search from here, at this relative decrease of the sum, or soon.
     pub(super) fn searched(
         &self,
         start: &[f64],
@@ -296,10 +296,10 @@ impl<'a> Together<'a> {
 
     /// Finds the deviation of the signals of a recording by the noise of the command.
     ///
-    /// The record of the command shows how rough it is; that the valve did not follow this is told
-    /// by the residuals where a signal is steep. The noise is that with which half of them lie
-    /// within what is normal, at most that of the record; none where they do so without it: a
-    /// command that was sent as it is recorded is rounded, and without noise.
+    /// The record of the command shows how rough it is; the residuals where a signal is steep
+    /// show that the valve did not follow this. The noise is that with which half of them are
+    /// normal, at most that of the record; zero where they are without it: a command that was sent
+    /// unchanged is rounded, and without noise.
     fn takes_command_noise(
         &mut self,
         index: usize,
@@ -322,9 +322,9 @@ impl<'a> Together<'a> {
                 scale: channel.scale,
             }));
         }
-        let told = steep.len() >= FEWEST_STEEP;
-        let noise =
-            if told { told_noise(&steep, recording.command_roughness) } else { recording.command_roughness };
+        let are_enough = steep.len() >= FEWEST_STEEP;
+        let rough = recording.command_roughness;
+        let noise = if are_enough { noise_of_steep_rows(&steep, rough) } else { rough };
         for channel in self.channels.iter_mut().filter(|channel| channel.recording == index) {
             let signal = channel.signal;
             let of = |slopes: &Vec<f64>| noise * slopes.get(signal).copied().unwrap_or(0.0);

@@ -1,20 +1,20 @@
-//! What files hold, as it was read.
+//! Contents of files, as they were read.
 
 use super::recording::Recording;
 use crate::project::{Diagnostic, StaticTest, TestSignal};
 
-/// The tests of some files, and what a reader should know of the files.
+/// The tests of some files, and what to know of the files.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordedFiles {
     /// The tests, in the order of the files.
     pub recordings: Vec<Recording>,
-    /// What each file holds.
+    /// Contents of each file.
     pub contents: Vec<FileContents>,
-    /// What was dealt with in the files without being refused.
+    /// Findings in the files that were not refused.
     pub warnings: Vec<Diagnostic>,
 }
 
-/// What a file holds.
+/// Contents of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileContents {
     /// Path of the file.
@@ -36,7 +36,7 @@ pub struct FileContents {
 pub struct ColumnContents {
     /// Its heading.
     pub heading: String,
-    /// What it holds.
+    /// Signal that it holds.
     pub signal: TestSignal,
     /// The unit that it was read in.
     pub unit: String,

@@ -13,7 +13,7 @@ pub const DECISIVE: f64 = 10.0;
 /// Greatest correlation of neighbours that is used: one row in two hundred counts.
 const MOST_CORRELATED: f64 = 0.99;
 
-/// How well a model of the leakage explains the recordings.
+/// A model of the leakage with its fit and criterion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExplainedBy {
     /// Which.
@@ -69,31 +69,31 @@ impl ModelEvidence {
 /// ```
 ///
 /// with s_c the likeliest scale of each signal, m the number of coefficients and scales, and f the
-/// share of rows that are independent, (1 - c)/(1 + c) with c the correlation of neighbouring
+/// fraction of rows that are independent, (1 - c)/(1 + c) with c the correlation of neighbouring
 /// residuals of the better model (Bayley and Hammersley 1946). A constant that both models share is
 /// left out.
 pub(super) fn criteria(fits: [&Fit<'_>; 2]) -> [f64; 2] {
     let signals = fits.map(Fit::signals);
     let losses = fits.map(losses);
-    let sum = |losses: &[f64], shares: &[f64]| -> f64 {
-        losses.iter().zip(shares).map(|(loss, share)| loss * share).sum()
+    let sum = |losses: &[f64], fractions: &[f64]| -> f64 {
+        losses.iter().zip(fractions).map(|(loss, fraction)| loss * fraction).sum()
     };
     let all = vec![1.0; losses[0].len()];
     let second_is_better = sum(&losses[1], &all) < sum(&losses[0], &all);
     let [first, second] = &signals;
     let better = if second_is_better { second } else { first };
-    let shares: Vec<f64> = better.iter().map(|signal| independent_share(signal.correlation)).collect();
+    let fractions: Vec<f64> = better.iter().map(|signal| independent_fraction(signal.correlation)).collect();
     let independent_rows: f64 =
-        better.iter().zip(&shares).map(|(signal, share)| share * signal.rows as f64).sum();
+        better.iter().zip(&fractions).map(|(signal, fraction)| fraction * signal.rows as f64).sum();
     let of = |index: usize| {
-        let numbers = fits[index].together.variables.count() + shares.len();
-        numbers as f64 * portable::ln(independent_rows) + 2.0 * sum(&losses[index], &shares)
+        let numbers = fits[index].together.variables.count() + fractions.len();
+        numbers as f64 * portable::ln(independent_rows) + 2.0 * sum(&losses[index], &fractions)
     };
     [of(0), of(1)]
 }
 
-/// Share of rows that are independent where neighbouring residuals have this correlation.
-pub(super) fn independent_share(correlation: f64) -> f64 {
+/// Fraction of rows that are independent where neighbouring residuals have this correlation.
+pub(super) fn independent_fraction(correlation: f64) -> f64 {
     let correlation = correlation.clamp(0.0, MOST_CORRELATED);
     (1.0 - correlation) / (1.0 + correlation)
 }

@@ -31,10 +31,10 @@ const MANY_ROWS: usize = 20_000;
 /// Evaluations over all of many rows of a model that need not be the one that is wanted.
 const ROUGH_EVALUATIONS: usize = 12;
 
-/// Longest block, as share of a recording.
+/// Longest block, as fraction of a recording.
 const LONGEST_BLOCK: usize = 10;
 
-/// How far a search goes.
+/// Extent of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Depth {
     /// Until the sum falls by no more than its hundred-thousandth: enough to compare models.
@@ -85,17 +85,17 @@ impl Fit<'_> {
         residuals.into_iter().map(of).max().unwrap_or(1)
     }
 
-    /// How well each signal is explained.
+    /// Fit of each signal.
     pub(super) fn signals(&self) -> Vec<SignalFit> {
         self.signals_with(&self.minimum.linearised.residuals)
     }
 
-    /// Whether a signal is left unexplained.
+    /// True where a signal is left unexplained.
     pub(super) fn has_misfit(&self) -> bool {
         self.signals().iter().any(|signal| signal.misfit().is_some())
     }
 
-    /// How well each signal is explained where these residuals are left.
+    /// Fit of each signal where these residuals are left.
     pub(super) fn signals_with(&self, residuals: &[f64]) -> Vec<SignalFit> {
         let residuals = self.together.by_channel(residuals);
         let one = |(channel, own): (&Channel, &[f64])| {
@@ -137,7 +137,7 @@ pub(super) fn fitted<'a>(
     )
 }
 
-/// The same recordings explained by another model of the valve, from where this one ended or from
+/// Recordings explained by another model of the valve, from where this one ended or from
 /// a first guess, whichever leads further; as far as it takes to compare the two.
 pub(super) fn with_another_model<'a>(
     first: &Fit<'a>,
@@ -173,8 +173,8 @@ pub(super) fn compared<'a>(
     fitted_from(&[start.to_vec()], together, Depth::ToCompare, watch)
 }
 
-/// A few steps towards the minimum that a model of the valve with another term has beside this one,
-/// with the same scales: enough to tell whether the term is worth a fit.
+/// A few steps towards the minimum that a model of the valve with another term has near this one,
+/// with the same scales: enough to judge whether the term is worth a fit.
 pub(super) fn a_few_steps_with<'a>(
     first: &Fit<'a>,
     tested: TestedValve,
@@ -216,13 +216,13 @@ fn fitted_from<'a>(
     Ok(Fit { together, minimum, starts: [starts.len(), agreeing] })
 }
 
-/// Whether the minimum is found over averages first.
+/// True where the minimum is found over averages first.
 fn has_many_rows(recordings: &[Recording]) -> bool {
     recordings.iter().map(|one| one.inputs.len()).sum::<usize>() > MANY_ROWS
 }
 
 impl Fit<'_> {
-    /// The same at its minimum, with the scale of each signal from its residuals there: a search
+    /// Fit at its minimum, with the scale of each signal from its residuals there: a search
     /// that was cut short has those of another model.
     pub(super) fn searched_to_the_end(mut self, watch: Watch<'_>) -> Result<Self, IdentifyError> {
         let near = self.minimum.variables.clone();

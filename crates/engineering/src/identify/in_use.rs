@@ -4,7 +4,7 @@
 //! project, recordings -> coefficients, family -> settings of the project -> the project, read again
 //! ```
 //!
-//! What was identified goes through the reader as any other number of the project does, so that
+//! Identified numbers go through the reader as any other number of the project does, so that
 //! every condition between values is checked, and nothing below sees two rigs.
 
 use phea_dynamics::watch::Watch;
@@ -124,7 +124,7 @@ fn region(found: &Identification, project: &Project) -> Result<JointRegion, Iden
     joint_region(found, project, SMALLEST_EFFECT).map_err(|error| IdentifyError::Data(error.to_string()))
 }
 
-/// What takes the place of declared numbers, and what stays.
+/// Numbers in place of declared ones, and numbers that stay as declared.
 fn numbers(found: &Identification, project: &Project) -> (Vec<IdentifiedNumber>, Vec<KeptNumber>) {
     let (mut numbers, mut kept) = (Vec::new(), Vec::new());
     let of = |index: usize| Some((*COEFFICIENT_NAMES.get(index)?, *found.estimates.get(index)?));
@@ -144,7 +144,7 @@ fn numbers(found: &Identification, project: &Project) -> (Vec<IdentifiedNumber>,
     (numbers, kept)
 }
 
-/// The same as `path=value`.
+/// Identified numbers as `path=value`.
 fn settings(
     found: &Identification,
     numbers: &[IdentifiedNumber],
@@ -197,7 +197,7 @@ fn without(found: &Identification, project: &Project) -> Vec<String> {
     settings
 }
 
-/// The margin that a design keeps for what another recording of the same valve may move: its plants
+/// The margin of a design for what another recording of the same valve may move: its plants
 /// have other gains, and a closed loop changes by no more where a limit on it binds.
 fn reserve(region: &JointRegion) -> String {
     format!("design.reserve={:e}", 1.0 + region.change_left_out)

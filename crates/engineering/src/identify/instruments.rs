@@ -11,7 +11,7 @@ use crate::project::{Accuracy, TestSignal};
 /// An error of an instrument that is the same in all rows, of one standard deviation.
 #[derive(Clone, Copy, Debug)]
 enum SharedError {
-    /// A share of what is read.
+    /// A fraction of what is read.
     Gain(f64),
     /// In the unit of the signal.
     Zero(f64),
@@ -20,7 +20,7 @@ enum SharedError {
 impl SharedError {
     fn on(self, value: f64) -> f64 {
         match self {
-            SharedError::Gain(share) => value * share,
+            SharedError::Gain(fraction) => value * fraction,
             SharedError::Zero(size) => size,
         }
     }
@@ -29,7 +29,7 @@ impl SharedError {
 /// The change of every residual by one standard deviation of each error that the instruments are
 /// stated to have.
 ///
-/// An accuracy bounds the error, and nothing is known of where within the bounds it lies: its
+/// An accuracy bounds the error, and nothing is known of where within the bounds it is: its
 /// deviation is the bound over sqrt(3) (GUM, 4.3.7). Columns of one signal with the same accuracy
 /// are of one instrument.
 pub(super) fn shared_changes(
@@ -101,7 +101,7 @@ fn errors(recordings: &[Recording]) -> Vec<(TestSignal, Accuracy, SharedError)> 
     let of = |(signal, accuracy): (TestSignal, Accuracy)| {
         let root = 3.0_f64.sqrt();
         let found = match accuracy {
-            Accuracy::OfReading(share) => vec![SharedError::Gain(share / root)],
+            Accuracy::OfReading(fraction) => vec![SharedError::Gain(fraction / root)],
             Accuracy::OfRange(size) => {
                 let own = recordings.iter().filter(|one| one.accuracies.contains(&(signal, accuracy)));
                 let greatest = own.map(|one| greatest(one, signal)).fold(0.0, f64::max);

@@ -13,9 +13,9 @@ use crate::estimate::{Estimate, NORMAL_95};
 /// factor of a million.
 const NOTHING_SAID: f64 = 14.0;
 
-/// How well the recordings determine the coefficients: in changes that matter, see
+/// Uncertainty of the coefficients: in changes that matter, see
 /// [`Variables::scales`].
-pub(super) fn told(
+pub(super) fn uncertainty(
     at: &Linearised,
     (groups, shared): (&[usize], &[Vec<f64>]),
     variables: &Variables,
@@ -42,7 +42,7 @@ const OF_MAGNITUDE: f64 = 0.62;
 
 /// Lowers the interval of the tare flow by what a meter without direction may have added to it.
 ///
-/// Where nothing flows, such a meter shows the magnitude of its own noise; in the mean over rows
+/// Without flow such a meter shows the magnitude of its own noise; in the mean over rows
 ///
 /// ```text
 /// E|q + n| = sigma sqrt(2/pi) exp(-q^2/(2 sigma^2)) + q erf(q/(sqrt 2 sigma))
@@ -83,6 +83,19 @@ fn without_magnitude(shown: f64, noise: f64) -> f64 {
         if mean(middle) < shown { low = middle } else { high = middle }
     }
     if low > 0.0 { high } else { 0.0 }
+}
+
+/// Standard deviation of each coefficient in its own unit; infinite where nothing depends on it.
+pub(super) fn deviations(
+    variables: &Variables,
+    coefficients: &StaticCoefficients,
+    relative: &[f64],
+) -> [f64; COUNT] {
+    let mut deviations = variables.scales(coefficients);
+    for (scale, deviation) in deviations.iter_mut().zip(relative) {
+        *scale = if deviation.is_finite() { *scale * deviation } else { f64::INFINITY };
+    }
+    deviations
 }
 
 /// Each coefficient with its interval, from its standard deviation over the change that matters.

@@ -1,4 +1,4 @@
-//! What recordings leave uncertain of a valve, as far as the plant sees it.
+//! Uncertainty that recordings leave of a valve, as far as the plant depends on it.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 use phea_dynamics::order::sort_by_number;
@@ -13,7 +13,7 @@ use crate::project::{
 };
 use crate::setup::Setup;
 
-/// Probability that the true coefficients lie in the region.
+/// Probability that the true coefficients are in the region.
 pub const COVERAGE: f64 = 0.95;
 
 /// Standard deviations of one recording that two of the same valve differ by at most with 95 %:
@@ -21,7 +21,7 @@ pub const COVERAGE: f64 = 0.95;
 const BETWEEN_TWO: f64 = 2.771_8;
 
 /// Relative change of K_qU and K_c that the directions left out may make together, where nothing
-/// else is asked.
+/// else is requested.
 pub const SMALLEST_EFFECT: f64 = 0.01;
 
 /// The joint 95 % region of the coefficients, as directions for a family.
@@ -49,7 +49,7 @@ pub enum JointRegionError {
     #[error(
         "the recordings do not determine `{0}`, so that nothing is known of the plants that are possible"
     )]
-    NotTold(&'static str),
+    NotIdentifiable(&'static str),
     /// A coefficient whose region is not positive.
     #[error("the region of `{0}` begins below zero: the recordings cannot distinguish it from zero")]
     BelowZero(String),
@@ -95,7 +95,7 @@ pub fn joint_region(
     for index in &plant {
         let estimate = found.estimates.get(*index).copied().flatten();
         if estimate.is_none() || !found.deviations.get(*index).is_some_and(|one| one.is_finite()) {
-            return Err(JointRegionError::NotTold(name(*index)));
+            return Err(JointRegionError::NotIdentifiable(name(*index)));
         }
     }
     let paths: Vec<String> = plant.iter().map(|index| found.path(name(*index))).collect();
@@ -188,8 +188,8 @@ fn turned(effects: &DMatrix<f64>) -> DMatrix<f64> {
     })
 }
 
-/// How many of the first columns it takes so that the others together have less effect than this on
-/// every row.
+/// Number of the first columns that it takes so that the others together have less effect than this
+/// on every row.
 fn kept(effects: &DMatrix<f64>, smallest: f64) -> usize {
     let count = effects.ncols();
     let others = |from: usize| {
@@ -228,7 +228,7 @@ fn below_zero(region: &JointRegion, found: &Identification, plant: &[usize]) -> 
     })
 }
 
-/// Half width r of the box in which this many independent standard normal numbers lie together with
+/// Half width r of the box in which this many independent standard normal numbers are together with
 /// 95 %.
 fn deviations(count: usize) -> f64 {
     let outside = 1.0 - pow(COVERAGE, 1.0 / count as f64);

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! A test that begins after other cycles begins with their memory z_0, between -h and h. It is
-//! found for each test by itself, where the loss of its first residuals is least, and the
+//! found for each test separately, where the loss of its first residuals is least, and the
 //! coefficients are fitted anew with it, until it stays.
 
 use phea_dynamics::least_squares::{Settings, loss};
@@ -16,7 +16,7 @@ use phea_hydraulics::servovalve::TestInput;
 
 use super::IdentifyError;
 use super::channels::Channel;
-use super::evidence::{DECISIVE, criteria, independent_share};
+use super::evidence::{DECISIVE, criteria, independent_fraction};
 use super::fit::{self, Fit};
 use super::recording::Recording;
 
@@ -26,11 +26,11 @@ const PASSES: usize = 6;
 /// Change of a memory, over the width of the hysteresis, that changes nothing.
 const SETTLED: f64 = 2e-3;
 
-/// Memories that are tried between both ends, and steps of the golden section that follows.
-const TRIED: i32 = 16;
+/// Memories that are evaluated between both ends, and steps of the golden section that follows.
+const CANDIDATES: i32 = 16;
 const SECTIONS: usize = 24;
 
-/// Share of the first memory that a row still has to be counted.
+/// Fraction of the first memory that a row still has to be counted.
 const FORGOTTEN: f64 = 1e-3;
 
 /// Recordings with the memories that their tests begin with, and where the fit of them ended.
@@ -40,65 +40,65 @@ pub(super) struct WithMemories {
     pub(super) start: Vec<f64>,
 }
 
-/// Those of the recordings that a fit explains; `None` where no test asks for one. `width` is the
+/// Memories of the recordings that a fit explains; `None` where no test needs one. `width` is the
 /// first guess of the hysteresis in V.
 ///
 /// A fit with a wrong memory may end far from the right one: where it leaves a misfit, tests that
-/// go on the way that they went are tried too.
+/// continue the way that they went are evaluated too.
 ///
 /// # Errors
-/// Those of a fit.
+/// Errors of a fit.
 pub(super) fn remembered(
     first: &Fit<'_>,
     width: f64,
     watch: Watch<'_>,
 ) -> Result<Option<WithMemories>, IdentifyError> {
     if first.has_misfit() {
-        let mut went_on = first.together.recordings.to_vec();
-        went_on.iter_mut().for_each(|recording| goes_on(recording, width));
+        let mut continued = first.together.recordings.to_vec();
+        continued.iter_mut().for_each(|recording| continues(recording, width));
         let start = first.together.variables.start();
-        let other = fit::compared(&went_on, first, &start, watch)?;
+        let other = fit::compared(&continued, first, &start, watch)?;
         let [before, after] = criteria([first, &other]);
         if before - after > DECISIVE {
-            return settled(&other, vec![true; went_on.len()], watch).map(Some);
+            return settled(&other, vec![true; continued.len()], watch).map(Some);
         }
     }
-    let asked: Vec<bool> = memories(first).iter().map(is_asked).collect();
-    if !asked.contains(&true) {
+    let needed: Vec<bool> = memories(first).iter().map(is_needed).collect();
+    if !needed.contains(&true) {
         return Ok(None);
     }
-    settled(first, asked, watch).map(Some)
+    settled(first, needed, watch).map(Some)
 }
 
-/// A test that goes on the way that it went before it was recorded: its spool lags by half the
-/// width.
-fn goes_on(recording: &mut Recording, width: f64) {
+/// Memory of a test that continues the way that it went before it was recorded: its spool lags by
+/// half the width.
+fn continues(recording: &mut Recording, width: f64) {
     let rises = recording.branches().first().is_some_and(|branch| branch.rises);
     let memory = if rises { 0.5 * width } else { -0.5 * width };
     recording.inputs.iter_mut().take(1).for_each(|input| input.memory = memory);
 }
 
 /// The memories where they and the coefficients stay.
-fn settled(first: &Fit<'_>, mut asked: Vec<bool>, watch: Watch<'_>) -> Result<WithMemories, IdentifyError> {
-    let mut told = memories(first);
+fn settled(first: &Fit<'_>, mut needed: Vec<bool>, watch: Watch<'_>) -> Result<WithMemories, IdentifyError> {
+    let mut found = memories(first);
     let mut recordings = first.together.recordings.to_vec();
     let mut start = first.minimum.variables.clone();
     for _ in 0..PASSES {
         let width = first.together.variables.coefficients(&start).hysteresis_width;
         let mut most = 0.0_f64;
-        let all = recordings.iter_mut().zip(&told).zip(&asked).filter(|(_, asked)| **asked);
-        for ((recording, told), _) in all {
-            let (Some(told), Some(input)) = (told, recording.inputs.first_mut()) else { continue };
-            most = most.max((input.memory - told.memory).abs());
-            input.memory = told.memory;
+        let all = recordings.iter_mut().zip(&found).zip(&needed).filter(|(_, needed)| **needed);
+        for ((recording, found), _) in all {
+            let (Some(found), Some(input)) = (found, recording.inputs.first_mut()) else { continue };
+            most = most.max((input.memory - found.memory).abs());
+            input.memory = found.memory;
         }
         if most < SETTLED * width {
             break;
         }
         let again = fit::from_near(&recordings, first, &start, watch)?;
         start.clone_from(&again.minimum.variables);
-        told = memories(&again);
-        asked.iter_mut().zip(&told).for_each(|(asked, told)| *asked |= is_asked(told));
+        found = memories(&again);
+        needed.iter_mut().zip(&found).for_each(|(needed, found)| *needed |= is_needed(found));
     }
     Ok(WithMemories { recordings, start })
 }
@@ -110,26 +110,26 @@ struct FirstMemory {
     gain: f64,
 }
 
-/// Whether the recording asks for it.
-fn is_asked(told: &Option<FirstMemory>) -> bool {
-    told.is_some_and(|one| one.gain > DECISIVE)
+/// True where the recording needs it.
+fn is_needed(found: &Option<FirstMemory>) -> bool {
+    found.is_some_and(|one| one.gain > DECISIVE)
 }
 
-/// That of each recording; `None` where no row shows it.
+/// Memory at the beginning of each recording; `None` where no row shows it.
 fn memories(fit: &Fit<'_>) -> Vec<Option<FirstMemory>> {
     let signals = fit.signals();
     let half = 0.5 * fit.coefficients().hysteresis_width;
     let of = |(index, recording): (usize, &Recording)| {
         let begun = Begun::new(fit, index, recording);
         let own = signals.iter().filter(|signal| signal.recording == index);
-        let share = independent_share(own.map(|signal| signal.correlation).fold(0.0, f64::max));
-        let at = |place: i32| half * f64::from(place) / f64::from(TRIED / 2);
-        let tried = (-TRIED / 2..=TRIED / 2).map(|place| (place, begun.loss(at(place))));
-        let (place, _) = tried.min_by(|one, other| one.1.total_cmp(&other.1))?;
+        let fraction = independent_fraction(own.map(|signal| signal.correlation).fold(0.0, f64::max));
+        let at = |place: i32| half * f64::from(place) / f64::from(CANDIDATES / 2);
+        let candidates = (-CANDIDATES / 2..=CANDIDATES / 2).map(|place| (place, begun.loss(at(place))));
+        let (place, _) = candidates.min_by(|one, other| one.1.total_cmp(&other.1))?;
         let near = [at(place - 1).max(-half), at(place + 1).min(half)];
         let memory = golden_section(near, SECTIONS, |memory| begun.loss(memory));
         let rows = begun.inputs.len() as f64;
-        let gain = 2.0 * share * (begun.loss(0.0) - begun.loss(memory)) - portable::ln(rows.max(1.0));
+        let gain = 2.0 * fraction * (begun.loss(0.0) - begun.loss(memory)) - portable::ln(rows.max(1.0));
         (rows > 0.0).then_some(FirstMemory { memory, gain })
     };
     fit.together.recordings.iter().enumerate().map(of).collect()

@@ -1,4 +1,4 @@
-//! What the model of the valve leaves of the recordings that is not noise.
+//! Residuals of the recordings under the model of the valve that are not noise.
 //!
 //! ```text
 //! residual = misfit + noise,       misfit alike in neighbouring rows, noise not
@@ -18,9 +18,9 @@ const OF_NOISE: f64 = 0.4;
 /// Standard deviations of the correlation of independent residuals, 1/sqrt(rows), up to which it is
 /// chance.
 const CHANCE: f64 = 5.0;
-/// Misfits of a smaller share of the range are not told.
-const SMALLEST_SHARE: f64 = 1e-3;
-/// Ranges of the command that a misfit is looked for in, for either direction.
+/// Misfits of a smaller fraction of the range are not reported.
+const SMALLEST_FRACTION: f64 = 1e-3;
+/// Ranges of the command in which a misfit is evaluated, for either direction.
 const RANGES: usize = 10;
 
 /// A signal that the model does not explain.
@@ -33,29 +33,30 @@ pub struct Misfit {
     /// Correlation of neighbouring residuals.
     pub correlation: f64,
     /// Root mean square of the misfit over the range of the signal.
-    pub share: f64,
-    /// Where it is greatest; `None` where no row shows it.
+    pub fraction: f64,
+    /// Place at which it is greatest; `None` where no row shows it.
     pub place: Option<MisfitPlace>,
 }
 
-/// Where a misfit is greatest.
+/// Place at which a misfit is greatest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MisfitPlace {
     /// True while the command rises.
     pub is_rising: bool,
     /// V, range of the command.
     pub command: [f64; 2],
-    /// What the model shows there less what was recorded, on average, over the range of the signal.
-    pub share: f64,
+    /// Output of the model there less the recorded signal, on average, over the range of the
+    /// signal.
+    pub fraction: f64,
 }
 
 impl SignalFit {
     /// Root mean square of what the model does not explain, over the range of the signal; `None`
     /// where that is noise.
     pub(super) fn misfit(&self) -> Option<f64> {
-        let share = self.rms * self.correlation.max(0.0).sqrt() / self.range;
+        let fraction = self.rms * self.correlation.max(0.0).sqrt() / self.range;
         let is_chance = self.correlation * (self.rows as f64).sqrt() <= CHANCE;
-        (self.correlation > OF_NOISE && !is_chance && share >= SMALLEST_SHARE).then_some(share)
+        (self.correlation > OF_NOISE && !is_chance && fraction >= SMALLEST_FRACTION).then_some(fraction)
     }
 }
 
@@ -63,17 +64,17 @@ impl Identification {
     /// The signals that the model does not explain, the greatest misfit first.
     pub fn misfits(&self) -> Vec<Misfit> {
         let of = |signal: &SignalFit| {
-            let share = signal.misfit()?;
+            let fraction = signal.misfit()?;
             Some(Misfit {
                 recording: signal.recording,
                 kind: signal.kind,
                 correlation: signal.correlation,
-                share,
+                fraction,
                 place: self.place(signal),
             })
         };
         let mut found: Vec<Misfit> = self.signals.iter().filter_map(of).collect();
-        found.sort_by(|one, other| other.share.total_cmp(&one.share));
+        found.sort_by(|one, other| other.fraction.total_cmp(&one.fraction));
         found
     }
 
@@ -92,7 +93,7 @@ impl Identification {
     /// The greatest misfit as a project states it: the value of `valve.misfit`.
     pub fn declared_misfit(&self) -> Option<DeclaredMisfit> {
         let misfit = self.misfits().into_iter().next()?;
-        Some(DeclaredMisfit { share: misfit.share, at: Some(self.misfit_at(&misfit)) })
+        Some(DeclaredMisfit { share: misfit.fraction, at: Some(self.misfit_at(&misfit)) })
     }
 
     /// The part of the branches where the residuals of a signal have the greatest mean.
@@ -123,9 +124,9 @@ impl Identification {
             MisfitPlace {
                 is_rising,
                 command: [end(range), end(range + 1)],
-                share: sum / rows as f64 / signal.range,
+                fraction: sum / rows as f64 / signal.range,
             }
         });
-        places.max_by(|one, other| one.share.abs().total_cmp(&other.share.abs()))
+        places.max_by(|one, other| one.fraction.abs().total_cmp(&other.fraction.abs()))
     }
 }

@@ -28,7 +28,7 @@ use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES};
 /// Fewest rows of a test.
 const FEWEST_ROWS: usize = 20;
 
-/// What the columns of a test may hold, in the order of [`TestSignal::ALL`].
+/// Signals that the columns of a test may hold, in the order of [`TestSignal::ALL`].
 static MEASURANDS: [Measurand; 9] = [
     measurand(TestSignal::Time, TIME_NAMES),
     measurand(TestSignal::Command, &[]),
@@ -129,8 +129,8 @@ fn recording(
     let before = findings.error_count();
     let wanted: Vec<&Column> = columns.iter().map(|(_, column)| column).collect();
     let mut numbers = table.numbers(&wanted, findings);
-    let shares = columns.iter().zip(&mut numbers.columns).filter(|((_, column), _)| column.is_share);
-    shares.for_each(|(_, values)| values.iter_mut().for_each(|value| *value *= known.nominal_voltage));
+    let fractions = columns.iter().zip(&mut numbers.columns).filter(|((_, column), _)| column.is_share);
+    fractions.for_each(|(_, values)| values.iter_mut().for_each(|value| *value *= known.nominal_voltage));
     if findings.error_count() > before {
         return None;
     }
@@ -228,14 +228,14 @@ fn columns(
     (findings.error_count() == before).then_some(Chosen { columns, unused })
 }
 
-/// How the ports were piped: as the test says, or the column of a flow.
+/// Circuit of the ports: as the test says, or the column of a flow.
 fn circuit(declared: &RecordedTest, columns: &[(TestSignal, Column)]) -> PortCircuit {
     let has_flow = columns.iter().any(|(signal, _)| *signal == TestSignal::Flow);
     let by_columns = if has_flow { PortCircuit::Connected } else { PortCircuit::Blocked };
     declared.test.map_or(by_columns, StaticTest::circuit)
 }
 
-/// Whether the model needs a signal in every row.
+/// True where the model needs a signal in every row.
 fn is_input(signal: TestSignal, circuit: PortCircuit) -> bool {
     match signal {
         TestSignal::LeakFlow | TestSignal::Flow | TestSignal::OilTemperature => false,

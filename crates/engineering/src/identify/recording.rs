@@ -8,7 +8,7 @@ use crate::project::{Accuracy, TestSignal};
 /// Differences of values, over their range, that are the rounding of their digits.
 const ROUNDING: f64 = 1e-9;
 
-/// How far a value may lie from a multiple of the step, in steps.
+/// Greatest distance of a value from a multiple of the step, in steps.
 const OFF_STEP: f64 = 0.02;
 
 /// A recorded test, rows in the order of time. SI.
@@ -16,26 +16,26 @@ const OFF_STEP: f64 = 0.02;
 pub struct Recording {
     /// Path of the file.
     pub file: String,
-    /// How the ports were piped.
+    /// Circuit of the ports.
     pub circuit: PortCircuit,
     /// V, deviation of what differs from row to row in a command with noise; zero without.
     pub command_roughness: f64,
     /// s, of each row.
     pub times: Vec<f64>,
-    /// What acted on the valve.
+    /// Inputs of the valve.
     pub inputs: Vec<TestInput>,
     /// degC, of the oil in each row, where it was recorded.
     pub oil_temperature: Option<Vec<f64>>,
     /// The stated accuracies of its instruments.
     pub accuracies: Vec<(TestSignal, Accuracy)>,
-    /// What was recorded of it.
+    /// Recorded signals of the valve.
     pub signals: Vec<RecordedSignal>,
 }
 
 /// A part of a test in which the command goes one way.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TestBranch {
-    /// Whether it rises.
+    /// True where it rises.
     pub rises: bool,
     /// The rows.
     pub rows: std::ops::Range<usize>,
@@ -50,7 +50,7 @@ pub struct RecordedSignal {
     pub values: Vec<Option<f64>>,
 }
 
-/// What a signal is.
+/// Kind of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SignalKind {
     /// p_A.
@@ -63,7 +63,7 @@ pub enum SignalKind {
     LeakFlow,
     /// Flow from port A to port B.
     PortFlow,
-    /// The same by a meter that does not indicate the direction.
+    /// Flow by a meter that does not indicate the direction.
     PortFlowMagnitude,
 }
 
@@ -79,12 +79,12 @@ impl SignalKind {
         }
     }
 
-    /// Whether it is a pressure.
+    /// True for a pressure.
     pub fn is_pressure(self) -> bool {
         matches!(self, SignalKind::PressureA | SignalKind::PressureB | SignalKind::MeanPressure)
     }
 
-    /// What the model shows of it: weights of p_A, p_B, leakage and port flow.
+    /// Output of the model: weights of p_A, p_B, leakage and port flow.
     pub(super) fn weights(self, output: &TestOutput) -> [f64; 4] {
         match self {
             SignalKind::PressureA => [1.0, 0.0, 0.0, 0.0],
@@ -110,7 +110,7 @@ impl Recording {
     }
 
     /// The lag of earlier cycles that the spool brings along, in V; zero of a test that begins
-    /// without, as far as its rows tell.
+    /// without, as far as its rows show it.
     pub fn memory_at_start(&self) -> f64 {
         self.inputs.first().map_or(0.0, |input| input.memory)
     }
@@ -136,7 +136,7 @@ impl Recording {
         branches
     }
 
-    /// The rows of these indices alone.
+    /// The rows of these indices only.
     pub(super) fn only(&self, rows: &[usize]) -> Recording {
         let inputs = rows.iter().filter_map(|row| self.inputs.get(*row).copied()).collect();
         let signals = self.signals.iter().map(|signal| RecordedSignal {
@@ -176,7 +176,7 @@ impl RecordedSignal {
         if is_multiple { step } else { 0.0 }
     }
 
-    /// Each value, or its neighbour where that lies between it and its other neighbour: the median
+    /// Each value, or its neighbour where that is between it and its other neighbour: the median
     /// of three.
     pub(super) fn despiked(&self) -> Vec<Option<f64>> {
         let at = |row: Option<usize>| row.and_then(|row| self.values.get(row).copied().flatten());

@@ -1,17 +1,17 @@
-//! What a valve shows in the recorded tests, and what it leaves of them.
+//! Signals of a valve in the recorded tests, and their residuals.
 
 use phea_hydraulics::servovalve::{StaticCoefficients, TestOutput};
 
 use super::{Identification, SignalFit};
 
 impl Identification {
-    /// What a valve of these coefficients shows in a recorded test, row by row.
+    /// Outputs of a valve of these coefficients in a recorded test, row by row.
     pub fn shown(&self, recording: usize, coefficients: &StaticCoefficients) -> Vec<TestOutput> {
         let of = |one: &super::Recording| self.tested.outputs(coefficients, one.circuit, &one.inputs);
         self.recordings.get(recording).map(of).unwrap_or_default()
     }
 
-    /// What such a valve shows of a signal less what was recorded; `None` where nothing was. SI.
+    /// Output of such a valve less the recorded signal; `None` where nothing was recorded. SI.
     pub fn residuals(&self, signal: &SignalFit, coefficients: &StaticCoefficients) -> Vec<Option<f64>> {
         let recorded = self.recordings.get(signal.recording).and_then(|one| one.signal(signal.kind));
         let Some(recorded) = recorded else { return Vec::new() };

@@ -1,4 +1,4 @@
-//! What section 5.2 of the thesis reads off the curves by hand.
+//! Readings of the curves by hand, as in section 5.2 of the thesis.
 
 mod gains;
 mod half_height;
@@ -12,7 +12,7 @@ use self::straight_line::straight_line;
 use super::recording::{Recording, SignalKind, usual_drop};
 use crate::estimate::Estimate;
 
-/// What shows where null is.
+/// Feature of the curves that shows null.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NullMethod {
     /// The middle of the leakage curve at half of its height. Of unequal edges it is not quite
@@ -20,7 +20,7 @@ pub enum NullMethod {
     LeakageCentre,
     /// The middle between the zeros of straight lines through both branches of the flow.
     FlowLines,
-    /// Where both ports have the same pressure.
+    /// Command at which both ports have the same pressure.
     EqualPressures,
 }
 
@@ -29,11 +29,11 @@ pub enum NullMethod {
 pub struct NullReading {
     /// V.
     pub command: Estimate,
-    /// What shows it.
+    /// Feature that shows it.
     pub method: NullMethod,
 }
 
-/// What the calculations of the thesis, section 5.2, give; `None` where the test for it is missing.
+/// Results of the calculations of the thesis, section 5.2; `None` where the test for it is missing.
 /// SI.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SimpleCalculations {
@@ -41,7 +41,7 @@ pub struct SimpleCalculations {
     /// 5).
     pub flow_coefficients: [Option<Estimate>; 2],
     /// Flow of this valve over the rated one at the rated drop.
-    pub share_of_nominal: Option<Estimate>,
+    pub fraction_of_nominal: Option<Estimate>,
     /// q_vin, the peak of the leakage above its base.
     pub null_leakage: Option<Estimate>,
     /// p_S - p_T of the leakage test.
@@ -87,8 +87,8 @@ impl SimpleCalculations {
         Some(self.null_leakage?.times(1.0 / (2.0 * self.leakage_pressure?).sqrt()))
     }
 
-    /// Share of the tare flow in the whole leakage at null, which errs as the peak does.
-    pub fn tare_share(&self) -> Option<Estimate> {
+    /// Fraction of the tare flow in the whole leakage at null, which errs as the peak does.
+    pub fn tare_fraction(&self) -> Option<Estimate> {
         let tare = self.tare_flow?;
         Some(tare.over(&self.null_leakage?.plus(tare.value)))
     }
@@ -108,7 +108,7 @@ impl SimpleCalculations {
 /// The calculations, from whatever test allows them.
 ///
 /// ```text
-/// q_tare   median leakage beyond 60 % of the amplitude; below the least reading where the meter stands still there
+/// q_tare   median leakage beyond 60 % of the amplitude; below the least reading where the meter reads zero there
 /// q_vin    highest mean over a small part of the width at half height, less q_tare
 /// nulls    middle of the half height of the leakage, rising and falling; else between the zeros of the flow's lines; else of p_A = p_B
 /// K_vinp = q_vin/sqrt(2 p_S)                                   thesis (4.13)
@@ -154,7 +154,7 @@ pub(super) fn simple_calculations(
     found.pressure_sensitivity = gains::pressure_sensitivity(recordings);
     let both = found.flow_coefficients.into_iter().flatten().collect::<Vec<_>>();
     let mean = Estimate::mean(&both).filter(|_| both.len() == 2);
-    found.share_of_nominal =
+    found.fraction_of_nominal =
         mean.zip(rated_flow).map(|(mean, [flow, drop])| mean.times((drop / 2.0).sqrt() / flow));
     found
 }
@@ -218,7 +218,7 @@ fn leakage(recording: &Recording, tested: &TestedValve, found: &mut SimpleCalcul
     }
 }
 
-/// Flow of the base, and the noise of one of its rows. Where the meter stands still there, it is
+/// Flow of the base, and the noise of one of its rows. Where the meter reads zero there, it is
 /// below the least flow that the meter shows anywhere.
 fn base_flow(base: &[f64], least: f64) -> (Estimate, f64) {
     if base.is_empty() {
@@ -230,7 +230,7 @@ fn base_flow(base: &[f64], least: f64) -> (Estimate, f64) {
     (Estimate::of(middle, deviation), deviation * (base.len() as f64).sqrt())
 }
 
-/// Whether the command rises at a row; `None` where it does not change.
+/// True where the command rises at a row; `None` where it does not change.
 pub(super) fn direction(recording: &Recording, row: usize) -> Option<bool> {
     let before = recording.inputs.get(row.checked_sub(1)?)?.followed_command;
     let now = recording.inputs.get(row)?.followed_command;
@@ -254,7 +254,7 @@ fn crossing(recording: &Recording, rising: bool) -> Option<Estimate> {
     let crossed = crossed.into_iter().filter(|row| *row >= from);
     let crossed: Vec<(f64, f64)> = crossed.filter_map(|row| at(row).zip(at(row - 1))).collect();
     let middle = median(crossed.iter().map(|(now, _)| *now).collect());
-    // they lie apart where noise makes the pressures cross more than once
+    // they are apart where noise makes the pressures cross more than once
     let square = |one: f64| one * one;
     let apart = |(now, before): &(f64, f64)| square(now - middle) + square(now - before);
     let deviation = (crossed.iter().map(apart).sum::<f64>() / crossed.len() as f64).sqrt();
@@ -272,9 +272,9 @@ fn flow(recording: &Recording, tested: &TestedValve, found: &mut SimpleCalculati
         let of_row = |(row, value): (usize, &Option<f64>)| {
             let input = recording.inputs.get(row)?;
             let drop = input.supply.pressure - input.supply.tank_pressure - input.load_pressure.abs();
-            let share = sign * input.command / largest;
+            let fraction = sign * input.command / largest;
             // away from the leakage and from the reversals
-            let counts = (0.3..0.95).contains(&share) && direction(recording, row) == Some(rising);
+            let counts = (0.3..0.95).contains(&fraction) && direction(recording, row) == Some(rising);
             let edge = flow_coefficient_from_rating((*value)?.abs(), drop);
             (counts && drop > 0.0).then_some((input.command, edge))
         };

@@ -1,4 +1,4 @@
-//! What a valve has beyond edges that open in proportion, as far as the recordings say.
+//! Terms of a valve in addition to edges that open in proportion, as far as the recordings show.
 
 use phea_dynamics::watch::Watch;
 use phea_hydraulics::servovalve::{LeakageModel, TestedValve, ValveTerms};
@@ -22,7 +22,7 @@ impl ValveTerm {
     /// All of them.
     pub const ALL: [ValveTerm; 3] = [ValveTerm::Lap, ValveTerm::Saturation, ValveTerm::LeakageByEdge];
 
-    /// Its name in answers.
+    /// Its name in JSON.
     pub fn name(self) -> &'static str {
         match self {
             ValveTerm::Lap => "lap",
@@ -53,7 +53,7 @@ impl ValveTerm {
     }
 }
 
-/// How much better the recordings are explained with a term.
+/// Improvement of the fit with a term.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TermEvidence {
     /// Which.
@@ -61,15 +61,15 @@ pub struct TermEvidence {
     /// By how much it lowers the information criterion; negative where it does not earn its
     /// numbers.
     pub gain: f64,
-    /// Whether the valve is identified with it.
+    /// True where the valve is identified with it.
     pub taken: bool,
 }
 
-/// The fit with every term that the recordings ask for, added one at a time, the one that explains
+/// The fit with every term that the recordings support, added one at a time, the one that explains
 /// most first; and what each term explains.
 ///
-/// A term is taken where it lowers the information criterion by [`DECISIVE`] and more. What is told
-/// of a term that is not taken is what it would explain beyond those that are.
+/// A term is taken where it lowers the information criterion by [`DECISIVE`] and more. The
+/// gain of a term that is not taken is that in addition to those that are.
 pub(super) fn with_terms<'a>(
     mut found: Fit<'a>,
     watch: Watch<'_>,

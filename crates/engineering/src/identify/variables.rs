@@ -11,8 +11,8 @@ const SHAPE: usize = 8;
 pub(super) const TARE_FLOW: usize = 9;
 pub(super) const NULL_BIAS: usize = 10;
 pub(super) const HYSTERESIS: usize = 11;
-/// Those of the terms that a valve may have: both laps, the saturation, and the shapes of the other
-/// edges.
+/// Coefficients of the terms that a valve may have: both laps, the saturation, and the shapes of
+/// the other edges.
 const LAPS: std::ops::Range<usize> = 12..14;
 const SATURATION: usize = 14;
 const OTHER_SHAPES: std::ops::Range<usize> = 15..18;
@@ -44,7 +44,7 @@ const MOST_SATURATION: f64 = 10.0;
 /// Least leakage of an edge over the first guess: without any leakage, pressures have no limit.
 const LEAST_LEAKAGE: f64 = 1e-6;
 
-/// Whether a valve with these terms has the coefficient of this index.
+/// True where a valve with these terms has the coefficient of this index.
 pub(super) fn has(terms: ValveTerms, index: usize) -> bool {
     match index {
         12..14 => terms.lap,
@@ -59,14 +59,14 @@ pub(super) fn over(derivative: f64, other: f64) -> f64 {
     if other == 0.0 { 0.0 } else { derivative / other }
 }
 
-/// How a coefficient is varied.
+/// Kind of a coefficient, by its variation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// Positive, by its logarithm.
     Positive,
     /// It may vanish: in proportion to a reference.
     MayVanish,
-    /// Of either sign, in steps.
+    /// Coefficient of either sign, in steps.
     EitherSign,
     /// Positive, by its square's inverse over that of the reference: edges in series add by it.
     InSeries,
@@ -81,7 +81,7 @@ impl Kind {
         }
     }
 
-    /// Whether a coefficient of this kind may have either sign.
+    /// True where a coefficient of this kind may have either sign.
     pub(super) fn may_be_negative(self) -> bool {
         self == Kind::EitherSign
     }
@@ -113,17 +113,17 @@ impl Variables {
         Variables { reference, bias_step, nominal_voltage, terms, in_series: [false; EDGES] }
     }
 
-    /// The same for a valve with these terms.
+    /// Variables of a valve with these terms.
     pub(super) fn with_terms(&self, terms: ValveTerms) -> Variables {
         Variables { terms, ..self.clone() }
     }
 
-    /// Whether a valve with these terms has this coefficient.
+    /// True where a valve with these terms has this coefficient.
     fn varies(&self, index: usize) -> bool {
         has(self.terms, index)
     }
 
-    /// How many coefficients are varied.
+    /// Number of coefficients that are varied.
     pub(super) fn count(&self) -> usize {
         (0..COUNT).filter(|index| self.varies(*index)).count()
     }
@@ -133,7 +133,7 @@ impl Variables {
         if index == NULL_BIAS { self.bias_step } else { LAP_SCALE }
     }
 
-    /// The same with the flow coefficients as in series, but for those that nearly vanish here:
+    /// Variables with the flow coefficients as in series, but for those that nearly vanish here:
     /// what a test of joined ports leaves open of them is a straight line, where it is a curved
     /// valley of their logarithms.
     pub(super) fn in_series(&self, near: &StaticCoefficients) -> Variables {
@@ -161,13 +161,13 @@ impl Variables {
         all.map(of).collect()
     }
 
-    /// Those of the reference.
+    /// Variables of the reference.
     pub(super) fn start(&self) -> Vec<f64> {
         let of = |index| if Kind::vanishes(index) && index != SATURATION { 1.0 } else { 0.0 };
         (0..COUNT).map(of).collect()
     }
 
-    /// Those of the reference; of a valve with lap also with an overlap and with an underlap.
+    /// Variables of the reference; of a valve with lap also with an overlap and with an underlap.
     pub(super) fn starts(&self) -> Vec<Vec<f64>> {
         let laps: &[f64] = if self.terms.lap { &[0.0, FIRST_LAP, -FIRST_LAP] } else { &[0.0] };
         let with = |lap: &f64| {
@@ -178,7 +178,7 @@ impl Variables {
         laps.iter().map(with).collect()
     }
 
-    /// Those of a point around the reference, by a factor of two for most.
+    /// Variables of a point around the reference, by a factor of two for most.
     pub(super) fn scattered(&self, state: &mut u64) -> Vec<f64> {
         let of = |index| {
             if !has(ValveTerms::default(), index) {
@@ -256,7 +256,7 @@ impl Variables {
         bounds[TARE_FLOW] = [0.0, 1e-2 / tare];
         let end = 0.1 * self.nominal_voltage;
         bounds[NULL_BIAS] = [-end, end].map(|end| (end - bias) / self.bias_step);
-        bounds[HYSTERESIS] = [1e-7, 0.2].map(|share| share * self.nominal_voltage / width);
+        bounds[HYSTERESIS] = [1e-7, 0.2].map(|fraction| fraction * self.nominal_voltage / width);
         bounds[LAPS].fill([-MOST_LAP, MOST_LAP].map(|lap| lap / LAP_SCALE));
         bounds[SATURATION] = [0.0, MOST_SATURATION / SATURATION_SCALE];
         for index in OTHER_SHAPES {

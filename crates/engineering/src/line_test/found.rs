@@ -12,7 +12,7 @@ use crate::response::{ResponseSettings, SampledPair, members};
 /// A line as identified from recordings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LineIdentification {
-    /// What was known.
+    /// Facts that were known.
     pub known: KnownLine,
     /// Pa, at which everything is stated.
     pub pressure: f64,
@@ -42,11 +42,11 @@ pub struct LineIdentification {
 
 /// Standard deviation of a logarithm beyond which a number is not determined: a factor of one and a
 /// half either way.
-const TOLD: f64 = 0.2;
-/// The same of a wave speed and of a relaxation time, which follow from what the response has
-/// besides a compliance: below five standard deviations it may be nothing.
+const NARROW: f64 = 0.2;
+/// Standard deviation of the logarithm of a wave speed and of a relaxation time, which follow from
+/// what the response has besides a compliance: below five standard deviations it may be nothing.
 const SHOWN: f64 = 0.1;
-/// Share of the range of a pressure rise by which it may be extrapolated.
+/// Fraction of the range of a pressure rise by which it may be extrapolated.
 const BEYOND: f64 = 0.1;
 
 /// Finds what recordings determine of a line: at most one slow test and one fast one.
@@ -144,7 +144,7 @@ fn shaken(
 }
 
 impl RiseFit {
-    /// Whether a pressure in Pa is among those that were recorded, or near them.
+    /// True where a pressure in Pa is among those that were recorded, or near them.
     fn reaches(&self, pressure: f64) -> bool {
         let [low, high] = self.pressures;
         let beyond = BEYOND * (high - low);
@@ -152,7 +152,7 @@ impl RiseFit {
     }
 }
 
-/// What both say together.
+/// Numbers of both tests together.
 fn combined(known: KnownLine, rise: Option<RiseFit>, response: Option<ResponseFit>) -> LineIdentification {
     let volume = known.volume();
     let pressure = match (&response, &rise) {
@@ -192,7 +192,7 @@ fn combined(known: KnownLine, rise: Option<RiseFit>, response: Option<ResponseFi
 /// An estimate that is known to a factor of one and a half.
 fn narrow(estimate: Estimate, quantity: WideQuantity) -> Result<Estimate, NotIdentifiableLine> {
     let deviation = estimate.deviation_of_logarithm();
-    if deviation < TOLD { Ok(estimate) } else { Err(NotIdentifiableLine::Wide { quantity, deviation }) }
+    if deviation < NARROW { Ok(estimate) } else { Err(NotIdentifiableLine::Wide { quantity, deviation }) }
 }
 
 /// A number of this standard deviation, by its logarithm.

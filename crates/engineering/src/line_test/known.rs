@@ -8,12 +8,12 @@ use crate::project::{LineMotion, LineSegments, LineSide};
 use crate::rig::line_model;
 use crate::setup::Setup;
 
-/// What a project says of a line, in addition to what is identified of it.
+/// Facts that a project states of a line, in addition to what is identified of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnownLine {
     /// Which line.
     pub side: LineSide,
-    /// Whether the project declares the line to the other chamber differently.
+    /// True where the project declares the line to the other chamber differently.
     pub differs_from_other: bool,
     /// As declared.
     pub line: Line,
@@ -25,7 +25,7 @@ pub struct KnownLine {
     pub motion: LineMotion,
     /// m2, of the piston that displaces a recorded volume, where there is one.
     pub piston_area: f64,
-    /// Whether it ends at an accumulator, which is not part of it while that end is blocked.
+    /// True where it ends at an accumulator, which is not part of it while that end is blocked.
     pub leaves_accumulator: bool,
 }
 
@@ -36,8 +36,8 @@ pub(super) const EXACT: f64 = 0.0;
 /// `end_share` of the line on the virtual stand where none is stated: it shifts a resonance by less
 /// than 1e-4.
 const ON_THE_STAND: f64 = 1e-4;
-/// Polytropic index of bubbles that are compressed slowly: the oil around them keeps its
-/// temperature.
+/// Polytropic index of bubbles that are compressed slowly: the oil around them has a
+/// constant temperature.
 const ISOTHERMAL: f64 = 1.0;
 /// No liquid has a greater modulus, in Pa.
 const MOST_MODULUS: f64 = 1e11;
@@ -48,7 +48,7 @@ impl KnownLine {
     /// The line of a project.
     ///
     /// # Errors
-    /// Why there is none: no actuator, impossible parameters, a line without length.
+    /// Reason for which there is none: no actuator, impossible parameters, a line without length.
     pub fn of(setup: &Setup<'_>, side: LineSide) -> Result<KnownLine, String> {
         let rig = setup.rig().map_err(|error| error.to_string())?;
         let declared = setup.project.actuator.as_ref().ok_or("the project has no line")?;
@@ -90,8 +90,8 @@ impl KnownLine {
         }
     }
 
-    /// m3/Pa, of the oil alone at a pressure in Pa; none for a plain volume, whose modulus has oil
-    /// and wall.
+    /// m3/Pa, of the oil without wall at a pressure in Pa; none for a plain volume, whose modulus
+    /// has oil and wall.
     pub fn fluid_compliance(&self, pressure: f64) -> Option<f64> {
         self.dimensions().map(|_| self.volume() / self.fluid.modulus_at(pressure))
     }
@@ -107,7 +107,7 @@ impl KnownLine {
         line_model(&self.motion, &self.line)
     }
 
-    /// The same, but with waves that are all but exact where no volume at the ends is stated: those
+    /// Its motion with waves that are all but exact where no volume at the ends is stated: those
     /// of a machine keep its valve apart from the waves, and a line has none.
     pub(crate) fn stand_model(&self) -> LineModel {
         match (&self.motion, self.declared_model()) {
@@ -148,13 +148,13 @@ impl KnownLine {
         self.dimensions().map(|_| AeratedOil { volume: self.volume(), fluid, exponent })
     }
 
-    /// The same line with this air in its oil.
+    /// Line with this air in its oil.
     pub(super) fn with_air(self, air: EntrainedAir) -> KnownLine {
         KnownLine { fluid: Fluid { entrained_air: Some(air), ..self.fluid }, ..self }
     }
 
     /// The modulus in Pa of the oil without its air that has a modulus with it, at a pressure; none
-    /// where the air alone is softer.
+    /// where the air without liquid is softer.
     ///
     /// # Example
     /// See [`super::identify_line`]; without air it is the modulus itself.

@@ -10,7 +10,7 @@ pub struct LineMisfit {
     /// `volume` of a pressure rise, `response` of a frequency response.
     pub signal: &'static str,
     /// Root mean square of the misfit over the range of the volume, or over the response.
-    pub share: f64,
+    pub fraction: f64,
     /// Correlation of neighbouring residuals of a volume.
     pub correlation: Option<f64>,
 }
@@ -19,8 +19,8 @@ pub struct LineMisfit {
 const OF_NOISE: f64 = 0.4;
 /// Standard deviations up to which a correlation is chance, as for a valve.
 const CHANCE: f64 = 5.0;
-/// Misfits of a smaller share of the range are not reported, as for a valve.
-const SMALLEST_SHARE: f64 = 1e-3;
+/// Misfits of a smaller fraction of the range are not reported, as for a valve.
+const SMALLEST_FRACTION: f64 = 1e-3;
 
 impl LineIdentification {
     /// The signals that the line does not explain.
@@ -52,12 +52,12 @@ impl RiseFit {
         let products: f64 = residuals.windows(2).map(|pair| pair.iter().product::<f64>()).sum();
         let correlation = if squares > 0.0 { products / squares } else { 0.0 };
         let [least, greatest] = phea_dynamics::order::ends(points.iter().map(|(_, volume)| *volume));
-        let share = (squares / rows * correlation.max(0.0)).sqrt() / (greatest - least);
+        let fraction = (squares / rows * correlation.max(0.0)).sqrt() / (greatest - least);
         let is_chance = correlation * rows.sqrt() <= CHANCE;
-        (correlation > OF_NOISE && !is_chance && share >= SMALLEST_SHARE).then(|| LineMisfit {
+        (correlation > OF_NOISE && !is_chance && fraction >= SMALLEST_FRACTION).then(|| LineMisfit {
             file: self.record.file.clone(),
             signal: "volume",
-            share,
+            fraction,
             correlation: Some(correlation),
         })
     }
@@ -73,8 +73,8 @@ impl ResponseFit {
         let rows = self.member.points.iter().zip(&self.deviations);
         let noise = rows.map(|(point, deviation)| deviation * deviation / point.response.norm_sqr());
         let mean = noise.sum::<f64>() / self.deviations.len().max(1) as f64;
-        let share = (mean * (misfit - 1.0)).max(0.0).sqrt();
+        let fraction = (mean * (misfit - 1.0)).max(0.0).sqrt();
         let (file, signal) = (self.member.file.clone(), "response");
-        Some(LineMisfit { file, signal, share, correlation: None })
+        Some(LineMisfit { file, signal, fraction, correlation: None })
     }
 }

@@ -174,7 +174,7 @@ fn integral(times: &[f64], flows: &[f64]) -> Vec<f64> {
     volumes
 }
 
-/// Whether the volume goes much further than between its ends.
+/// True where the volume goes much further than between its ends.
 fn goes_back_and_forth(times: &[f64], flows: &[f64], volumes: &[f64]) -> bool {
     let length = flows.len().div_ceil(BLOCKS).max(1);
     let ends = times.first().zip(times.last()).map_or(0.0, |(first, last)| last - first);

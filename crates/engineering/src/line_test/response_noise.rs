@@ -1,4 +1,4 @@
-//! How much noise a response has at each of its frequencies.
+//! Noise of a response at each of its frequencies.
 
 use phea_dynamics::spectrum::SpectralPoint;
 
@@ -35,9 +35,9 @@ pub(super) fn smoothed_deviations(points: &[SpectralPoint]) -> Vec<f64> {
         let [mut more, mut less] = [[0.0; 2]; 2];
         for [scatter, gain] in &rows {
             let expected = (output + input * gain).max(f64::MIN_POSITIVE);
-            for ((more, less), share) in more.iter_mut().zip(&mut less).zip([1.0, *gain]) {
-                *more += share * scatter / expected / expected;
-                *less += share / expected;
+            for ((more, less), fraction) in more.iter_mut().zip(&mut less).zip([1.0, *gain]) {
+                *more += fraction * scatter / expected / expected;
+                *less += fraction / expected;
             }
         }
         let [a, b] = [0, 1].map(|index: usize| {

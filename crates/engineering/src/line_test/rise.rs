@@ -9,7 +9,7 @@ use phea_hydraulics::fluid::EntrainedAir;
 use super::rise_air::AeratedOil;
 use super::rise_noise::{Whitened, whitened};
 
-/// Where a displaced volume is from.
+/// Source of a displaced volume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VolumeSource {
     /// The integral of a flow.
@@ -23,9 +23,9 @@ pub enum VolumeSource {
 /// A slow test of a blocked line. SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RiseRecord {
-    /// Where it is from.
+    /// Path of the file.
     pub file: String,
-    /// Where the volumes are from.
+    /// Source of the volumes.
     pub source: VolumeSource,
     /// s; empty where no time was recorded.
     pub times: Vec<f64>,
@@ -38,7 +38,7 @@ pub struct RiseRecord {
 /// The compliance that explains a slow test.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RiseFit {
-    /// What was recorded.
+    /// Recorded rise.
     pub record: RiseRecord,
     /// Pa, lowest and highest pressure.
     pub pressures: [f64; 2],
@@ -63,9 +63,9 @@ pub struct RiseFit {
 const DECISIVE: f64 = 3.29;
 /// Most terms of the volume over the pressure.
 const MOST_TERMS: usize = 3;
-/// Share of the compliance that its standard deviation may be for a drift to be taken as
+/// Fraction of the compliance that its standard deviation may be for a drift to be taken as
 /// determined.
-const TOLD: f64 = 0.1;
+const DETERMINED: f64 = 0.1;
 /// Windows of a record over which pressures are smoothed.
 const WINDOWS: usize = 100;
 /// ln of the ratio of walk to white noise that is searched.
@@ -105,11 +105,11 @@ pub(super) fn rise_fit(record: RiseRecord, oil: Option<AeratedOil>) -> Result<Ri
     let with_drift = !record.times.is_empty();
     let of = |terms: usize, drift: bool| fitted(&record, pressures, RiseModel { terms, drift, air: None });
     let first = of(1, with_drift);
-    let told = |fit: &TermsFit| {
+    let is_determined = |fit: &TermsFit| {
         let deviation = fit.covariance.get((0, 0)).copied().unwrap_or(f64::INFINITY).max(0.0).sqrt();
-        deviation < TOLD * fit.values.get(0).copied().unwrap_or(0.0).abs()
+        deviation < DETERMINED * fit.values.get(0).copied().unwrap_or(0.0).abs()
     };
-    let drift = with_drift && first.as_ref().is_some_and(told);
+    let drift = with_drift && first.as_ref().is_some_and(is_determined);
     let mut best = if drift { first } else { of(1, false) };
     for terms in 2..=MOST_TERMS {
         match of(terms, drift).filter(|fit| fit.is_decisive(terms - 1)) {
@@ -204,7 +204,7 @@ impl TermsFit {
     }
 }
 
-/// Columns of the regression: instruments, what they stand for, and the volume.
+/// Columns of the regression: instruments, what they represent, and the volume.
 fn columns(record: &RiseRecord, [low, high]: [f64; 2], model: RiseModel) -> Vec<Vec<f64>> {
     let (middle, half) = (f64::midpoint(low, high), (high - low) / 2.0);
     let smooth = smoothed(&record.pressures);
@@ -379,7 +379,7 @@ impl RiseFit {
         (pressure - f64::midpoint(low, high)) / self.half()
     }
 
-    /// Of the air at a pressure in Pa: its compliance in m3/Pa, with the derivatives over its
+    /// Air at a pressure in Pa: its compliance in m3/Pa, with the derivatives over its
     /// fraction and over the pressure.
     fn of_air(&self, pressure: f64) -> [f64; 3] {
         let both = self.oil.zip(self.air_fraction());

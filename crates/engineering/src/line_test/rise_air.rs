@@ -6,7 +6,7 @@ use phea_hydraulics::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, EntrainedAir, Fluid,
 /// Oil in a line that may carry bubbles. Units: m3, Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct AeratedOil {
-    /// Of the oil.
+    /// Volume of the oil.
     pub(super) volume: f64,
     /// The oil; its air is what is sought.
     pub(super) fluid: Fluid,
@@ -34,7 +34,7 @@ impl AeratedOil {
     }
 
     /// Volume in m3 that the line takes up from atmospheric pressure to a gauge pressure in Pa
-    /// because of the air alone.
+    /// because of the air.
     ///
     /// ```text
     /// V (-ln((1 - a) V_liquid + a V_gas) - (p - p_0)/beta_0)            d/dp of it: V (1/beta(a, p) - 1/beta_0)

@@ -17,7 +17,7 @@ use super::response_noise::smoothed_deviations;
 use crate::estimate::{Estimate, NORMAL_95};
 use crate::response::ResponseMember;
 
-/// What the response of a blocked line follows from. SI.
+/// Parameters of the response of a blocked line. SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineParameters {
     /// m3/Pa, of oil and wall, at once.
@@ -39,13 +39,13 @@ pub struct ResponseFit {
     pub parameters: LineParameters,
     /// Standard deviation of the response at each frequency.
     pub deviations: Vec<f64>,
-    /// Sum of squares over what noise alone makes it, and the degrees of freedom.
+    /// Sum of squares over that of noise, and the degrees of freedom.
     pub misfit: [f64; 2],
     /// Model in which it was sought.
     pub model: LineModel,
     /// Covariance of the logarithms of the parameters, in their order.
     covariance: DMatrix<f64>,
-    /// Whether the inertance ended at the least that is searched.
+    /// True where the inertance ended at the least that is searched.
     pub without_waves: bool,
 }
 
@@ -121,7 +121,7 @@ pub(super) fn most_misfit(freedom: f64) -> f64 {
     1.0 + 4.0 * (2.0 / freedom.max(1.0)).sqrt()
 }
 
-/// What a search goes by.
+/// Model and response of a search.
 struct SoughtLine<'a> {
     known: &'a KnownLine,
     model: LineModel,
@@ -230,14 +230,14 @@ impl SoughtLine<'_> {
 
 /// Pressure over flow at the open end of a blocked line.
 enum SoughtImpedance {
-    /// Of a model that a machine computes.
+    /// Line of a model that a machine computes.
     Model(BlockedLine),
-    /// Of the exact line.
+    /// Exact line.
     Exact(Conduit),
 }
 
 impl SoughtImpedance {
-    /// Of these parameters; none where their model does not exist.
+    /// Impedance of these parameters; none where their model does not exist.
     fn of(known: &KnownLine, model: LineModel, parameters: &LineParameters) -> Option<SoughtImpedance> {
         let LineParameters { compliance, inertance, .. } = *parameters;
         let conduit = inertance.and_then(|inertance| known.conduit(compliance, inertance));
@@ -299,7 +299,7 @@ fn blocked(known: &KnownLine, model: LineModel, parameters: &LineParameters) -> 
 }
 
 impl ResponseFit {
-    /// Of the logarithm of a function of the parameters, the value and the standard deviation.
+    /// Estimate of a positive function of the parameters.
     pub(super) fn of(&self, function: impl Fn(&LineParameters) -> f64) -> Estimate {
         let LineParameters { compliance, creep, inertance } = self.parameters;
         let mut values = vec![compliance];
@@ -353,7 +353,7 @@ impl ResponseFit {
         rows.map(of).collect()
     }
 
-    /// Whether the residuals are as large as noise makes them.
+    /// True where the residuals are as large as noise makes them.
     pub fn is_explained(&self) -> bool {
         let [misfit, freedom] = self.misfit;
         misfit <= most_misfit(freedom)

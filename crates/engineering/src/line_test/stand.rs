@@ -56,7 +56,7 @@ pub struct LineRun {
 /// Pieces of the integral over the pressure, which is smooth.
 const PIECES: u32 = 200;
 
-/// Share of the rise during which the flow sets in.
+/// Fraction of the rise during which the flow sets in.
 const ONSET: f64 = 0.05;
 
 /// The tests of `[bench.line]`, with noise and converters; nothing where it is absent.
@@ -70,7 +70,7 @@ pub fn line_runs(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<LineRun>, Be
     Ok(runs)
 }
 
-/// The same as they truly are, without noise and converters.
+/// Tests as they truly are, without noise and converters.
 ///
 /// # Errors
 /// [`BenchError`] for a project whose line cannot be simulated.
@@ -168,8 +168,8 @@ fn shaken(
     let first = pressure - amplitude / compliance * harmonics.iter().map(begun).sum::<f64>();
     let profile = Profile::multisine(0.0, &harmonics).map_err(refused)?;
     let duration = bench.period * f64::from(bench.periods) - bench.sample_time;
-    let course = [duration, bench.sample_time];
-    run(line, LineSeries::FrequencyResponse, (profile, first), course, watch)
+    let times = [duration, bench.sample_time];
+    run(line, LineSeries::FrequencyResponse, (profile, first), times, watch)
 }
 
 /// Lines of the period, at about equal ratios between the ends, below half of the sampling
@@ -200,19 +200,19 @@ fn run(
         return Err(BenchError::TooManyRows { rows, most: MOST_ROWS });
     }
     let flows = profile.clone();
-    let course = InputSchedule {
+    let schedule = InputSchedule {
         duration_s: duration,
         output_step_s: sample_time,
         inputs: vec![Input::Value(profile)],
     };
     let (state, waves) = line.rest(pressure);
     let settings = SimulationSettings { tolerance: 1e-7, ..SimulationSettings::default() };
-    let mut told = 0;
+    let mut reported = 0;
     let mut stopped = false;
-    let simulated = simulate(line, &[state, waves].concat(), &course, None, &settings, &mut |time: f64| {
+    let simulated = simulate(line, &[state, waves].concat(), &schedule, None, &settings, &mut |time: f64| {
         let row = (time / sample_time) as usize;
-        if row >= told + 64 {
-            told = row;
+        if row >= reported + 64 {
+            reported = row;
             stopped = tell(watch, series.name(), row, rows as usize).is_err();
         }
         !stopped

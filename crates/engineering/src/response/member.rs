@@ -6,14 +6,14 @@ use phea_dynamics::spectrum::{
 use super::{ReferenceSignal, ReferenceSource, Resampled, ResponseSettings, SampledPair};
 use crate::project::RecordedLoop;
 
-/// How the blocks of a record were made.
+/// Blocks of a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Averaging {
     /// The last whole periods.
     Periods {
         /// s.
         period: f64,
-        /// How many are averaged.
+        /// Number of periods that are averaged.
         count: usize,
     },
     /// Local polynomials over bands of the whole record.
@@ -27,7 +27,7 @@ pub enum Averaging {
     Segments {
         /// s.
         length: f64,
-        /// How many there are.
+        /// Number of segments.
         count: usize,
         /// As how many without overlap they count.
         independent: f64,
@@ -39,7 +39,7 @@ pub enum Averaging {
 pub struct ResponseMember {
     /// The file it is from.
     pub file: String,
-    /// What the columns are called: input and output.
+    /// Names of the columns: input and output.
     pub signals: [&'static str; 2],
     /// Units of them in SI.
     pub units: [&'static str; 2],
@@ -51,13 +51,13 @@ pub struct ResponseMember {
     pub operating_point: Option<String>,
     /// Root mean square of the input around its mean.
     pub input_rms: f64,
-    /// How the blocks were made.
+    /// Averaging of the blocks.
     pub method: Averaging,
     /// From what the response of a closed loop follows.
     pub reference: Option<ReferenceSource>,
-    /// What the output has at lines of the period that the input does not excite.
+    /// Output at lines of the period that the input does not excite.
     pub distortion: Distortion,
-    /// Where the rows were not even.
+    /// Resampling of rows that were not even.
     pub resampled: Option<Resampled>,
     /// Squared coherence that a point must have.
     pub least_coherence: f64,
@@ -87,7 +87,7 @@ pub enum Unusable {
     Incoherent,
 }
 
-/// Share of the strongest line's power below which the input does not excite: 60 dB.
+/// Fraction of the strongest line's power below which the input does not excite: 60 dB.
 const UNEXCITED: f64 = 1e-6;
 
 pub(super) fn member(record: &SampledPair, settings: &ResponseSettings) -> Result<ResponseMember, String> {
@@ -154,7 +154,7 @@ pub(super) fn power(signal: &[f64]) -> f64 {
     signal.iter().map(|value| (value - mean) * (value - mean)).sum()
 }
 
-/// What a record shows before anything is left out.
+/// Response of a record before anything is left out.
 struct Estimated {
     method: Averaging,
     points: Vec<SpectralPoint>,
@@ -162,7 +162,7 @@ struct Estimated {
     distortion: Distortion,
 }
 
-/// What moves the loop from outside, unless the project states that it was open.
+/// Signal that moves the loop from outside, unless the project states that it was open.
 fn reference_of(record: &SampledPair) -> Option<&ReferenceSignal> {
     record.reference.as_ref().filter(|_| record.recorded_loop != Some(RecordedLoop::Open))
 }
@@ -179,9 +179,9 @@ fn loop_is_open(record: &SampledPair) -> Result<(), String> {
             Err(format!("{file}: the loop was closed, and no column says what moved it: {why}; {cure}"))
         }
         None => match feedback(&record.input, &record.output, WithinRow::Possible) {
-            share if share > 0.0 => Err(format!(
+            fraction if fraction > 0.0 => Err(format!(
                 "{file}: the loop was closed during the test: `{input}` follows the noise of `{output}` ({:.0} % of its innovation), so that {why}; {cure}. Where no controller acted, state `loop = \"open\"` in its [[identify.response]]",
-                100.0 * share
+                100.0 * fraction
             )),
             _ => Ok(()),
         },

@@ -9,9 +9,9 @@ use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES};
 /// Two signals of a record, sampled at equal intervals. SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampledPair {
-    /// Where it is from.
+    /// Path of the file.
     pub file: String,
-    /// What the columns are called: input and output.
+    /// Names of the columns: input and output.
     pub signals: [&'static str; 2],
     /// Their units.
     pub units: [&'static str; 2],
@@ -21,7 +21,7 @@ pub struct SampledPair {
     pub input: Vec<f64>,
     /// The output.
     pub output: Vec<f64>,
-    /// What moves a closed loop from outside, where the file has it.
+    /// Signal that moves a closed loop from outside, where the file has it.
     pub reference: Option<ReferenceSignal>,
     /// The loop during the test, where the project states it.
     pub recorded_loop: Option<RecordedLoop>,
@@ -29,7 +29,7 @@ pub struct SampledPair {
     pub controller: Option<Box<TestController>>,
     /// The operating point of the test, where the project names it.
     pub operating_point: Option<String>,
-    /// Where the rows were not even.
+    /// Resampling of rows that were not even.
     pub resampled: Option<Resampled>,
 }
 
@@ -68,13 +68,13 @@ pub enum ReferenceSource {
 }
 
 impl ReferenceSignal {
-    /// Whether it is more than a set point that is held.
+    /// True where it is more than a set point that is held.
     fn moves(&self) -> bool {
         self.values.iter().any(|value| Some(value) != self.values.first())
     }
 }
 
-/// Where the references begin in them.
+/// Index of the first reference in them.
 const REFERENCES: usize = 6;
 
 const MEASURANDS: [(Measurand, &str); 9] = [

@@ -8,7 +8,7 @@ const LONGEST_BRIDGED: f64 = 5.0;
 /// (2 pi/10)^2/8.
 const TURN: f64 = 0.1;
 
-/// What signals lose because their rows come early or late.
+/// Loss of signals whose rows come early or late.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resampled {
     /// s between the earliest and the latest row, each against even ones.
@@ -29,7 +29,7 @@ pub(crate) struct EvenRows {
     /// s.
     pub(crate) step: f64,
     pub(crate) signals: Vec<Vec<f64>>,
-    /// Where they were not recorded so.
+    /// Resampling of rows that were not recorded so.
     pub(crate) resampled: Option<Resampled>,
 }
 
@@ -55,7 +55,7 @@ pub(crate) fn even_rows(
     Some(EvenRows { step: spacing.step, signals, resampled })
 }
 
-/// Whether rows come late now and then, and none is missing.
+/// True where rows come late now and then, and none is missing.
 pub(crate) fn is_software_timed(spacing: &RowSpacing, times: &[f64]) -> bool {
     let is_bridged = |pair: &[f64]| matches!(pair, [one, next] if next > one && next - one <= LONGEST_BRIDGED * spacing.usual);
     !spacing.is_even() && times.len() > 1 && times.windows(2).all(is_bridged)
@@ -76,9 +76,9 @@ pub(crate) fn interpolated(times: &[f64], values: &[f64], step: f64) -> Vec<f64>
         }
         let of = |numbers: &[f64], row: usize| numbers.get(row).copied().unwrap_or(f64::NAN);
         let (from, to) = (of(times, row), of(times, row + 1));
-        let share = if to > from { (time - from) / (to - from) } else { 0.0 };
+        let fraction = if to > from { (time - from) / (to - from) } else { 0.0 };
         let value = of(values, row);
-        if share == 0.0 { value } else { value + share * (of(values, row + 1) - value) }
+        if fraction == 0.0 { value } else { value + fraction * (of(values, row + 1) - value) }
     };
     (0..count).map(at).collect()
 }

@@ -4,7 +4,7 @@ use crate::project::{Findings, RawFinding};
 use crate::quantity::{TIME, display};
 use crate::table::{Column, MeasuredTable, median_step};
 
-/// Share of the time between rows by which a row may be early or late.
+/// Fraction of the time between rows by which a row may be early or late.
 pub const UNEVEN: f64 = 0.1;
 
 /// Fewest rows that say anything of a frequency.
@@ -54,7 +54,7 @@ pub fn time_step(
     None
 }
 
-/// How the rows of a record follow each other in time.
+/// Spacing of the rows of a record in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RowSpacing {
     /// s, of the line through all stamps.
@@ -65,17 +65,17 @@ pub struct RowSpacing {
     pub digit: f64,
     /// s, between the earliest and the latest row, each against that line.
     pub scatter: f64,
-    /// Share of the rows that are not the usual difference after the row before.
+    /// Fraction of the rows that are not the usual difference after the row before.
     pub jumps: f64,
 }
 
-/// Share of the last digit by which even rows may scatter more than by their rounding.
+/// Fraction of the last digit by which even rows may scatter more than by their rounding.
 const ROUNDING: f64 = 0.05;
-/// Share of rows below which a difference that is not the usual one is a row that is missing.
+/// Fraction of rows below which a difference that is not the usual one is a row that is missing.
 pub(super) const FEW_JUMPS: f64 = 0.02;
 
 impl RowSpacing {
-    /// Of these stamps in s.
+    /// Spacing of these stamps in s.
     pub fn of(times: &[f64]) -> RowSpacing {
         let first = times.first().copied().unwrap_or(0.0);
         let middle = times.len().saturating_sub(1) as f64 / 2.0;
@@ -96,7 +96,7 @@ impl RowSpacing {
         RowSpacing { step, usual, digit: last_digit(times), scatter: most - least, jumps }
     }
 
-    /// Whether the rows are as even as their stamps can say. Rounding moves many rows; where few
+    /// True where the rows are as even as their stamps can say. Rounding moves many rows; where few
     /// are moved, rows are missing.
     pub fn is_even(&self) -> bool {
         let is_rounded = self.jumps > FEW_JUMPS;

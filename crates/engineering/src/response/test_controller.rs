@@ -12,7 +12,7 @@ use crate::setup::{ControlError, Setup};
 const ROUNDING: f64 = 1e-6;
 /// Fraction of the output's power below which a calculated reference is rounding: six digits.
 const SILENT: f64 = 1e-12;
-/// Distance of the loop from -1 that a test keeps: a sensitivity of 5.
+/// Least distance of the loop from -1 in a test: a sensitivity of 5.
 const DISTANCE: f64 = 0.2;
 /// Fraction of the limit from which on a command counts as limited.
 const LIMIT: f64 = 1.0 - 1e-6;
@@ -103,9 +103,9 @@ impl TestController {
             None => WithinRow::Possible,
         };
         match feedback(&values, &record.output, within_row) {
-            share if share > 0.0 => Err(format!(
+            fraction if fraction > 0.0 => Err(format!(
                 "{file}: [controller] was not that of the test: the reference that is calculated with it, y + u/C, follows the noise of `{output}` ({:.0} % of its innovation); declare its gain, `sample_time` and `delay` as they were in the test, or record the reference",
-                100.0 * share
+                100.0 * fraction
             )),
             _ => Ok(ReferenceSignal { source: ReferenceSource::Controller, values }),
         }

@@ -65,7 +65,7 @@ pub fn identify_watched(
         text: identify::document(&found, of_thesis, &read, region.as_ref()).text(),
         json: identify::json(loaded, &found, &read, region.as_ref()),
         files: written,
-        affirmative: found.has_converged() && found.untold.is_empty(),
+        affirmative: found.has_converged() && found.not_identifiable.is_empty(),
     })
 }
 

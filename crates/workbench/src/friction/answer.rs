@@ -80,7 +80,7 @@ fn misfit(found: &FrictionIdentification, one: &FrictionMisfit) -> Object {
     Object::new()
         .with("file", file(found, one.recording))
         .with("signal", one.signal.name())
-        .with("share", one.share)
+        .with("share", one.fraction)
         .with("neighbour_correlation", one.correlation)
         .with("velocity_m_per_s", one.place.map(|[velocity, _]| velocity))
         .with("mean_residual_n", one.place.map(|[_, residual]| residual))

@@ -14,12 +14,12 @@ use crate::quantity::DisplayUnit;
 /// explained.
 pub(crate) fn document(found: &FrictionIdentification) -> Document {
     let mut out = Document::default();
-    tell(found, &mut out);
+    write(found, &mut out);
     out
 }
 
-/// The same for a chapter of the report.
-pub(crate) fn tell(found: &FrictionIdentification, out: &mut Document) {
+/// Appends the document to a chapter of the report.
+pub(crate) fn write(found: &FrictionIdentification, out: &mut Document) {
     let headings = ["coefficient", "identified", "95 % from", "to", "unit"];
     out.section("Friction of the cylinder", Table::new(headings).with(rows(found)));
     out.sentences(remarks(found));
@@ -107,7 +107,7 @@ fn rows(found: &FrictionIdentification) -> Vec<[Cell; 5]> {
     coefficients(found).map(row).collect()
 }
 
-/// What is open, and the zero of the force.
+/// Open coefficients, and the zero of the force.
 fn remarks(found: &FrictionIdentification) -> Vec<String> {
     let open = coefficients(found).filter_map(|(name, _, one)| {
         Some(format!("`{name}` is not determined: {}.", because(one.as_ref().err()?)))

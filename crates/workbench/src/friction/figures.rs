@@ -13,7 +13,7 @@ pub(crate) fn pictures(found: &FrictionIdentification) -> Vec<Figure> {
 
 const CURVE_POINTS: u32 = 400;
 
-/// Friction over velocity, measured and by the curve; and over slow velocities alone.
+/// Friction over velocity, measured and by the curve; and over slow velocities only.
 fn map(found: &FrictionIdentification) -> Option<Figure> {
     let points = found.steady_points();
     let fastest = points.iter().map(|point| point.velocity.abs()).fold(0.0, f64::max);
@@ -48,8 +48,8 @@ fn map(found: &FrictionIdentification) -> Option<Figure> {
 /// The identified curve of one way: finer where it is steep.
 fn curve(found: &FrictionIdentification, fastest: f64, way: f64) -> Curve {
     let point = |step: u32| {
-        let share = f64::from(step) / f64::from(CURVE_POINTS);
-        let velocity = way * fastest * share * share * share;
+        let part = f64::from(step) / f64::from(CURVE_POINTS);
+        let velocity = way * fastest * part * part * part;
         (DisplayUnit::MILLIMETRE.of(velocity), found.lugre.curve.steady_force(velocity))
     };
     Curve::line((1..=CURVE_POINTS).map(point), 0)
@@ -69,7 +69,7 @@ fn pressed(found: &FrictionIdentification, index: usize, press: &PressedRows) ->
 /// Rows of a shaken piston that are drawn, so that each period can be seen.
 const SHAKEN_ROWS: usize = 500;
 
-/// The same of the first rows of a piston that is shaken.
+/// Force and position of the first rows of a piston that is shaken.
 fn shaken(found: &FrictionIdentification, index: usize, shake: &ShakenRows) -> Option<Figure> {
     let recording = found.recordings.get(shake.recording)?;
     let stem = stem(&recording.file);

@@ -8,8 +8,8 @@ use super::files::{TestBody, WarningBody};
 use super::numbers;
 use super::region::{FoundRegion, RegionBody, body};
 use super::{
-    Bootstrap, COEFFICIENT_NAMES, ExplainedBy, Identification, Misfit, MisfitPlace, Read, TermEvidence,
-    TestOil, Untold,
+    Bootstrap, COEFFICIENT_NAMES, ExplainedBy, Identification, Misfit, MisfitPlace,
+    NotIdentifiableCombination, Read, TermEvidence, TestOil,
 };
 use crate::answer::{self, Number, OutputFile, in_toml};
 use crate::project::{LEAKAGE_MODELS, Loaded, word_of};
@@ -45,7 +45,7 @@ struct IdentifyAnswer<'a> {
     signals: Vec<SignalBody>,
     misfits: Vec<MisfitBody>,
     correlations: Vec<CorrelationBody>,
-    not_told: Vec<UntoldBody>,
+    not_identifiable: Vec<NotIdentifiableBody>,
     joint_region: Option<RegionBody>,
     simple_calculations: numbers::SimpleBody,
     starts: usize,
@@ -63,7 +63,7 @@ struct OilBody {
     density_slope_per_degc: f64,
 }
 
-/// What a term of the valve explains.
+/// Evidence for a term of the valve.
 #[derive(Serialize)]
 struct TermBody {
     term: &'static str,
@@ -146,11 +146,11 @@ struct CorrelationBody {
 }
 
 #[derive(Serialize)]
-struct UntoldBody {
+struct NotIdentifiableBody {
     coefficients: Vec<&'static str>,
     shares: Vec<f64>,
     standard_deviation: Number,
-    told_by: Vec<&'static str>,
+    identifiable_by: Vec<&'static str>,
 }
 
 /// The coefficient that a project leaves out where it may be zero.
@@ -208,7 +208,7 @@ pub fn json(
                 correlation: Number(correlation),
             })
             .collect(),
-        not_told: found.untold.iter().map(untold).collect(),
+        not_identifiable: found.not_identifiable.iter().map(not_identifiable).collect(),
         joint_region: region.map(body),
         simple_calculations: numbers::simple_body(found),
         starts: found.starts[0],
@@ -313,12 +313,12 @@ fn misfit_body(found: &Identification, misfit: &Misfit) -> MisfitBody {
     let place = |place: MisfitPlace| MisfitPlaceBody {
         command_rises: place.is_rising,
         command_v: place.command.map(Number),
-        mean_share: Number(place.share),
+        mean_share: Number(place.fraction),
     };
     MisfitBody {
         file: found.recordings.get(misfit.recording).map_or(String::new(), |one| one.file.clone()),
         signal: misfit.kind.name(),
-        share: Number(misfit.share),
+        share: Number(misfit.fraction),
         neighbour_correlation: Number(misfit.correlation),
         greatest: misfit.place.map(place),
     }
@@ -333,20 +333,20 @@ pub(super) fn correlations(found: &Identification) -> Vec<([&'static str; 2], f6
     let mut listed: Vec<([&'static str; 2], f64)> = pairs
         .filter_map(|(i, j, both)| {
             let correlation = *found.correlations.get(i * COEFFICIENT_NAMES.len() + j)?;
-            let told = found.estimates.get(i)?.is_some() && found.estimates.get(j)?.is_some();
-            (told && correlation.abs() > REMARKABLE).then_some((both, correlation))
+            let are_identified = found.estimates.get(i)?.is_some() && found.estimates.get(j)?.is_some();
+            (are_identified && correlation.abs() > REMARKABLE).then_some((both, correlation))
         })
         .collect();
     sort_by_number(&mut listed, |(_, correlation)| -correlation.abs());
     listed
 }
 
-fn untold(untold: &Untold) -> UntoldBody {
-    UntoldBody {
-        coefficients: untold.shares.iter().map(|(name, _)| *name).collect(),
-        shares: untold.shares.iter().map(|(_, share)| *share).collect(),
-        standard_deviation: Number(untold.deviation),
-        told_by: untold.told_by.iter().map(|test| test.name()).collect(),
+fn not_identifiable(found: &NotIdentifiableCombination) -> NotIdentifiableBody {
+    NotIdentifiableBody {
+        coefficients: found.components.iter().map(|(name, _)| *name).collect(),
+        shares: found.components.iter().map(|(_, component)| *component).collect(),
+        standard_deviation: Number(found.deviation),
+        identifiable_by: found.identifiable_by.iter().map(|test| test.name()).collect(),
     }
 }
 

@@ -7,14 +7,15 @@ use super::files::misfit_in_words;
 use super::numbers;
 use super::region::{self, FoundRegion};
 use super::{
-    Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, Read, SignalFit, TermEvidence, TestOil, ValveTerm,
+    Bootstrap, COEFFICIENT_NAMES, DECISIVE, Identification, NotIdentifiableCombination, Read, SignalFit,
+    TermEvidence, TestOil, ValveTerm,
 };
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::{DisplayUnit, PRESSURE, display};
 
-/// What the leakage is, the coefficients with their intervals, what the files hold, how well the
-/// signals are explained, and what the data do not determine.
+/// Model of the leakage, coefficients with their intervals, contents of the files, fit of the
+/// signals, and combinations that the data do not determine.
 pub(crate) fn document(
     found: &Identification,
     of_thesis: bool,
@@ -22,18 +23,18 @@ pub(crate) fn document(
     region: Option<&FoundRegion>,
 ) -> Document {
     let mut out = Document::default();
-    tell_coefficients(found, &mut out);
-    numbers::tell(found, of_thesis, &mut out);
-    read.tell(&mut out);
-    tell_signals(found, &mut out);
+    write_coefficients(found, &mut out);
+    numbers::write(found, of_thesis, &mut out);
+    read.write(&mut out);
+    write_signals(found, &mut out);
     if let Some(region) = region {
         region::chapter(&mut out, found, region);
     }
     out
 }
 
-/// What the leakage is, and the coefficients with their intervals, and those found by hand.
-pub(crate) fn tell_coefficients(found: &Identification, out: &mut Document) {
+/// Model of the leakage, coefficients with their intervals, and those found by hand.
+pub(crate) fn write_coefficients(found: &Identification, out: &mut Document) {
     out.heading("Model of the leakage");
     out.sentences(leakage(found));
     out.sentences(terms(found));
@@ -64,8 +65,8 @@ fn warm_oil(oil: &TestOil) -> String {
     )
 }
 
-/// How well the signals are explained, and what the data do not determine.
-pub(crate) fn tell_signals(found: &Identification, out: &mut Document) {
+/// Fit of the signals, and combinations that the data do not determine.
+pub(crate) fn write_signals(found: &Identification, out: &mut Document) {
     let headings = [
         "file",
         "signal",
@@ -88,9 +89,9 @@ pub(crate) fn tell_signals(found: &Identification, out: &mut Document) {
             format!("{first} and {second}: correlation {}.", significant(correlation, 3))
         }));
     }
-    if !found.untold.is_empty() {
+    if !found.not_identifiable.is_empty() {
         out.heading("What the data cannot distinguish");
-        out.sentences(found.untold.iter().map(not_told));
+        out.sentences(found.not_identifiable.iter().map(not_identifiable));
     }
 }
 
@@ -120,7 +121,7 @@ fn leakage(found: &Identification) -> Vec<String> {
     ]
 }
 
-/// What the valve has beyond edges that open in proportion, and what it could have.
+/// Terms of the valve in addition to edges that open in proportion, and those that it could have.
 fn terms(found: &Identification) -> Vec<String> {
     let named = |one: &TermEvidence| match one.term {
         ValveTerm::Lap => "lap of the edges (`lap`)",
@@ -274,27 +275,27 @@ fn remarks(found: &Identification) -> Vec<String> {
 /// The tests that begin with the memory of earlier cycles.
 fn remembered(found: &Identification) -> Option<String> {
     let begun = found.recordings.iter().filter(|one| one.memory_at_start() != 0.0);
-    let told: Vec<String> = begun
+    let begun: Vec<String> = begun
         .map(|one| {
             let millivolts = 1e3 * one.memory_at_start();
             format!("{} ({} mV)", one.file, significant(millivolts, 2))
         })
         .collect();
-    (!told.is_empty()).then(|| {
+    (!begun.is_empty()).then(|| {
         format!(
             "These tests begin with the memory of earlier cycles, the lag of the spool behind its command: {}.",
-            told.join(", ")
+            begun.join(", ")
         )
     })
 }
 
-fn not_told(untold: &super::Untold) -> String {
-    let names: Vec<&str> = untold.shares.iter().map(|(name, _)| *name).collect();
+fn not_identifiable(found: &NotIdentifiableCombination) -> String {
+    let names: Vec<&str> = found.components.iter().map(|(name, _)| *name).collect();
     let first = match names.as_slice() {
         [only] => format!("The data do not determine {only}"),
         several => format!("The data cannot distinguish {}", several.join(", ")),
     };
-    let tests: Vec<String> = untold.told_by.iter().map(|test| test.name().replace('_', " ")).collect();
+    let tests: Vec<String> = found.identifiable_by.iter().map(|test| test.name().replace('_', " ")).collect();
     match tests.as_slice() {
         [] => format!("{first}, nor would any of the static tests at 30 % of the command."),
         tests => format!("{first}; a test of {} with all its columns would.", tests.join(" or ")),

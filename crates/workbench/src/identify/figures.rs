@@ -8,9 +8,10 @@ use crate::quantity::{DisplayUnit, PRESSURE, display};
 
 /// Commands around null that the leakage is drawn over, percent of the nominal voltage.
 const AROUND_NULL: f64 = 6.0;
-/// The same of the flow gain.
+/// Commands around null that the flow gain is drawn over, percent of the nominal voltage.
 const NEAR_NULL: f64 = 4.0;
-/// The same of the pressure sensitivity.
+/// Commands around null that the pressure sensitivity is drawn over, percent of the nominal
+/// voltage.
 const CLOSE_TO_NULL: f64 = 2.5;
 
 const COMMAND: &str = "Command U_C (% of nominal)";
@@ -18,15 +19,15 @@ const WAYS: [(&str, bool); 2] = [("rising command", true), ("falling command", f
 
 /// The figures, section by section.
 pub(crate) struct ValveFigures {
-    /// How the tests are piped.
+    /// Circuits of the tests.
     pub(crate) circuits: Vec<Figure>,
-    /// What was recorded over time.
+    /// Recorded signals over time.
     pub(crate) series: Vec<Figure>,
-    /// What is read off the curves.
+    /// Readings of the curves.
     pub(crate) curves: Vec<Figure>,
     /// Tests against the model.
     pub(crate) comparison: Vec<Figure>,
-    /// What the model leaves.
+    /// Residuals of the model.
     pub(crate) residuals: Vec<Figure>,
 }
 
@@ -351,7 +352,7 @@ fn against_model(found: &Identification, index: usize, (way, rising): (&str, boo
     chart.draw(&Words::new(name, format!("Test and model, {way}"), caption))
 }
 
-/// What the model leaves of every signal, over the command.
+/// Residuals of every signal, over the command.
 fn residuals(found: &Identification) -> Figure {
     let most = greatest_command(found);
     let one = |signal: &SignalFit| {

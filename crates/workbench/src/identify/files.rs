@@ -1,4 +1,4 @@
-//! What the files hold, and what was dealt with in them.
+//! Contents of the files, and findings in them.
 
 use std::borrow::Cow;
 
@@ -14,9 +14,9 @@ use crate::quantity::DisplayUnit;
 /// The files as they were read.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Read {
-    /// What each holds.
+    /// Contents of each.
     pub contents: Vec<FileContents>,
-    /// What was dealt with without being refused.
+    /// Findings that were not refused.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -74,7 +74,7 @@ impl Read {
         .collect()
     }
 
-    /// What was dealt with, and what of the recordings the model does not explain.
+    /// Findings in the files, and misfits of the model.
     pub(super) fn warnings<'a>(&'a self, found: &'a Identification) -> Vec<WarningBody<'a>> {
         let place = |number: usize| Some(number).filter(|number| *number > 0);
         let all = self.warnings.iter().map(|warning| WarningBody {
@@ -93,7 +93,7 @@ impl Read {
     }
 
     /// A row for each column, and a sentence for what is not used and what was dealt with.
-    pub(crate) fn tell(&self, out: &mut Document) {
+    pub(crate) fn write(&self, out: &mut Document) {
         let mut table = Table::grouped_by("file", ["column", "holds", "from", "to", "unit", "gaps"]);
         for file in &self.contents {
             table.group(file.file.clone());
@@ -112,16 +112,16 @@ impl Read {
     }
 }
 
-/// What the model does not explain of a signal.
+/// Misfit of a signal, in a sentence.
 pub(super) fn misfit_in_words(found: &Identification, misfit: &Misfit) -> String {
-    let percent = |share: f64| format!("{} %", significant(100.0 * share, 3));
+    let percent = |fraction: f64| format!("{} %", significant(100.0 * fraction, 3));
     let by = misfit.place.map_or_else(String::new, |place| {
-        let more = if place.share > 0.0 { "more" } else { "less" };
-        format!(", where the model shows {} {more} than was recorded", percent(place.share.abs()))
+        let more = if place.fraction > 0.0 { "more" } else { "less" };
+        format!(", where the model shows {} {more} than was recorded", percent(place.fraction.abs()))
     });
     format!(
         "the model leaves {} of the range unexplained of the {}{by}: neighbouring residuals are alike (correlation {})",
-        percent(misfit.share),
+        percent(misfit.fraction),
         found.misfit_at(misfit),
         significant(misfit.correlation, 2)
     )

@@ -1,4 +1,4 @@
-//! What recordings gave in place of what a project declares: for people.
+//! Identified numbers in place of those that a project declares: for people.
 
 use super::COVERAGE;
 use crate::answer::{kept_because, significant};
@@ -6,19 +6,19 @@ use crate::document::{Cell, Document, Table};
 use crate::project::{FromRecordings, IdentifiedFamily, Loaded};
 use crate::quantity::{PRESSURE, display};
 
-/// What precedes the answer of every command; nothing where recordings gave nothing.
+/// Heading and table above the output of every command; nothing where recordings gave nothing.
 pub(crate) fn in_use_above(loaded: &Loaded) -> Document {
     let mut out = Document::default();
     if let Some(recorded) = &loaded.recorded {
         out.heading("The valve as identified from its recordings");
-        tell_in_use(recorded, &mut out);
+        write_in_use(recorded, &mut out);
         out.gap();
     }
     out
 }
 
 /// The files, the numbers with the declared ones, what stays as declared, and the family.
-pub(crate) fn tell_in_use(recorded: &FromRecordings, out: &mut Document) {
+pub(crate) fn write_in_use(recorded: &FromRecordings, out: &mut Document) {
     let files = recorded.files.iter().map(|file| format!("From {}, SHA-256 `{}`.", file.path, file.sha256));
     out.sentences(files);
     let headings = ["value", "from the recordings", "95 % from", "to", "declared", "unit"];
@@ -52,10 +52,10 @@ fn tare_pressure(recorded: &FromRecordings) -> Option<String> {
     Some(format!("`valve.tare_flow` is that at {identified} from supply to tank{other}."))
 }
 
-/// What the recordings leave uncertain, in a sentence.
+/// Uncertainty that the recordings leave, in a sentence.
 fn family(family: &IdentifiedFamily) -> String {
     let half_width = significant(family.deviations, 3);
-    let share = significant(100.0 * COVERAGE, 2);
+    let coverage = significant(100.0 * COVERAGE, 2);
     let left_out = significant(100.0 * family.effect_left_out, 2);
     let all = family.effects.len() + family.left_out;
     let kept = match family.effects.as_slice() {
@@ -75,6 +75,6 @@ fn family(family: &IdentifiedFamily) -> String {
         _ => format!("; those left out move K_qU and K_c by at most {left_out} % together"),
     };
     format!(
-        "What the recordings leave uncertain ({share} %) has {all} independent directions of {half_width} standard deviations to either side: {kept}{others}."
+        "What the recordings leave uncertain ({coverage} %) has {all} independent directions of {half_width} standard deviations to either side: {kept}{others}."
     )
 }

@@ -26,7 +26,7 @@ pub(super) struct SimpleBody {
     null_bias_v: Option<f64>,
     null_rising_v: Option<f64>,
     null_falling_v: Option<f64>,
-    /// What the nulls were read from, rising and falling.
+    /// Sources of the nulls, rising and falling.
     null_methods: [Option<&'static str>; 2],
     hysteresis_v: Option<f64>,
     flow_gain_extending_m3_per_s_v: Option<f64>,
@@ -55,13 +55,13 @@ pub(super) fn simple_body(identified: &Identification) -> SimpleBody {
     SimpleBody {
         flow_coefficient_extending: read("flow_coefficient_extending", extending),
         flow_coefficient_retracting: read("flow_coefficient_retracting", retracting),
-        share_of_nominal_flow: read("share_of_nominal_flow", found.share_of_nominal),
+        share_of_nominal_flow: read("share_of_nominal_flow", found.fraction_of_nominal),
         leakage_coefficient: read("leakage_coefficient", found.leakage_coefficient()),
         null_leakage_m3_per_s: read("null_leakage_m3_per_s", found.null_leakage),
         leakage_shape: found.leakage_shape,
         tare_flow_m3_per_s: read("tare_flow_m3_per_s", found.tare_flow),
         leakage_pressure_pa: found.leakage_pressure,
-        tare_share: read("tare_share", found.tare_share()),
+        tare_share: read("tare_share", found.tare_fraction()),
         null_bias_v: read("null_bias_v", found.null_bias()),
         null_rising_v: read("null_rising_v", rising.map(|null| null.command)),
         null_falling_v: read("null_falling_v", falling.map(|null| null.command)),
@@ -91,7 +91,7 @@ struct NumberLine {
     thesis: Option<&'static str>,
 }
 
-/// Whether the valve is the one whose numbers the thesis prints.
+/// True for the valve whose numbers the thesis prints.
 pub(crate) fn is_valve_of_thesis(actuator: &DeclaredActuator) -> bool {
     actuator.valve.model.as_ref().is_some_and(|model| model.starts_with(VALVE_OF_THESIS))
 }
@@ -100,7 +100,7 @@ const VALVE_OF_THESIS: &str = "moog_760_c263a";
 
 /// The numbers with their equations, and those that the thesis prints of the valve of its rig if
 /// this is that one.
-pub(crate) fn tell(found: &Identification, of_thesis: bool, out: &mut Document) {
+pub(crate) fn write(found: &Identification, of_thesis: bool, out: &mut Document) {
     let mut headings = vec!["number", "read", "95 % from", "to", "unit", "by"];
     headings.extend(of_thesis.then_some("Ledezma (2019)"));
     let rows = lines(found).into_iter().filter_map(|(line, reading)| {
@@ -149,7 +149,7 @@ fn read_at(found: &Identification) -> Vec<String> {
     leakage.into_iter().chain(gain).chain(lap).collect()
 }
 
-/// What a null was read from, in JSON.
+/// Source of a null, in JSON.
 fn null_method(method: NullMethod) -> &'static str {
     match method {
         NullMethod::LeakageCentre => "leakage_centre",
@@ -167,7 +167,7 @@ fn null_equation(null: Option<NullReading>) -> &'static str {
     }
 }
 
-/// How far the null that was read lies from the one that was identified, where that is more than
+/// Distance of the null that was read from the one that was identified, where that is more than
 /// its interval, in a sentence with the reason.
 fn null_offset(found: &Identification) -> Option<String> {
     let read = found.simple.null_bias()?;
@@ -218,7 +218,7 @@ fn lines(found: &Identification) -> Vec<(NumberLine, Option<Estimate>)> {
     let [rising, falling] = simple.nulls;
     let tare = line("tare flow q_tare", "base of q_leak(U)", "m3/s", Some("7.55e-6"));
     let leak = line("leakage at null q_vin", "peak of q_leak(U) - q_tare", "m3/s", Some("9.31e-6"));
-    let share = line("tare flow in the leakage at null", "q_tare/(q_tare + q_vin)", "%", Some("44.77"));
+    let fraction = line("tare flow in the leakage at null", "q_tare/(q_tare + q_vin)", "%", Some("44.77"));
     let inner =
         line("leakage coefficient K_vinp", "q_vin/sqrt(2 p_S)  (4.13)", COEFFICIENT, Some("2.488e-9"));
     let ext = line(
@@ -239,11 +239,11 @@ fn lines(found: &Identification) -> Vec<(NumberLine, Option<Estimate>)> {
     vec![
         (tare, simple.tare_flow),
         (leak, simple.null_leakage),
-        (share, percent(simple.tare_share())),
+        (fraction, percent(simple.tare_fraction())),
         (inner, simple.leakage_coefficient()),
         (ext, extending),
         (ret, retracting),
-        (rated, percent(simple.share_of_nominal)),
+        (rated, percent(simple.fraction_of_nominal)),
         (
             line("null, rising command", null_equation(rising), "V", Some("0.078")),
             rising.map(|null| null.command),

@@ -1,4 +1,4 @@
-//! What the recordings leave uncertain of the plant: sentences, JSON, and a fragment of a project
+//! Uncertainty of the plant that the recordings leave: sentences, JSON, and a fragment of a project
 //! file.
 
 use serde::Serialize;

@@ -10,7 +10,7 @@ use crate::project::{LineSide, Loaded};
 pub fn json(loaded: &Loaded, found: &LineIdentification) -> String {
     let mut line = Object::new();
     for (key, _, number) in numbers(found) {
-        line = line.with(key, told(number));
+        line = line.with(key, estimate(number));
     }
     let chamber = match found.known.side {
         LineSide::A => "a",
@@ -24,7 +24,7 @@ pub fn json(loaded: &Loaded, found: &LineIdentification) -> String {
             Object::new()
                 .with("file", one.file.as_str())
                 .with("signal", one.signal)
-                .with("share", one.share)
+                .with("share", one.fraction)
                 .with("neighbour_correlation", one.correlation)
         })
         .each("warnings", found.misfits(), |one| {
@@ -42,7 +42,7 @@ pub fn json(loaded: &Loaded, found: &LineIdentification) -> String {
         .print()
 }
 
-fn told(number: &Result<Estimate, NotIdentifiableLine>) -> Object {
+fn estimate(number: &Result<Estimate, NotIdentifiableLine>) -> Object {
     let object = Object::new();
     match number {
         Ok(Estimate { value, interval }) => object

@@ -75,9 +75,9 @@ fn keys(found: &LineIdentification) -> Option<String> {
 /// The greatest misfit, as a table of the line.
 fn misfit(found: &LineIdentification) -> Option<String> {
     let misfits = found.misfits();
-    let greatest = misfits.iter().max_by(|one, other| one.share.total_cmp(&other.share))?;
+    let greatest = misfits.iter().max_by(|one, other| one.fraction.total_cmp(&other.fraction))?;
     let at = Some(format!("{} of {}", greatest.signal, greatest.file));
-    let entries = DeclaredMisfit { share: greatest.share, at }.entries().join("\n");
+    let entries = DeclaredMisfit { share: greatest.fraction, at }.entries().join("\n");
     let line = table(&found.known).trim_end_matches(']');
     Some(format!("\n{line}.misfit]\n{entries}\n"))
 }

@@ -3,7 +3,7 @@
 use super::assumptions::assumptions;
 use super::chapter::Chapter;
 use crate::document::{Cell, Document, StatusMark, Table};
-use crate::identify::tell_in_use;
+use crate::identify::write_in_use;
 use crate::line_choice;
 use crate::project::{Loaded, Origin, Project};
 
@@ -31,7 +31,7 @@ pub(super) fn chapter(loaded: &Loaded, is_judged: bool) -> Chapter {
     if let Some(recorded) = &loaded.recorded {
         out.heading("From recordings");
         out.explanation("These values are identified from the recordings that the project names, and take the place of the declared ones in every chapter. The SHA-256 of the project is that of its file followed by the recordings.");
-        tell_in_use(recorded, &mut out);
+        write_in_use(recorded, &mut out);
     }
     out.section("From the catalogue", Table::new(["value", "entry", "source"]).with(catalogue));
     if !defaults.is_empty() {

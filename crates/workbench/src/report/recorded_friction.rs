@@ -24,7 +24,7 @@ pub(super) fn chapter(
     let found = identify_friction(recordings, &known, watch)?;
     let mut out = Document::default();
     out.explanation("The friction of the cylinder follows from runs at constant velocities, from a force that slowly presses the piston until it breaks away, and from one that shakes it before. One set of coefficients explains all recordings that the project declares. The other chapters take the friction that `[cylinder.friction]` states, not this one: compare them.");
-    friction::tell(&found, &mut out);
+    friction::write(&found, &mut out);
     out.figures(friction::pictures(&found));
     Ok(Some(Chapter::of("recorded_friction", "The friction from recordings", out)))
 }

@@ -5,7 +5,7 @@ use crate::document::Document;
 use crate::error::CommandError;
 use crate::identify::{
     Identification, IdentifyError, Known, Read, RecordedFiles, Search, ValveFigures, identify,
-    is_valve_of_thesis, recorded_files, recordings, tell_coefficients, tell_numbers, tell_signals,
+    is_valve_of_thesis, recorded_files, recordings, write_coefficients, write_numbers, write_signals,
 };
 use crate::project::{Loaded, Project};
 use crate::source::Source;
@@ -40,13 +40,13 @@ fn document(found: &Identification, project: &Project, read: &Read) -> Document 
     let mut out = Document::default();
     out.explanation("The coefficients of the servovalve follow from slow tests after ISO 10770-1: the command goes through its range in minutes, so that nothing but the valve's own memory lags (the method of Ledezma, 2019, chapter 5).");
     out.figures(circuits);
-    read.tell(&mut out);
+    read.write(&mut out);
     out.figures_below("What was recorded", series);
-    tell_numbers(found, of_thesis, &mut out);
+    write_numbers(found, of_thesis, &mut out);
     out.figures(curves);
-    tell_coefficients(found, &mut out);
+    write_coefficients(found, &mut out);
     out.explanation(simple_against_identified(found, of_thesis));
-    tell_signals(found, &mut out);
+    write_signals(found, &mut out);
     out.figures_below("Test against model", comparison);
     out.figures(residuals);
     out

@@ -2,7 +2,7 @@ use phea_dynamics::portable::{argument, log10, magnitude};
 use phea_dynamics::spectrum::LOCAL_BLOCKS;
 use serde::Serialize;
 
-use super::levels::{ComparedLevels, answered};
+use super::levels::{ComparedLevels, compared_levels};
 use super::{Averaging, Compared, LeftOut, LevelComparison, ReferenceSource, Unusable, because};
 use crate::answer::{self, Number};
 use crate::project::Loaded;
@@ -18,13 +18,13 @@ struct ResponsesBody<'a> {
 
 #[derive(Serialize)]
 struct RecordedResponses<'a> {
-    members: Vec<AnsweredResponse<'a>>,
+    members: Vec<ResponseMemberBody<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     comparisons: Vec<ComparedLevels<'a>>,
 }
 
 #[derive(Serialize)]
-struct AnsweredResponse<'a> {
+struct ResponseMemberBody<'a> {
     file: &'a str,
     input: &'static str,
     output: &'static str,
@@ -51,7 +51,7 @@ struct AnsweredResponse<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     resampled: Option<ResampledRows>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    linear_plant: Option<BesidePlant>,
+    linear_plant: Option<AgreementWithPlant>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     warnings: Vec<String>,
 }
@@ -87,7 +87,7 @@ struct ResampledRows {
 }
 
 #[derive(Serialize)]
-struct BesidePlant {
+struct AgreementWithPlant {
     within_confidence_95: usize,
     largest_difference_db: Number,
 }
@@ -101,14 +101,14 @@ pub fn json(loaded: Option<&Loaded>, found: &[Compared], comparisons: &[LevelCom
         project_sha256: loaded.map(|loaded| loaded.sha256.as_str()),
         response: RecordedResponses {
             members: found.iter().map(member).collect(),
-            comparisons: comparisons.iter().map(|one| answered(one, found)).collect(),
+            comparisons: comparisons.iter().map(|one| compared_levels(one, found)).collect(),
         },
     };
     // every number that may not exist is one of `Number` or `Option`
     serde_json::to_string_pretty(&body).unwrap_or_default()
 }
 
-fn member(compared: &Compared) -> AnsweredResponse<'_> {
+fn member(compared: &Compared) -> ResponseMemberBody<'_> {
     let found = &compared.member;
     let (method, block_s, blocks, independent) = match found.method {
         Averaging::Periods { period, count } => ("periods", period, count, count as f64),
@@ -130,7 +130,7 @@ fn member(compared: &Compared) -> AnsweredResponse<'_> {
         confidence_95: Number(point.radius),
     };
     let rows_left_out: Vec<LeftOutAt> = incoherent.map(left_out).collect();
-    AnsweredResponse {
+    ResponseMemberBody {
         file: &found.file,
         input: found.signals[0],
         output: found.signals[1],
@@ -159,7 +159,7 @@ fn member(compared: &Compared) -> AnsweredResponse<'_> {
             longest_gap_s: resampled.longest,
             highest_frequency_rad_per_s: resampled.highest(),
         }),
-        linear_plant: compared.agreement().map(|(held, apart)| BesidePlant {
+        linear_plant: compared.agreement().map(|(held, apart)| AgreementWithPlant {
             within_confidence_95: held,
             largest_difference_db: Number(apart),
         }),

@@ -44,7 +44,7 @@ pub(crate) fn document(found: &[Compared], comparisons: &[LevelComparison]) -> D
     out
 }
 
-/// How the record was taken apart.
+/// Blocks of the record.
 fn blocks(member: &ResponseMember) -> Vec<String> {
     let seconds = |value: f64| significant(value, 4);
     let rows = format!("{} rows, {} s apart", member.rows, seconds(member.time_step));
@@ -77,7 +77,7 @@ fn blocks(member: &ResponseMember) -> Vec<String> {
     [Some(how), of_loop].into_iter().flatten().collect()
 }
 
-/// What was left out, and why.
+/// Frequencies that were left out, with the reasons.
 fn left_out(member: &ResponseMember) -> Vec<String> {
     let of = |reason: Unusable| member.left_out.iter().filter(move |one| one.reason == reason);
     let hertz = |one: &LeftOut| significant(DisplayUnit::HERTZ.of(one.frequency), 4);
@@ -102,7 +102,7 @@ fn left_out(member: &ResponseMember) -> Vec<String> {
     sentences
 }
 
-/// How the linear plant of the project compares.
+/// Agreement with the linear plant of the project.
 fn agreement(compared: &Compared) -> Option<String> {
     let (held, apart) = compared.agreement()?;
     let all = compared.member.points.len();

@@ -32,7 +32,10 @@ struct DifferenceAt {
 }
 
 /// The comparison as JSON has it.
-pub(super) fn answered<'a>(comparison: &'a LevelComparison, found: &'a [Compared]) -> ComparedLevels<'a> {
+pub(super) fn compared_levels<'a>(
+    comparison: &'a LevelComparison,
+    found: &'a [Compared],
+) -> ComparedLevels<'a> {
     let at = |one: &LevelDifference| {
         let (decibels, degrees) = ratio(one);
         DifferenceAt {

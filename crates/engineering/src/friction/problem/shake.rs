@@ -20,7 +20,7 @@ const STEP_ANGLE: f64 = 0.1;
 /// Most steps between two rows.
 const MOST_STEPS: f64 = 40.0;
 
-/// How a piston is shaken by these variables.
+/// Shaken piston of these variables.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::friction) struct Shake {
     /// m, where the position is at the first row, over the first that is recorded.
@@ -31,12 +31,12 @@ pub(in crate::friction) struct Shake {
     pub(in crate::friction) sizes: Vec<f64>,
 }
 
-/// What the sizes of the forces that shake are multiplied by, of each recording: a search asks for
+/// Shapes that the sizes of the forces are multiplied by, of each recording: a search requests
 /// the same again and again.
 #[derive(Debug, Default)]
 pub(in crate::friction) struct KeptShapes {
     at_rows: BTreeMap<usize, MultisineShapes>,
-    /// With the number of steps between two rows that was asked for last.
+    /// With the number of steps between two rows that was requested last.
     at_steps: BTreeMap<usize, (usize, MultisineShapes)>,
 }
 
@@ -59,7 +59,7 @@ impl KeptShapes {
 }
 
 impl ShakenRows {
-    /// How many variables it has of its own.
+    /// Number of its own variables.
     pub(in crate::friction) fn variable_count(&self) -> usize {
         BEGINNINGS + self.force.sizes.len()
     }

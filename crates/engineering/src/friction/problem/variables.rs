@@ -94,7 +94,7 @@ impl FrictionProblem<'_> {
     pub(in crate::friction) fn shared_slopes(&self, lugre: &LuGre, gradient: &[f64]) -> [f64; SHARED] {
         let of = |index: usize| gradient.get(index).copied().unwrap_or(0.0);
         let Around { force, damping, .. } = self.around;
-        // what a direction alone depends on counts for both where they are the same
+        // variables of one direction only count for both where they are the same
         let (back, own) = match self.directions {
             DirectionModel::SameBothWays => (1.0, 0.0),
             DirectionModel::DiffersByDirection => (0.0, 1.0),

@@ -14,7 +14,7 @@ use phea_dynamics::order::median;
 /// white noise reaches it once in twenty thousand.
 const BEYOND_NOISE: f64 = 12.0;
 
-/// The same over the strongest line: what is below, less than a hundredth of its size, moves
+/// Power over that of the strongest line: what is below, less than a hundredth of its size, moves
 /// little.
 const FAINT: f64 = 1e-4;
 
@@ -22,13 +22,13 @@ const FAINT: f64 = 1e-4;
 /// what one line spreads over its neighbours.
 const NO_LEAKAGE: f64 = 0.1;
 
-/// Share of the variance of a force that its sines may leave unexplained, beyond the noise.
+/// Fraction of the variance of a force that its sines may leave unexplained, beyond the noise.
 const NOT_EXPLAINED: f64 = 0.05;
 
 /// Most sines.
 const MOST_SINES: usize = 40;
 
-/// Rounds in which further sines are looked for.
+/// Rounds of the search for further sines.
 const ROUNDS: usize = 12;
 
 /// Steps to better frequencies in each round.
@@ -37,7 +37,7 @@ const STEPS: usize = 3;
 /// Fewest periods of a sine; what is slower belongs to the drift of the mean, or to the noise.
 const FEWEST_PERIODS: f64 = 3.0;
 
-/// How many times longer the transformed signal is, by zeros.
+/// Length of the transformed signal over that of the record, by zeros.
 const FILLED_UP: usize = 4;
 
 /// Distance of two sines, over a line of the rows, from which they can be distinguished.
@@ -88,7 +88,7 @@ pub(super) fn sines(signals: [&Vec<f64>; 2]) -> Option<Vec<f64>> {
     };
     let (all, left) = (squares(&[])?, squares(&angles)?);
     let beyond_noise = left - forces.len() as f64;
-    // noise alone explains 2 of each sine
+    // noise without a sine explains 2 of each
     let is_seen = all - left > BEYOND_NOISE * 2.0 * angles.len() as f64;
     (is_seen && beyond_noise <= NOT_EXPLAINED * (all - left)).then_some(angles)
 }
@@ -178,7 +178,7 @@ impl Sines {
         self.normal.solve(&(self.matrix.transpose() * DVector::from_column_slice(values)))
     }
 
-    /// What they leave.
+    /// Residuals of the sines.
     fn left(&self, values: &[f64]) -> DVector<f64> {
         DVector::from_column_slice(values) - &self.matrix * self.sizes(values)
     }

@@ -112,12 +112,12 @@ fn port_flow(values: &[f64]) -> RecordedSignal {
     RecordedSignal { kind, values: turning(values) }
 }
 
-/// What a flow meter shows while it turns.
+/// Reading of a flow meter while it turns.
 fn turning(values: &[f64]) -> Vec<Option<f64>> {
     values.iter().map(|value| Some(*value).filter(|value| *value != 0.0 && !value.is_nan())).collect()
 }
 
-/// Whether anything was recorded but inputs.
+/// True where anything was recorded but inputs.
 pub(super) fn is_test(taken: &Taken, circuit: PortCircuit, whole: Place, findings: &mut Findings) -> bool {
     let has = |signal: TestSignal| taken.of(signal).is_some();
     let [a, b] = [TestSignal::PressureA, TestSignal::PressureB].map(has);

@@ -5,7 +5,7 @@ use crate::project::{Findings, RawFinding, TestSignal};
 use crate::quantity::{PRESSURE, UnitScale, display};
 use crate::table::{Column, MeasuredTable};
 
-/// What the numbers of a column usually reach, in SI: least and most.
+/// Usual limits of the numbers of a column, in SI: least and most.
 fn usual(signal: TestSignal, nominal_voltage: f64) -> [f64; 2] {
     match signal {
         // the whole test lasts half a second to a day
@@ -20,9 +20,9 @@ fn usual(signal: TestSignal, nominal_voltage: f64) -> [f64; 2] {
     }
 }
 
-/// How far a command may go beyond the nominal one.
+/// Greatest command over the nominal one.
 const BEYOND_NOMINAL: f64 = 1.1;
-/// How far a port may be above the supply, of transducers that disagree.
+/// Greatest pressure of a port above the supply, of transducers that disagree.
 const BEYOND_SUPPLY: f64 = 1.25;
 /// The least that a port reaches of the supply in a test.
 const LEAST_OF_SUPPLY: f64 = 1e-3;
@@ -103,7 +103,7 @@ fn duration(times: &[f64]) -> f64 {
     times.first().zip(times.last()).map_or(0.0, |(first, last)| last - first)
 }
 
-/// That a column reaches what no test reaches, and the units in which it would not.
+/// Finding for a column that reaches what no test reaches, with the units in which it would not.
 fn implausible(
     table: &MeasuredTable,
     (signal, column): (TestSignal, &Column),
@@ -152,7 +152,7 @@ fn implausible(
     }
 }
 
-/// What people call it.
+/// Name of a signal in sentences.
 fn words(signal: TestSignal) -> String {
     match signal {
         TestSignal::PressureA => "pressure at port A".to_string(),

@@ -14,7 +14,7 @@ use crate::tendency::Tendency;
 /// direction: less is noise around zero.
 const SIGNED: f64 = 0.1;
 
-/// What may have the wrong sign.
+/// Signal that may have the wrong sign.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Turned {
     Command,
@@ -165,7 +165,7 @@ impl CheckedRecording<'_> {
         findings.push(found.help(self.cures(turned)));
     }
 
-    /// What may be wrong, each with the setting that turns it.
+    /// Signals that may be wrong, each with the setting that turns it.
     fn cures(&self, turned: &[Turned]) -> String {
         let named = turned.iter().map(|one| {
             let what = match one {

@@ -10,7 +10,7 @@ use crate::table::{Column, MeasuredTable};
 
 /// Factor between recorded and declared flow beyond which it is warned of.
 const UNUSUAL: f64 = 2.0;
-/// The same beyond which the recording is refused.
+/// Ratio beyond which the recording is refused.
 const IMPOSSIBLE: f64 = 30.0;
 /// Factor within which another unit explains the flow.
 const EXPLAINED: f64 = 1.6;

@@ -7,16 +7,16 @@ use crate::followed::roughness;
 use crate::project::{Findings, RawFinding, TestSignal};
 use crate::table::{Column, ColumnNumbers, MeasuredTable, not_increasing};
 
-/// A column with more gaps than this share of the rows is not a record.
+/// A column with more gaps than this fraction of the rows is not a record.
 const MOST_GAPS: f64 = 0.5;
 
-/// Rows of a slow command, deviations of its noise, and share of its greatest value, within which
-/// no row stands out.
+/// Rows of a slow command, deviations of its noise, and fraction of its greatest value, within
+/// which no row deviates.
 const STEPS: f64 = 3.0;
 const ROUGH: f64 = 10.0;
 const LEAST_OUTLIER: f64 = 1e-3;
 
-/// A command of which a greater share of the rows stands out moves like this.
+/// A command of which a greater fraction of the rows deviates moves like this.
 const MOST_OUTLIERS: f64 = 0.05;
 
 /// Says what is missing, and leaves out the rows that cannot be used: those without an input, and
@@ -66,7 +66,7 @@ pub(super) fn used(
     is_used
 }
 
-/// Leaves out rows whose command stands out of those around it: a memory that follows it would have
+/// Leaves out rows whose command deviates from those around it: a memory that follows it would have
 /// gone there and back.
 fn leave_out_standing_out(
     table: &MeasuredTable,

@@ -4,18 +4,18 @@
 //! u_1 + r_1 (t - t_1) = u_2 + r_2 (t - t_2)
 //! ```
 //!
-//! The rows before the turn lie on one straight line and those after it on another: the command
+//! The rows before the turn are on one straight line and those after it on another: the command
 //! turned where both meet. The memory of the spool follows that way, which is longer than that from
 //! row to row by up to one step.
 
-/// Difference of two rates, over the rate, up to which three rows lie on a straight line.
+/// Difference of two rates, over the rate, up to which three rows are on a straight line.
 const STRAIGHT: f64 = 0.01;
 
 /// Distance beyond both rows, over the step between them and their neighbours, that is rounding.
 const ROUNDING: f64 = 1e-6;
 
 /// The command at which it turned on the way to each row from the row before; `None` where it did
-/// not turn beyond both, or where the rows around do not tell. Without times the rows are as far
+/// not turn beyond both, or where the rows around do not show it. Without times the rows are as far
 /// apart as each other.
 pub(super) fn turns(times: &[f64], command: &[f64]) -> Vec<Option<f64>> {
     let rows = times.iter().copied().chain((times.len()..command.len()).map(|row| row as f64));
@@ -77,7 +77,7 @@ mod tests {
         }
     }
 
-    /// Nothing is added where a row lies at the corner, to a sine, or to a command that steps.
+    /// Nothing is added where a row is at the corner, to a sine, or to a command that steps.
     #[test]
     fn nothing_is_added_elsewhere() {
         let times: Vec<f64> = (0..1200).map(|row| 0.4 * f64::from(row)).collect();

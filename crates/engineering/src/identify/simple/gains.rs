@@ -15,7 +15,7 @@ use crate::identify::recording::{Recording, SignalKind};
 /// leakage, and near null.
 const GAIN_WINDOW: [f64; 2] = [0.03, 0.15];
 
-/// Share of the greatest command beyond which a reversal is near.
+/// Fraction of the greatest command beyond which a reversal is near.
 const AWAY: f64 = 0.6;
 
 /// Load pressure over the supply's up to which the pressure sensitivity is read.
@@ -54,7 +54,7 @@ pub(super) fn flow_gains(
 /// Commands from null in V between which the flow gain is read: away from the reversals, where the
 /// spool has not yet lost what it remembers.
 fn gain_window(recording: &Recording, tested: &TestedValve) -> [f64; 2] {
-    let [least, most] = GAIN_WINDOW.map(|share| share * tested.nominal_voltage);
+    let [least, most] = GAIN_WINDOW.map(|fraction| fraction * tested.nominal_voltage);
     [least, most.min(AWAY * largest_command(std::slice::from_ref(recording)))]
 }
 
@@ -95,20 +95,20 @@ type NearNull = (f64, f64, f64);
 /// ```
 ///
 /// An edge that opens bends the curve. Each branch b has its own null: the
-/// hysteresis lies between those of either way, and a branch that begins without the memory of a
-/// reversal lies elsewhere again. Such a branch is left out where others tell, as its spool may
-/// begin by standing still.
+/// hysteresis is between those of either way, and a branch that begins without the memory of a
+/// reversal has another. Such a branch is left out where others have enough rows, as its
+/// spool may begin at rest.
 pub(super) fn pressure_sensitivity(recordings: &[Recording]) -> Option<Estimate> {
     let blocked = || recordings.iter().filter(|one| one.circuit == PortCircuit::Blocked);
-    let told = |first: usize| -> Vec<Vec<NearNull>> {
+    let near_null = |first: usize| -> Vec<Vec<NearNull>> {
         let all = blocked().flat_map(|one| {
             one.branches().into_iter().skip(first).map(|branch| around_null(one, branch.rows))
         });
         all.filter(|points| points.len() > FEWEST_OF_BRANCH).collect()
     };
-    let later = told(1);
+    let later = near_null(1);
     let is_enough = later.iter().map(Vec::len).sum::<usize>() >= FEWEST;
-    inverse_slope(&if is_enough { later } else { told(0) })
+    inverse_slope(&if is_enough { later } else { near_null(0) })
 }
 
 /// Rows of a branch that its own null takes.
@@ -129,7 +129,7 @@ fn around_null(recording: &Recording, rows: std::ops::Range<usize>) -> Vec<NearN
     rows.filter_map(of_row).collect()
 }
 
-/// What the command has over the load pressure beside its slope.
+/// Bend of the command over the load pressure, in addition to its slope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum NullBend {
     /// p_L^2 and p_L^3.
@@ -141,7 +141,7 @@ enum NullBend {
 }
 
 impl NullBend {
-    /// All that are tried: kinks in steps of the window.
+    /// All that are compared: kinks in steps of the window.
     fn all() -> impl Iterator<Item = NullBend> {
         let kink = |step: i32| NullBend::KinkAt(f64::from(step) / f64::from(KINKS) * SENSITIVITY_WINDOW);
         [NullBend::Smooth, NullBend::Even].into_iter().chain((1 - KINKS..KINKS).map(kink))
@@ -156,7 +156,7 @@ impl NullBend {
         }
     }
 
-    /// How many numbers it has, the place of a kink among them.
+    /// Number of its parameters, the place of a kink among them.
     fn numbers(self) -> usize {
         if matches!(self, NullBend::KinkAt(_)) { 4 } else { 2 }
     }
@@ -185,7 +185,7 @@ fn inverse_slope(branches: &[Vec<NearNull>]) -> Option<Estimate> {
     (rows >= FEWEST).then_some(Estimate { interval: [low, high], ..best })
 }
 
-/// The same with this bend, and the criterion of Schwarz.
+/// Slope with this bend, and the criterion of Schwarz.
 fn bent(branches: &[Vec<NearNull>], bend: NullBend) -> Option<(Estimate, f64)> {
     let all = branches.iter().enumerate();
     let points: Vec<(usize, NearNull)> =
@@ -208,8 +208,8 @@ fn bent(branches: &[Vec<NearNull>], bend: NullBend) -> Option<(Estimate, f64)> {
     let settings = Settings { robust_beyond: f64::INFINITY, tolerance: 1e-14, ..Settings::default() };
     let found = minimise(&vec![0.0; count], &vec![[-1e3, 1e3]; count], settings, &mut linear).ok()?;
     let groups: Vec<usize> = (0..points.len()).collect();
-    let told = uncertainty(&found.linearised, &groups, count, f64::INFINITY);
-    let (slope, deviation) = (bend.slope(&found.variables)?, *told.deviations.first()?);
+    let uncertainty = uncertainty(&found.linearised, &groups, count, f64::INFINITY);
+    let (slope, deviation) = (bend.slope(&found.variables)?, *uncertainty.deviations.first()?);
     let whole = points.iter().map(|(_, (.., whole))| whole).sum::<f64>() / points.len() as f64;
     let value = whole / (slope * scale);
     let rows = points.len() as f64;

@@ -12,9 +12,9 @@ pub(super) struct Flank {
 }
 
 impl Flank {
-    /// At this share of the way from the base to the peak.
-    pub(super) fn height(&self, share: f64) -> f64 {
-        self.base + share * (self.peak - self.base)
+    /// Height at this fraction of the way from the base to the peak.
+    pub(super) fn height(&self, fraction: f64) -> f64 {
+        self.base + fraction * (self.peak - self.base)
     }
 
     /// Commands at which a branch, from below through its peak and below again, crosses half of its
@@ -23,9 +23,9 @@ impl Flank {
         let mut sorted = points.to_vec();
         sort_by_number(&mut sorted, |point| point.0);
         let ends = crossings(&sorted, self.height(0.5))?;
-        let quarters = [0.25, 0.75].map(|share| crossings(&sorted, self.height(share)));
+        let quarters = [0.25, 0.75].map(|fraction| crossings(&sorted, self.height(fraction)));
         let deviation = |side: usize| {
-            let at = |share: usize| quarters.get(share)?.as_ref()?.get(side).copied();
+            let at = |fraction: usize| quarters.get(fraction)?.as_ref()?.get(side).copied();
             let run = at(0).zip(at(1)).map_or(f64::INFINITY, |(low, high)| (high - low).abs());
             self.noise * run / (0.5 * (self.peak - self.base))
         };
@@ -34,7 +34,8 @@ impl Flank {
     }
 }
 
-/// Where a branch, its commands in order, first comes above a height and last falls below it.
+/// Commands at which a branch, in order of its commands, first rises above a height and last falls
+/// below it.
 fn crossings(sorted: &[(f64, f64)], height: f64) -> Option<[f64; 2]> {
     let is_above = |(_, leak): &(f64, f64)| *leak > height;
     let [first, last] = [sorted.iter().position(is_above)?, sorted.iter().rposition(is_above)?];

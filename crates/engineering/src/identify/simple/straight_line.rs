@@ -5,7 +5,7 @@ use crate::estimate::Estimate;
 /// A straight line through points.
 #[derive(Clone, Copy)]
 pub(in crate::identify) struct StraightLine {
-    /// Where it is zero.
+    /// Zero of the line.
     pub(in crate::identify) zero: Estimate,
     pub(in crate::identify) slope: Estimate,
 }

@@ -1,4 +1,4 @@
-//! What the data do not determine, and which further test would.
+//! Combinations of coefficients that the data do not determine, and the tests that would.
 
 use phea_dynamics::least_squares::{Direction, Uncertainty};
 use phea_dynamics::order::sort_by_number;
@@ -11,59 +11,62 @@ use crate::bench::StaticTest;
 
 /// Standard deviation in the logarithm of a coefficient beyond which it is not determined: a factor
 /// of e^0.98 = 2.7 either way at 95 %.
-const UNTOLD: f64 = 0.5;
+const NOT_IDENTIFIABLE: f64 = 0.5;
 
 /// Standard deviation below which a test determines a combination.
-const TOLD: f64 = 0.1;
+const IDENTIFIABLE: f64 = 0.1;
 
-/// Share of a direction below which a coefficient does not count.
+/// Component of a direction below which a coefficient does not count.
 const PART: f64 = 0.2;
 
 /// A combination of coefficients that the data do not determine.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Untold {
-    /// Coefficients with the share that each has of it, as factors: of length one, the greatest
+pub struct NotIdentifiableCombination {
+    /// Coefficients with their components of the direction, as factors: of length one, the greatest
     /// first.
-    pub shares: Vec<(&'static str, f64)>,
+    pub components: Vec<(&'static str, f64)>,
     /// Standard deviation along it, in the logarithm; infinite where nothing recorded depends on
     /// it.
     pub deviation: f64,
     /// Tests that would determine it, at 30 % of the command with errors of 1 % of each signal's
     /// range.
-    pub told_by: Vec<StaticTest>,
+    pub identifiable_by: Vec<StaticTest>,
 }
 
 /// The combinations that are not determined, the least known first.
-pub(super) fn untold(
-    told: &Uncertainty,
+pub(super) fn combinations(
+    uncertainty: &Uncertainty,
     coefficients: &StaticCoefficients,
     slopes: &[f64; STATIC_COEFFICIENTS],
     (recordings, tested): (&[Recording], &TestedValve),
-) -> Vec<Untold> {
+) -> Vec<NotIdentifiableCombination> {
     let varied = |direction: &&Direction| {
-        let shares = direction.shares.iter().enumerate();
-        shares.filter(|(index, _)| has(tested.terms, *index)).any(|(_, share)| share.abs() > PART)
+        let components = direction.shares.iter().enumerate();
+        components.filter(|(index, _)| has(tested.terms, *index)).any(|(_, one)| one.abs() > PART)
     };
-    let unknown = told.directions.iter().rev().filter(|direction| direction.deviation > UNTOLD);
+    let unknown =
+        uncertainty.directions.iter().rev().filter(|direction| direction.deviation > NOT_IDENTIFIABLE);
     let unknown = unknown.filter(varied);
     let tests =
         StaticTest::ALL.map(|test| (test, sensitivities(test, coefficients, slopes, (recordings, tested))));
     unknown
         .map(|direction| {
             let parts = COEFFICIENT_NAMES.iter().zip(&direction.shares);
-            let mut shares: Vec<(&'static str, f64)> = parts
-                .filter(|(_, share)| share.abs() > PART)
-                .map(|((name, _), share)| (*name, *share))
+            let mut components: Vec<(&'static str, f64)> = parts
+                .filter(|(_, component)| component.abs() > PART)
+                .map(|((name, _), component)| (*name, *component))
                 .collect();
-            sort_by_number(&mut shares, |(_, share)| -share.abs());
-            let tells = |rows: &[[f64; STATIC_COEFFICIENTS]]| {
+            sort_by_number(&mut components, |(_, component)| -component.abs());
+            let determines = |rows: &[[f64; STATIC_COEFFICIENTS]]| {
                 let along = |row: &[f64; STATIC_COEFFICIENTS]| -> f64 {
-                    row.iter().zip(&direction.shares).map(|(slope, share)| slope * share).sum()
+                    row.iter().zip(&direction.shares).map(|(slope, component)| slope * component).sum()
                 };
-                rows.iter().map(|row| along(row) * along(row)).sum::<f64>() > 1.0 / (TOLD * TOLD)
+                rows.iter().map(|row| along(row) * along(row)).sum::<f64>()
+                    > 1.0 / (IDENTIFIABLE * IDENTIFIABLE)
             };
-            let told_by = tests.iter().filter(|(_, rows)| tells(rows)).map(|(test, _)| *test).collect();
-            Untold { shares, deviation: direction.deviation, told_by }
+            let identifiable_by =
+                tests.iter().filter(|(_, rows)| determines(rows)).map(|(test, _)| *test).collect();
+            NotIdentifiableCombination { components, deviation: direction.deviation, identifiable_by }
         })
         .collect()
 }
@@ -76,13 +79,13 @@ fn sensitivities(
     (recordings, tested): (&[Recording], &TestedValve),
 ) -> Vec<[f64; STATIC_COEFFICIENTS]> {
     const ROWS: i32 = 100;
-    let share = if test == StaticTest::PressureGain { 0.05 } else { 0.3 };
+    let amplitude = if test == StaticTest::PressureGain { 0.05 } else { 0.3 };
     let supply = Supply { pressure: usual_drop(recordings), tank_pressure: 0.0 };
     let inputs: Vec<TestInput> = (-ROWS..=ROWS)
         .chain((-ROWS..ROWS).rev())
         .map(|step| f64::from(step) / f64::from(ROWS))
         // finer around null
-        .map(|position| share * tested.nominal_voltage * position * position.abs())
+        .map(|position| amplitude * tested.nominal_voltage * position * position.abs())
         .map(|command| TestInput::new(command, supply, 0.0))
         .collect();
     let outputs = tested.sensitive_outputs(coefficients, test.circuit(), &inputs);

@@ -8,7 +8,7 @@ use super::BOTH_WAYS;
 use super::directions::DirectionModel;
 use super::problem::{Around, DAMPING, EXTENDING, FrictionProblem, LevelVariables, RETRACTING, ZERO};
 use super::profile::{HeldCoefficient, SlidingProfile};
-use super::reasons::{Fall, UntoldFriction, reasons};
+use super::reasons::{Fall, NotIdentifiableFriction, reasons};
 use crate::estimate::{Estimate, NORMAL_95};
 
 /// A coefficient that the recordings do not determine, with what they say of it.
@@ -17,7 +17,7 @@ pub struct OpenCoefficient {
     /// Minimum of the sum of squares, and the interval that the recordings leave.
     pub estimate: Estimate,
     /// Reasons, each once.
-    pub reasons: Vec<UntoldFriction>,
+    pub reasons: Vec<NotIdentifiableFriction>,
 }
 
 impl OpenCoefficient {
@@ -40,7 +40,7 @@ pub(super) struct Estimates {
 }
 
 /// Standard deviation over the value beyond which a coefficient is not determined, as for a valve.
-const UNTOLD: f64 = 0.5;
+const NOT_IDENTIFIABLE: f64 = 0.5;
 
 /// Standard deviation over the value beyond which an interval is taken from the profile of the sum.
 const NOT_A_PARABOLA: f64 = 0.1;
@@ -51,7 +51,7 @@ const FIRST_STEPS: [f64; 2] = [0.02, 0.3];
 /// Index of the exponent of the curve among the variables.
 const EXPONENT: usize = 3;
 
-/// How a coefficient follows from the variables.
+/// Relation of a coefficient to the variables.
 #[derive(Clone, Copy)]
 struct CoefficientForm {
     held: HeldCoefficient,
@@ -97,17 +97,17 @@ fn forms(around: &Around) -> [CoefficientForm; FRICTION_COEFFICIENTS] {
     ]
 }
 
-/// Of each coefficient, and of the zero of the force.
+/// Estimates of each coefficient, and of the zero of the force.
 pub(super) fn estimates(problem: &FrictionProblem<'_>, minimum: &Minimum) -> Estimates {
     let (lugre, zero) = problem.friction(&minimum.variables);
-    let told = uncertainty_by_scale(&searched_only(problem, minimum), problem.count());
+    let uncertainty = uncertainty_by_scale(&searched_only(problem, minimum), problem.count());
     let force = problem.around.force;
     let profile = SlidingProfile::around(problem, minimum);
     let values = lugre.to_array();
     let forms = forms(&problem.around);
     let differs = problem.directions == DirectionModel::DiffersByDirection;
     let of = |index: usize| match differs || index < BOTH_WAYS {
-        true => estimate(values[index], forms[index], &told, profile.as_ref()),
+        true => estimate(values[index], forms[index], &uncertainty, profile.as_ref()),
         // the same as that of extending, which comes first
         false => {
             let estimate = Estimate { value: values[index], interval: [0.0, f64::INFINITY] };
@@ -117,29 +117,29 @@ pub(super) fn estimates(problem: &FrictionProblem<'_>, minimum: &Minimum) -> Est
     let mut all: [OpenCoefficient; FRICTION_COEFFICIENTS] = std::array::from_fn(of);
     let falls = [EXTENDING, RETRACTING].map(|levels| {
         let at = |index: usize| minimum.variables.get(index).copied().unwrap_or(0.0);
-        Fall { value: force * at(levels.fall), deviation: force * deviation_of(&told, levels.fall) }
+        Fall { value: force * at(levels.fall), deviation: force * deviation_of(&uncertainty, levels.fall) }
     });
     reasons((problem, &lugre), &mut all, falls);
     let [a, b, c, d, e, f, g, back @ ..] = all.map(OpenCoefficient::judged);
-    let zero = problem.finds_zero().then(|| Estimate::of(zero, force * deviation_of(&told, ZERO)));
+    let zero = problem.finds_zero().then(|| Estimate::of(zero, force * deviation_of(&uncertainty, ZERO)));
     Estimates { estimates: [a, b, c, d, e, f, g], retracting: differs.then_some(back), zero }
 }
 
-fn deviation_of(told: &Uncertainty, variable: usize) -> f64 {
-    told.deviations.get(variable).copied().unwrap_or(f64::INFINITY)
+fn deviation_of(uncertainty: &Uncertainty, variable: usize) -> f64 {
+    uncertainty.deviations.get(variable).copied().unwrap_or(f64::INFINITY)
 }
 
 /// One coefficient: by its standard deviation, and by the profile where that is large.
 fn estimate(
     value: f64,
     form: CoefficientForm,
-    told: &Uncertainty,
+    uncertainty: &Uncertainty,
     profile: Option<&SlidingProfile<'_>>,
 ) -> OpenCoefficient {
     let deviation = match form.held {
         // F_C is F_S less the fall
-        HeldCoefficient::Coulomb(of) => difference(told, of.static_friction, of.fall),
-        HeldCoefficient::Variable(index) => deviation_of(told, index),
+        HeldCoefficient::Coulomb(of) => difference(uncertainty, of.static_friction, of.fall),
+        HeldCoefficient::Variable(index) => deviation_of(uncertainty, index),
     };
     let mut interval = interval(value, form.scale, deviation);
     let mut relative = match form.scale {
@@ -156,11 +156,11 @@ fn estimate(
         };
     }
     let reasons = match relative {
-        relative if relative <= UNTOLD => vec![],
+        relative if relative <= NOT_IDENTIFIABLE => vec![],
         relative if is_damping && relative.is_finite() => {
-            vec![UntoldFriction::ShakenTooLittle { factor: relative / UNTOLD }]
+            vec![NotIdentifiableFriction::ShakenTooLittle { factor: relative / NOT_IDENTIFIABLE }]
         }
-        _ => vec![UntoldFriction::Hidden],
+        _ => vec![NotIdentifiableFriction::Hidden],
     };
     OpenCoefficient { estimate: Estimate { value, interval }, reasons }
 }
@@ -178,10 +178,10 @@ fn searched_only(problem: &FrictionProblem<'_>, minimum: &Minimum) -> Linearised
 }
 
 /// Standard deviation of one variable less another.
-fn difference(told: &Uncertainty, first: usize, second: usize) -> f64 {
-    let place = first * told.deviations.len() + second;
-    let [first, second] = [first, second].map(|index| deviation_of(told, index));
-    let correlation = told.correlations.get(place).copied().unwrap_or(0.0);
+fn difference(uncertainty: &Uncertainty, first: usize, second: usize) -> f64 {
+    let place = first * uncertainty.deviations.len() + second;
+    let [first, second] = [first, second].map(|index| deviation_of(uncertainty, index));
+    let correlation = uncertainty.correlations.get(place).copied().unwrap_or(0.0);
     match first.is_finite() && second.is_finite() {
         true => (first * first + second * second - 2.0 * correlation * first * second).max(0.0).sqrt(),
         false => f64::INFINITY,
