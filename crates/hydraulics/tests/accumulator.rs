@@ -1,7 +1,7 @@
 //! Accumulators at the chambers: published and recomputed numbers, limits, and the moment at which
 //! the gas is shut off.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::accumulator::Accumulator;

@@ -1,7 +1,7 @@
 //! Accumulators that are adjusted in operation: frozen settings, closed forms of their work and of
 //! switching, limits, passivity, and their refusals.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::portable::{exp, pow, sin};
 use phea_dynamics::random::{share, stream};

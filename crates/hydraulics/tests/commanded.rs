@@ -1,6 +1,6 @@
 //! A machine whose first input is its command, to differentiate it by, and its supply.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use num_complex::Complex64;
 use phea_dynamics::portable::pow;

@@ -1,7 +1,7 @@
 //! A valve between the chambers: closed forms, limits, passivity, and the equilibrium that it
 //! leaves.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use num_complex::Complex64;
 use phea_dynamics::linear::Polynomial;

@@ -1,7 +1,7 @@
 //! Gas that exchanges heat with its wall: limits, closed forms, a cycle integrated by SciPy,
 //! passivity, and its refusals.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::portable::{exp, pow, sin};
 use phea_dynamics::random::{share, stream};

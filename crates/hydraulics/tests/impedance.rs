@@ -1,7 +1,7 @@
 //! The impedance at the load: asymptotes, the published controller's lack of passivity, and the
 //! step that leaves no force.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use num_complex::Complex64;
 use phea_dynamics::frequency::passivity;

@@ -1,6 +1,6 @@
 //! A linkage between rod and load: geometry, machine and plant by closed forms and a Lagrangian.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use num_complex::Complex64;
 use phea_dynamics::portable::{cos, pow, sin};

@@ -1,7 +1,7 @@
 //! What each component adds to the machine: closed forms, limits, and a published kind of reference
 //! run.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::portable::{exp, sin};
 use phea_dynamics::simulation::Plant;

@@ -1,6 +1,6 @@
 //! Ledgers of oil and energy of the machine in motion, by a fixed-step method of its own.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::portable::sin;
 use phea_dynamics::scalar::Dual;

@@ -1,7 +1,7 @@
 //! The machine's equations against texts of their own, its Jacobian against differences, and its
 //! rests.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::portable::{cosh, expm1, pow};
 use phea_dynamics::scalar::{LANES, Lanes, Parameters};

@@ -1,6 +1,6 @@
 //! The machine's Jacobian by dual numbers, against differences and against the linearised model.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::linear::StateSpace;
 use phea_dynamics::scalar::{Dependence, Dual};

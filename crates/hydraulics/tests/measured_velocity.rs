@@ -1,7 +1,7 @@
 //! A load velocity that is fed forward as its sensor shows it, against the machine's own
 //! derivatives.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use num_complex::Complex64;
 use phea_dynamics::controller::RateFilter;

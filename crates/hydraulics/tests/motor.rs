@@ -1,7 +1,7 @@
 //! A motor: the same equations as a cylinder on a lever, its stiffness, its leakage, and turning
 //! on.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::simulation::Plant;
 use phea_hydraulics::actuator::{Actuator, Components};

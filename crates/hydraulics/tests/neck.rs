@@ -1,7 +1,7 @@
 //! The neck of an accumulator at a chamber: its limits, its resonance, passivity, and the pressure
 //! by which its gas is shut off.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use std::f64::consts::FRAC_PI_4;
 

@@ -1,6 +1,6 @@
 //! Equilibria: closed forms, balances that must hold, and refusals with their numbers.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};

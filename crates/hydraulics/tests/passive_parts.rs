@@ -9,7 +9,7 @@
 //! it grows all the time, and stays zero where nothing is lost
 //! ```
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::portable::{cos, ln, pow, sin};
 use phea_dynamics::random::{share, stream};

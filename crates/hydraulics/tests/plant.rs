@@ -1,6 +1,6 @@
 //! The linear plant against the machine's own derivatives, and against the models it grew from.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use num_complex::Complex64;
 use phea_dynamics::portable::pow;

@@ -1,7 +1,7 @@
 //! The plant behind lines in motion against the machine's own derivatives, delays included, and
 //! against lumped lines.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use num_complex::Complex64;
 use phea_dynamics::analytic::Disc;

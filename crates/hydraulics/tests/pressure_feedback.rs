@@ -1,7 +1,7 @@
 //! Feedback of the chambers' pressures: the damping that it adds in closed form, and what robust
 //! design takes from a plant without polynomials.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use num_complex::Complex64;
 use phea_dynamics::analytic::Disc;

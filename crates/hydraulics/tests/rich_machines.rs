@@ -1,6 +1,6 @@
 //! Rigs with friction, gas, air and lines of their own, whose ledgers are taken.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_hydraulics::accumulator::{AdjustedPart, Adjustment, GasValve, Neck};
 use phea_hydraulics::actuator::Components;

@@ -1,7 +1,7 @@
 //! The spring between force sensor and load: the linear plant against the machine, the rigid limit,
 //! ledgers and passivity.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use num_complex::Complex64;
 use phea_dynamics::controller::RateFilter;

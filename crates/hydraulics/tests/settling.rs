@@ -1,6 +1,6 @@
 //! The balance over any scalar against bisection, the machine, and closed forms.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::expression::Expression;
 use phea_dynamics::random::share;

@@ -1,6 +1,6 @@
 //! Stiffness over the stroke: the thesis' numbers, closed forms, and the inverse problems.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::cylinder::{Cylinder, annulus_area};

@@ -1,7 +1,7 @@
 //! A telescopic piston: its areas and volumes, machine and stiffness against closed forms, the
 //! single stage, and its ledgers.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::random::{share, stream};
 use phea_dynamics::scalar::{Dual, Interval, Parameters};

@@ -1,6 +1,6 @@
 //! Rigs with any of the parts at once: the linear plant against the machine for small motions.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use num_complex::Complex64;
 use phea_dynamics::controller::InnerFeedback;

@@ -2,7 +2,7 @@
 //! the line in segments and the distributed one, the spring that it is for slow motions, ledgers
 //! and passivity.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use num_complex::Complex64;
 use phea_dynamics::portable::pow;

@@ -1,7 +1,7 @@
 //! The two-pressure model against its own dual-number linearisation, and the fifth-order model
 //! against it.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use num_complex::Complex64;
 use phea_dynamics::expression::Expression;

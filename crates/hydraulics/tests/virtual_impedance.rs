@@ -1,7 +1,7 @@
 //! The linear plant with a virtual impedance, y = F_e + Z_v X_L, against the machine's own
 //! derivatives and against the force and the motion of the load by themselves.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use num_complex::Complex64;
 use phea_dynamics::analytic::Disc;

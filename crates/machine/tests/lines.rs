@@ -1,7 +1,7 @@
 //! The machine behind lines with dynamics of their own: their limits, and each against the other,
 //! by the method that drives everything.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::simulation::{Plant, Profile, SimulationSettings, Status};
 use phea_hydraulics::actuator::Actuator;

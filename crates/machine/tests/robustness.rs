@@ -1,7 +1,7 @@
 //! Machines driven hard by the method that drives everything: they end where they should, or state
 //! why not.
 
-#![allow(clippy::unwrap_used)] // helpers of tests
+#![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
 use phea_dynamics::simulation::{Profile, SimulationSettings, Status};
 use phea_hydraulics::actuator::{Actuator, Components};
