@@ -23,7 +23,7 @@ const COMMANDS: [&[&str]; 7] = [
 ];
 
 /// Benches in a target folder of its own; `from_scratch` empties it first and times the build.
-/// Whether all went well.
+/// Returns whether all went well.
 pub(crate) fn run(root: &Path, from_scratch: bool) -> bool {
     let target = root.join("target").join("bench");
     if from_scratch && target.exists() && std::fs::remove_dir_all(&target).is_err() {

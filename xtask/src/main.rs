@@ -7,6 +7,7 @@
 mod bench;
 mod ci;
 mod repository;
+mod rust_file;
 mod tidy;
 
 use std::path::{Path, PathBuf};
@@ -20,17 +21,14 @@ usage: cargo xtask CHORE
   tidy [FOLDER]    the rules of the house that compiler and clippy do not know, here or in another checkout";
 
 fn main() -> ExitCode {
-    if let Some(ended) = ci::in_place_of_the_compiler() {
-        return ended;
-    }
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match words.as_slice() {
         ["ci", stages @ ..] => ci::run(&root(), stages),
         ["bench"] => bench::run(&root(), false),
         ["bench", "build"] => bench::run(&root(), true),
-        ["tidy"] => is_tidy(&root()),
-        ["tidy", elsewhere] => is_tidy(Path::new(elsewhere)),
+        ["tidy"] => tidy::is_tidy(&root()),
+        ["tidy", elsewhere] => tidy::is_tidy(Path::new(elsewhere)),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);
@@ -43,11 +41,4 @@ fn main() -> ExitCode {
 fn root() -> PathBuf {
     let package = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     package.parent().map_or(package.clone(), |folder| folder.to_path_buf())
-}
-
-/// Prints what is untidy; whether nothing is.
-fn is_tidy(root: &Path) -> bool {
-    let (is_tidy, told) = tidy::report(root);
-    print!("{told}");
-    is_tidy
 }

@@ -10,15 +10,14 @@ mod equations;
 mod examples;
 mod golden;
 mod invariants;
-mod keys;
 mod layout;
 mod links;
-mod lints;
-mod names;
 mod notation;
 mod parameters;
 mod purity;
 mod sizes;
+#[cfg(test)]
+mod tests;
 mod units;
 mod wrapping;
 
@@ -55,7 +54,6 @@ type Check = fn(&Repository) -> Vec<Violation>;
 
 /// Every check by its name.
 const CHECKS: &[(&str, Check)] = &[
-    ("syntax", syntax),
     ("book", book::check),
     ("catalogue", catalogue::check),
     ("circles", circles::check),
@@ -64,11 +62,10 @@ const CHECKS: &[(&str, Check)] = &[
     ("examples", examples::check),
     ("golden", golden::check),
     ("invariants", invariants::check),
-    ("keys", keys::check),
     ("layout", layout::check),
     ("links", links::check),
-    ("lints", lints::check),
-    ("names", names::check),
+    ("lints", dependencies::check_lints),
+    ("names", circles::check_names),
     ("notation", notation::check),
     ("purity", purity::check),
     ("sizes", sizes::check),
@@ -76,41 +73,22 @@ const CHECKS: &[(&str, Check)] = &[
     ("wrapping", wrapping::check),
 ];
 
-/// All violations in the repository, in the order of the checks.
-pub(crate) fn violations(repository: &Repository) -> Vec<(&'static str, Violation)> {
-    let named =
-        |&(name, check): &(&'static str, Check)| check(repository).into_iter().map(move |v| (name, v));
-    CHECKS.iter().flat_map(named).collect()
-}
-
-/// Whether nothing is untidy, and what is to be printed of it.
-pub(crate) fn report(root: &Path) -> (bool, String) {
+/// Prints all violations below the root, in the order of the checks; whether there is none.
+pub(crate) fn is_tidy(root: &Path) -> bool {
     let repository = match Repository::read(root) {
         Ok(repository) => repository,
-        Err(error) => return (false, format!("cannot read {}: {error}\n", root.display())),
+        Err(error) => {
+            println!("cannot read {}: {error}", root.display());
+            return false;
+        }
     };
-    let found = violations(&repository);
-    let each: String = found.iter().map(|(check, violation)| format!("{violation} [{check}]\n")).collect();
-    (found.is_empty(), format!("{each}tidy: {} checks, {} violations\n", CHECKS.len(), found.len()))
-}
-
-/// Every Rust file parses, or no other check would see it.
-fn syntax(repository: &Repository) -> Vec<Violation> {
-    let errors = repository.syntax_errors().iter();
-    errors.map(|(path, error)| Violation::new(path, error.span().start().line, error.to_string())).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_repository_is_tidy() {
-        let repository = Repository::read(&crate::root()).unwrap();
-        let found: Vec<String> = violations(&repository)
-            .iter()
-            .map(|(check, violation)| format!("{violation} [{check}]"))
-            .collect();
-        assert!(found.is_empty(), "{} violations:\n{}", found.len(), found.join("\n"));
+    let mut count = 0;
+    for (name, check) in CHECKS {
+        for violation in check(&repository) {
+            println!("{violation} [{name}]");
+            count += 1;
+        }
     }
+    println!("tidy: {} checks, {count} violations", CHECKS.len());
+    count == 0
 }

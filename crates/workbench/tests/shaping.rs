@@ -59,6 +59,7 @@ fn loop_at(answer: &Value, frequency: f64) -> (f64, f64) {
 const POLYNOMIALS: &str = "[controller]                # given\nnumerator = \"0.5*(s + 2)\"   # two parts\n\
                            denominator = \"s\"\nsaturation = \"10 V\"\n";
 
+// ORIGIN: analytic
 #[test]
 fn changes_are_made_in_the_order_in_which_they_stand() {
     let changes = [

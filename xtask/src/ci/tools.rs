@@ -1,72 +1,51 @@
-//! Parts of the Rust toolchain that may have to be added first.
+//! Tools that a stage needs and a machine may lack, installed where that is possible.
 
-use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::{Mutex, PoisonError};
 
-/// Ensures that `cargo SUBCOMMAND` works; states what is missing if it cannot.
+/// Ensures that this works, by these commands if need be; reports what is missing if it cannot.
+fn ensure(what: &str, works: impl Fn() -> bool, install: &[&str]) -> Result<(), String> {
+    // Needed by two stages at once, it is installed once.
+    static INSTALLING: Mutex<()> = Mutex::new(());
+    let _installing = INSTALLING.lock().unwrap_or_else(PoisonError::into_inner);
+    if works() || (install.iter().all(|line| succeeds(line)) && works()) {
+        return Ok(());
+    }
+    Err(format!("{what} is missing and could not be installed by `{}`", install.join(" && ")))
+}
+
+/// `cargo SUBCOMMAND` of this component of the toolchain.
 pub(super) fn component(name: &str, subcommand: &str) -> Result<(), String> {
-    let works = || quietly("cargo", &[subcommand, "--version"]);
-    if works() || (quietly("rustup", &["component", "add", name]) && works()) {
-        return Ok(());
-    }
-    Err(format!("`cargo {subcommand}` is missing and `rustup component add {name}` did not bring it"))
+    let works = || succeeds(&format!("cargo {subcommand} --version"));
+    ensure(name, works, &[&format!("rustup component add {name}")])
 }
 
-/// The compiler of clippy, which lies beside the other.
-pub(super) fn clippy_driver() -> Result<PathBuf, String> {
-    component("clippy", "clippy")?;
-    let printed = Command::new("rustc").args(["--print", "sysroot"]).output();
-    let printed = printed.map_err(|error| format!("`rustc` is missing: {error}"))?;
-    let driver = Path::new(String::from_utf8_lossy(&printed.stdout).trim()).join("bin").join("clippy-driver");
-    if driver.is_file() { Ok(driver) } else { Err(format!("there is no {}", driver.display())) }
-}
-
-/// Ensures that the standard library for this target is installed; states what is missing if it
-/// cannot.
+/// The standard library for this target.
 pub(super) fn target(name: &str) -> Result<(), String> {
-    if is_target_there(name) || (quietly("rustup", &["target", "add", name]) && is_target_there(name)) {
-        return Ok(());
-    }
-    Err(format!("the target {name} is missing and `rustup target add {name}` did not bring it"))
+    let query = format!("rustc --print target-libdir --target {name}");
+    let works = || output(&query).is_some_and(|folder| std::path::Path::new(folder.trim()).is_dir());
+    ensure(name, works, &[&format!("rustup target add {name}")])
 }
 
-/// Ensures that SUNDIALS can be linked; states what is missing if it cannot. It is installed if the
-/// user is root on Debian.
+/// SUNDIALS, where it can be linked; root installs it on Debian.
 pub(super) fn sundials() -> Result<(), String> {
-    // Asked for by two stages at once, it is installed once.
-    static ASKED: Mutex<()> = Mutex::new(());
-    let _asked = ASKED.lock().unwrap_or_else(PoisonError::into_inner);
-    let header = ["-fsyntax-only", "-include", "cvode/cvode.h", "-x", "c", "/dev/null"];
-    let install = || {
-        quietly("apt-get", &["update", "-qq"])
-            && quietly("apt-get", &["install", "-y", "-qq", "libsundials-dev"])
-    };
-    if quietly("cc", &header) || (install() && quietly("cc", &header)) {
-        return Ok(());
-    }
-    Err("SUNDIALS is missing and `apt-get install libsundials-dev` did not bring it".to_string())
+    let works = || succeeds("cc -fsyntax-only -include cvode/cvode.h -x c /dev/null");
+    ensure("SUNDIALS", works, &["apt-get update -qq", "apt-get install -y -qq libsundials-dev"])
 }
 
-/// So little of the weight of others that a program runs where they leave a processor idle, and
-/// still ends if they leave none.
-const NICENESS: &str = "15";
-
-/// The beginning of a command line that leaves the processors to others that want them; empty where
-/// the system cannot do that.
-pub(super) fn politely() -> &'static [&'static str] {
-    if quietly("nice", &["true"]) { &["nice", "-n", NICENESS] } else { &[] }
+/// Python's module for virtual environments, which Debian has in a package of its own.
+pub(super) fn python() -> Result<(), String> {
+    let works = || succeeds("python3 -m ensurepip --version");
+    ensure("python3-venv", works, &["apt-get update -qq", "apt-get install -y -qq python3-venv"])
 }
 
-fn is_target_there(name: &str) -> bool {
-    let printed = Command::new("rustc").args(["--print", "target-libdir", "--target", name]).output();
-    printed.is_ok_and(|output| {
-        let folder = String::from_utf8_lossy(&output.stdout).trim().to_string();
-        output.status.success() && Path::new(&folder).is_dir()
-    })
+fn succeeds(line: &str) -> bool {
+    output(line).is_some()
 }
 
-fn quietly(program: &str, arguments: &[&str]) -> bool {
-    let status = Command::new(program).args(arguments).stdout(Stdio::null()).stderr(Stdio::null()).status();
-    status.is_ok_and(|status| status.success())
+/// Output of a command that succeeds.
+fn output(line: &str) -> Option<String> {
+    let mut words = line.split(' ');
+    let ran = Command::new(words.next()?).args(words).stdin(Stdio::null()).output().ok()?;
+    ran.status.success().then(|| String::from_utf8_lossy(&ran.stdout).into_owned())
 }

@@ -1,4 +1,4 @@
-//! Who may depend on whom.
+//! Packages depend on those packages alone that the table below allows.
 //!
 //! ```text
 //! dynamics <- quantity <- hydraulics <- machine, project <-+
@@ -6,157 +6,82 @@
 //! quantity, qft <- figure <-------------------------------------------------+- workbench <- cli
 //! ```
 
-use std::collections::BTreeSet;
-
 use super::Violation;
 use crate::repository::Repository;
 
 /// The packages by their folder, those outside the workspace too, and those of ours that each may
 /// use.
-const ALLOWED: &[(&str, &[&str])] = &[
-    ("crates/dynamics", &[]),
-    ("crates/hydraulics", &["phea-dynamics", "phea-quantity"]),
-    ("crates/qft", &["phea-dynamics"]),
-    ("crates/machine", &["phea-dynamics", "phea-hydraulics"]),
-    ("crates/quantity", &["phea-dynamics"]),
-    ("crates/figure", &["phea-dynamics", "phea-qft", "phea-quantity"]),
-    ("crates/project", &["phea-dynamics", "phea-hydraulics", "phea-quantity"]),
-    (
-        "crates/engineering",
-        &["phea-dynamics", "phea-hydraulics", "phea-machine", "phea-project", "phea-qft", "phea-quantity"],
-    ),
-    (
-        "crates/workbench",
-        &[
-            "phea-dynamics",
-            "phea-engineering",
-            "phea-figure",
-            "phea-hydraulics",
-            "phea-machine",
-            "phea-project",
-            "phea-qft",
-            "phea-quantity",
-        ],
-    ),
-    ("apps/cli", &["phea-workbench"]),
-    ("fuzz", &["phea-workbench"]),
-    (
-        "benches/peers/sundials",
-        &["phea-dynamics", "phea-engineering", "phea-hydraulics", "phea-machine", "phea-project"],
-    ),
-    ("xtask", &[]),
+const ALLOWED: &[(&str, &str)] = &[
+    ("crates/dynamics", ""),
+    ("crates/hydraulics", "dynamics quantity"),
+    ("crates/qft", "dynamics"),
+    ("crates/machine", "dynamics hydraulics"),
+    ("crates/quantity", "dynamics"),
+    ("crates/figure", "dynamics qft quantity"),
+    ("crates/project", "dynamics hydraulics quantity"),
+    ("crates/engineering", "dynamics hydraulics machine project qft quantity"),
+    ("crates/workbench", "dynamics engineering figure hydraulics machine project qft quantity"),
+    ("apps/cli", "workbench"),
+    ("fuzz", "workbench"),
+    ("benches/peers/sundials", "dynamics engineering hydraulics machine project"),
+    ("xtask", ""),
 ];
 
 /// The folders of the crates that compute and do nothing else.
 pub(super) const LOWER_CRATES: [&str; 5] =
     ["crates/dynamics/", "crates/hydraulics/", "crates/machine/", "crates/qft/", "crates/quantity/"];
 
-/// What a crate that only computes has no use for: files formats, clocks, threads, unseeded random
-/// numbers.
+/// Packages that a crate that only computes has no use for: file formats, clocks, threads, unseeded
+/// random numbers.
 const FOREIGN_TO_LOWER_CRATES: [&str; 10] =
     ["serde", "serde_json", "toml", "clap", "rand", "getrandom", "rayon", "chrono", "time", "tempfile"];
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
-    let manifests = repository.texts(|path| path != "Cargo.toml" && path.ends_with("/Cargo.toml"));
-    manifests.flat_map(|(path, text)| check_manifest(path, text)).collect()
+    repository.texts("", "/Cargo.toml").flat_map(|(path, text)| check_manifest(path, text)).collect()
 }
 
 fn check_manifest(path: &str, text: &str) -> Vec<Violation> {
-    let folder = path.trim_end_matches("/Cargo.toml");
     let manifest: toml::Table = match text.parse() {
         Ok(manifest) => manifest,
         Err(error) => return vec![Violation::new(path, 0, error.to_string())],
     };
+    let folder = path.trim_end_matches("/Cargo.toml");
     let Some((_, allowed)) = ALLOWED.iter().find(|(known, _)| *known == folder) else {
-        let message =
-            "a package that the table of allowed dependencies does not know (xtask/src/tidy/dependencies.rs)";
+        let message = "is missing in the table of xtask/src/tidy/dependencies.rs";
         return vec![Violation::new(path, 0, message)];
     };
-    let lower = LOWER_CRATES.contains(&format!("{folder}/").as_str());
-    let forbidden = |name: &str| {
-        (name.starts_with("phea-") && !allowed.contains(&name))
-            || (lower && FOREIGN_TO_LOWER_CRATES.contains(&name))
+    let is_lower = LOWER_CRATES.contains(&format!("{folder}/").as_str());
+    let is_forbidden = |name: &str| match name.strip_prefix("phea-") {
+        Some(own) => allowed.split(' ').all(|one| one != own),
+        None => is_lower && FOREIGN_TO_LOWER_CRATES.contains(&name),
     };
-    let mut used = BTreeSet::new();
-    collect_dependencies(&manifest, &mut used);
-    let found = used.into_iter().filter(|name| forbidden(name));
-    found
-        .map(|name| Violation::new(path, line_of(text, &name), format!("may not depend on {name}")))
-        .collect()
+    let targets = manifest.get("target").and_then(toml::Value::as_table);
+    let targets = targets.into_iter().flat_map(|targets| targets.values().filter_map(toml::Value::as_table));
+    let used = [&manifest].into_iter().chain(targets).flat_map(dependencies);
+    let message = |name| format!("may not depend on {name}");
+    used.filter(|name| is_forbidden(name)).map(|name| Violation::new(path, 0, message(name))).collect()
 }
 
-/// The packages named in `[dependencies]`, `[dev-dependencies]`, `[build-dependencies]`, also below
-/// `[target]`.
-fn collect_dependencies(table: &toml::Table, used: &mut BTreeSet<String>) {
-    for (key, value) in table {
-        let Some(inner) = value.as_table() else { continue };
-        match key.as_str() {
-            "dependencies" | "dev-dependencies" | "build-dependencies" => {
-                for (name, what) in inner {
-                    let package = what.get("package").and_then(toml::Value::as_str);
-                    used.insert(package.unwrap_or(name).to_string());
-                }
-            }
-            "target" => {
-                inner.values().filter_map(toml::Value::as_table).for_each(|t| collect_dependencies(t, used))
-            }
-            _ => {}
-        }
-    }
+/// The packages named in `[dependencies]`, `[dev-dependencies]`, `[build-dependencies]`.
+fn dependencies(table: &toml::Table) -> impl Iterator<Item = &str> {
+    let lists = ["dependencies", "dev-dependencies", "build-dependencies"];
+    let lists = lists.into_iter().filter_map(|list| table.get(list).and_then(toml::Value::as_table));
+    lists.flatten().map(|(name, details)| {
+        let package = details.get("package").and_then(toml::Value::as_str);
+        package.unwrap_or(name)
+    })
 }
 
-fn line_of(text: &str, name: &str) -> usize {
-    text.lines().position(|line| line.contains(name)).map_or(0, |index| index + 1)
-}
+/// The package that calls a library in C, which cannot forbid what is not safe Rust.
+const CALLS_C: &str = "benches/peers/sundials/Cargo.toml";
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn messages(path: &str, text: &str) -> Vec<String> {
-        check(&Repository::from_texts(&[(path, text)])).iter().map(Violation::to_string).collect()
-    }
-
-    #[test]
-    fn qft_and_hydraulics_never_use_each_other() {
-        assert_eq!(
-            messages("crates/qft/Cargo.toml", "[dependencies]\nphea-hydraulics = { workspace = true }"),
-            ["crates/qft/Cargo.toml:2: may not depend on phea-hydraulics"]
-        );
-        assert_eq!(
-            messages("crates/hydraulics/Cargo.toml", "[dev-dependencies]\nphea-qft.workspace = true").len(),
-            1
-        );
-    }
-
-    #[test]
-    fn shells_use_the_workbench_only() {
-        assert_eq!(
-            messages("apps/cli/Cargo.toml", "[dependencies]\nphea-dynamics.workspace = true").len(),
-            1
-        );
-        assert!(
-            messages("apps/cli/Cargo.toml", "[dependencies]\nphea-workbench.workspace = true").is_empty()
-        );
-    }
-
-    #[test]
-    fn renaming_and_targets_hide_nothing() {
-        let renamed = "[target.'cfg(unix)'.dependencies]\nq = { package = \"phea-qft\", path = \"../qft\" }";
-        assert_eq!(messages("crates/hydraulics/Cargo.toml", renamed).len(), 1);
-    }
-
-    #[test]
-    fn lower_crates_know_no_file_format_and_no_chance() {
-        for name in ["serde", "rand"] {
-            let text = format!("[dependencies]\n{name} = \"1\"");
-            assert_eq!(messages("crates/dynamics/Cargo.toml", &text).len(), 1);
-            assert!(messages("crates/workbench/Cargo.toml", &text).is_empty());
-        }
-    }
-
-    #[test]
-    fn a_new_package_must_be_placed() {
-        assert_eq!(messages("crates/extra/Cargo.toml", "[dependencies]").len(), 1);
-    }
+/// Every package has the lints of the workspace; one that is a workspace of its own, as fuzzing
+/// tools want it, has nothing to inherit.
+pub(super) fn check_lints(repository: &Repository) -> Vec<Violation> {
+    let manifests = repository.texts("", "/Cargo.toml").filter(|(path, text)| {
+        let lines = || text.lines().map(str::trim);
+        let is_exempt = *path == CALLS_C || lines().any(|line| line == "[workspace]");
+        !is_exempt && !text.contains("[lints]\nworkspace = true")
+    });
+    manifests.map(|(path, _)| Violation::new(path, 0, "lacks `[lints] workspace = true`")).collect()
 }

@@ -1,6 +1,6 @@
 //! Every equation of the thesis that the code cites stands in the book's index of equations, what
 //! the index says implements it exists, and the file that it names holds the equation as a formula.
-//! Of an equation of another source the index states how the formula begins.
+//! For an equation of another source the index states how the formula begins.
 
 use std::collections::BTreeSet;
 
@@ -23,36 +23,24 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
         if equations.is_empty() {
             found.push(Violation::new(INDEX, row.line, "a row without an equation number such as 6.12"));
         }
-        found.extend(not_implemented(&vocabulary, &row));
+        found.extend(vocabulary.unknown(INDEX, row.line, &row.spans("implemented by")));
         found.extend(misplaced(repository, &row, &equations));
         known.extend(equations);
     }
     for row in tables(text, "formula") {
-        found.extend(not_implemented(&vocabulary, &row));
+        found.extend(vocabulary.unknown(INDEX, row.line, &row.spans("implemented by")));
         found.extend(missing_formula(repository, &row));
     }
-    let sources = repository.texts(|path| path.starts_with("crates/") && path.ends_with(".rs"));
+    let sources = repository.texts("crates/", ".rs");
     for (path, text) in sources {
         for (index, line) in text.lines().enumerate() {
-            let unlisted = cited(line).into_iter().filter(|equation| !known.contains(equation));
-            found.extend(unlisted.map(|(chapter, number)| {
-                Violation::new(
-                    path,
-                    index + 1,
-                    format!("cites {chapter}.{number}, which {INDEX} does not list"),
-                )
-            }));
+            for (chapter, number) in cited(line).into_iter().filter(|cited| !known.contains(cited)) {
+                let message = format!("cites {chapter}.{number}, which {INDEX} does not list");
+                found.push(Violation::new(path, index + 1, message));
+            }
         }
     }
     found
-}
-
-/// What a row says implements it, and is not a word of the code.
-fn not_implemented(vocabulary: &Vocabulary, row: &Row<'_>) -> Vec<Violation> {
-    let unknown = vocabulary.unknown(&row.spans("implemented by")).into_iter();
-    unknown
-        .map(|name| Violation::new(INDEX, row.line, format!("`{name}` is no word of the code in crates/")))
-        .collect()
 }
 
 /// The file of a row whose fences do not hold the row's formula.
@@ -116,69 +104,4 @@ fn fenced(text: &str) -> impl Iterator<Item = &str> {
         };
         false
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const CODE: &str =
-        "/// ```text\n/// B = 1     thesis (6.18), (6.20)\n/// ```\npub fn effective_modulus() {}\n";
-
-    fn messages(rows: &str) -> Vec<String> {
-        let head = "| equation | gives | implemented by | in |\n|---|---|---|---|\n";
-        let index = format!("{head}{rows}\n");
-        let files = [(INDEX, index.as_str()), ("crates/hydraulics/src/line.rs", CODE)];
-        check(&Repository::from_texts(&files)).iter().map(Violation::to_string).collect()
-    }
-
-    #[test]
-    fn what_is_cited_is_listed() {
-        assert!(messages("| 6.18, 6.20 | modulus | `effective_modulus` | `hydraulics/line.rs` |").is_empty());
-        assert_eq!(
-            messages("| 6.20 | modulus | `effective_modulus` | `hydraulics/line.rs` |"),
-            ["crates/hydraulics/src/line.rs:2: cites 6.18, which book/src/theory/equations.md does not list"]
-        );
-    }
-
-    #[test]
-    fn what_is_listed_exists() {
-        let messages = |row: &str| messages(&format!("| 6.18, 6.20 | modulus | {row} |"));
-        assert_eq!(messages("`series_modulus` | `hydraulics/line.rs`").len(), 1);
-        assert_eq!(messages("`effective_modulus` | `hydraulics/line.rs` |\n| six | x | not yet |").len(), 1);
-    }
-
-    #[test]
-    fn an_equation_stands_as_a_formula_where_the_index_says() {
-        let row = |equations: &str, file: &str| {
-            messages(&format!("| {equations} | modulus | `effective_modulus` | {file} |"))
-        };
-        let place = "book/src/theory/equations.md:3";
-        assert_eq!(
-            row("6.18 to 6.20", "`hydraulics/line.rs`"),
-            [format!("{place}: 6.19 stands in no `text` fence of the files in column `in`")]
-        );
-        assert_eq!(row("6.18, 6.20", "`hydraulics/line.rs`, `hydraulics/hose.rs`").len(), 1);
-        assert_eq!(row("6.18, 6.20", "").len(), 2);
-    }
-
-    #[test]
-    fn an_equation_of_another_source_stands_where_its_row_says() {
-        let messages = |row: &str| {
-            let head = "| formula | gives | implemented by | in |\n|---|---|---|---|\n";
-            let text = format!("{head}{row}\n");
-            let code = CODE.replace("thesis (6.18), (6.20)", "for a rigid line");
-            let files = [(INDEX, text.as_str()), ("crates/hydraulics/src/line.rs", code.as_str())];
-            check(&Repository::from_texts(&files)).iter().map(Violation::to_string).collect::<Vec<_>>()
-        };
-        assert!(
-            messages("| `B = 1 for` | modulus | `effective_modulus` | `hydraulics/line.rs` |").is_empty()
-        );
-        assert_eq!(
-            messages("| `B = 2` | modulus | `effective_modulus` | `hydraulics/line.rs` |"),
-            [format!("{INDEX}:3: `B = 2` stands in no `text` fence of `hydraulics/line.rs`")]
-        );
-        assert_eq!(messages("| `B = 1` | modulus | `lost` | `hydraulics/lost.rs` |").len(), 2);
-        assert_eq!(messages("| B = 1 | modulus | `effective_modulus` | |").len(), 1);
-    }
 }

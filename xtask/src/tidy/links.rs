@@ -8,8 +8,7 @@ use crate::repository::Repository;
 const FOLDERS: [&str; 7] = ["crates/", "apps/", "book/", "examples/", "xtask/", "comparisons/", ".ci/"];
 
 pub(super) fn check(repository: &Repository) -> Vec<Violation> {
-    let documents = repository.texts(|path| path.ends_with(".md"));
-    documents.flat_map(|(path, text)| check_document(repository, path, text)).collect()
+    repository.texts("", ".md").flat_map(|(path, text)| check_document(repository, path, text)).collect()
 }
 
 fn check_document(repository: &Repository, path: &str, text: &str) -> Vec<Violation> {
@@ -62,7 +61,7 @@ fn link_targets(line: &str) -> Vec<&str> {
         .collect()
 }
 
-/// What stands between single backticks.
+/// Texts between single backticks.
 pub(super) fn code_spans(line: &str) -> Vec<&str> {
     line.split('`').skip(1).step_by(2).collect()
 }
@@ -109,53 +108,4 @@ fn check_span(repository: &Repository, span: &str) -> bool {
         |part: &str| part.contains(['*', '<', '{']) || part.chars().next().is_some_and(char::is_uppercase);
     let known: Vec<&str> = span.split('/').take_while(|part| !placeholder(part)).collect();
     !looks_like_path || repository.exists(&known.join("/"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn count(text: &str) -> usize {
-        let files = [
-            ("book/src/guide/units.md", text),
-            ("README.md", "# Two words, here\n"),
-            ("crates/a/src/b.rs", ""),
-        ];
-        check(&Repository::from_texts(&files)).len()
-    }
-
-    #[test]
-    fn links_lead_somewhere() {
-        assert_eq!(
-            count("[a](../../../README.md) [b](units.md) [c](https://example.org/x) [d](../guide)"),
-            0
-        );
-        assert_eq!(count("[a](README.md)"), 1);
-        assert_eq!(count("see [a](nowhere.md), [b](../nothing/)"), 2);
-    }
-
-    #[test]
-    fn anchors_are_headings() {
-        assert_eq!(count("[a](../../../README.md#two-words-here)"), 0);
-        assert_eq!(count("[a](../../../README.md#three-words)"), 1);
-        assert_eq!(count("# Here\n[a](#here) [b](#there)"), 1);
-    }
-
-    #[test]
-    fn paths_in_code_spans_exist() {
-        assert_eq!(count("`crates/a/src/b.rs`, `crates/a/*/golden.rs`, `crates/NAME/src`, `crates/a`"), 0);
-        assert_eq!(count("`crates/a/src/c.rs` and `crates/b/*`"), 2);
-    }
-
-    #[test]
-    fn paths_in_commands_exist() {
-        assert_eq!(count("```console\n$ phea report crates/a/src/b.rs --out out\n```\n"), 0);
-        assert_eq!(count("```console\n$ phea report crates/a/lost.toml\n```\n"), 1);
-        assert_eq!(count("```text\n$ phea report crates/a/lost.toml\n```\n"), 0);
-    }
-
-    #[test]
-    fn fenced_code_is_left_alone() {
-        assert_eq!(count("```text\n[a](nowhere.md) `crates/none`\n```\n"), 0);
-    }
 }

@@ -10,6 +10,7 @@ use super::Violation;
 use super::links::{code_spans, prose_lines};
 use super::parameters::{Parameter, parameters};
 use crate::repository::Repository;
+use crate::rust_file::words;
 
 const DOCUMENT: &str = "NOTATION.md";
 
@@ -26,24 +27,17 @@ pub(super) fn check(repository: &Repository) -> Vec<Violation> {
             found.push(Violation::new(DOCUMENT, row.line, "a row without an identifier"));
         }
         if row.cell("SI unit").is_empty() {
-            found.push(Violation::new(
-                DOCUMENT,
-                row.line,
-                "a row without a unit (write 1 for a plain number)",
-            ));
+            let message = "a row without a unit (write 1 for a plain number)";
+            found.push(Violation::new(DOCUMENT, row.line, message));
         }
-        found.extend(vocabulary.unknown(&identifiers).into_iter().map(|name| {
-            Violation::new(DOCUMENT, row.line, format!("`{name}` is no word of the code in crates/"))
-        }));
+        found.extend(vocabulary.unknown(DOCUMENT, row.line, &identifiers));
         named.extend(identifiers);
     }
-    let is_named = |Parameter { owner, name, .. }: &Parameter| {
-        named.contains(name.as_str()) || named.contains(format!("{owner}::{name}").as_str())
-    };
-    for parameter in parameters(repository).into_iter().filter(|parameter| !is_named(parameter)) {
-        let Parameter { path, line, owner, name } = parameter;
-        let message = format!("the parameter `{owner}::{name}` has no row in {DOCUMENT}");
-        found.push(Violation::new(&path, line, message));
+    for Parameter { path, line, owner, name } in parameters(repository) {
+        if !named.contains(name) && !named.contains(format!("{owner}::{name}").as_str()) {
+            let message = format!("the parameter `{owner}::{name}` has no row in {DOCUMENT}");
+            found.push(Violation::new(path, line, message));
+        }
     }
     found
 }
@@ -87,68 +81,20 @@ fn cells(line: &str) -> Vec<&str> {
     inner.map(|inner| inner.split('|').map(str::trim).collect()).unwrap_or_default()
 }
 
-/// Every word of the code in `crates/`, comments left out.
-pub(super) struct Vocabulary(BTreeSet<String>);
+/// Every word of the code in `crates/`, comments and texts left out.
+pub(super) struct Vocabulary<'a>(BTreeSet<&'a str>);
 
-impl Vocabulary {
-    pub(super) fn of(repository: &Repository) -> Vocabulary {
-        let libraries = repository.rust_files().iter().filter(|file| file.path.starts_with("crates/"));
-        Vocabulary(libraries.flat_map(|file| file.words()).collect())
+impl Vocabulary<'_> {
+    pub(super) fn of(repository: &Repository) -> Vocabulary<'_> {
+        let libraries = repository.rust_files.iter().filter(|file| file.path.starts_with("crates/"));
+        Vocabulary(libraries.flat_map(|file| &file.lines).flat_map(|line| words(&line.code)).collect())
     }
 
-    /// Those names of which some part is not a word.
-    pub(super) fn unknown<'a>(&self, names: &[&'a str]) -> Vec<&'a str> {
-        let known = |name: &&str| name.split("::").all(|word| self.0.contains(word));
-        names.iter().copied().filter(|name| !known(name)).collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const CODE: &str = "
-        /// x_p
-        pub struct Fluid { pub bulk_modulus: f64, pub name: String }
-        impl Fluid { pub fn problems(&self) {} }
-        pub struct Answer { pub stiffness: f64 }
-    ";
-    const ROW: &str = "| β_0 | `Fluid::bulk_modulus` | Pa |";
-
-    fn messages(rows: &str) -> Vec<String> {
-        let text = format!(
-            "# Notation\n\n| symbol | identifier | SI unit |\n|---|---|---|\n{rows}\n\nSee `anything`.\n"
-        );
-        let files = [("NOTATION.md", text.as_str()), ("crates/hydraulics/src/lib.rs", CODE)];
-        check(&Repository::from_texts(&files)).iter().map(Violation::to_string).collect()
-    }
-
-    #[test]
-    fn identifiers_are_words_of_the_code() {
-        assert!(messages(ROW).is_empty());
-        assert_eq!(
-            messages(&format!("{ROW}\n| x_p | `x_p` | m |")),
-            ["NOTATION.md:6: `x_p` is no word of the code in crates/"]
-        );
-        assert_eq!(messages(&format!("{ROW}\n| A | `Fluid::area` | m2 |")).len(), 1);
-    }
-
-    #[test]
-    fn a_row_names_something_and_its_unit() {
-        assert_eq!(messages(&format!("{ROW}\n| x_p | position | m |")).len(), 1);
-        assert_eq!(messages(&format!("{ROW}\n| K_H | `stiffness` | |")).len(), 1);
-    }
-
-    #[test]
-    fn parameters_are_named() {
-        assert_eq!(
-            messages("| K_H | `stiffness` | N/m |"),
-            ["crates/hydraulics/src/lib.rs:3: the parameter `Fluid::bulk_modulus` has no row in NOTATION.md"]
-        );
-    }
-
-    #[test]
-    fn the_document_exists() {
-        assert_eq!(check(&Repository::from_texts(&[])).len(), 1);
+    /// Reports those names of which some part is not a word.
+    pub(super) fn unknown(&self, document: &str, line: usize, names: &[&str]) -> Vec<Violation> {
+        let is_known = |name: &&&str| name.split("::").all(|word| self.0.contains(word));
+        let unknown = names.iter().filter(|name| !is_known(name));
+        let message = |name| format!("`{name}` is no word of the code in crates/");
+        unknown.map(|name| Violation::new(document, line, message(name))).collect()
     }
 }

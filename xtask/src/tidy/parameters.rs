@@ -1,149 +1,90 @@
-//! The parameters of the actuator: the public numbers of those types of `crates/hydraulics` that
-//! can be refused, because they have a method `problems` or are part of a type that has one.
-//! Somebody types these numbers and has to know what they mean.
+//! The parameters of the actuator: the numbers of those types of `crates/hydraulics` that can be
+//! refused, because they have a method `problems` or are part of a type that has one. Somebody
+//! types these numbers and has to know what they mean.
 
-use std::collections::{BTreeMap, BTreeSet};
-
-use syn::visit::{self, Visit};
+use std::collections::BTreeSet;
 
 use crate::repository::Repository;
+use crate::rust_file::{Line, RustFile, words};
 
-/// A public number of a type that can be refused.
-pub(super) struct Parameter {
-    pub(super) path: String,
+/// A field that is a number, of a type that can be refused.
+pub(super) struct Parameter<'a> {
+    pub(super) path: &'a str,
     pub(super) line: usize,
-    pub(super) owner: String,
-    pub(super) name: String,
+    pub(super) owner: &'a str,
+    pub(super) name: &'a str,
 }
 
 /// All parameters, in the order of the files.
-pub(super) fn parameters(repository: &Repository) -> Vec<Parameter> {
-    let mut types = Types::default();
-    for file in repository.rust_files().iter().filter(|file| file.path.starts_with("crates/hydraulics/src/"))
-    {
-        types.path.clone_from(&file.path);
-        types.visit_file(&file.syntax);
+pub(super) fn parameters(repository: &Repository) -> Vec<Parameter<'_>> {
+    let is_physics = |file: &&RustFile| file.path.starts_with("crates/hydraulics/src/") && file.is_shipped();
+    let files: Vec<&RustFile> = repository.rust_files.iter().filter(is_physics).collect();
+    let mut definitions: Vec<Definition> = files.iter().flat_map(|file| definitions(file)).collect();
+    let mut refusable: BTreeSet<&str> = files.iter().flat_map(|file| with_problems(file)).collect();
+    let mut count = 0;
+    while refusable.len() > count {
+        count = refusable.len();
+        let lines = definitions.iter().filter(|definition| refusable.contains(definition.owner));
+        let parts: Vec<&str> = lines.flat_map(|definition| words(&definition.line.code)).collect();
+        refusable.extend(parts);
     }
-    let mut refusable = types.refusable.clone();
-    let mut to_look_into: Vec<String> = refusable.iter().cloned().collect();
-    while let Some(owner) = to_look_into.pop() {
-        let parts = types.parts.get(&owner).into_iter().flatten();
-        to_look_into.extend(parts.filter(|part| refusable.insert(part.to_string())).cloned());
-    }
-    types.numbers.into_iter().filter(|number| refusable.contains(&number.owner)).collect()
+    definitions.retain(|definition| refusable.contains(definition.owner));
+    definitions.iter().flat_map(numbers).collect()
 }
 
-#[derive(Default)]
-struct Types {
-    path: String,
-    /// Public numbers of any type.
-    numbers: Vec<Parameter>,
-    /// The names that occur in the types of a type's fields.
-    parts: BTreeMap<String, BTreeSet<String>>,
-    /// Types with a method `problems`.
-    refusable: BTreeSet<String>,
-}
-
-impl Types {
-    fn add(&mut self, owner: &syn::Ident, generics: &syn::Generics, fields: &syn::Fields) {
-        let scalars: Vec<String> =
-            generics.type_params().map(|parameter| parameter.ident.to_string()).collect();
-        for field in fields {
-            let mut names = Names::default();
-            names.visit_type(&field.ty);
-            if let Some(name) = field.ident.as_ref().filter(|_| is_number(&field.ty, &scalars)) {
-                let (line, name) = (name.span().start().line, name.to_string());
-                self.numbers.push(Parameter {
-                    path: self.path.clone(),
-                    line,
-                    owner: owner.to_string(),
-                    name,
-                });
-            }
-            self.parts.entry(owner.to_string()).or_default().extend(names.0);
+/// The types of a file with a method `problems`.
+fn with_problems(file: &RustFile) -> Vec<&str> {
+    let mut owner = "";
+    let mut found = Vec::new();
+    for line in file.shipped() {
+        if line.code.starts_with("impl") {
+            let head = line.code.trim_end_matches(" {").trim_start_matches("impl");
+            let kind = if head.starts_with('<') {
+                head.split_once("> ").map_or(head, |(_, kind)| kind)
+            } else {
+                head
+            };
+            owner = words(kind).next().unwrap_or_default();
+        }
+        if line.code.contains("fn problems(") {
+            found.push(owner);
         }
     }
+    found
 }
 
-impl<'ast> Visit<'ast> for Types {
-    fn visit_item_struct(&mut self, item: &'ast syn::ItemStruct) {
-        self.add(&item.ident, &item.generics, &item.fields);
-    }
+/// A line of the definition of a type.
+struct Definition<'a> {
+    path: &'a str,
+    owner: &'a str,
+    line: &'a Line,
+}
 
-    fn visit_item_enum(&mut self, item: &'ast syn::ItemEnum) {
-        item.variants.iter().for_each(|variant| self.add(&item.ident, &item.generics, &variant.fields));
-    }
-
-    fn visit_item_impl(&mut self, block: &'ast syn::ItemImpl) {
-        let problems = |item: &syn::ImplItem| match item {
-            syn::ImplItem::Fn(method) => method.sig.ident == "problems",
-            _ => false,
-        };
-        if let (syn::Type::Path(owner), true) = (&*block.self_ty, block.items.iter().any(problems)) {
-            self.refusable.extend(owner.path.segments.last().map(|segment| segment.ident.to_string()));
+/// The lines that define the structs and enums of a file.
+fn definitions(file: &RustFile) -> Vec<Definition<'_>> {
+    let mut owner = None;
+    let mut found = Vec::new();
+    for line in file.shipped() {
+        let mut head = words(&line.code).filter(|word| !["pub", "crate", "super"].contains(word));
+        if matches!(head.next(), Some("struct" | "enum")) {
+            owner = head.next();
+        }
+        found.extend(owner.map(|owner| Definition { path: &file.path, owner, line }));
+        if line.code.starts_with('}') || line.code.ends_with(';') {
+            owner = None;
         }
     }
+    found
 }
 
-/// Every name in a type.
-#[derive(Default)]
-struct Names(BTreeSet<String>);
-
-impl<'ast> Visit<'ast> for Names {
-    fn visit_path_segment(&mut self, segment: &'ast syn::PathSegment) {
-        self.0.insert(segment.ident.to_string());
-        visit::visit_path_segment(self, segment);
-    }
-}
-
-/// `f64`, a scalar by the name of a type parameter, an array or an option of them.
-fn is_number(kind: &syn::Type, scalars: &[String]) -> bool {
-    let of_numbers = |argument: &syn::GenericArgument| match argument {
-        syn::GenericArgument::Type(inner) => is_number(inner, scalars),
-        _ => false,
-    };
-    match kind {
-        syn::Type::Array(array) => is_number(&array.elem, scalars),
-        syn::Type::Path(path) => path.path.segments.last().is_some_and(|last| match &last.arguments {
-            syn::PathArguments::AngleBracketed(inner) => {
-                last.ident == "Option" && inner.args.iter().any(of_numbers)
-            }
-            _ => last.ident == "f64" || scalars.iter().any(|scalar| last.ident == scalar),
-        }),
-        _ => false,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn names(files: &[(&str, &str)]) -> Vec<String> {
-        let parameters = parameters(&Repository::from_texts(files));
-        parameters.into_iter().map(|Parameter { owner, name, .. }| format!("{owner}::{name}")).collect()
-    }
-
-    #[test]
-    fn numbers_that_can_be_refused_are_parameters_and_answers_are_not() {
-        let code = "
-            pub struct Hose<S = f64> { pub bore: S, pub name: String, pub stiffening: Option<Stiffening> }
-            impl<S> Hose<S> { pub fn problems(&self) {} }
-            pub enum Line { Volume { volume: f64 } }
-            impl Line { fn problems(&self) {} }
-            pub struct Answer { pub minimum: f64 }
-        ";
-        let part = "pub struct Stiffening { pub nominal: f64 }";
-        let files = [("crates/hydraulics/src/line.rs", code), ("crates/hydraulics/src/line/hose.rs", part)];
-        assert_eq!(names(&files), ["Hose::bore", "Line::volume", "Stiffening::nominal"]);
-        assert!(names(&[("crates/qft/src/line.rs", code)]).is_empty());
-    }
-
-    #[test]
-    fn arrays_and_options_of_numbers_are_numbers() {
-        for (text, expected) in
-            [("[f64; 2]", true), ("Option<S>", true), ("Vec<f64>", false), ("Line", false)]
-        {
-            assert_eq!(is_number(&syn::parse_str(text).unwrap(), &["S".to_string()]), expected, "{text}");
-        }
-    }
+/// The fields of a line that are `f64`, a scalar of type `S`, an array or an option of them.
+fn numbers<'a>(Definition { path, owner, line }: &Definition<'a>) -> Vec<Parameter<'a>> {
+    let fields = line.code.match_indices(": ").map(|(at, _)| line.code.split_at(at));
+    let numbers = fields.filter_map(|(before, kind)| {
+        let kind = kind.replace("Option<", "").trim_start_matches([':', ' ', '[']).to_string();
+        let is_number = matches!(words(&kind).next(), Some("f64" | "S")) && !kind.starts_with('(');
+        let name = words(before).last().filter(|_| is_number)?;
+        Some(Parameter { path, line: line.number, owner, name })
+    });
+    numbers.collect()
 }
