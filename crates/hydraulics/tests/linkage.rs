@@ -405,8 +405,6 @@ fn load(number: u64, [mass, stiffness, damping]: [f64; 3], contact: Contact) -> 
     }
 }
 
-/// Place of the deflection of what lies between sensor and load in the signals of a machine.
-
 /// Of five numbers two have a damped, progressive spring on the rod, one a transmission.
 fn series(number: u64, spread: &mut impl FnMut(f64, f64) -> f64) -> Option<SeriesElement> {
     match number % 5 {

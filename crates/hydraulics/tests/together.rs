@@ -295,10 +295,9 @@ fn rest(draw: &mut Draw, rig: &Actuator, machine: &Machine, position: f64) -> In
         let condition = Condition::Command(side * command * pow(0.8, f64::from(step)));
         machine.rest(&operating_point(rig, position, condition).unwrap()).ok()
     });
-    let within = |rest: &InitialCondition| {
-        let end = machine.signals(&rest.state, &rest.all_inputs()).load.position;
-        rig.components().linkage.is_none() || (0.0..=STROKE).contains(&end)
-    };
+    let end = |rest: &InitialCondition| machine.signals(&rest.state, &rest.all_inputs()).load.position;
+    let within =
+        |rest: &InitialCondition| rig.components().linkage.is_none() || (0.0..=STROKE).contains(&end(rest));
     rests.find(within).unwrap()
 }
 

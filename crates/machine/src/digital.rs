@@ -7,7 +7,7 @@ use phea_dynamics::random;
 use phea_dynamics::simulation::{FrozenWatch, Plant, Sampler};
 
 use super::control::Sampled;
-use super::frozen::{Sample, least_stable};
+use super::frozen::{FrozenSample, least_stable};
 use super::samples::{ControllerSample, ControllerSamples};
 
 /// The state of a sampled controller.
@@ -132,7 +132,7 @@ impl Sampler for Digital<'_> {
         let read = ControllerInput { reference, measurement, inner, added };
         let output = controller.step_with(&mut self.state, &read);
         if let Some(memory) = before {
-            let sample = Sample { state, inputs, memory, read: [reference, measurement, inner] };
+            let sample = FrozenSample { state, inputs, memory, read: [reference, measurement, inner] };
             self.watch.take(time_s, least_stable(self.sampled, &sample));
             self.log.borrow_mut().amplification = self.watch.amplification();
         }

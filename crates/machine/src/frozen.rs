@@ -6,7 +6,7 @@ use phea_dynamics::simulation::{Frozen, FrozenMode, Plant, SampledLaw};
 use super::control::Sampled;
 
 /// A sample at which the loop is frozen.
-pub(crate) struct Sample<'a> {
+pub(crate) struct FrozenSample<'a> {
     /// States of the plant.
     pub(crate) state: &'a [f64],
     /// Its inputs.
@@ -18,9 +18,9 @@ pub(crate) struct Sample<'a> {
 }
 
 /// The least stable mode of the loop.
-pub(crate) fn least_stable(sampled: &Sampled, sample: &Sample<'_>) -> Option<FrozenMode> {
+pub(crate) fn least_stable(sampled: &Sampled, sample: &FrozenSample<'_>) -> Option<FrozenMode> {
     let Sampled { held, controller, feed_forward, delay_s, .. } = sampled;
-    let Sample { state, inputs, memory, read } = sample;
+    let FrozenSample { state, inputs, memory, read } = sample;
     let frozen = Frozen::at(held, state, inputs);
     let rows = [0, 1, 2].map(|place| {
         frozen.row(state, inputs, |state, inputs| held.sampled::<f64, f64>(state, inputs)[place])

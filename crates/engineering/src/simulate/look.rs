@@ -47,7 +47,7 @@ pub(super) struct Sighted<'t> {
 }
 
 /// The controller at one time.
-struct ControllerOutput {
+struct LoopOutput {
     /// Reference and filtered reference in N; `None` in an open loop.
     asked_for: Option<[f64; 2]>,
     /// V, output of the controller.
@@ -195,7 +195,7 @@ impl<'a, 't> Looking<'a, 't> {
     }
 
     /// What the controller sees and gives out, and the inputs of the machine alone.
-    fn loop_look<'i>(&self, states: &[f64], inputs: &'i [f64]) -> (ControllerOutput, &'i [f64]) {
+    fn loop_look<'i>(&self, states: &[f64], inputs: &'i [f64]) -> (LoopOutput, &'i [f64]) {
         let (asked_for, control_v, mut signals, others) = match &self.bench.control {
             Control::Continuous(closed) => {
                 let signals = closed.signals::<f64, f64>(states, inputs);
@@ -235,11 +235,11 @@ impl<'a, 't> Looking<'a, 't> {
             }
         };
         signals.virtual_force_n = self.bench.control.sensed().given_way::<f64, f64>(states, others);
-        (ControllerOutput { asked_for, control_v, others: signals }, others)
+        (LoopOutput { asked_for, control_v, others: signals }, others)
     }
 
-    fn sample(&self, time_s: f64, of_loop: ControllerOutput, states: &[f64], others: &[f64]) -> Sample {
-        let ControllerOutput { asked_for, control_v, others: control } = of_loop;
+    fn sample(&self, time_s: f64, of_loop: LoopOutput, states: &[f64], others: &[f64]) -> Sample {
+        let LoopOutput { asked_for, control_v, others: control } = of_loop;
         let machine = &self.bench.machine;
         Sample {
             time_s,

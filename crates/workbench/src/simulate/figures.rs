@@ -144,7 +144,7 @@ fn prefiltered(record: &Record) -> Option<CurvePanel> {
 fn fits(record: &Record) -> bool {
     let (least, most) =
         extent(record.signal(Signal::Force).into_iter().chain(record.reference_n.iter().copied()));
-    let (lowest, highest) = extent(record.signal(Signal::FilteredReference).into_iter());
+    let (lowest, highest) = extent(record.signal(Signal::FilteredReference));
     let room = LEAVES * (most - least);
     record.signal(Signal::FilteredReference).is_empty() || (lowest >= least - room && highest <= most + room)
 }
