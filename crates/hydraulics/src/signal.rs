@@ -38,7 +38,8 @@ macro_rules! signals {
     ($($(#[$attribute:meta])* $signal:ident = $name:literal, $dimension:ident, $part:expr;)*) => {
         /// A signal of a rig with its controller. Forces, positions and velocities are positive
         /// towards the B end, flows are positive from the valve into the line, pressures are gauge.
-        /// Of a rig with a motor, forces are torques in N m and positions are angles in rad.
+        /// A rig with a motor has torques in N m in place of forces, and angles in rad in place of
+        /// positions.
         ///
         /// # Example
         /// ```

@@ -36,7 +36,7 @@ const LONGEST_BLOCK: usize = 10;
 
 /// Extent of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Depth {
+pub(super) enum Depth {
     /// Until the sum falls by no more than its hundred-thousandth: enough to compare models.
     ToCompare,
     /// Until nothing is left to gain.
@@ -155,22 +155,11 @@ pub(super) fn from_near<'a>(
     recordings: &'a [Recording],
     like: &Fit<'_>,
     start: &[f64],
+    depth: Depth,
     watch: Watch<'_>,
 ) -> Result<Fit<'a>, IdentifyError> {
     let together = Together::new(recordings, like.together.tested, &like.together.variables);
-    fitted_from(&[start.to_vec()], together, Depth::ToTheEnd, watch)
-}
-
-/// Other recordings explained by the same model from a start, as far as it takes to compare the
-/// two.
-pub(super) fn compared<'a>(
-    recordings: &'a [Recording],
-    like: &Fit<'_>,
-    start: &[f64],
-    watch: Watch<'_>,
-) -> Result<Fit<'a>, IdentifyError> {
-    let together = Together::new(recordings, like.together.tested, &like.together.variables);
-    fitted_from(&[start.to_vec()], together, Depth::ToCompare, watch)
+    fitted_from(&[start.to_vec()], together, depth, watch)
 }
 
 /// A few steps towards the minimum that a model of the valve with another term has near this one,

@@ -17,7 +17,7 @@ use phea_hydraulics::servovalve::TestInput;
 use super::IdentifyError;
 use super::channels::Channel;
 use super::evidence::{DECISIVE, criteria, independent_fraction};
-use super::fit::{self, Fit};
+use super::fit::{self, Depth, Fit};
 use super::recording::Recording;
 
 /// Fits with other memories at most.
@@ -57,7 +57,7 @@ pub(super) fn remembered(
         let mut continued = first.together.recordings.to_vec();
         continued.iter_mut().for_each(|recording| continues(recording, width));
         let start = first.together.variables.start();
-        let other = fit::compared(&continued, first, &start, watch)?;
+        let other = fit::from_near(&continued, first, &start, Depth::ToCompare, watch)?;
         let [before, after] = criteria([first, &other]);
         if before - after > DECISIVE {
             return settled(&other, vec![true; continued.len()], watch).map(Some);
@@ -95,7 +95,7 @@ fn settled(first: &Fit<'_>, mut needed: Vec<bool>, watch: Watch<'_>) -> Result<W
         if most < SETTLED * width {
             break;
         }
-        let again = fit::from_near(&recordings, first, &start, watch)?;
+        let again = fit::from_near(&recordings, first, &start, Depth::ToTheEnd, watch)?;
         start.clone_from(&again.minimum.variables);
         found = memories(&again);
         needed.iter_mut().zip(&found).for_each(|(needed, found)| *needed |= is_needed(found));

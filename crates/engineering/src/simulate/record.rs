@@ -32,15 +32,15 @@ pub struct Sample {
 /// an integral part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ControlSignals {
-    /// V, as it reaches the valve, after the delay of the loop.
+    /// Command as it reaches the valve, after the delay of the loop, V.
     pub command_v: f64,
-    /// V, that the controller would put out without its limit.
+    /// Command that the controller would put out without its limit, V.
     pub unlimited_v: f64,
-    /// V, that the integral part holds.
+    /// Integral part of the command, V.
     pub integral_v: f64,
-    /// N, after the sensor, with what a virtual impedance adds.
+    /// Measured force, after the sensor, with the part that a virtual impedance adds, N.
     pub measurement_n: f64,
-    /// N, that a virtual impedance adds before the sensor.
+    /// Force that a virtual impedance adds before the sensor, N.
     pub virtual_force_n: f64,
 }
 

@@ -12,52 +12,52 @@ use crate::signal::Signal;
 /// linkage `load` is the motion of the rod's end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MachineSignals<T = f64> {
-    /// N, of the rod on the load.
+    /// Force of the rod on the load, N.
     pub force: T,
-    /// V, position U of the spool.
+    /// Position U of the spool, V.
     pub spool: T,
-    /// V, opening of the edges, y = U - U_0 - z, less null bias and magnetic lag
+    /// Opening of the edges, y = U - U_0 - z, less null bias and magnetic lag, V
     /// ([`crate::servovalve::SpoolImperfection`]).
     pub opening: T,
-    /// Pa, of the chambers, which are those of the lines' ends at the cylinder.
+    /// Pressures of the chambers and of the lines' ends at the cylinder, Pa.
     pub pressures: [T; 2],
-    /// Pa, of the lines' ends at the valve.
+    /// Pressures of the lines' ends at the valve, Pa.
     pub port_pressures: [T; 2],
-    /// Pa, of the supply at the valve.
+    /// Supply pressure at the valve, Pa.
     pub supply_pressure: T,
-    /// Of the piston: m, m/s.
+    /// Motion of the piston: m, m/s.
     pub piston: Motion<T>,
-    /// m, of the force sensor.
+    /// Deflection of the force sensor, m.
     pub deflection: T,
-    /// N, of the chambers on the piston.
+    /// Force of the chambers on the piston, N.
     pub hydraulic_force: T,
-    /// N, of the piston.
+    /// Friction of the piston, N.
     pub friction: T,
-    /// N, of the end stops on the piston.
+    /// Force of the end stops on the piston, N.
     pub end_stops: T,
-    /// m3/s, from the valve into the lines.
+    /// Flows from the valve into the lines, m3/s.
     pub flows: [T; 2],
-    /// m3/s, from the supply into the valve.
+    /// Flow from the supply into the valve, m3/s.
     pub supply_flow: T,
-    /// Of the load: m, m/s.
+    /// Motion of the load: m, m/s.
     pub load: Motion<T>,
-    /// m, by which the series spring or the oil of a transmission is compressed.
+    /// Compression of the series spring, or of the oil of a transmission, m.
     pub series_deflection: T,
-    /// N, on the load.
+    /// Force on the load, N.
     pub load_force: T,
-    /// Of the joint of a linkage: rad, rad/s.
+    /// Motion of the joint of a linkage: rad, rad/s.
     pub joint: Motion<T>,
-    /// N m, of the rod on that joint.
+    /// Torque of the rod on that joint, N m.
     pub joint_torque: T,
-    /// Pa, of the gas behind necks.
+    /// Pressures of the gas behind necks, Pa.
     pub gas_pressures: [T; 2],
     /// Absolute temperatures of gas that exchanges heat over those of its walls.
     pub gas_temperature_ratios: [T; 2],
     /// Settings of the accumulators.
     pub settings: [T; 2],
-    /// W, of the adjustment, [`MovedGas::power`](crate::accumulator::MovedGas::power).
+    /// Power of the adjustment, W, [`MovedGas::power`](crate::accumulator::MovedGas::power).
     pub adjustment_power: T,
-    /// Pa, of the oil of a transmission at the pistons on rod and load.
+    /// Pressures of a transmission's oil at the pistons on rod and load, Pa.
     pub transmission_pressures: [T; 2],
 }
 
