@@ -326,9 +326,7 @@ pub fn identify(
     let starts = first.starts;
     let remembered = memory::remembered(&first, first_guess.hysteresis_width, watch)?;
     let first = match &remembered {
-        Some(memory::WithMemories { recordings, start }) => {
-            fit::from_near(recordings, &first, start, fit::Depth::ToTheEnd, watch)?
-        }
+        Some(with_memories) => with_memories.fitted(&first, watch)?,
         None => first,
     };
     let (evidence, found, terms) = best_model(first, (search.leakage_model, known.leakage_model), watch)?;

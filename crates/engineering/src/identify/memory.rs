@@ -35,9 +35,19 @@ const FORGOTTEN: f64 = 1e-3;
 
 /// Recordings with the memories that their tests begin with, and where the fit of them ended.
 pub(super) struct WithMemories {
-    pub(super) recordings: Vec<Recording>,
+    recordings: Vec<Recording>,
     /// The variables there.
-    pub(super) start: Vec<f64>,
+    start: Vec<f64>,
+}
+
+impl WithMemories {
+    /// The fit of these recordings.
+    ///
+    /// # Errors
+    /// Errors of a fit.
+    pub(super) fn fitted<'a>(&'a self, first: &Fit<'_>, watch: Watch<'_>) -> Result<Fit<'a>, IdentifyError> {
+        fit::from_near(&self.recordings, first, &self.start, Depth::ToTheEnd, watch)
+    }
 }
 
 /// Memories of the recordings that a fit explains; `None` where no test needs one. `width` is the
