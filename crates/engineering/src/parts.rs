@@ -249,7 +249,7 @@ pub(crate) fn transmission(rig: &Rig) -> Option<&Transmission> {
 }
 
 /// kg, of the oil in both lines, and in a transmission.
-pub(crate) fn oil_in_lines(rig: &Rig) -> f64 {
+pub fn oil_in_lines(rig: &Rig) -> f64 {
     let components = rig.actuator.components();
     let volume: f64 = [&components.line_a, &components.line_b].map(Line::volume).iter().sum();
     let closed = transmission(rig).map_or(0.0, |transmission| transmission.oil_volume());

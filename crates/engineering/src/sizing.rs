@@ -19,8 +19,9 @@ pub use branch::{Branch, GainStep, model_name};
 pub use candidate::{Candidate, Consequence, SizingReason};
 pub(crate) use of_project::own_hoses;
 pub use of_project::{SizingError, sizing_problem};
-pub(crate) use other_means::TOO_FEW_COILS;
-pub use other_means::{OtherMeans, OtherMeansProblem, SizedGas, SizedPipe, SizedSpring, SizedValve};
+pub use other_means::{
+    OtherMeans, OtherMeansProblem, SizedGas, SizedPipe, SizedSpring, SizedValve, TOO_FEW_COILS,
+};
 pub use problem::{HoseOption, SizedLoad, SizingProblem};
 pub use sensitivity::{Influence, sensitivity};
 

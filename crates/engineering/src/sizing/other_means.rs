@@ -100,7 +100,7 @@ pub struct SizedValve {
 }
 
 /// Why a spring is not wound.
-pub(crate) const TOO_FEW_COILS: &str = "fewer than two active coils, whose ends would decide the stiffness: take a smaller index, a lower stress, or disc springs";
+pub const TOO_FEW_COILS: &str = "fewer than two active coils, whose ends would decide the stiffness: take a smaller index, a lower stress, or disc springs";
 
 /// Halvings of every search: the interval is rounding then.
 const HALVINGS: usize = 80;

@@ -1,5 +1,6 @@
+use phea_engineering::parts::{self, CostedPart, PartKind, PartsCounted, parts};
+
 use super::list::List;
-use crate::parts::{self, CostedPart, PartKind, PartsCounted, parts};
 use crate::project::Project;
 use crate::rig::Rig;
 
