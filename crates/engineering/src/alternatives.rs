@@ -10,6 +10,7 @@ mod by_other_means;
 mod cases;
 mod columns;
 mod comparison;
+mod error;
 mod front;
 mod hardware;
 mod port;
@@ -22,6 +23,7 @@ pub use comparison::{
     COLUMN_SENSES, COMPARED_AT_A_GLANCE, ColumnSense, ComparedMeasure, ComparedMeasures, MEASURES,
     MEASURES_IF_STATED, dominates,
 };
+pub use error::{AlternativesError, PrepareError};
 pub use front::{Front, FrontColumn, FrontPoint, FrontRequest, FrontValue};
 pub use hardware::retracted_length;
 pub use port::IMPEDANCE_AT;
@@ -32,9 +34,8 @@ use phea_dynamics::watch::{Progress, Watch};
 use crate::catalogue::{self, Catalogue};
 use crate::design::{DesignError, ProjectDesign, design_project};
 use crate::linearize::{Linearization, linearize};
-use crate::option::OptionError;
 use crate::parts::PartsCounted;
-use crate::project::{ImpedanceForm, Loaded, Project, Refusal};
+use crate::project::{ImpedanceForm, Loaded, Project};
 use crate::rig::{OutsideParameter, Rig, RigError};
 use crate::setup::{ControlError, Setup};
 use crate::simulate::{ScenarioRun, simulate_project};
@@ -42,33 +43,6 @@ use crate::sizing::{Question, Sizing, size, sizing_problem};
 use crate::source::Source;
 use crate::trial::Agreement;
 use asked::ReadingAgain;
-
-/// Why no alternatives are judged.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum AlternativesError {
-    /// There is only the project itself.
-    #[error(
-        "the project has no [[alternative]]: add one with `name` and `set = {{ \"line.length\" = \"3 m\" }}`"
-    )]
-    NoAlternative,
-    /// There is no specification for a controller.
-    #[error(transparent)]
-    NoSpecification(DesignError),
-    /// The requested front is invalid.
-    #[error(transparent)]
-    Option(#[from] OptionError),
-    /// The catalogue, or a project that was changed, cannot be read.
-    #[error("{0}")]
-    Refused(Refusal),
-    /// An alternative that cannot be prepared.
-    #[error("alternative `{name}`: {reason}")]
-    Alternative {
-        /// Its name.
-        name: String,
-        /// What is wrong, and what to do.
-        reason: String,
-    },
-}
 
 /// The project as it is declared and its alternatives, judged.
 #[derive(Clone, Debug)]
