@@ -2,7 +2,7 @@
 //! hose that `[sizing]` finds where one asks for it, and with the ranges that follow their rig.
 
 use super::by_other_means::OtherPart;
-use super::error::{AlternativesError, PrepareError};
+use super::error::{AlternativesError, NoHose, PrepareError};
 use super::recentred::{self, MovedRange};
 use crate::catalogue::{self, Catalogue, CatalogueKind};
 use crate::line_choice::{LoopInQuestion, with_chosen_lines};
@@ -25,13 +25,13 @@ pub struct AskedAlternative {
     /// The rig of that project.
     pub rig: Result<Rig, RigError>,
     /// Why `[sizing]` finds no hose, where it asks for one.
-    pub no_hose: Option<String>,
+    pub no_hose: Option<NoHose>,
     /// The ranges of `[uncertainty]` that were moved.
     pub moved: Vec<MovedRange>,
 }
 
 impl AskedAlternative {
-    pub(super) fn new(name: &str, loaded: Loaded, no_hose: Option<String>) -> AskedAlternative {
+    pub(super) fn new(name: &str, loaded: Loaded, no_hose: Option<NoHose>) -> AskedAlternative {
         let rig = Setup::rig_of(&loaded.project);
         AskedAlternative { name: name.to_string(), loaded, rig, no_hose, moved: vec![] }
     }
@@ -171,10 +171,10 @@ fn sized(
         accepted && own.as_ref().is_none_or(|own| candidate.option.name == *own)
     };
     let Some(best) = sizing.candidates.iter().find(of_own) else {
-        return Ok(one(other, Some("no hose of the catalogue is accepted by [sizing]".to_string())));
+        return Ok(one(other, Some(NoHose::NoneAccepted)));
     };
     if best.length_m() == 0.0 {
-        return Ok(one(other, Some("[sizing] finds that no hose is needed".to_string())));
+        return Ok(one(other, Some(NoHose::NoneNeeded)));
     }
     let [length_a, length_b] = best.branch.lengths_m;
     let mut settings = match alike {

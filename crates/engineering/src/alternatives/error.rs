@@ -1,9 +1,12 @@
+use phea_dynamics::linear::LinearError;
+
 use crate::design::DesignError;
 use crate::option::OptionError;
 use crate::project::Refusal;
 use crate::quantity::Currency;
 use crate::rig::RigError;
 use crate::setup::ControlError;
+use crate::simulate::SimulateError;
 use crate::sizing::{OtherMeansError, SizingError};
 
 /// Why no alternatives are judged.
@@ -84,4 +87,44 @@ pub enum PrepareError {
         /// Name of the parameter of the linear model.
         parameter: String,
     },
+}
+
+/// Why a part of what is found about an alternative is missing.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum JudgeError {
+    /// The rig cannot be computed with.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// Its controller is no transfer function.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// It has no hose of the size that it asks for.
+    #[error(transparent)]
+    NoHose(#[from] NoHose),
+    /// No hose can be sized.
+    #[error(transparent)]
+    Sizing(#[from] SizingError),
+    /// No controller can be designed.
+    #[error(transparent)]
+    Design(#[from] DesignError),
+    /// There is no loop to compute with.
+    #[error("no controller was designed")]
+    NoController,
+    /// There are no linear models.
+    #[error("the linear models: {0}")]
+    Linear(#[from] LinearError),
+    /// A scenario cannot be run.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+}
+
+/// Why `[sizing]` finds no hose for an alternative that takes the one it finds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoHose {
+    /// Something rejects each of them.
+    #[error("no hose of the catalogue is accepted by [sizing]")]
+    NoneAccepted,
+    /// The chambers are soft enough without one.
+    #[error("[sizing] finds that no hose is needed")]
+    NoneNeeded,
 }
