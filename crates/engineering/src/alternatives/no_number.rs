@@ -1,4 +1,5 @@
 use super::JudgeError;
+use crate::linearize::NoClosedImpedance;
 use crate::parts::PartsUnknown;
 use crate::simulate::Unmeasured;
 
@@ -42,7 +43,7 @@ pub enum NoNumber {
     /// A sum over the parts is not known.
     Parts(PartsUnknown),
     /// The closed loop has no impedance, for this reason.
-    NoClosedLoop(Option<String>),
+    NoClosedLoop(Option<NoClosedImpedance>),
 }
 
 impl From<JudgeError> for NoNumber {

@@ -2,6 +2,7 @@
 
 use super::{FeasibilityUnknown, JudgedAlternative, LengthUnknown, NoFrontValue, NoNumber};
 use crate::design::status_sentence;
+use crate::linearize::no_closed_impedance_words;
 use crate::simulate::{DIVERGED, unmeasured_words};
 use phea_engineering::parts::{PartKind, PartsUnknown, UnstatedPart};
 
@@ -81,7 +82,7 @@ pub(super) fn no_number_words(reason: &NoNumber) -> String {
         NoNumber::Length(reason) => length_unknown_words(*reason),
         NoNumber::LineIsVolume => "a line that is stated as a volume has no length",
         NoNumber::NoAccumulator => "there is no accumulator at the chambers",
-        NoNumber::NoClosedLoop(reason) => reason.as_deref().unwrap_or_default(),
+        NoNumber::NoClosedLoop(reason) => reason.map_or("", no_closed_impedance_words),
     };
     fixed.to_string()
 }
