@@ -3,7 +3,6 @@
 mod kind;
 mod limit;
 mod rounding;
-mod wish;
 
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::LinearError;
@@ -81,9 +80,12 @@ pub enum SpecificationProblem {
         /// The frequencies around it at which they cross, rad/s, or the ends of the band.
         span_rad_per_s: [f64; 2],
     },
-    /// A form of limit that belongs to another kind of specification.
-    #[error("this kind of specification does not take {0}")]
-    Form(&'static str),
+    /// Margins, which belong to another kind of specification.
+    #[error("this kind of specification does not take margins")]
+    TakesNoMargins,
+    /// A requirement in time, which belongs to another kind of specification.
+    #[error("this kind of specification does not take a wish in time")]
+    TakesNoWish,
 }
 
 /// A limit of tracking that was stated in time, and its own step response.
@@ -103,13 +105,6 @@ impl CheckedWish {
     /// Whether the limit meets the wish.
     pub fn is_met(&self) -> bool {
         self.check.outcome() == WishOutcome::Met
-    }
-
-    /// What was wished, whether the limit meets it, and what the limit itself reaches.
-    pub fn sentence(&self) -> String {
-        let met = if self.is_met() { "met" } else { "not met" };
-        let words = wish::words(&self.check);
-        format!("Specification {}, {} limit, {met}; {words}.", self.number, self.key)
     }
 }
 

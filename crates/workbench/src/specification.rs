@@ -1,7 +1,9 @@
 //! The output on specifications: text and JSON.
 
 mod answer;
+mod wish;
 
 pub use phea_engineering::specification::*;
 
 pub(crate) use answer::{document, wish_row};
+pub use wish::wish_sentence;
