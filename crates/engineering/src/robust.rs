@@ -57,7 +57,7 @@ pub struct RobustProblem {
     /// outside.
     pub rig_outside: Option<(Family, String)>,
     /// Why the plants of the family have no polynomials; `None` where they have them.
-    pub without_polynomials: Option<&'static str>,
+    pub without_polynomials: Option<NoPolynomials>,
     /// Noise of the velocity that a sampled controller feeds forward, m/s rms; zero without.
     pub velocity_noise: f64,
     /// Noise of the pressure signal at the samples in Pa rms, where it is fed back; zero without.
@@ -155,7 +155,7 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
     let (specifications, specification_names) =
         named_specifications(setup, compensation.highest_frequency_rad_per_s())?;
     let family = family(setup, source)?;
-    let has_lines_in_motion = without_polynomials(setup, &family) == Some(LINES_IN_MOTION);
+    let has_lines_in_motion = without_polynomials(setup, &family) == Some(NoPolynomials::LinesInMotion);
     let default_tolerance_db =
         if has_lines_in_motion { TOLERANCE_IN_MOTION_DB } else { DEFAULT_TOLERANCE_DB };
     Ok(RobustProblem {
@@ -201,17 +201,25 @@ pub const DEFAULT_TOLERANCE_DB: f64 = 0.01;
 /// The same where lines move, whose fitted waves are known to 0.3 dB near their resonances.
 pub const TOLERANCE_IN_MOTION_DB: f64 = 0.1;
 
-/// Why plants whose lines move have no polynomials.
-pub(crate) const LINES_IN_MOTION: &str = "lines in motion";
+/// The reason why the plants of a family have no polynomials.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoPolynomials {
+    /// Waves travel in the lines.
+    LinesInMotion,
+    /// A continuous controller feeds the pressures back late.
+    PressuresFedBackLate,
+    /// The velocity of the load is fed forward late.
+    LoadVelocityFedForwardLate,
+}
 
-fn without_polynomials(setup: &Setup<'_>, family: &Family) -> Option<&'static str> {
+fn without_polynomials(setup: &Setup<'_>, family: &Family) -> Option<NoPolynomials> {
     let Family::Uncertain(family) = family else { return None };
     let rig = setup.rig().ok()?;
     let late = rig.fed_back.is_some_and(|back| !back.sampled && back.delay_s > 0.0);
     let why = match (rig.in_motion.is_some(), late) {
-        (true, _) => LINES_IN_MOTION,
-        (false, true) => "pressures fed back late",
-        (false, false) => "the load's velocity fed forward late",
+        (true, _) => NoPolynomials::LinesInMotion,
+        (false, true) => NoPolynomials::PressuresFedBackLate,
+        (false, false) => NoPolynomials::LoadVelocityFedForwardLate,
     };
     (!family.plant().is_rational()).then_some(why)
 }

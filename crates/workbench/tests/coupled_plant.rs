@@ -7,7 +7,7 @@ use num_complex::Complex64;
 use phea_dynamics::portable::exp;
 use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::Verdict;
-use phea_workbench::audit::{self, ProjectAudit, audit_project};
+use phea_workbench::audit::{self, ProjectAudit, RigInLoop, audit_project};
 use phea_workbench::command::Request;
 use phea_workbench::linear_loop::linear_loop;
 use phea_workbench::linearize::{Linearization, linearize};
@@ -296,7 +296,7 @@ fn a_path_that_no_specification_limits_decides_nothing() {
     {
         let fed = [&["controller.load_velocity_feed_forward={}"], &settings[..]].concat();
         let view = audited(&satisfied(&fed));
-        assert_eq!((view.audit.verdict, view.caveats.len()), (Verdict::Met, told), "{settings:?}");
+        assert_eq!((view.audit.verdict, audit::caveats(&view).len()), (Verdict::Met, told), "{settings:?}");
     }
 }
 
@@ -305,11 +305,13 @@ fn a_path_that_no_specification_limits_decides_nothing() {
 #[test]
 fn a_family_that_does_not_contain_the_rig_says_so_first() {
     let view = audited(&satisfied(&[]));
-    let [outside] = &view.caveats[..] else { panic!("{:?}", view.caveats) };
+    assert_eq!(view.rig_outside.as_ref().map(|rig| &rig.in_loop), Some(&RigInLoop::Met));
     assert_eq!(
-        outside.sentence,
-        "the family does not contain the rig as it is derived (flow_pressure_coefficient is 5.929e-13 m3/(s.Pa), the box has \
+        audit::caveats(&view),
+        [
+            "the family does not contain the rig as it is derived (flow_pressure_coefficient is 5.929e-13 m3/(s.Pa), the box has \
          6.42e-13 m3/(s.Pa) to 7e-11 m3/(s.Pa)): the loop with it is stable and satisfies every specification"
+        ]
     );
     // half the flow gain of the rig, and a limit that holds for that alone
     let range = "uncertainty.flow_gain={ nominal = 2.5e-5, minimum = 2.4e-5, maximum = 2.6e-5 }";
@@ -319,10 +321,9 @@ fn a_family_that_does_not_contain_the_rig_says_so_first() {
     let view = audited(&far);
     assert_eq!(view.audit.verdict, Verdict::NotProven);
     assert_eq!(view.audit.specifications[0].verdict, Verdict::Met);
-    assert!(view.caveats[0].sentence.contains("flow_gain is 5.2"), "{:?}", view.caveats);
-    assert!(
-        view.caveats[0].sentence.ends_with("the loop with it violates 1 robust stability"),
-        "{:?}",
-        view.caveats
-    );
+    let outside = view.rig_outside.as_ref().unwrap();
+    assert_eq!(outside.in_loop, RigInLoop::Violates(vec![0]));
+    assert!(outside.beyond.contains("flow_gain is 5.2"), "{outside:?}");
+    let sentence = &audit::caveats(&view)[0];
+    assert!(sentence.ends_with("the loop with it violates 1 robust stability"), "{sentence}");
 }

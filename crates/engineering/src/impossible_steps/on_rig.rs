@@ -17,7 +17,7 @@ use phea_qft::verification::PlantPoint;
 use super::in_time::still_s;
 use crate::project::{LateError, Project};
 use crate::quantity::{DisplayUnit, FORCE, display, significant};
-use crate::robust::{LINES_IN_MOTION, RobustProblem};
+use crate::robust::{NoPolynomials, RobustProblem};
 use crate::setup::Setup;
 use crate::simulate::{BeyondReach, ReferenceStep, TimeRequirement, stepped_references, steps_beyond};
 
@@ -100,7 +100,7 @@ fn too_slow(
         false => ("of the step", "a smaller `amplitude`"),
     };
     let (lumped, most) = match problem.without_polynomials {
-        Some(LINES_IN_MOTION) => (" with lumped lines", WAVES),
+        Some(NoPolynomials::LinesInMotion) => (" with lumped lines", WAVES),
         _ => ("", 1.0),
     };
     (ratio > most).then(|| LateError {

@@ -8,6 +8,7 @@ use super::{
     AlternativeColumns, Alternatives, ComparedMeasure, ComparedMeasures, JudgedAlternative, JudgedCase,
     MovedRange,
 };
+use crate::audit::caveats;
 use crate::design::status_sentence;
 use crate::grouped::grouped;
 use crate::project::{AS_DECLARED, ImpedanceForm, LINEAR_PARAMETERS};
@@ -172,8 +173,7 @@ fn lacking(one: &JudgedAlternative) -> Vec<(&str, String)> {
         };
         format!("the nonlinear simulation contradicts the verdict: {}: {reason}{further}", first.what)
     });
-    let caveats = view.map(|view| view.designed.view.caveats.as_slice()).unwrap_or_default();
-    let caveats = caveats.iter().map(|caveat| caveat.sentence.clone());
+    let caveats = view.map(|view| caveats(&view.designed.view)).unwrap_or_default();
     let impedance = impedance(one).into_iter().flatten();
     let not_driven = one.runs.as_ref().err().filter(|_| view.is_some()).cloned();
     contradicts
