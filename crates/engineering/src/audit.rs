@@ -46,6 +46,7 @@ use crate::robust::{NoPolynomials, RobustError, RobustProblem, numbered, robust_
 use crate::setup::Setup;
 use crate::side_by_side::{all_cores, both};
 use crate::source::Source;
+use crate::specification::SpecificationName;
 use phea_dynamics::watch::{Stopped, Watch, part, unwatched};
 
 /// Why there is nothing to audit.
@@ -141,7 +142,7 @@ pub struct ProjectAudit {
     /// The names of the parameters of a plant.
     pub names: PlantNames,
     /// What each specification is called.
-    pub specification_names: Vec<String>,
+    pub specification_names: Vec<SpecificationName>,
     /// The number in the file, from 1, of each that is declared there; the others come after them.
     pub specification_numbers: Vec<usize>,
     /// Position of every plant; `None` where they differ in it or its stiffness, and without a rig.
@@ -342,8 +343,8 @@ impl ProjectAudit {
     }
 
     /// What a specification is called.
-    pub fn name_of(&self, index: usize) -> &str {
-        self.specification_names.get(index).map_or("", String::as_str)
+    pub fn name_of(&self, index: usize) -> &'static str {
+        self.specification_names.get(index).map_or("", |name| name.words())
     }
 
     /// Whether the plants have lines with waves, which are fitted.

@@ -24,7 +24,9 @@ use crate::setup::{ControlError, Setup, pressure_noise, velocity_noise, with_pre
 use crate::side_by_side::left_behind;
 use crate::simulate::{TimeRequirement, time_requirements};
 use crate::source::Source;
-use crate::specification::{SpecificationError, closed_loops, kind_words, of_rounding, specifications};
+use crate::specification::{
+    SpecificationError, SpecificationName, closed_loops, of_rounding, specifications,
+};
 use phea_dynamics::watch::{Stopped, Watch, part};
 
 /// A family of plants within a loop, and the specifications of the loop.
@@ -46,7 +48,7 @@ pub struct RobustProblem {
     /// The specifications in file order, then those for the rounding of converters.
     pub specifications: Vec<Specification>,
     /// The name of each: its kind, or the signal that is rounded.
-    pub specification_names: Vec<String>,
+    pub specification_names: Vec<SpecificationName>,
     /// The number in the file, from 1, of each that is declared there; the others come after them.
     pub specification_numbers: Vec<usize>,
     /// The last of the specifications where they are limits of a design: which, in their order.
@@ -229,16 +231,17 @@ fn without_polynomials(setup: &Setup<'_>, family: &Family) -> Option<NoPolynomia
 fn named_specifications(
     setup: &Setup<'_>,
     highest_frequency_rad_per_s: f64,
-) -> Result<(Vec<Specification>, Vec<String>), SpecificationError> {
+) -> Result<(Vec<Specification>, Vec<SpecificationName>), SpecificationError> {
     let mut specifications = specifications(setup.project)?;
-    let mut names: Vec<String> = specifications.iter().map(|one| kind_words(&one.requirement)).collect();
+    let of_kind = |one: &Specification| SpecificationName::ClosedLoop(one.requirement.closed_loop());
+    let mut names: Vec<SpecificationName> = specifications.iter().map(of_kind).collect();
     let mut frequencies: Vec<f64> =
         specifications.iter().flat_map(|one| one.frequencies_rad_per_s.iter().copied()).collect();
     frequencies.retain(|frequency| *frequency <= highest_frequency_rad_per_s);
     let frequencies = sorted_distinct(frequencies);
     for (specification, name) in of_rounding(setup, &frequencies) {
         specifications.push(specification);
-        names.push(name.to_string());
+        names.push(name);
     }
     Ok((specifications, names))
 }
@@ -250,8 +253,8 @@ pub(crate) fn numbered(number: Option<usize>, name: &str) -> String {
 
 impl RobustProblem {
     /// What a specification is called.
-    pub fn name_of(&self, index: usize) -> &str {
-        self.specification_names.get(index).map_or("", String::as_str)
+    pub fn name_of(&self, index: usize) -> &'static str {
+        self.specification_names.get(index).map_or("", |name| name.words())
     }
 
     /// The number of a specification in the file, from 1; `None` for one that is not declared.

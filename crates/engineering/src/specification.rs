@@ -2,6 +2,7 @@
 
 mod kind;
 mod limit;
+mod name;
 mod rounding;
 
 use phea_dynamics::frequency::logarithmic_grid;
@@ -11,8 +12,9 @@ use phea_qft::specification::{
     ClosedLoop, LimitError, MarginError, Requirement, Specification, TimeDomainError, WishCheck, WishOutcome,
 };
 
-pub use self::kind::{closed_loop_key, kind_key, kind_words};
+pub use self::kind::{closed_loop_key, closed_loop_words, kind_key};
 use self::limit::TrackingSide;
+pub use self::name::SpecificationName;
 pub(crate) use self::rounding::of_rounding;
 use crate::project::{self, FormulaError, LateError, Project};
 use crate::quantity::significant;

@@ -16,7 +16,7 @@ use super::{stability_reason, verdict_key};
 use crate::answer::{Csv, Object, OutputFile, envelope};
 use crate::plant_names::PlantNames;
 use crate::project::Loaded;
-use crate::specification::{kind_key, kind_words};
+use crate::specification::{SpecificationName, kind_key};
 use phea_engineering::limit_kind::limit_key;
 
 /// The JSON object of `verify`, as a file.
@@ -149,11 +149,12 @@ fn specification(view: &ProjectAudit, index: usize, finding: &SpecificationFindi
     let names = &view.names;
     let worst = finding.worst.as_ref();
     let other = worst.and_then(|worst| worst.other.as_ref());
-    let name = view.specification_names.get(index).map(String::as_str);
+    let is_other = |name: &&SpecificationName| !matches!(name, SpecificationName::ClosedLoop(_));
+    let name = view.specification_names.get(index).filter(is_other);
     let reached = view.reached.get(index).copied().flatten();
     Object::new()
         .with("kind", kind_key(&finding.requirement))
-        .maybe("name", name.filter(|name| *name != kind_words(&finding.requirement)))
+        .maybe("name", name.map(|name| name.words()))
         .with("verdict", verdict_key(finding.verdict))
         .with("evidence", evidence_key(finding.evidence))
         .with("worst_margin_db", worst.map(|worst| worst.margin_db))
