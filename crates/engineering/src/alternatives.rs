@@ -35,7 +35,7 @@ use crate::linearize::{Linearization, linearize};
 use crate::option::OptionError;
 use crate::parts::PartsCounted;
 use crate::project::{ImpedanceForm, Loaded, Project, Refusal};
-use crate::rig::{Rig, RigError};
+use crate::rig::{OutsideParameter, Rig, RigError};
 use crate::setup::{ControlError, Setup};
 use crate::simulate::{ScenarioRun, simulate_project};
 use crate::sizing::{Question, Sizing, size, sizing_problem};
@@ -109,9 +109,9 @@ pub struct JudgedAlternative {
     pub rig: Result<Rig, String>,
     /// The ranges of `[uncertainty]` that follow its rig.
     pub moved: Vec<MovedRange>,
-    /// The parameters of its rig outside of their ranges in `[uncertainty]`, in words; `None` where
+    /// The parameters of its rig outside of their ranges in `[uncertainty]`, or `None` where
     /// they are those of the project as it is declared.
-    pub outside: Option<String>,
+    pub outside: Option<Vec<OutsideParameter>>,
     /// Frequencies in rad/s at which its impedance is stated.
     pub impedance_at: Vec<f64>,
     /// What is counted of the parts of all that are compared.

@@ -25,8 +25,8 @@ pub(crate) use nominal::nominal_margins;
 pub use nominal::{Crossovers, NominalMargins};
 pub use prefilter::PrefilterGain;
 pub use proven::{prove_audit, try_to_prove};
-pub use rig_outside_family::{RigInLoop, RigOutside};
-pub(crate) use rig_outside_family::{rig_in_loop, unexamined_rig};
+pub use rig_outside_family::{LoopWithRig, OutsideFamily};
+pub(crate) use rig_outside_family::{caveat as caveat_of_rig, unexamined as unexamined_rig};
 pub use stability::{infinity_sentence, stability_reason, stability_sentence};
 pub use whole_loop::DelayedPaths;
 pub use words::{frequency_number, frequency_words, margin_words, verdict_key, verdict_words};
@@ -42,6 +42,7 @@ use phea_qft::verification::{
 use crate::caveat::Caveat;
 use crate::limit_kind::JudgedLimits;
 use crate::plant_names::PlantNames;
+use crate::quantity::Units;
 use crate::robust::{NoPolynomials, RobustError, RobustProblem, numbered, robust_problem};
 use crate::setup::Setup;
 use crate::side_by_side::{all_cores, both};
@@ -116,7 +117,7 @@ pub fn audit_problem(problem: &RobustProblem, watch: Watch<'_>) -> Result<Projec
     let share = if problem.rig_outside.is_some() { 0.8 } else { 1.0 };
     let asked = audit_request(problem, &problem.family);
     let audit = audit_by(&asked, all_cores(), &mut part(watch, STAGE, [0.0, share]))?;
-    let of_rig = rig_in_loop(problem, &mut part(watch, STAGE, [share, 1.0]))?;
+    let of_rig = caveat_of_rig(problem, &mut part(watch, STAGE, [share, 1.0]))?;
     Ok(ProjectAudit::new(problem, audit, of_rig))
 }
 
@@ -162,8 +163,8 @@ pub struct ProjectAudit {
     pub delay_s: f64,
     /// Dead time of plant, sensor and controller.
     pub dead_time: LoopDeadTime,
-    /// The rig itself, where the family does not contain it.
-    pub rig_outside: Option<RigOutside>,
+    /// Motion of the rig and units of display.
+    pub units: Units,
     /// Declared effects that the audit does not include.
     pub caveats: Vec<Caveat>,
     /// What the worst plant of each specification reaches, where that is a magnitude against a
@@ -255,18 +256,14 @@ fn reached(problem: &RobustProblem, finding: &SpecificationFinding) -> Option<Re
 impl ProjectAudit {
     /// An audit of the loop of this problem, with the findings for the rig itself where the family
     /// does not contain it.
-    pub(crate) fn new(
-        problem: &RobustProblem,
-        mut audit: Audit,
-        rig_outside: Option<RigOutside>,
-    ) -> ProjectAudit {
+    pub(crate) fn new(problem: &RobustProblem, mut audit: Audit, of_rig: Option<Caveat>) -> ProjectAudit {
         let RobustProblem { family, compensation, .. } = problem;
         let delayed_paths = DelayedPaths::of(problem);
         if delayed_paths.are_some() {
             audit.delay_margin = whole_loop::least_delay(problem, &audit).or(audit.delay_margin);
         }
-        let is_unproven = rig_outside.as_ref().is_some_and(RigOutside::is_unproven);
-        if is_unproven || problem.caveats.iter().any(|caveat| caveat.unproven) {
+        let caveats: Vec<Caveat> = of_rig.into_iter().chain(problem.caveats.clone()).collect();
+        if caveats.iter().any(|caveat| caveat.unproven) {
             audit.verdict = audit.verdict.max(Verdict::NotProven);
         }
         let (in_time, margins) = both(
@@ -302,8 +299,8 @@ impl ProjectAudit {
             sample_time_s: compensation.sample_time_s(),
             delay_s: compensation.delay_s(),
             dead_time: LoopDeadTime::of(problem),
-            rig_outside,
-            caveats: problem.caveats.clone(),
+            units: problem.units,
+            caveats,
             velocity_noise,
             pressure_noise,
             in_time,

@@ -64,7 +64,7 @@ use phea_qft::verification::Verdict;
 use self::by_steps::LedSearch;
 use self::deployable::{limited, split};
 use self::driven::found_and_tried;
-use crate::audit::{ProjectAudit, audit_problem, audit_request, rig_in_loop, try_to_prove, unexamined_rig};
+use crate::audit::{ProjectAudit, audit_problem, audit_request, caveat_of_rig, try_to_prove, unexamined_rig};
 use crate::project::{self, Project};
 use crate::quantity::{self, DisplayUnit};
 use crate::robust::{RobustProblem, robust_problem};
@@ -165,7 +165,7 @@ impl ProjectDesign {
             has_prefilter,
             ..own
         };
-        let of_rig = rig_in_loop(&problem, watch).unwrap_or_else(|Stopped| unexamined_rig(&problem));
+        let of_rig = caveat_of_rig(&problem, watch).unwrap_or_else(|Stopped| unexamined_rig(&problem));
         let view = ProjectAudit::new(&problem, audit, of_rig);
         let rounding = rounding::rounding(setup, &problem)?;
         let manual = ManualLaw::new(&law.feedback, design.name);
@@ -226,7 +226,7 @@ impl ProjectDesign {
         let audit = audit_by(&audit_request(&problem, &problem.family), all_cores(), watch)?;
         self.design.audit = audit.clone();
         let (problem, audit, limit_findings) = split(&problem, &audit);
-        let of_rig = rig_in_loop(&problem, watch)?;
+        let of_rig = caveat_of_rig(&problem, watch)?;
         let mut view = ProjectAudit::new(&problem, audit, of_rig);
         // a design that is led by its steps is proven at its end
         if !problem.in_time.iter().any(|one| one.follows) {

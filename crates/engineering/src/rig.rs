@@ -52,6 +52,7 @@ pub use largest_flow::{FlowLimit, LargestFlow, largest_flow};
 pub use lines::{in_motion, line_model, lines};
 pub(crate) use lines::{quarter_wave, quarter_wave_of};
 pub use numbers::Numbers;
+pub use outside::OutsideParameter;
 pub(crate) use outside::outside;
 pub use parameters::{ParameterOrigin, ResolvedParameter};
 pub use place::place;

@@ -16,7 +16,7 @@ pub use self::kind::{closed_loop_key, closed_loop_words, kind_key};
 use self::limit::TrackingSide;
 pub use self::name::SpecificationName;
 pub(crate) use self::rounding::of_rounding;
-use crate::project::{self, FormulaError, LateError, Project};
+use crate::project::{self, FormulaError, Project};
 use crate::quantity::significant;
 
 /// Why a declared specification cannot be used.
@@ -29,20 +29,6 @@ pub struct SpecificationError {
     pub key: &'static str,
     /// What is wrong with it.
     pub reason: SpecificationProblem,
-}
-
-impl SpecificationError {
-    /// The error at the place of its limit.
-    pub fn at(&self) -> LateError {
-        let help = match self.reason {
-            SpecificationProblem::Crossed { .. } => {
-                "no loop is between them: raise `upper`, lower `lower`, or leave these frequencies out of `frequencies` and `band`"
-            }
-            _ => "",
-        };
-        let path = format!("specification[{}].{}", self.number - 1, self.key);
-        LateError { path, message: self.to_string(), help: help.to_string() }
-    }
 }
 
 /// What is wrong with a limit.

@@ -2,7 +2,6 @@
 
 mod answer;
 mod below_design;
-mod caveats;
 mod certificate;
 mod document;
 mod family_and_loop;
@@ -18,7 +17,6 @@ pub use phea_engineering::audit::*;
 pub use answer::files;
 pub(crate) use answer::json;
 pub(crate) use answer::{body, margin, stable};
-pub use caveats::caveats;
 pub(crate) use certificate::certificate_of;
 pub use certificate::{CERTIFICATE_FILE, CertificateError, check_certificate, check_certificate_of};
 pub use document::output;

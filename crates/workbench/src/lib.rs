@@ -27,6 +27,7 @@ pub mod answer;
 pub mod audit;
 pub mod bench;
 pub mod campaign;
+pub mod caveat;
 pub mod command;
 pub mod derived;
 pub mod design;
@@ -35,6 +36,7 @@ pub(crate) mod error;
 pub mod friction;
 mod grouped;
 pub mod identify;
+mod impossible;
 mod line_choice;
 pub mod line_test;
 pub mod linearize;
@@ -49,7 +51,7 @@ pub mod specification;
 pub mod trial;
 
 pub use phea_engineering::{
-    caveat, estimate, family, linear_loop, linear_step, option, plant_names, replaced, rig, robust, setup,
+    estimate, family, linear_loop, linear_step, option, plant_names, replaced, rig, robust, setup,
 };
 pub use phea_figure as figure;
 pub use phea_project::{self as project, catalogue, source};

@@ -4,6 +4,7 @@ mod answer;
 mod check;
 mod document;
 mod figures;
+mod foreseen;
 mod frequency;
 mod metrics;
 mod repetition;
@@ -19,6 +20,7 @@ pub(crate) use document::{
     measured, metrics_row, occurrence_sentences, published, published_row, windows, wish_of,
 };
 pub(crate) use figures::{comparison_files, figure_files, laid_over, pictures, turns};
+pub(crate) use foreseen::foreseen_late;
 pub(crate) use frequency::{
     document as frequency_document, files as frequency_files, pictures as frequency_pictures,
 };

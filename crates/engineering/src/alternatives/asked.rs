@@ -10,7 +10,7 @@ use crate::parts::PartsCounted;
 use crate::project::{
     self, AS_DECLARED, Alternative, Component, DeclaredLine, Loaded, read_alternative, refused_alternative,
 };
-use crate::rig::{Rig, RigError, outside};
+use crate::rig::{OutsideParameter, Rig, RigError, outside};
 use crate::setup::Setup;
 use crate::sizing::{Candidate, Question, own_hoses, size, sizing_problem};
 use crate::source::Source;
@@ -44,14 +44,14 @@ impl AskedAlternative {
         }
     }
 
-    /// The parameters of its rig that lie outside of their ranges in `[uncertainty]`, in words;
-    /// `None` where they are those of the project as it is declared, the first of all.
-    pub fn outside(&self, all: &[AskedAlternative]) -> Option<String> {
-        let words = |one: &AskedAlternative| {
+    /// The parameters of its rig that lie outside of their ranges in `[uncertainty]`; `None` where
+    /// they are those of the project as it is declared, the first of all.
+    pub fn outside(&self, all: &[AskedAlternative]) -> Option<Vec<OutsideParameter>> {
+        let of = |one: &AskedAlternative| {
             let rig = one.rig.as_ref().ok()?;
-            outside(&one.loaded.project, rig).map(|(_, words)| words)
+            outside(&one.loaded.project, rig).map(|(_, parameters)| parameters)
         };
-        words(self).filter(|own| all.first().and_then(words).as_ref() != Some(own))
+        of(self).filter(|own| all.first().and_then(of).as_ref() != Some(own))
     }
 
     /// The same with its ranges moved from those of the rig of another project.

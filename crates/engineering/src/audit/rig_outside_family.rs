@@ -4,57 +4,62 @@ use phea_dynamics::watch::{Stopped, Watch};
 use phea_qft::verification::{Audit, Verdict};
 
 use super::audit_request;
+use crate::caveat::{Caveat, UncountedEffect};
+use crate::rig::OutsideParameter;
 use crate::robust::RobustProblem;
+use crate::specification::SpecificationName;
 
-/// The rig itself in the loop of a project whose family does not contain it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RigOutside {
-    /// The parameters of the rig that are outside of the box, with their values and the box.
-    pub beyond: String,
-    /// What the loop with the rig does.
-    pub in_loop: RigInLoop,
+/// The rig itself, which the family does not contain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutsideFamily {
+    /// The parameters that the family does not contain.
+    pub parameters: Vec<OutsideParameter>,
+    /// Verdict on the loop with the rig.
+    pub with_rig: LoopWithRig,
 }
 
-/// The result of the audit of a loop with the rig itself.
+/// Verdict on the loop with the rig itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum RigInLoop {
-    /// Stable, and every specification is met.
-    Met,
-    /// The loop is unstable.
+pub enum LoopWithRig {
+    /// It is stable and satisfies every specification.
+    Satisfied,
+    /// It is unstable.
     Unstable,
-    /// These specifications are violated, by their indices.
-    Violates(Vec<usize>),
-    /// Neither proven nor refuted, or the audit was stopped.
+    /// It violates these specifications, each with its number, from 1, and name.
+    Violates(Vec<(usize, SpecificationName)>),
+    /// Nothing is proven.
     NotProven,
 }
 
-impl RigOutside {
-    /// True unless the loop with the rig satisfies every specification.
-    pub fn is_unproven(&self) -> bool {
-        self.in_loop != RigInLoop::Met
-    }
-}
-
-/// The audit of the rig itself in the loop of a problem; `None` where the family contains it.
-pub(crate) fn rig_in_loop(problem: &RobustProblem, watch: Watch<'_>) -> Result<Option<RigOutside>, Stopped> {
-    let Some((alone, beyond)) = &problem.rig_outside else { return Ok(None) };
+/// The audit of the rig itself in the loop of a problem, where the family does not contain it.
+pub(crate) fn caveat(problem: &RobustProblem, watch: Watch<'_>) -> Result<Option<Caveat>, Stopped> {
+    let Some((alone, outside)) = &problem.rig_outside else { return Ok(None) };
     let audit = phea_qft::audit::audit(&audit_request(problem, alone), watch)?;
-    Ok(Some(RigOutside { beyond: beyond.clone(), in_loop: in_loop(&audit) }))
+    Ok(Some(of_rig(outside, loop_with_rig(problem, &audit), audit.verdict != Verdict::Met)))
 }
 
 /// The result where the watch stopped it: unknown.
-pub(crate) fn unexamined_rig(problem: &RobustProblem) -> Option<RigOutside> {
-    let (_, beyond) = problem.rig_outside.as_ref()?;
-    Some(RigOutside { beyond: beyond.clone(), in_loop: RigInLoop::NotProven })
+pub(crate) fn unexamined(problem: &RobustProblem) -> Option<Caveat> {
+    let (_, outside) = problem.rig_outside.as_ref()?;
+    Some(of_rig(outside, LoopWithRig::NotProven, true))
 }
 
-fn in_loop(audit: &Audit) -> RigInLoop {
-    let findings = audit.specifications.iter().enumerate();
-    let violated = findings.filter(|(_, finding)| finding.verdict == Verdict::Violated);
+fn of_rig(outside: &[OutsideParameter], with_rig: LoopWithRig, unproven: bool) -> Caveat {
+    let found = OutsideFamily { parameters: outside.to_vec(), with_rig };
+    Caveat { effect: UncountedEffect::OutsideFamily(found), unproven }
+}
+
+/// Verdict of the audit of the loop with the rig.
+fn loop_with_rig(problem: &RobustProblem, audit: &Audit) -> LoopWithRig {
+    let violated = || {
+        let findings = audit.specifications.iter().zip(&problem.specification_names).enumerate();
+        let violated = findings.filter(|(_, (finding, _))| finding.verdict == Verdict::Violated);
+        violated.map(|(index, (_, name))| (index + 1, *name)).collect()
+    };
     match (audit.verdict, audit.stability.verdict) {
-        (Verdict::Met, _) => RigInLoop::Met,
-        (_, Verdict::Violated) => RigInLoop::Unstable,
-        (Verdict::Violated, _) => RigInLoop::Violates(violated.map(|(index, _)| index).collect()),
-        (Verdict::NotProven, _) => RigInLoop::NotProven,
+        (Verdict::Met, _) => LoopWithRig::Satisfied,
+        (_, Verdict::Violated) => LoopWithRig::Unstable,
+        (Verdict::Violated, _) => LoopWithRig::Violates(violated()),
+        (Verdict::NotProven, _) => LoopWithRig::NotProven,
     }
 }

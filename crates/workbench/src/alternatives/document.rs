@@ -4,9 +4,11 @@ use super::findings::findings;
 use super::front;
 use super::summary::{self, machine};
 use super::{AlternativeColumn, AlternativeColumns, Alternatives, ColumnPart, JudgedAlternative};
+use crate::caveat::outside_parameters;
 use crate::document::{Cell, Document, Table};
 use crate::linearize::PortView;
 use crate::quantity::{DisplayUnit, significant};
+use crate::rig::OutsideParameter;
 use crate::simulate::ScenarioRun;
 use phea_qft::verification::Verdict;
 
@@ -53,14 +55,17 @@ pub(crate) fn told_first(found: &Alternatives) -> Vec<String> {
 
 /// A sentence on ranges that do not contain the rig of an alternative, whether they were moved or
 /// not.
-pub(crate) fn outside_words(name: &str, outside: &str, moved: bool) -> String {
+pub(crate) fn outside_words(name: &str, outside: &[OutsideParameter], moved: bool) -> String {
     let cure = match moved {
         false => "state them in `set`, or let them follow by `recentre = true`",
         true => {
             "`recentre` moved them by what the rigs differ, and the declared rig lies outside of its own: state them in `set`"
         }
     };
-    format!("{name}: the ranges of [uncertainty] do not contain its rig ({outside}): {cure}")
+    format!(
+        "{name}: the ranges of [uncertainty] do not contain its rig ({}): {cure}",
+        outside_parameters(outside)
+    )
 }
 
 /// A row for each column, and a column for each alternative.

@@ -8,7 +8,7 @@ use super::{
     AlternativeColumns, Alternatives, ComparedMeasure, ComparedMeasures, JudgedAlternative, JudgedCase,
     MovedRange,
 };
-use crate::audit::caveats;
+use crate::caveat;
 use crate::design::status_sentence;
 use crate::grouped::grouped;
 use crate::project::{AS_DECLARED, ImpedanceForm, LINEAR_PARAMETERS};
@@ -173,7 +173,8 @@ fn lacking(one: &JudgedAlternative) -> Vec<(&str, String)> {
         };
         format!("the nonlinear simulation contradicts the verdict: {}: {reason}{further}", first.what)
     });
-    let caveats = view.map(|view| caveats(&view.designed.view)).unwrap_or_default();
+    let caveats = view.map(|view| &view.designed.view);
+    let caveats = caveats.into_iter().flat_map(|view| caveat::sentences(&view.caveats, &view.units));
     let impedance = impedance(one).into_iter().flatten();
     let not_driven = one.runs.as_ref().err().filter(|_| view.is_some()).cloned();
     contradicts

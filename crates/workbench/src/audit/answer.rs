@@ -11,9 +11,10 @@ use super::words::evidence_key;
 use super::{
     NoisySignal, PrefilterGain, ProjectAudit, ReachedLimit, SignalNoise, TimeFinding, TimeOutcome, WorstStep,
 };
-use super::{below_design, caveats, margins};
+use super::{below_design, margins};
 use super::{stability_reason, verdict_key};
 use crate::answer::{Csv, Object, OutputFile, envelope};
+use crate::caveat;
 use crate::plant_names::PlantNames;
 use crate::project::Loaded;
 use crate::specification::{SpecificationName, kind_key};
@@ -77,7 +78,7 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
         .maybe("pressure_noise", view.pressure_noise.as_ref().map(|noise| signal_noise(noise, names)))
         .maybe("amplifying_prefilter", view.amplifying_prefilter.map(amplifying))
         .each("specifications", in_file_order(view), |one| one)
-        .with("warnings", caveats(view));
+        .with("warnings", caveat::sentences(&view.caveats, &view.units));
     match &view.below_design {
         Some(limits) => own.each("below_design", &limits.exceeded, below_design::object).each(
             "kept_of_design",

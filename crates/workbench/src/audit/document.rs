@@ -8,8 +8,9 @@ use super::family_and_loop::{family_sentence, loop_sentence, position_sentence};
 use super::proven::{standing_word, why_not_proven};
 use super::remark::remark_sentences;
 use super::words::{closed_loop_symbol, evidence_sentence, finding_sentence, place_words, worst_at_design};
-use super::{DelayedPaths, ProjectAudit, below_design, caveats, in_time, margins, noise_sentence};
+use super::{DelayedPaths, ProjectAudit, below_design, in_time, margins, noise_sentence};
 use super::{infinity_sentence, stability_sentence, verdict_words};
+use crate::caveat;
 use crate::document::{Cell, Document, Table};
 use crate::figure::Figure;
 use crate::grouped::grouped;
@@ -47,7 +48,7 @@ pub(crate) fn document(view: &ProjectAudit, figures: Vec<Figure>) -> Document {
 /// Stability, delay margin and each specification, a sentence each, preceded by the effects that
 /// none of them includes.
 pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
-    let mut sentences = caveats(view);
+    let mut sentences: Vec<String> = caveat::sentences(&view.caveats, &view.units);
     sentences.push(stability_sentence(&view.audit.stability, &view.names));
     sentences.extend(delay_sentence(view));
     sentences.extend(view.nominal.as_ref().and_then(margins::reduction_sentence));

@@ -11,7 +11,9 @@ use phea_engineering::simulate::SimulateError;
 use phea_engineering::sizing::SizingError;
 
 use super::CommandError;
+use crate::impossible::late_of_steps;
 use crate::project::{LateError, Project};
+use crate::specification;
 
 /// The error at each key or table that it names, in the order of its sentence; empty for an error
 /// that is not of the project, or that has places of its own.
@@ -20,8 +22,8 @@ pub(super) fn late(error: &CommandError, project: &Project) -> Vec<LateError> {
         return vec![];
     }
     match error {
-        CommandError::Specification(error) => vec![error.at()],
-        CommandError::Design(DesignError::ImpossibleSteps(found)) => found.clone(),
+        CommandError::Specification(error) => vec![specification::late(error)],
+        CommandError::Design(DesignError::ImpossibleSteps(found)) => late_of_steps(found),
         CommandError::Rig(error)
         | CommandError::Family(ProjectFamilyError::Rig(error))
         | CommandError::Sizing(SizingError::Rig(error))
