@@ -20,7 +20,8 @@
 //! ```
 //!
 //! The module X of a procedure has the name of that procedure's module in `phea_engineering`, and
-//! exports its values beside their output, so that a caller finds both in one place.
+//! exports its values beside their output, so that a caller finds both in one place. The list of
+//! `derived` quantities is output alone: no procedure reads it.
 
 pub mod alternatives;
 pub mod answer;
