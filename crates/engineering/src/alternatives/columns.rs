@@ -7,7 +7,7 @@ use super::comparison::{ColumnSense, sense_of};
 use super::{JudgedAlternative, NoNumber, no_rig};
 use crate::design::LoopFigures;
 use crate::quantity::DisplayUnit;
-use crate::simulate::{Metrics, NOT_SETTLED, ScenarioRun, StoppedRun, UNDETERMINED};
+use crate::simulate::{Metrics, ScenarioRun, StoppedRun, UNDETERMINED, Unmeasured};
 use crate::specification::SpecificationName;
 
 /// A number of an alternative.
@@ -48,7 +48,7 @@ impl AlternativeColumns {
     /// force does not settle in one of them.
     pub fn worst(&self, key: &str) -> Option<f64> {
         let columns = || self.0.iter().filter(|(_, column)| column.key == key);
-        if columns().any(|(_, column)| column.value == Err(NoNumber::NotSettled)) {
+        if columns().any(|(_, column)| column.value == Err(NoNumber::NoMetric(Unmeasured::NotSettled))) {
             return None;
         }
         let worse = match sense_of(key) {
@@ -195,8 +195,8 @@ fn greatest(run: &ScenarioRun, metric: fn(&Metrics) -> crate::simulate::Measured
         return Err(reason);
     }
     let values = || run.windows.iter().map(|(_, metrics)| metric(metrics));
-    if values().any(|value| value == Err(NOT_SETTLED)) {
-        return Err(NoNumber::NotSettled);
+    if values().any(|value| value == Err(Unmeasured::NotSettled)) {
+        return Err(NoNumber::NoMetric(Unmeasured::NotSettled));
     }
     let reason = || values().find_map(Result::err).map_or(NoNumber::NoEvent, NoNumber::NoMetric);
     values().filter_map(Result::ok).reduce(f64::max).ok_or_else(reason)

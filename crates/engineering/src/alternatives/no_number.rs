@@ -1,5 +1,6 @@
 use super::JudgeError;
 use crate::parts::PartsUnknown;
+use crate::simulate::Unmeasured;
 
 /// Why a column of an alternative has no number.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,10 +27,8 @@ pub enum NoNumber {
         /// Time from which on, s.
         time_s: f64,
     },
-    /// The force does not settle after one of the events.
-    NotSettled,
     /// The metric does not exist for one of the events.
-    NoMetric(&'static str),
+    NoMetric(Unmeasured),
     /// No event begins in the scenario.
     NoEvent,
     /// No hose of the catalogue is accepted.

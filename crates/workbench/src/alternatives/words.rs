@@ -2,7 +2,7 @@
 
 use super::{FeasibilityUnknown, JudgedAlternative, LengthUnknown, NoFrontValue, NoNumber};
 use crate::design::status_sentence;
-use crate::simulate::{DIVERGED, NOT_SETTLED};
+use crate::simulate::{DIVERGED, unmeasured_words};
 use phea_engineering::parts::{PartKind, PartsUnknown, UnstatedPart};
 
 /// The columns by their keys, with their names for people.
@@ -75,8 +75,7 @@ pub(super) fn no_number_words(reason: &NoNumber) -> String {
         NoNumber::NotKnownStable => "not known of a family that is not known to be stable",
         NoNumber::NothingToJudgeBy => "there is nothing by which to judge it",
         NoNumber::Undetermined => "no solver determines the result of the run",
-        NoNumber::NotSettled => NOT_SETTLED,
-        NoNumber::NoMetric(reason) => reason,
+        NoNumber::NoMetric(reason) => unmeasured_words(*reason),
         NoNumber::NoEvent => "no event begins in the scenario",
         NoNumber::NoHose => "no hose of the catalogue is accepted",
         NoNumber::Length(reason) => length_unknown_words(*reason),
