@@ -2,7 +2,7 @@
 
 use crate::answer::significant;
 use crate::document::Document;
-use crate::project::{ChosenLines, Loaded, ReachedBy};
+use crate::project::{ChosenLines, Loaded, ReachedBy, WavesHindrance};
 use crate::quantity::DisplayUnit;
 use phea_engineering::line_choice::LUMPED_FROM;
 
@@ -36,11 +36,20 @@ pub(crate) fn sentence(lines: &ChosenLines) -> String {
     };
     let stated = |model: &str| format!("`line.model = \"{model}\"` states it otherwise");
     match (&lines.hindrance, lines.with_waves) {
-        (Some(reason), _) => {
+        (Some(hindrance), _) => {
+            let reason = hindrance_words(hindrance);
             format!("Lines: lumped, although {of_reach}: no model with waves is computed ({reason}).")
         }
         (None, true) => format!("Lines: with waves, since {of_reach}; {}.", stated("lumped")),
         (None, false) => format!("Lines: lumped, since {of_reach}; {}.", stated("transmission_line")),
+    }
+}
+
+/// Why no model with waves is computed.
+pub(crate) fn hindrance_words(hindrance: &WavesHindrance) -> &str {
+    match hindrance {
+        WavesHindrance::FreeLoad => "the load is a mass without stiffness",
+        WavesHindrance::Rig(error) => error,
     }
 }
 

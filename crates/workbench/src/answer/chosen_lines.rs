@@ -3,6 +3,7 @@
 use phea_engineering::line_choice::LUMPED_FROM;
 
 use super::Object;
+use crate::line_choice::hindrance_words;
 use crate::project::{ChosenLines, ReachedBy};
 
 /// The model, and what it follows from.
@@ -26,5 +27,5 @@ pub(crate) fn body_of_lines(lines: &ChosenLines) -> Object {
         .maybe("reached_by", lines.reach.as_ref().map(by))
         .maybe("specification", lines.reach.as_ref().and_then(specification))
         .with("lumped_from", LUMPED_FROM)
-        .maybe("hindrance", lines.hindrance.as_deref())
+        .maybe("hindrance", lines.hindrance.as_ref().map(hindrance_words))
 }
