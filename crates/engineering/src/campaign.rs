@@ -160,7 +160,7 @@ pub enum CampaignError {
     Settings(Box<Refusal>),
 }
 
-/// What is wrong with a line of the kept table.
+/// Fault of a line of the kept table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RowFault {
     /// Its checksum is wrong.

@@ -1,8 +1,8 @@
 //! The model that was chosen for lines without a stated one, for people.
 
-use crate::answer::significant;
+use crate::answer::{hindrance_words, significant};
 use crate::document::Document;
-use crate::project::{ChosenLines, Loaded, ReachedBy, WavesHindrance};
+use crate::project::{ChosenLines, Loaded, ReachedBy};
 use crate::quantity::DisplayUnit;
 use phea_engineering::line_choice::LUMPED_FROM;
 
@@ -42,14 +42,6 @@ pub(crate) fn sentence(lines: &ChosenLines) -> String {
         }
         (None, true) => format!("Lines: with waves, since {of_reach}; {}.", stated("lumped")),
         (None, false) => format!("Lines: lumped, since {of_reach}; {}.", stated("transmission_line")),
-    }
-}
-
-/// Why no model with waves is computed.
-pub(crate) fn hindrance_words(hindrance: &WavesHindrance) -> &str {
-    match hindrance {
-        WavesHindrance::FreeLoad => "the load is a mass without stiffness",
-        WavesHindrance::Rig(error) => error,
     }
 }
 
