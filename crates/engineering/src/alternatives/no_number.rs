@@ -6,7 +6,7 @@ use crate::simulate::Unmeasured;
 /// Why a column of an alternative has no number.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoNumber {
-    /// What it belongs to is missing.
+    /// The part of the alternative that it is of is missing.
     NotJudged(JudgeError),
     /// The design did not find the specifications infeasible, and no limit is to be relaxed.
     NotFoundInfeasible,

@@ -57,7 +57,7 @@ pub(super) fn measure_name(key: &'static str) -> &'static str {
     }
 }
 
-/// What the reason for a number that nobody states is called in a table.
+/// Entry of a table for a number that the project should state.
 pub(super) const NOT_STATED: &str = "not stated";
 
 /// Why a column has no number.
@@ -87,7 +87,7 @@ pub(super) fn no_number_words(reason: &NoNumber) -> String {
     fixed.to_string()
 }
 
-/// Whether the reason is a number that the project should state.
+/// True where the project should state a number.
 pub(super) fn is_unstated(reason: &NoNumber) -> bool {
     match reason {
         NoNumber::Parts(PartsUnknown::NotStated(_)) => true,
