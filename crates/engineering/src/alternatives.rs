@@ -30,7 +30,7 @@ pub use recentred::MovedRange;
 use phea_dynamics::watch::{Progress, Watch};
 
 use crate::catalogue::{self, Catalogue};
-use crate::design::{DesignError, ProjectDesign, design_project};
+use crate::design::{DesignError, DesignVerdict, ProjectDesign, design_project};
 use crate::linearize::{Linearization, linearize};
 use crate::option::OptionError;
 use crate::parts::PartsCounted;
@@ -119,7 +119,7 @@ pub struct JudgedAlternative {
     /// Hoses of the catalogue for its `[sizing]`.
     pub sizing: Result<Sizing, String>,
     /// The designed controller with its audit and its trial on the machine.
-    pub design: Result<ProjectDesign, String>,
+    pub design: Result<ProjectDesign, NoDesign>,
     /// The project with the designed laws in place of its own.
     pub deployed: Result<Project, String>,
     /// The linear models of its rig, the closed loop with the designed controller.
@@ -127,6 +127,26 @@ pub struct JudgedAlternative {
     /// Every scenario under the designed controller and prefilter; empty where there is none, or no
     /// machine.
     pub runs: Result<Vec<ScenarioRun>, String>,
+}
+
+/// Reason for the absence of a design.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoDesign {
+    /// No hose suits the alternative: why.
+    NoHose(String),
+    /// The error of the design.
+    Failed(DesignError),
+}
+
+/// Reason for which a number or a verdict of an alternative is not known.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NotKnown {
+    /// There is no design.
+    NoDesign(NoDesign),
+    /// The design does not decide it.
+    Design(DesignVerdict),
+    /// Any other reason.
+    Other(String),
 }
 
 impl Alternatives {
@@ -162,9 +182,9 @@ impl JudgedAlternative {
 
     /// True where the designed loop satisfies every specification, and the nonlinear rig what is
     /// required in time; or why this is not known.
-    pub fn feasible(&self) -> Result<bool, String> {
+    pub fn feasible(&self) -> Result<bool, NotKnown> {
         use phea_qft::design::DesignStatus;
-        let view = self.design.as_ref().map_err(Clone::clone)?;
+        let view = self.design.as_ref().map_err(|none| NotKnown::NoDesign(none.clone()))?;
         match view.design.status {
             _ if view.is_met() && !view.misses_on_rig() => Ok(true),
             DesignStatus::Infeasible(_) | DesignStatus::NotStabilised => Ok(false),
@@ -175,9 +195,7 @@ impl JudgedAlternative {
             {
                 Ok(false)
             }
-            DesignStatus::Met | DesignStatus::NotConverged { .. } => {
-                Err(crate::design::status_sentence(view))
-            }
+            DesignStatus::Met | DesignStatus::NotConverged { .. } => Err(NotKnown::Design(view.verdict())),
         }
     }
 }
@@ -264,11 +282,11 @@ impl Judging<'_> {
         let setup = Setup::around(&project, rig.clone());
         let setup = setup.as_ref().map_err(Clone::clone);
         let design = match no_hose {
-            Some(reason) => Err(reason),
+            Some(reason) => Err(NoDesign::NoHose(reason)),
             None => match designed(self.source, setup.clone(), &mut designing) {
                 Err(DesignError::Stopped(_)) => return None,
                 Ok(view) if view.is_stopped() => return None,
-                design => design.map_err(|error| error.to_string()),
+                design => design.map_err(NoDesign::Failed),
             },
         };
         let deployed = match &design {

@@ -14,6 +14,24 @@ use crate::setup::Setup;
 use crate::source::Source;
 use crate::specification::{SpecificationError, closed_loops, crossed_limits};
 
+/// A requirement that no loop can satisfy.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Impossibility {
+    /// A limit or a step, at the key that states it.
+    Stated(LateError),
+    /// A requirement that a few plants forbid.
+    OfPlants {
+        /// The key that states it.
+        path: String,
+        /// The impossibility.
+        explanation: Box<Explanation>,
+        /// The first plant that it concerns; empty where that has no parameters.
+        plant: String,
+        /// A change that would satisfy it.
+        cure: String,
+    },
+}
+
 /// Requirements that no linear loop can satisfy: limits that cross; what a few plants forbid
 /// (the nominal one, some corners, some members), whatever the controller; times shorter than a
 /// delay; and required steps that the rig does not reach. Each holds for every controller and
@@ -22,21 +40,24 @@ use crate::specification::{SpecificationError, closed_loops, crossed_limits};
 ///
 /// # Errors
 /// [`SpecificationError`] for a limit that is absent or not a function of frequency.
-pub fn impossibilities(source: &dyn Source, setup: &Setup<'_>) -> Result<Vec<LateError>, SpecificationError> {
+pub fn impossibilities(
+    source: &dyn Source,
+    setup: &Setup<'_>,
+) -> Result<Vec<Impossibility>, SpecificationError> {
     let project = setup.project;
     let crossed = crossed_limits(project)?;
-    let mut found: Vec<LateError> = crossed.iter().map(SpecificationError::at).collect();
+    let mut found: Vec<Impossibility> = crossed.iter().map(|one| Impossibility::Stated(one.at())).collect();
     if project.specifications.is_empty() {
         return Ok(found);
     }
     let Ok(problem) = robust_problem(source, setup) else { return Ok(found) };
-    found.extend(impossible_steps(setup, &problem));
+    found.extend(impossible_steps(setup, &problem).into_iter().map(Impossibility::Stated));
     found.extend(of_plants(setup, &problem, few_plants(&problem.family)));
     Ok(found)
 }
 
 /// What a few plants forbid.
-fn of_plants(setup: &Setup<'_>, problem: &RobustProblem, family: Family) -> Vec<LateError> {
+fn of_plants(setup: &Setup<'_>, problem: &RobustProblem, family: Family) -> Vec<Impossibility> {
     let few = DesignProblem { family, ..design_problem(setup, problem) };
     let is_new = |finding: &Finding| {
         finding.severity() == FindingSeverity::Impossible && !matches!(finding, Finding::CrossedLimits { .. })
@@ -46,16 +67,16 @@ fn of_plants(setup: &Setup<'_>, problem: &RobustProblem, family: Family) -> Vec<
 }
 
 /// A finding at the key of the first specification that it concerns, with the plant.
-fn stated(project: &Project, problem: &RobustProblem, finding: &Finding) -> LateError {
-    let explanation = Explanation::of(finding, &|index| problem.stated(index));
+fn stated(project: &Project, problem: &RobustProblem, finding: &Finding) -> Impossibility {
+    let explanation = Explanation::of(finding, problem);
     let plant = explanation.plants.first().map(|plant| problem.names.text(plant));
-    let plant = plant.filter(|text| !text.is_empty()).map_or(String::new(), |text| format!(" ({text})"));
     let path = match explanation.specifications.first() {
         Some(first) => key_of(project, *first).unwrap_or_else(|| "controller.quantization".to_string()),
         None if matches!(finding, Finding::DelayMargin { .. }) => "design.minimum_delay_margin".to_string(),
         None => "uncertainty".to_string(),
     };
-    LateError { path, message: format!("{}{plant}", explanation.sentence), help: cure(problem, finding) }
+    let (plant, cure) = (plant.unwrap_or_default(), cure(problem, finding));
+    Impossibility::OfPlants { path, explanation: Box::new(explanation), plant, cure }
 }
 
 /// The key of a limit on a closed loop, by its index.

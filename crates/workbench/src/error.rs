@@ -25,6 +25,7 @@ use phea_engineering::sizing::SizingError;
 use phea_engineering::specification::SpecificationError;
 use phea_engineering::trial::TrialError;
 
+use crate::explanation::design_error_words;
 use crate::project::{Diagnostic, Loaded, Refusal, Severity, refused};
 use crate::source::Source;
 
@@ -62,7 +63,7 @@ pub enum CommandError {
     #[error(transparent)]
     Audit(AuditError),
     /// There is nothing to design for, or nothing was found.
-    #[error(transparent)]
+    #[error("{}", design_error_words(.0))]
     Design(DesignError),
     /// There is no family of plants.
     #[error(transparent)]

@@ -4,7 +4,7 @@ use phea_hydraulics::signal::Signal;
 use phea_qft::design::DesignStatus;
 
 use super::comparison::{ColumnSense, sense_of};
-use super::{JudgedAlternative, no_rig};
+use super::{JudgedAlternative, NotKnown, no_rig};
 use crate::design::LoopFigures;
 use crate::quantity::DisplayUnit;
 use crate::simulate::{DIVERGED, Metrics, NOT_SETTLED, ScenarioRun, StoppedRun, UNDETERMINED};
@@ -21,7 +21,7 @@ pub struct AlternativeColumn {
     /// Significant digits for people; 0 for a whole number.
     pub digits: usize,
     /// In SI, or why there is none.
-    pub value: Result<f64, String>,
+    pub value: Result<f64, NotKnown>,
 }
 
 /// The part of an alternative that a column belongs to.
@@ -49,7 +49,7 @@ impl AlternativeColumns {
     /// force does not settle in one of them.
     pub fn worst(&self, key: &str) -> Option<f64> {
         let columns = || self.0.iter().filter(|(_, column)| column.key == key);
-        if columns().any(|(_, column)| column.value.as_ref().is_err_and(|reason| reason == NOT_SETTLED)) {
+        if columns().any(|(_, column)| column.value.as_ref().is_err_and(is_not_settled)) {
             return None;
         }
         let worse = match sense_of(key) {
@@ -79,21 +79,22 @@ impl JudgedAlternative {
 
     fn loop_columns(&self) -> Vec<AlternativeColumn> {
         let figure = |of: fn(&LoopFigures) -> Result<f64, &'static str>| match &self.design {
-            Ok(view) => of(&view.designed.figures).map_err(String::from),
-            Err(reason) => Err(reason.clone()),
+            Ok(view) => of(&view.designed.figures).map_err(|reason| NotKnown::Other(reason.to_string())),
+            Err(none) => Err(NotKnown::NoDesign(none.clone())),
         };
         let relaxation = match &self.design {
             Ok(view) => match &view.design.status {
                 DesignStatus::Infeasible(relaxation) => Ok(relaxation.relaxation_db),
                 _ if self.feasible() == Ok(true) => Ok(0.0),
-                _ => Err("the specifications were not found infeasible".to_string()),
+                _ => Err(NotKnown::Other("the specifications were not found infeasible".to_string())),
             },
-            Err(reason) => Err(reason.clone()),
+            Err(none) => Err(NotKnown::NoDesign(none.clone())),
         };
-        let unknown = "not known of a family that is not known to be stable";
-        let modulus = figure(|figures| figures.modulus_margin.ok_or("")).map_err(|_| unknown.to_string());
-        let delay = figure(|figures| figures.delay_margin_s.ok_or("")).map_err(|_| unknown.to_string());
+        let unknown = |_| NotKnown::Other("not known of a family that is not known to be stable".to_string());
+        let modulus = figure(|figures| figures.modulus_margin.ok_or("")).map_err(unknown);
+        let delay = figure(|figures| figures.delay_margin_s.ok_or("")).map_err(unknown);
         let one = DisplayUnit::ONE;
+        let column = |key, words, unit, digits, value| AlternativeColumn { key, words, unit, digits, value };
         vec![
             column("relaxation_db", "relaxation needed", DECIBEL, 3, relaxation),
             column("order", "order of G", one, 0, figure(|figures| Ok(figures.order as f64))),
@@ -157,7 +158,11 @@ pub(super) fn column(
     digits: usize,
     value: Result<f64, String>,
 ) -> AlternativeColumn {
-    AlternativeColumn { key, words, unit, digits, value }
+    AlternativeColumn { key, words, unit, digits, value: value.map_err(NotKnown::Other) }
+}
+
+fn is_not_settled(reason: &NotKnown) -> bool {
+    matches!(reason, NotKnown::Other(reason) if reason == NOT_SETTLED)
 }
 
 /// The columns of a scenario: of each metric the greatest of all its events.

@@ -5,7 +5,7 @@ use phea_dynamics::watch::{Progress, Watch};
 use super::AlternativesError;
 use super::asked::ReadingAgain;
 use super::comparison::sense_of;
-use super::{AskedAlternative, COLUMN_SENSES, ColumnSense, JudgedAlternative, Judging, dominates};
+use super::{AskedAlternative, COLUMN_SENSES, ColumnSense, JudgedAlternative, Judging, NotKnown, dominates};
 use crate::linearize::{SweepRequest, points, range, values};
 use crate::option::OptionError;
 use crate::project::Motions;
@@ -67,13 +67,13 @@ pub struct FrontPoint {
     /// The swept number, SI.
     pub value: f64,
     /// Whether every specification is satisfied there, or why this is not known.
-    pub feasible: Result<bool, String>,
+    pub feasible: Result<bool, NotKnown>,
     /// Whether it satisfies them, is driven to its end, and is not contradicted by the machine:
     /// only such points dominate others, or are on a front. Where the relaxation is a column, those
     /// that miss the specifications are compared too.
     pub comparable: bool,
     /// The columns, with their words and units, or why there are none.
-    pub values: Vec<Result<FrontValue, String>>,
+    pub values: Vec<Result<FrontValue, NotKnown>>,
     /// The points that dominate it, by their place in the list.
     pub dominated_by: Vec<usize>,
 }
@@ -212,7 +212,7 @@ fn point(
 ) -> Option<FrontPoint> {
     let found = match at(again, one, &plan.path, value) {
         Ok(there) => Ok(judging.judged(there, watch)?),
-        Err(error) => Err(error.to_string()),
+        Err(error) => Err(NotKnown::Other(error.to_string())),
     };
     let alternative = one.name.clone();
     Some(match found {
@@ -250,14 +250,15 @@ fn at(
     }
 }
 
-fn values_of(judged: &JudgedAlternative, plan: &FrontPlan, value: f64) -> Vec<Result<FrontValue, String>> {
+fn values_of(judged: &JudgedAlternative, plan: &FrontPlan, value: f64) -> Vec<Result<FrontValue, NotKnown>> {
     let columns = judged.columns();
+    let other = |reason: &str| NotKnown::Other(reason.to_string());
     let of = |column: &FrontColumn| {
         if column.key == SWEPT {
             return Ok(FrontValue { value, words: SWEPT, unit: plan.unit, digits: 3 });
         }
-        let found = columns.first(column.key).ok_or("there is no such column here")?;
-        let reason = || found.value.clone().err().unwrap_or_else(|| "not in every scenario".to_string());
+        let found = columns.first(column.key).ok_or_else(|| other("there is no such column here"))?;
+        let reason = || found.value.clone().err().unwrap_or_else(|| other("not in every scenario"));
         let value = columns.worst(column.key).ok_or_else(reason)?;
         Ok(FrontValue { value, words: found.words, unit: found.unit, digits: found.digits })
     };

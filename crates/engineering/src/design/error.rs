@@ -3,6 +3,7 @@
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::watch::Stopped;
 
+use super::Explanation;
 use crate::impossible_steps::impossible_steps;
 use crate::project::LateError;
 use crate::robust::{RobustError, RobustProblem};
@@ -24,8 +25,8 @@ pub enum DesignError {
     )]
     Admittance,
     /// The search found no controller; with what was known of the problem.
-    #[error("the search ended without a controller{}", .0.iter().map(|one| format!("; {one}")).collect::<String>())]
-    NoController(Vec<String>),
+    #[error("the search ended without a controller")]
+    NoController(Vec<Explanation>),
     /// Required steps that no controller makes on the rig.
     #[error("{}", .0.iter().map(LateError::sentence).collect::<Vec<_>>().join("; "))]
     ImpossibleSteps(Vec<LateError>),

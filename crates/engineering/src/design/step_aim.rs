@@ -12,7 +12,7 @@ use phea_dynamics::portable;
 use phea_qft::specification::{Limit, Requirement, Specification};
 
 use super::deployable::limit_value;
-use super::{CommandOfSteps, DesignError, DesignLimitKind, ProjectDesign, design_limits, limit_words};
+use super::{CommandOfSteps, DesignError, DesignLimitKind, ProjectDesign, design_limits};
 use crate::audit::TimeFinding;
 use crate::project::{DeclaredLimit, DeclaredSpecification, Project, ResponseWish, SpecificationKind};
 use crate::robust::{RobustError, RobustProblem};
@@ -154,13 +154,11 @@ impl StepAim {
         }
         if let Some(required) = required_step(given) {
             problem.specifications.push(self.towards(required)?);
-            problem.specification_names.push(limit_words(DesignLimitKind::RequiredStep).to_string());
             problem.design_limits.push(DesignLimitKind::RequiredStep);
         }
         let led = self.prefilter_gain.and_then(|most| without_prefilter(&problem.specifications, most));
         if let Some(specification) = led {
             problem.specifications.push(specification);
-            problem.specification_names.push(limit_words(DesignLimitKind::PrefilterGain).to_string());
             problem.design_limits.push(DesignLimitKind::PrefilterGain);
         }
         Ok(problem)

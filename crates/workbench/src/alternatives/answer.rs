@@ -3,6 +3,7 @@
 use super::document::told_first;
 use super::findings::{findings, of_case};
 use super::front;
+use super::words::{no_design_words, not_known_words};
 use super::{AlternativeColumn, Alternatives, ColumnPart, JudgedAlternative, JudgedCase, MovedRange};
 use crate::answer::{Json, Object};
 use crate::audit::verdict_key;
@@ -32,7 +33,8 @@ fn case(one: &JudgedCase) -> Object {
 }
 
 fn row(one: &JudgedAlternative) -> Object {
-    let failed = one.design.as_ref().err().map_or("", String::as_str);
+    let failed = one.design.as_ref().err().map_or(String::new(), no_design_words);
+    let failed = failed.as_str();
     let view = one.design.as_ref().ok();
     let verdict = view.map(|view| verdict_key(view.designed.view.verdict()));
     // the laws of a design that was audited are transfer functions
@@ -73,13 +75,13 @@ fn columns(one: &JudgedAlternative) -> Object {
         objects.collect::<Vec<_>>()
     };
     let feasible = one.feasible();
-    let reason = feasible.as_ref().err().map_or("", String::as_str).to_string();
+    let reason = feasible.as_ref().err().map_or(String::new(), not_known_words);
     let stability = one.design.as_ref().map(|view| verdict_key(view.designed.view.audit.stability.verdict));
-    let failed = one.design.as_ref().err().map_or("", String::as_str);
+    let failed = one.design.as_ref().err().map_or(String::new(), no_design_words);
     let own = Object::new().known("feasible", feasible.ok(), &reason).known(
         "stable_with_its_load",
         stability.ok(),
-        failed,
+        &failed,
     );
     let own = told(own, of(&all, &ColumnPart::Loop).chain(of(&all, &ColumnPart::Rig)));
     let currency = one.counted.currency.map(|currency| currency.code());
@@ -135,11 +137,11 @@ fn of<'c>(
 
 fn told<'c>(object: Object, columns: impl Iterator<Item = &'c AlternativeColumn>) -> Object {
     columns.fold(object, |object, column| {
-        let reason = column.value.as_ref().err().map_or("", String::as_str);
+        let reason = column.value.as_ref().err().map_or(String::new(), not_known_words);
         object.known(
             column.key,
             column.value.as_ref().ok().map(|value| number(*value, column.digits)),
-            reason,
+            &reason,
         )
     })
 }

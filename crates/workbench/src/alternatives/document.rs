@@ -3,6 +3,7 @@
 use super::findings::findings;
 use super::front;
 use super::summary::{self, machine};
+use super::words::not_known_words;
 use super::{AlternativeColumn, AlternativeColumns, Alternatives, ColumnPart, JudgedAlternative};
 use crate::document::{Cell, Document, Table};
 use crate::linearize::PortView;
@@ -165,7 +166,7 @@ fn keys(all: &[AlternativeColumns], part: &ColumnPart) -> Vec<(&'static str, &'s
 }
 
 fn is_shown(column: &AlternativeColumn) -> bool {
-    column.value.as_ref().map_or_else(|reason| reason.starts_with(NOT_STATED), |_| true)
+    column.value.as_ref().map_or_else(|reason| not_known_words(reason).starts_with(NOT_STATED), |_| true)
 }
 
 /// What the reason for a number that nobody states begins with.
@@ -186,10 +187,12 @@ fn cell(columns: &AlternativeColumns, part: &ColumnPart, key: &str) -> Cell {
         Ok(value) if key == "worst_margin_db" => Cell::margin(*value),
         Ok(value) if column.digits == 0 => value.to_string().into(),
         Ok(value) => Cell::quantity(*value, column.digits, column.unit),
-        // what of it is missing is found in the table of its part
-        Err(reason) if key.starts_with("parts_") && reason.starts_with(NOT_STATED) => reason.clone().into(),
-        Err(reason) if reason.starts_with(NOT_STATED) => NOT_STATED.into(),
-        Err(_) => Cell::Missing,
+        Err(reason) => match not_known_words(reason) {
+            // what of it is missing is found in the table of its part
+            reason if key.starts_with("parts_") && reason.starts_with(NOT_STATED) => reason.into(),
+            reason if reason.starts_with(NOT_STATED) => NOT_STATED.into(),
+            _ => Cell::Missing,
+        },
     }
 }
 

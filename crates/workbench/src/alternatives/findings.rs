@@ -4,11 +4,12 @@
 use phea_qft::design::ControllerChoice;
 use phea_qft::design::DesignStatus;
 
+use super::words::no_design_words;
 use super::{
     AlternativeColumns, Alternatives, ComparedMeasure, ComparedMeasures, JudgedAlternative, JudgedCase,
     MovedRange,
 };
-use crate::design::status_sentence;
+use crate::design::verdict_sentence;
 use crate::grouped::grouped;
 use crate::project::{AS_DECLARED, ImpedanceForm, LINEAR_PARAMETERS};
 use crate::quantity::{DisplayUnit, MotionKind, fitting, significant};
@@ -115,10 +116,10 @@ fn specifications(judged: &[JudgedAlternative], not_reached: usize) -> Vec<Strin
         ));
     }
     let otherwise = named(&|one| match &one.design {
-        Err(reason) => Some(format!("{}: not judged: {reason}", one.name)),
+        Err(none) => Some(format!("{}: not judged: {}", one.name, no_design_words(none))),
         Ok(view) if matches!(view.design.status, DesignStatus::Infeasible(_)) => None,
         Ok(_) if one.feasible() == Ok(true) => None,
-        Ok(view) => Some(format!("{}: {}", one.name, status_sentence(view))),
+        Ok(view) => Some(format!("{}: {}", one.name, verdict_sentence(&view.verdict()))),
     });
     sentences.extend(otherwise);
     sentences

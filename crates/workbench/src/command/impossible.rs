@@ -1,6 +1,9 @@
 //! What no loop can satisfy, with its line, in words and in JSON.
 
+use phea_engineering::impossible::{Impossibility, impossibilities};
+
 use crate::answer::Object;
+use crate::explanation::explanation_sentence;
 use crate::project::{LateError, Loaded, refused};
 use crate::setup::Setup;
 use crate::source::Source;
@@ -10,6 +13,18 @@ use crate::specification::SpecificationError;
 pub(super) struct Impossible {
     at: LateError,
     line: usize,
+}
+
+/// A requirement in words, at its key.
+fn at(found: Impossibility) -> LateError {
+    match found {
+        Impossibility::Stated(at) => at,
+        Impossibility::OfPlants { path, explanation, plant, cure } => {
+            let plant = if plant.is_empty() { plant } else { format!(" ({plant})") };
+            let message = format!("{}{plant}", explanation_sentence(&explanation));
+            LateError { path, message, help: cure }
+        }
+    }
 }
 
 impl Impossible {
@@ -22,8 +37,9 @@ impl Impossible {
         loaded: &Loaded,
         setup: &Setup<'_>,
     ) -> Result<Vec<Impossible>, SpecificationError> {
-        let found = phea_engineering::impossible::impossibilities(source, setup)?;
-        let of = |at: LateError| {
+        let found = impossibilities(source, setup)?;
+        let of = |found: Impossibility| {
+            let at = at(found);
             let line = refused(source, loaded, &at).diagnostics.first().map_or(0, |found| found.line);
             Impossible { at, line }
         };
