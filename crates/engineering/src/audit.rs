@@ -28,6 +28,7 @@ pub use nominal::{Crossovers, NominalMargins};
 pub use prefilter::PrefilterGain;
 pub use proven::{prove_audit, standing_word, try_to_prove, why_not_proven};
 pub use remark::remark_sentences;
+pub use rig_outside_family::{LoopWithRig, OutsideFamily};
 pub(crate) use rig_outside_family::{caveat as caveat_of_rig, unexamined as unexamined_rig};
 pub use stability::{infinity_sentence, stability_reason, stability_sentence};
 pub use whole_loop::DelayedPaths;
@@ -48,6 +49,7 @@ use crate::caveat::Caveat;
 use crate::limit_kind::JudgedLimits;
 use crate::plant_names::PlantNames;
 use crate::quantity::DisplayUnit;
+use crate::quantity::Units;
 use crate::robust::{LINES_IN_MOTION, RobustError, RobustProblem, numbered, robust_problem};
 use crate::setup::Setup;
 use crate::side_by_side::{all_cores, both};
@@ -167,6 +169,8 @@ pub struct ProjectAudit {
     pub delay_s: f64,
     /// Dead time of plant, sensor and controller.
     pub dead_time: LoopDeadTime,
+    /// Motion of the rig and units of display.
+    pub units: Units,
     /// Declared effects that the audit does not include.
     pub caveats: Vec<Caveat>,
     /// What the worst plant of each specification reaches, where that is a magnitude against a
@@ -301,6 +305,7 @@ impl ProjectAudit {
             sample_time_s: compensation.sample_time_s(),
             delay_s: compensation.delay_s(),
             dead_time: LoopDeadTime::of(problem),
+            units: problem.units,
             caveats,
             velocity_noise,
             pressure_noise,

@@ -34,8 +34,7 @@ pub use agreement::AgreementBand;
 pub use agreement::{FIRST_ORDER, LUMPED, WITHIN_DB, WITHIN_DEG};
 pub use linkage::{LinkagePlace, LinkagePosition, linkage_places};
 pub use over_force::{StiffnessOverForce, stiffness_over_force};
-pub(crate) use port::hidden_above;
-pub use port::{AskedAt, AskedImpedance, HidingMass, SHOWN_AT, WITHIN_PERCENT};
+pub use port::{AskedAt, AskedImpedance, HidingMass, SHOWN_AT, WITHIN_PERCENT, hidden_above};
 pub use sweep::{POINTS, Sweep, SweepError, SweepPoint, SweepRequest, Swept, sweep};
 pub(crate) use sweep::{points, range, values};
 

@@ -20,6 +20,7 @@ use crate::family::{ProjectFamilyError, family};
 use crate::limit_kind::DesignLimitKind;
 use crate::plant_names::PlantNames;
 use crate::quantity::Units;
+use crate::rig::OutsideParameter;
 use crate::setup::{ControlError, Setup, pressure_noise, velocity_noise, with_pressure_feedback};
 use crate::side_by_side::left_behind;
 use crate::simulate::{TimeRequirement, time_requirements};
@@ -55,7 +56,7 @@ pub struct RobustProblem {
     pub in_time: Vec<TimeRequirement>,
     /// The rig itself as a family of one, where the family does not contain it, and what of it is
     /// outside.
-    pub rig_outside: Option<(Family, String)>,
+    pub rig_outside: Option<(Family, Vec<OutsideParameter>)>,
     /// Why the plants of the family have no polynomials; `None` where they have them.
     pub without_polynomials: Option<&'static str>,
     /// Noise of the velocity that a sampled controller feeds forward, m/s rms; zero without.

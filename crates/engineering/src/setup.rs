@@ -13,7 +13,7 @@ use phea_qft::closed_loop::Compensation;
 use phea_qft::design::quantization::{CoefficientFormat, Quantization, rounded};
 
 use crate::project::Project;
-use crate::rig::{Rig, RigError, outside};
+use crate::rig::{OutsideParameter, Rig, RigError, outside};
 
 pub use control::ControlError;
 pub(crate) use control::{
@@ -119,7 +119,7 @@ impl<'a> Setup<'a> {
 
     /// The project without its uncertainty, and the parameters of the rig that the box does not
     /// contain. `None` where the box contains the rig, or there is no rig.
-    pub fn outside(&self) -> Option<(Project, String)> {
+    pub fn outside(&self) -> Option<(Project, Vec<OutsideParameter>)> {
         outside(self.project, self.rig.as_ref().ok()?)
     }
 

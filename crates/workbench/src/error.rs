@@ -1,6 +1,9 @@
 //! Why a command has no answer: the one error of everything that the workbench computes.
 
 mod place;
+mod words;
+
+pub(crate) use words::design_error_words;
 
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::time_response::TimeResponseError;
@@ -25,7 +28,6 @@ use phea_engineering::sizing::SizingError;
 use phea_engineering::specification::SpecificationError;
 use phea_engineering::trial::TrialError;
 
-use crate::explanation::design_error_words;
 use crate::project::{Diagnostic, Loaded, Refusal, Severity, refused};
 use crate::source::Source;
 

@@ -1,27 +1,15 @@
-//! Facts that are impossible or hard for a controller, in sentences, and the error of a design that
-//! they explain.
+//! Facts that are impossible or hard for a controller, in sentences.
 
 use std::f64::consts::TAU;
 use std::fmt::{Display, Formatter, Result};
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
-use phea_engineering::design::{DesignError, ExplainedFact, ExplainedLimit, Explanation, limit_key};
+use phea_engineering::design::{ExplainedFact, ExplainedLimit, Explanation, limit_key};
 use phea_qft::design::{Constraint, ConstraintPlace, Finding};
 use phea_qft::verification::SpecificationMargin;
 
 use crate::limit_kind::limit_words;
-
-/// The error of a design; where no controller was found, with what was known of the problem.
-pub(crate) fn design_error_words(error: &DesignError) -> String {
-    match error {
-        DesignError::NoController(known) => {
-            let known = known.iter().map(|one| format!("; {}", explanation_sentence(one)));
-            format!("{error}{}", known.collect::<String>())
-        }
-        error => error.to_string(),
-    }
-}
 
 /// The sentence of an explanation.
 pub fn explanation_sentence(explanation: &Explanation) -> String {

@@ -48,7 +48,7 @@ use crate::project::{DeclaredActuator, InputSignal, Loaded, Project, WrittenUnit
 use crate::quantity::MotionKind;
 use crate::rig::Rig;
 use crate::setup::Setup;
-use crate::sizing::{Question, Sizing, SizingError, SizingProblem, size};
+use crate::sizing::{Question, Sizing, SizingError, SizingProblem, hose_name, length_words, size};
 use crate::source::Source;
 
 use campaign::CampaignChapter;
@@ -375,9 +375,9 @@ fn summary(
     });
     if let Some(best) = best {
         let gain = significant(best.branch.gain_v_per_n, 3);
-        let length = best.branch.length_words(3);
+        let length = length_words(&best.branch, 3);
         let open = if best.accepted() { "" } else { "; not accepted before its working pressure is stated" };
-        facts.push(("Hose", format!("{}, {length} at K_p = {gain} V/N{open}", best.option.name)));
+        facts.push(("Hose", format!("{}, {length} at K_p = {gain} V/N{open}", hose_name(&best.option.name))));
     } else if sizing.is_some() {
         facts.push(("Hose", "none of the catalogue fits".to_string()));
     }

@@ -15,7 +15,7 @@ use crate::caveat::{Caveat, caveats};
 use crate::linear_loop::{LinearLoop, LoopStability, linear_loop, linear_loop_of};
 use crate::option::OptionError;
 use crate::project::{self, Key, KeyEntry, Loaded, Motions, Refusal};
-use crate::quantity::{self, DisplayUnit, MotionKind, display};
+use crate::quantity::{self, DisplayUnit, Units, display};
 use crate::setup::Setup;
 use crate::source::Source;
 use crate::spelling::nearest;
@@ -60,8 +60,8 @@ pub struct Sweep {
     pub unit: DisplayUnit,
     /// The unit of its values.
     pub si: &'static str,
-    /// How the rig moves.
-    pub motion: MotionKind,
+    /// Motion of the rig and units of display.
+    pub units: Units,
     /// Whether the values are evenly spaced by ratio.
     pub by_ratio: bool,
     /// Whether the plant of every verdict depends on the key. It may not where the project states
@@ -108,7 +108,7 @@ pub fn sweep(
     catalogues: &[String],
     request: &SweepRequest,
 ) -> Result<Sweep, SweepError> {
-    let motion = loaded.project.motion();
+    let units = loaded.project.units;
     let asked = range(&request.range, loaded.project.motions())?;
     let by_ratio = asked.by_ratio();
     let SweepRange { path, key, ends } = asked;
@@ -128,7 +128,7 @@ pub fn sweep(
         .collect();
     let unit = quantity::fitting(ends[0].abs().max(ends[1].abs()), key.dimension);
     let caveats = caveats(setup);
-    Ok(Sweep { path, unit, si: key.dimension.si, motion, by_ratio, plant_follows, caveats, points })
+    Ok(Sweep { path, unit, si: key.dimension.si, units, by_ratio, plant_follows, caveats, points })
 }
 
 /// A range, read.

@@ -3,7 +3,7 @@
 use super::document::told_first;
 use super::findings::{findings, of_case};
 use super::front;
-use super::words::{no_design_words, not_known_words};
+use super::words::{judge_error_words, no_number_words, undecided_words};
 use super::{AlternativeColumn, Alternatives, ColumnPart, JudgedAlternative, JudgedCase, MovedRange};
 use crate::answer::{Json, Object};
 use crate::audit::verdict_key;
@@ -33,20 +33,19 @@ fn case(one: &JudgedCase) -> Object {
 }
 
 fn row(one: &JudgedAlternative) -> Object {
-    let failed = one.design.as_ref().err().map_or(String::new(), no_design_words);
-    let failed = failed.as_str();
+    let failed = one.design.as_ref().err().map_or(String::new(), judge_error_words);
     let view = one.design.as_ref().ok();
     let verdict = view.map(|view| verdict_key(view.designed.view.verdict()));
     // the laws of a design that was audited are transfer functions
     let design = view.and_then(|view| design::body(view).ok());
     let machine = view.and_then(|view| view.trial.as_ref()).map(trial::body);
-    let no_machine = if view.is_some() { "the project describes a plant and no machine" } else { failed };
+    let no_machine = if view.is_some() { "the project describes a plant and no machine" } else { &failed };
     Object::new()
         .with("name", one.name.as_str())
         .with("settings", one.loaded.settings.as_slice())
         .each("moved_ranges", &one.moved, moved)
-        .known("verdict", verdict, failed)
-        .known("design", design, failed)
+        .known("verdict", verdict, &failed)
+        .known("design", design, &failed)
         .known("machine", machine, no_machine)
         .with("columns", columns(one))
 }
@@ -75,10 +74,10 @@ fn columns(one: &JudgedAlternative) -> Object {
         objects.collect::<Vec<_>>()
     };
     let feasible = one.feasible();
-    let reason = feasible.as_ref().err().map_or(String::new(), not_known_words);
+    let reason = if feasible.is_some() { String::new() } else { undecided_words(one) };
     let stability = one.design.as_ref().map(|view| verdict_key(view.designed.view.audit.stability.verdict));
-    let failed = one.design.as_ref().err().map_or(String::new(), no_design_words);
-    let own = Object::new().known("feasible", feasible.ok(), &reason).known(
+    let failed = one.design.as_ref().err().map_or(String::new(), judge_error_words);
+    let own = Object::new().known("feasible", feasible, &reason).known(
         "stable_with_its_load",
         stability.ok(),
         &failed,
@@ -137,7 +136,7 @@ fn of<'c>(
 
 fn told<'c>(object: Object, columns: impl Iterator<Item = &'c AlternativeColumn>) -> Object {
     columns.fold(object, |object, column| {
-        let reason = column.value.as_ref().err().map_or(String::new(), not_known_words);
+        let reason = column.value.as_ref().err().map_or(String::new(), no_number_words);
         object.known(
             column.key,
             column.value.as_ref().ok().map(|value| number(*value, column.digits)),
@@ -149,15 +148,15 @@ fn told<'c>(object: Object, columns: impl Iterator<Item = &'c AlternativeColumn>
 /// Of the impedance at the load, as `linearize` says it.
 fn passivity(one: &JudgedAlternative) -> Object {
     let linearization = one.linearization.as_ref();
-    let failed = linearization.err().map_or("", String::as_str);
+    let failed = linearization.err().map_or(String::new(), |reason| reason.to_string());
     let open = linearization.ok().map(|found| passivity_body(&found.open_loop.passivity));
     let closed = linearization.ok().and_then(|found| found.closed_loop.as_ref());
     let closed = closed.filter(|_| one.deployed.is_ok());
-    let absent = linearization.ok().and_then(|found| found.closed_loop_absent.as_deref());
-    let absent = one.deployed.as_ref().err().map(String::as_str).or(absent);
-    Object::new().known("open_loop", open, failed).known(
+    let absent = linearization.ok().and_then(|found| found.closed_loop_absent.clone());
+    let absent = one.deployed.as_ref().err().map(|reason| reason.to_string()).or(absent);
+    Object::new().known("open_loop", open, &failed).known(
         "closed_loop",
         closed.map(|view| passivity_body(&view.passivity)),
-        absent.unwrap_or(failed),
+        absent.as_deref().unwrap_or(&failed),
     )
 }

@@ -11,6 +11,7 @@ use super::{
 };
 use super::{evidence_key, remark_sentences, stability_reason, verdict_key, why_not_proven};
 use crate::answer::{Csv, Object, OutputFile, envelope};
+use crate::caveat;
 use crate::plant_names::PlantNames;
 use crate::project::Loaded;
 use crate::specification::{kind_key, kind_words};
@@ -74,7 +75,7 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
         .maybe("pressure_noise", view.pressure_noise.as_ref().map(|noise| signal_noise(noise, names)))
         .maybe("amplifying_prefilter", view.amplifying_prefilter.map(amplifying))
         .each("specifications", in_file_order(view), |one| one)
-        .each("warnings", &view.caveats, |caveat| caveat.sentence.as_str());
+        .with("warnings", caveat::sentences(&view.caveats, &view.units));
     match &view.below_design {
         Some(limits) => own.each("below_design", &limits.exceeded, below_design::object).each(
             "kept_of_design",

@@ -9,6 +9,7 @@ use super::{
     closed_loop_symbol, evidence_sentence, finding_sentence, infinity_sentence, place_words,
     remark_sentences, stability_sentence, standing_word, verdict_words, why_not_proven, worst_at_design,
 };
+use crate::caveat;
 use crate::document::{Cell, Document, Table};
 use crate::figure::Figure;
 use crate::grouped::grouped;
@@ -46,7 +47,7 @@ pub(crate) fn document(view: &ProjectAudit, figures: Vec<Figure>) -> Document {
 /// Stability, delay margin and each specification, a sentence each, preceded by the effects that
 /// none of them includes.
 pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
-    let mut sentences: Vec<String> = view.caveats.iter().map(|caveat| caveat.sentence.clone()).collect();
+    let mut sentences: Vec<String> = caveat::sentences(&view.caveats, &view.units);
     sentences.push(stability_sentence(&view.audit.stability, &view.names));
     sentences.extend(delay_sentence(view));
     sentences.extend(view.nominal.as_ref().and_then(NominalMargins::reduction_sentence));

@@ -1,9 +1,9 @@
 //! What no loop can satisfy, with its line, in words and in JSON.
 
-use phea_engineering::impossible::{Impossibility, impossibilities};
+use phea_engineering::impossible::impossibilities;
 
 use crate::answer::Object;
-use crate::explanation::explanation_sentence;
+use crate::impossible::late_of_all;
 use crate::project::{LateError, Loaded, refused};
 use crate::setup::Setup;
 use crate::source::Source;
@@ -13,18 +13,6 @@ use crate::specification::SpecificationError;
 pub(super) struct Impossible {
     at: LateError,
     line: usize,
-}
-
-/// A requirement in words, at its key.
-fn at(found: Impossibility) -> LateError {
-    match found {
-        Impossibility::Stated(at) => at,
-        Impossibility::OfPlants { path, explanation, plant, cure } => {
-            let plant = if plant.is_empty() { plant } else { format!(" ({plant})") };
-            let message = format!("{}{plant}", explanation_sentence(&explanation));
-            LateError { path, message, help: cure }
-        }
-    }
 }
 
 impl Impossible {
@@ -38,12 +26,11 @@ impl Impossible {
         setup: &Setup<'_>,
     ) -> Result<Vec<Impossible>, SpecificationError> {
         let found = impossibilities(source, setup)?;
-        let of = |found: Impossibility| {
-            let at = at(found);
+        let of = |at: LateError| {
             let line = refused(source, loaded, &at).diagnostics.first().map_or(0, |found| found.line);
             Impossible { at, line }
         };
-        Ok(found.into_iter().map(of).collect())
+        Ok(late_of_all(&found, &setup.project.units).into_iter().map(of).collect())
     }
 
     /// The sentence with its line and cure.

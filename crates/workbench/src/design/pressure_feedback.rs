@@ -5,7 +5,7 @@ use phea_engineering::design::{MissingPlants, PressureFeedbackDesign};
 use super::ProjectDesign;
 use crate::answer::{Object, significant};
 use crate::document::Document;
-use crate::explanation::design_error_words;
+use crate::error::design_error_words;
 use crate::quantity::{ANGULAR_FREQUENCY, VOLTAGE_PER_PRESSURE, display};
 
 /// The feedback with what it gains; empty where it was not free.

@@ -11,6 +11,7 @@ use phea_engineering::simulate::SimulateError;
 use phea_engineering::sizing::SizingError;
 
 use super::CommandError;
+use crate::impossible::late_of_steps;
 use crate::project::{LateError, Project};
 
 /// The error at each key or table that it names, in the order of its sentence; empty for an error
@@ -21,7 +22,7 @@ pub(super) fn late(error: &CommandError, project: &Project) -> Vec<LateError> {
     }
     match error {
         CommandError::Specification(error) => vec![error.at()],
-        CommandError::Design(DesignError::ImpossibleSteps(found)) => found.clone(),
+        CommandError::Design(DesignError::ImpossibleSteps(found)) => late_of_steps(found),
         CommandError::Rig(error)
         | CommandError::Family(ProjectFamilyError::Rig(error))
         | CommandError::Sizing(SizingError::Rig(error))

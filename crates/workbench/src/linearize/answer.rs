@@ -8,7 +8,7 @@ use super::{
     WITHIN_PERCENT, models, stiffness_sentence,
 };
 use crate::answer::{Csv, Json, Object, OutputFile, quoted};
-use crate::caveat::of_models;
+use crate::caveat;
 use crate::setup::Setup;
 
 /// The same with the results of a sweep.
@@ -59,7 +59,7 @@ pub(crate) fn body(setup: &Setup<'_>, linearization: &Linearization) -> Object {
         .with("compliance_hidden_above_rad_per_s", linearization.compliance_hidden_above_rad_per_s)
         .with("load_step_final_force_n", final_force(linearization))
         .with("load_step_moves", if linearization.open_loop.moves_ground { "ground" } else { "load" })
-        .with("warnings", of_models(setup))
+        .with("warnings", caveat::of_models_in_words(setup))
 }
 
 fn stiffness(linearization: &Linearization) -> Object {

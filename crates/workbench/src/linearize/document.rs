@@ -11,7 +11,7 @@ use super::{
     LinkagePosition, ReductionDifference, WITHIN_DB, WITHIN_DEG, WITHIN_PERCENT, stiffness_sentence,
 };
 use crate::answer::significant;
-use crate::caveat::of_models;
+use crate::caveat;
 use crate::document::{Cell, Document, Table};
 use crate::figure::Figure;
 use crate::setup::Setup;
@@ -19,7 +19,7 @@ use crate::setup::Setup;
 /// The tables and sentences of `linearize` for people.
 pub(crate) fn output(setup: &Setup<'_>, linearization: &Linearization) -> Document {
     let mut out = Document::default();
-    out.warnings(of_models(setup));
+    out.warnings(caveat::of_models_in_words(setup));
     out.heading("Stiffness");
     out.sentences([stiffness_sentence(linearization)]);
     if !linearization.linkage.is_empty() {

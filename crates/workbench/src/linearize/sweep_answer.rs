@@ -3,6 +3,7 @@
 use super::root_list;
 use super::{Sweep, SweepPoint, Swept};
 use crate::answer::{Csv, Object, OutputFile, significant};
+use crate::caveat;
 use crate::document::{Document, Table};
 use crate::figure::{Figure, PoleSweep, PoleSweepPoint, Words};
 use crate::quantity::DisplayUnit;
@@ -63,7 +64,7 @@ fn resonance(found: &Swept) -> Option<[f64; 2]> {
 /// The table of a sweep for people.
 pub(crate) fn sweep_document(sweep: &Sweep) -> Document {
     let mut out = Document::default();
-    out.warnings(sweep.caveats.iter().map(|caveat| caveat.sentence.clone()));
+    out.warnings(caveat::sentences(&sweep.caveats, &sweep.units));
     if let Some(sentence) = unmoved(sweep) {
         out.line(format!("note: {sentence}"));
     }
@@ -105,7 +106,7 @@ fn unmoved(sweep: &Sweep) -> Option<String> {
 }
 
 fn stiffness_unit(sweep: &Sweep) -> DisplayUnit {
-    sweep.motion.unit(DisplayUnit::MEGANEWTON_PER_METRE)
+    sweep.units.motion.unit(DisplayUnit::MEGANEWTON_PER_METRE)
 }
 
 fn cells(sweep: &Sweep, point: &SweepPoint) -> [String; 7] {

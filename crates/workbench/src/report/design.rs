@@ -22,6 +22,7 @@ use crate::document::{Document, StatusMark};
 use crate::error::CommandError;
 use crate::explanation::explanation_sentence;
 use crate::figure::Figure;
+use crate::impossible::late_of_steps;
 use crate::project::{LateError, Loaded, Project};
 use crate::robust::DesignFrequency;
 use crate::setup::Setup;
@@ -67,7 +68,7 @@ pub(super) fn designed(
             return Ok(Designed::Nothing(std::iter::once(none).chain(known).collect()));
         }
         Err(CommandError::Design(DesignError::ImpossibleSteps(found))) => {
-            return Ok(Designed::Impossible(found.iter().map(LateError::sentence).collect()));
+            return Ok(Designed::Impossible(late_of_steps(&found).iter().map(LateError::sentence).collect()));
         }
         Err(CommandError::Design(error)) => return Ok(Designed::Nothing(vec![error.to_string()])),
         Err(error) => return Err(error),

@@ -16,7 +16,7 @@ use crate::error::CommandError;
 use crate::project::Project;
 use crate::quantity::{DisplayUnit, RATIO, display};
 use crate::robust::RobustProblem;
-use crate::simulate::{RequiredSteps, TimeRequirement};
+use crate::simulate::{RequiredSteps, TimeRequirement, required_words};
 use crate::specification::{SpecificationError, wishes};
 
 pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chapter, CommandError> {
@@ -74,7 +74,7 @@ fn step_row(required: &TimeRequirement, unit: DisplayUnit) -> [Cell; 5] {
     [
         Cell::count(required.number),
         "step: the response to a step of the reference".into(),
-        required.wish.words().into(),
+        required_words(&required.wish).into(),
         format!("every plant{on_rig}").into(),
         Cell::Missing,
     ]
