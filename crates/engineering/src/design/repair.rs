@@ -116,7 +116,7 @@ impl Repair {
 }
 
 /// The current stage, for the watch.
-const STAGE: &str = "designing again, with waves in the lines";
+const STAGE: &str = "designing again";
 
 /// The design after the correction by the machine; unchanged if the machine does not contradict it.
 pub(super) fn repaired(
