@@ -1,6 +1,7 @@
 //! Why a command has no answer: the one error of everything that the workbench computes.
 
 mod place;
+mod tables;
 mod words;
 
 pub(crate) use words::design_error_words;

@@ -11,12 +11,13 @@ use crate::explanation::explanation_sentence;
 use crate::project::LateError;
 use crate::quantity::{DisplayUnit, Units, significant};
 use crate::robust::RobustProblem;
+use crate::specification;
 
 /// The requirements of a project that no loop can satisfy, each at its key.
 pub(crate) fn late_of_all(impossible: &Impossibilities, units: &Units) -> Vec<LateError> {
     let Impossibilities { found, problem } = impossible;
     let of = |one: &Impossibility| match one {
-        Impossibility::CrossedLimits(error) => Some(error.at()),
+        Impossibility::CrossedLimits(error) => Some(specification::late(error)),
         Impossibility::Step(step) => Some(late(step, units)),
         Impossibility::Plants(path, finding) => Some(of_plants(path, finding, problem.as_ref()?)),
     };
@@ -72,14 +73,17 @@ fn before_force_moves((number, key): (usize, &str), settling: f64, still: &Still
 }
 
 fn too_slow(slow: &SlowStep, units: &Units) -> (String, String) {
-    let plant = if slow.plant.is_empty() { String::new() } else { format!(" ({})", slow.plant) };
+    let plant = match slow.plant.0.is_empty() {
+        true => "the nominal plant".to_string(),
+        false => slow.plant.words(),
+    };
     let (of, smaller) = match slow.of_scenario {
         true => ("of a step of a scenario", "smaller steps in the scenarios"),
         false => ("of the step", "a smaller `amplitude`"),
     };
     let lumped = if slow.lumped { " with lumped lines" } else { "" };
     let message = format!(
-        "[[specification]] {}, `settling_time`: with at most {} V at the valve the slowest linear plant{lumped}{plant} moves by at most {} of the {} {of} in {}",
+        "[[specification]] {}, `settling_time`: with at most {} V at the valve the slowest linear plant{lumped} ({plant}) moves by at most {} of the {} {of} in {}",
         slow.number,
         significant(slow.voltage, 3),
         force(slow.reached, units),

@@ -42,7 +42,7 @@ use crate::audit::{CERTIFICATE_FILE, ProjectAudit, TimeFinding, certificate_of, 
 use crate::derived::{self, derive};
 use crate::error::CommandError;
 use crate::figure::Figure;
-use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop_of, settling_words};
+use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop_of};
 use crate::linearize::{Linearization, linearize, stiffness_at_settings, stiffness_words};
 use crate::project::{DeclaredActuator, InputSignal, Loaded, Project, WrittenUnits};
 use crate::quantity::MotionKind;
@@ -399,7 +399,7 @@ fn loop_words(given: &LinearLoop) -> String {
         (_, Ok(StepView { metrics, .. })) => {
             let verb = if metrics.settling.time_s().is_some() { "settles in " } else { "" };
             let overshoot = significant(metrics.overshoot_percent, 2);
-            format!("{overshoot} % overshoot, {verb}{}", settling_words(metrics))
+            format!("{overshoot} % overshoot, {verb}{}", response::settling_words(metrics))
         }
     }
 }

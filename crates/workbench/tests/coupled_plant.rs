@@ -5,6 +5,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable::exp;
+use phea_qft::specification::ClosedLoop;
 use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::Verdict;
 use phea_workbench::audit::{self, LoopWithRig, OutsideFamily, ProjectAudit, audit_project};
@@ -17,6 +18,7 @@ use phea_workbench::robust::robust_problem;
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
+use phea_workbench::specification::SpecificationName;
 use serde_json::Value;
 
 use super::ask::{answer, project_of};
@@ -332,5 +334,8 @@ fn a_family_that_does_not_contain_the_rig_says_so_first() {
         panic!("{:?}", view.caveats)
     };
     assert!((parameters[0].value / 5.2e-5 - 1.0).abs() < 0.02, "{parameters:?}");
-    assert_eq!(*with_rig, LoopWithRig::Violates(vec!["1 robust stability".to_string()]));
+    assert_eq!(
+        *with_rig,
+        LoopWithRig::Violates(vec![(1, SpecificationName::ClosedLoop(ClosedLoop::RobustStability))])
+    );
 }

@@ -8,6 +8,7 @@ use super::{JudgedAlternative, NoNumber, no_rig};
 use crate::design::LoopFigures;
 use crate::quantity::DisplayUnit;
 use crate::simulate::{Metrics, ScenarioRun, StoppedRun, UNDETERMINED, Unmeasured};
+use crate::specification::SpecificationName;
 
 /// A number of an alternative.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +33,7 @@ pub enum ColumnPart {
     /// The impedance at the load at a frequency in rad/s.
     Impedance(f64),
     /// A specification, by its number from 0 and its name.
-    Specification(usize, String),
+    Specification(usize, SpecificationName),
     /// A scenario.
     Scenario(String),
 }
@@ -108,10 +109,11 @@ impl JudgedAlternative {
     fn margins(&self) -> Vec<(ColumnPart, AlternativeColumn)> {
         let Ok(view) = &self.design else { return vec![] };
         let audited = &view.designed.view;
-        let each = audited.audit.specifications.iter().enumerate().map(|(index, finding)| {
+        let named = audited.audit.specifications.iter().zip(&audited.specification_names).enumerate();
+        let each = named.map(|(index, (finding, name))| {
             let worst = finding.worst.as_ref().map(|worst| worst.margin_db);
             let value = worst.ok_or(NoNumber::NothingToJudgeBy);
-            let part = ColumnPart::Specification(index, audited.name_of(index).to_string());
+            let part = ColumnPart::Specification(index, *name);
             (part, column("worst_margin_db", DECIBEL, 3, value))
         });
         each.collect()

@@ -7,6 +7,7 @@ use super::audit_request;
 use crate::caveat::{Caveat, UncountedEffect};
 use crate::rig::OutsideParameter;
 use crate::robust::RobustProblem;
+use crate::specification::SpecificationName;
 
 /// The rig itself, which the family does not contain.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,8 +25,8 @@ pub enum LoopWithRig {
     Satisfied,
     /// It is unstable.
     Unstable,
-    /// It violates these specifications, each with its number and name.
-    Violates(Vec<String>),
+    /// It violates these specifications, each with its number, from 1, and name.
+    Violates(Vec<(usize, SpecificationName)>),
     /// Nothing is proven.
     NotProven,
 }
@@ -51,9 +52,9 @@ fn of_rig(outside: &[OutsideParameter], with_rig: LoopWithRig, unproven: bool) -
 /// Verdict of the audit of the loop with the rig.
 fn loop_with_rig(problem: &RobustProblem, audit: &Audit) -> LoopWithRig {
     let violated = || {
-        let findings = audit.specifications.iter().enumerate();
-        let violated = findings.filter(|(_, finding)| finding.verdict == Verdict::Violated);
-        violated.map(|(index, _)| format!("{} {}", index + 1, problem.name_of(index))).collect()
+        let findings = audit.specifications.iter().zip(&problem.specification_names).enumerate();
+        let violated = findings.filter(|(_, (finding, _))| finding.verdict == Verdict::Violated);
+        violated.map(|(index, (_, name))| (index + 1, *name)).collect()
     };
     match (audit.verdict, audit.stability.verdict) {
         (Verdict::Met, _) => LoopWithRig::Satisfied,

@@ -16,7 +16,8 @@ use phea_qft::verification::PlantPoint;
 
 use super::ImpossibleStep;
 use super::in_time::still_s;
-use crate::robust::{LINES_IN_MOTION, RobustProblem};
+use crate::plant_names::NamedPlant;
+use crate::robust::{NoPolynomials, RobustProblem};
 use crate::setup::Setup;
 use crate::simulate::{ReferenceStep, TimeRequirement, stepped_references, steps_beyond};
 
@@ -44,8 +45,8 @@ pub struct SlowStep {
     pub number: usize,
     /// Greatest voltage at the valve, V.
     pub voltage: f64,
-    /// Values of the slowest plant, with their names; empty for a single plant.
-    pub plant: String,
+    /// The slowest plant.
+    pub plant: NamedPlant,
     /// True where the plant has lumped lines and the rig has not.
     pub lumped: bool,
     /// Force by which the plant moves at most, N.
@@ -116,8 +117,8 @@ fn too_slow(
         Some((share * step.size_n / reached_n, step, reached_n, values))
     });
     let (ratio, step, reached_n, values) = each.max_by(|one, other| one.0.total_cmp(&other.0))?;
-    let plant = problem.names.text(&PlantPoint::Parameters(values.clone()));
-    let lumped = problem.without_polynomials == Some(LINES_IN_MOTION);
+    let plant = problem.names.named(&PlantPoint::Parameters(values.clone()));
+    let lumped = problem.without_polynomials == Some(NoPolynomials::LinesInMotion);
     let most = if lumped { WAVES } else { 1.0 };
     (ratio > most).then_some(SlowStep {
         number: required.number,

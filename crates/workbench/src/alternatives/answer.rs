@@ -88,14 +88,14 @@ fn columns(one: &JudgedAlternative) -> Object {
     own.with(
         "specifications",
         named(|part| match part {
-            ColumnPart::Specification(_, name) => Some(name),
+            ColumnPart::Specification(_, name) => Some(name.words()),
             _ => None,
         }),
     )
     .with(
         "scenarios",
         named(|part| match part {
-            ColumnPart::Scenario(name) => Some(name),
+            ColumnPart::Scenario(name) => Some(name.as_str()),
             _ => None,
         }),
     )

@@ -200,7 +200,7 @@ fn group(part: &ColumnPart) -> String {
         ColumnPart::Loop => "loop".to_string(),
         ColumnPart::Rig => "rig".to_string(),
         ColumnPart::Impedance(frequency) => format!("|Z| at {} rad/s", significant(*frequency, 4)),
-        ColumnPart::Specification(index, name) => format!("{} {name}", index + 1),
+        ColumnPart::Specification(index, name) => format!("{} {}", index + 1, name.words()),
         ColumnPart::Scenario(name) => name.clone(),
     }
 }

@@ -1,11 +1,12 @@
 //! Effects of spring, load, supply and friction, and steps that the rig does not reach.
 
+use phea_engineering::audit::{LoopWithRig, OutsideFamily};
 use phea_hydraulics::series::MOST_SEGMENTS;
 
-use crate::audit::{LoopWithRig, OutsideFamily};
 use crate::quantity::{DisplayUnit, FORCE, PRESSURE, Units, display, significant};
 use crate::rig::OutsideParameter;
 use crate::simulate::{BeyondReach, ExceededForce, RestLimit, StepEnd};
+use crate::specification::SpecificationName;
 
 pub(super) const TRANSMISSION_AS_SPRING: &str = "inertia and resistance of the transmission are counted in the plant and its impedance alone: the other models have \
      its oil as a spring in series with the force sensor";
@@ -149,7 +150,11 @@ pub(super) fn outside_family(found: &OutsideFamily) -> String {
     let with_rig = match &found.with_rig {
         LoopWithRig::Satisfied => "the loop with it is stable and satisfies every specification".to_string(),
         LoopWithRig::Unstable => "the loop with it is unstable".to_string(),
-        LoopWithRig::Violates(names) => format!("the loop with it violates {}", names.join(", ")),
+        LoopWithRig::Violates(violated) => {
+            let words = |(number, name): &(usize, SpecificationName)| format!("{number} {}", name.words());
+            let violated: Vec<String> = violated.iter().map(words).collect();
+            format!("the loop with it violates {}", violated.join(", "))
+        }
         LoopWithRig::NotProven => "nothing is proven of the loop with it".to_string(),
     };
     format!("{}: {with_rig}", outside(&found.parameters))
@@ -175,6 +180,8 @@ pub(crate) fn outside_parameters(parameters: &[OutsideParameter]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use phea_qft::specification::ClosedLoop;
+
     use super::*;
     use crate::quantity::RATIO;
 
@@ -186,12 +193,16 @@ mod tests {
             bounds: [0.5, 0.75],
             dimension: Some(&RATIO),
         };
-        let with_rig = LoopWithRig::Violates(vec!["1 robust stability".to_string(), "2 noise".to_string()]);
+        let with_rig = LoopWithRig::Violates(vec![
+            (1, SpecificationName::ClosedLoop(ClosedLoop::RobustStability)),
+            (2, SpecificationName::RoundedCommand),
+        ]);
         let found = OutsideFamily { parameters: vec![parameter.clone(), parameter], with_rig };
         assert_eq!(
             outside_family(&found),
             "the family does not contain the rig as it is derived (cylinder.moving_mass is 0.3, the box has 0.5 to 0.75; \
-             cylinder.moving_mass is 0.3, the box has 0.5 to 0.75): the loop with it violates 1 robust stability, 2 noise"
+             cylinder.moving_mass is 0.3, the box has 0.5 to 0.75): the loop with it violates 1 robust stability, \
+             2 force error of the rounded command"
         );
     }
 }

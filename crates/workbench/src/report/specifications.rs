@@ -17,7 +17,7 @@ use crate::project::Project;
 use crate::quantity::{DisplayUnit, RATIO, display};
 use crate::robust::RobustProblem;
 use crate::simulate::{RequiredSteps, TimeRequirement, required_words};
-use crate::specification::{SpecificationError, wishes};
+use crate::specification::{SpecificationError, wish_sentence, wishes};
 
 pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chapter, CommandError> {
     let specifications = &problem.specifications;
@@ -36,7 +36,7 @@ pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chap
     }
     if !wishes.is_empty() {
         out.heading("Tracking limits in time");
-        out.marked(wishes.iter().map(|wish| (Some(wish.is_met().into()), wish.sentence())));
+        out.marked(wishes.iter().map(|wish| (Some(wish.is_met().into()), wish_sentence(wish))));
     }
     if !margins.is_empty() {
         out.heading("Margins that the limits guarantee");

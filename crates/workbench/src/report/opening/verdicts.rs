@@ -7,7 +7,7 @@ use super::Contents;
 use super::side::Side;
 use super::steps::{AllSteps, StepProperty, steps};
 use crate::answer::significant;
-use crate::audit::frequency_words;
+use crate::audit::{frequency_words, position_words};
 use crate::document::{Cell, StatusMark, Table};
 use crate::quantity::DisplayUnit;
 use crate::report::specifications::demand;
@@ -53,7 +53,7 @@ fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
         Some(verdict.then(proven(side.is_proven().unwrap_or(false))).strong())
     }));
     rows.extend(row("position of every plant", sides, |side| {
-        Some(Cell::from(side.view?.position.as_ref()?.words()))
+        Some(Cell::from(position_words(side.view?.position.as_ref()?)))
     }));
     rows.extend(row("every plant stable", sides, |side| {
         let verdict = side.view?.audit.stability.verdict;
