@@ -1,8 +1,8 @@
 //! Machines of a trial and what their runs show, in words.
 
 use super::{
-    Agreement, DampingWall, DifferenceCause, Leg, NotDriven, OvershootNote, REACH, StepSize, TrialFinding,
-    Trial, TrialMachine, TrialReason, TrialRun, UnsettledEnd, WorstOf,
+    Agreement, DampingWall, DifferenceCause, Leg, NotDriven, OvershootNote, REACH, StepSize, Trial,
+    TrialFinding, TrialMachine, TrialReason, TrialRun, UnsettledEnd, WorstOf,
 };
 use crate::quantity::{DisplayUnit, Units, significant};
 
@@ -28,14 +28,19 @@ fn worst_plant(of: &WorstOf) -> String {
 
 /// The name of a run: its machine, and the size of its steps where it is not the usual one.
 pub(crate) fn run_name(run: &TrialRun) -> String {
-    let ending = match run.size {
+    name_of(&run.machine_driven, run.size)
+}
+
+/// The name of a run through steps of this size.
+pub(crate) fn name_of(machine: &TrialMachine, size: StepSize) -> String {
+    let ending = match size {
         StepSize::Tenth => "",
         StepSize::Reversed => ", the other way",
         StepSize::Scenario => ", step of a scenario",
         StepSize::Largest => ", largest step",
         StepSize::Required => ", required step",
     };
-    format!("{}{ending}", machine_words(&run.machine_driven))
+    format!("{}{ending}", machine_words(machine))
 }
 
 /// True where two runs have the same machine and steps of the same size.

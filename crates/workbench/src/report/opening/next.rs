@@ -20,7 +20,7 @@ use crate::report::design::Designed;
 use crate::report::driven::{DESIGNED, GIVEN};
 use crate::setup::Setup;
 use crate::simulate::TimeRequirement;
-use crate::trial::{Agreement, Trial, TrialRun};
+use crate::trial::{self, Agreement, Trial, TrialRun, brief_reason, run_name};
 
 /// Largest number of sentences.
 const MOST: usize = 6;
@@ -220,13 +220,13 @@ fn machine(side: &Side<'_>) -> Vec<String> {
 
 fn machine_words(side: &Side<'_>, run: &TrialRun) -> String {
     // the chapter on the machine has the rest: the range of the force, and the time of a wave
-    let why = run.reason.split(". The lines are").next().unwrap_or_default();
-    let why = why.split(": at the end it swings").next().unwrap_or_default();
+    let why = brief_reason(&run.reason, run.units);
     let satisfies = side.trial.and_then(Trial::satisfies) == Some(true);
     if satisfies && run.agreement != Agreement::Contradicts {
         return format!(
             "Take times from the nonlinear simulation and not from the linear loop: {} satisfies what is required under the {} controller, and {why}.",
-            run.what, side.name
+            run_name(run),
+            side.name
         );
     }
     let verdict = match run.agreement {
@@ -241,7 +241,7 @@ fn machine_words(side: &Side<'_>, run: &TrialRun) -> String {
         ),
         None if run.plant.is_some() => format!(
             "Narrow `[uncertainty]`, or take care near {}: simulated as a rig with the {} controller, {verdict}{why}.",
-            run.machine_name(),
+            trial::machine_words(&run.machine_driven),
             side.name
         ),
         None => format!(

@@ -12,7 +12,7 @@ use crate::audit::{TimeOutcome, WorstStep};
 use crate::simulate::{
     Metrics, ReachedStep, TimeRequirement, TrackingWish, Unmeasured, cause_words, concerns,
 };
-use crate::trial::{Trial, TrialRun};
+use crate::trial::{Trial, TrialRun, have_one_name, run_name};
 
 /// Which property of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,9 +89,9 @@ pub(super) fn steps(side: &Side<'_>, required: &TimeRequirement, property: StepP
         !required.steps.are_stated() || numbers.any(|number| number == required.number)
     };
     // the worst of the corners and of the plants inside the box are among the runs already
-    let is_corner = |trial: &Trial, run: &TrialRun| trial.corners.iter().any(|one| one.what == run.what);
+    let is_corner = |trial: &Trial, run: &TrialRun| trial.corners.iter().any(|one| have_one_name(one, run));
     let runs = side.trial.iter().flat_map(|trial| {
-        let own = trial.runs.iter().filter(|run| !is_corner(trial, run)).map(|run| (run, run.what.clone()));
+        let own = trial.runs.iter().filter(|run| !is_corner(trial, run)).map(|run| (run, run_name(run)));
         own.chain(trial.corners.iter().map(|run| (run, corner_words(run))))
     });
     let runs = runs.filter(|(run, _)| is_about(run));
@@ -123,7 +123,7 @@ pub(super) fn steps(side: &Side<'_>, required: &TimeRequirement, property: StepP
 fn corner_words(run: &TrialRun) -> String {
     match &run.plant {
         Some(plant) => format!("nonlinear simulation at {}", plant.words()),
-        None => run.what.clone(),
+        None => run_name(run),
     }
 }
 
