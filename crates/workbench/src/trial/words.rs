@@ -4,6 +4,7 @@ use super::{
     Agreement, DampingWall, DifferenceCause, Leg, NotDriven, OvershootNote, REACH, StepSize, Trial,
     TrialFinding, TrialMachine, TrialReason, TrialRun, UnsettledEnd, WorstOf,
 };
+use crate::document::Cell;
 use crate::quantity::{DisplayUnit, Units, significant};
 
 /// The machine of a run, without the size of its steps.
@@ -71,6 +72,13 @@ pub(crate) fn agreement_word(agreement: Agreement) -> &'static str {
         Agreement::AgreesButForSettling => "agrees but for the settling",
         Agreement::Differs => "differs",
         Agreement::Contradicts => "contradicts",
+    }
+}
+
+impl Cell {
+    /// The mark for the trial of a verdict on the machine.
+    pub(crate) fn agreement(agreement: Agreement) -> Cell {
+        Cell::from(agreement_word(agreement)).marked(agreement)
     }
 }
 
