@@ -31,7 +31,7 @@ pub enum AlternativesError {
     Alternative {
         /// Its name.
         name: String,
-        /// What is wrong, and what to do.
+        /// Why it cannot be prepared, and what to do.
         reason: PrepareError,
     },
 }

@@ -67,7 +67,7 @@ pub struct FrontPoint {
     pub alternative: String,
     /// The swept number, SI.
     pub value: f64,
-    /// Whether every specification is satisfied there.
+    /// True where every specification is satisfied.
     pub feasible: Result<bool, FeasibilityUnknown>,
     /// Whether it satisfies them, is driven to its end, and is not contradicted by the machine:
     /// only such points dominate others, or are on a front. Where the relaxation is a column, those

@@ -1,11 +1,12 @@
 use super::JudgeError;
+use crate::linearize::NoClosedImpedance;
 use crate::parts::PartsUnknown;
 use crate::simulate::Unmeasured;
 
 /// Why a column of an alternative has no number.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoNumber {
-    /// What it belongs to is missing.
+    /// The part of the alternative that it is of is missing.
     NotJudged(JudgeError),
     /// The design did not find the specifications infeasible, and no limit is to be relaxed.
     NotFoundInfeasible,
@@ -42,7 +43,7 @@ pub enum NoNumber {
     /// A sum over the parts is not known.
     Parts(PartsUnknown),
     /// The closed loop has no impedance, for this reason.
-    NoClosedLoop(Option<String>),
+    NoClosedLoop(Option<NoClosedImpedance>),
 }
 
 impl From<JudgeError> for NoNumber {

@@ -25,7 +25,7 @@ impl JudgedAlternative {
         let linearization = self.linearization.as_ref().map_err(|reason| NoNumber::from(reason.clone()));
         let open = linearization.clone().map(|found| &found.open_loop);
         let closed = linearization.clone().and_then(|found| {
-            let reason = || NoNumber::NoClosedLoop(found.closed_loop_absent.clone());
+            let reason = || NoNumber::NoClosedLoop(found.closed_loop_absent);
             found.closed_loop.as_ref().filter(|_| self.deployed.is_ok()).ok_or_else(reason)
         });
         let asked = linearization.as_ref().ok().and_then(|found| found.asked.as_ref());

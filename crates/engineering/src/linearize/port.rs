@@ -150,14 +150,6 @@ pub enum HidingMass {
 }
 
 impl HidingMass {
-    /// It in words.
-    pub fn words(self) -> &'static str {
-        match self {
-            HidingMass::Piston => "the piston's mass",
-            HidingMass::Oil => "the oil of the transmission",
-        }
-    }
-
     /// Its frequency, as the label of a figure.
     pub fn label(self) -> &'static str {
         match self {

@@ -136,9 +136,9 @@ pub enum UnlikeLines {
 /// Name of a hose, or of a dash size.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HoseName {
-    /// Of the hose of both lines; `None` for the project's own hose without a name.
+    /// Name of the hose of both lines; `None` for the project's own hose without a name.
     Both(Option<String>),
-    /// Of the hose of line A and of that of line B, which differ.
+    /// Names of the hose of line A and of that of line B, which differ.
     Each([Option<String>; 2]),
 }
 

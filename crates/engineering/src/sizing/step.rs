@@ -73,7 +73,7 @@ pub struct SizedSystem {
     pub flow_gain: f64,
     /// K_c at null, with what leaks from chamber to chamber, m3/(s Pa).
     pub flow_pressure_coefficient: f64,
-    /// What leaks from chamber to chamber, m3/(s Pa).
+    /// Leakage from chamber to chamber, m3/(s Pa).
     pub internal_leakage: f64,
     /// Difference between the declared lines.
     pub unlike: Option<UnlikeLines>,

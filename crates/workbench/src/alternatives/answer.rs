@@ -8,7 +8,7 @@ use super::{AlternativeColumn, Alternatives, ColumnPart, JudgedAlternative, Judg
 use crate::answer::{Json, Object};
 use crate::audit::verdict_key;
 use crate::design;
-use crate::linearize::passivity_body;
+use crate::linearize::{no_closed_impedance_words, passivity_body};
 use crate::trial;
 
 /// What `alternatives` says to programs.
@@ -152,8 +152,8 @@ fn passivity(one: &JudgedAlternative) -> Object {
     let open = linearization.ok().map(|found| passivity_body(&found.open_loop.passivity));
     let closed = linearization.ok().and_then(|found| found.closed_loop.as_ref());
     let closed = closed.filter(|_| one.deployed.is_ok());
-    let absent = linearization.ok().and_then(|found| found.closed_loop_absent.clone());
-    let absent = one.deployed.as_ref().err().map(|reason| reason.to_string()).or(absent);
+    let absent = linearization.ok().and_then(|found| found.closed_loop_absent).map(no_closed_impedance_words);
+    let absent = one.deployed.as_ref().err().map(|reason| reason.to_string()).or(absent.map(str::to_string));
     Object::new().known("open_loop", open, &failed).known(
         "closed_loop",
         closed.map(|view| passivity_body(&view.passivity)),

@@ -10,8 +10,8 @@ use crate::trial::agreement_word;
 /// What the group of the project's own load is called, where there are load cases too.
 pub(super) const DECLARED_LOAD: &str = "declared load";
 
-/// What a decision needs at a glance: the key of the column and its name for people. Of columns
-/// that exist for several scenarios, the worst value counts.
+/// Columns for a decision at a glance, by key, with their names for people. The worst value counts
+/// where a column exists for several scenarios.
 const COMPARED_AT_A_GLANCE: [(&str, &str); 9] = [
     ("order", "order of G"),
     ("delay_margin_s", "delay tolerated"),

@@ -3,6 +3,7 @@
 use super::{FeasibilityUnknown, JudgeError, JudgedAlternative, LengthUnknown, NoFrontValue, NoNumber};
 use crate::design::verdict_sentence;
 use crate::error::design_error_words;
+use crate::linearize::no_closed_impedance_words;
 use crate::simulate::{DIVERGED, unmeasured_words};
 use phea_engineering::parts::{PartKind, PartsUnknown, UnstatedPart};
 
@@ -57,7 +58,7 @@ pub(super) fn measure_name(key: &'static str) -> &'static str {
     }
 }
 
-/// What the reason for a number that nobody states is called in a table.
+/// Entry of a table for a number that the project should state.
 pub(super) const NOT_STATED: &str = "not stated";
 
 /// The error of a part of what is found about an alternative.
@@ -90,12 +91,12 @@ pub(super) fn no_number_words(reason: &NoNumber) -> String {
         NoNumber::Length(reason) => length_unknown_words(*reason),
         NoNumber::LineIsVolume => "a line that is stated as a volume has no length",
         NoNumber::NoAccumulator => "there is no accumulator at the chambers",
-        NoNumber::NoClosedLoop(reason) => reason.as_deref().unwrap_or_default(),
+        NoNumber::NoClosedLoop(reason) => reason.map_or("", no_closed_impedance_words),
     };
     fixed.to_string()
 }
 
-/// Whether the reason is a number that the project should state.
+/// True where the project should state a number.
 pub(super) fn is_unstated(reason: &NoNumber) -> bool {
     match reason {
         NoNumber::Parts(PartsUnknown::NotStated(_)) => true,

@@ -5,7 +5,7 @@ use phea_hydraulics::impedance::{Asymptote, AsymptoteKind};
 use super::sweep_answer::{head, rows};
 use super::{
     AgreementBand, AskedImpedance, Linearization, LinkagePlace, PortView, ReductionDifference, Sweep,
-    WITHIN_PERCENT, models, stiffness_sentence,
+    WITHIN_PERCENT, models, no_closed_impedance_words, stiffness_sentence,
 };
 use crate::answer::{Csv, Json, Object, OutputFile, quoted};
 use crate::caveat;
@@ -124,7 +124,7 @@ fn ports(linearization: &Linearization, of: impl Fn(&PortView) -> Object) -> Obj
     Object::new()
         .with("open_loop", of(&linearization.open_loop))
         .with("closed_loop", linearization.closed_loop.as_ref().map(&of))
-        .maybe("closed_loop_reason", linearization.closed_loop_absent.as_deref())
+        .maybe("closed_loop_reason", linearization.closed_loop_absent.map(no_closed_impedance_words))
 }
 
 /// A virtual impedance, and what the port shows of it.
@@ -150,7 +150,7 @@ fn asked(asked: &AskedImpedance) -> Object {
 fn final_force(linearization: &Linearization) -> Object {
     let unstable = "unstable: the force has no final value";
     let closed_loop = linearization.closed_loop.as_ref().and_then(|view| view.final_force_n);
-    let reason = linearization.closed_loop_absent.as_deref().unwrap_or(unstable);
+    let reason = linearization.closed_loop_absent.map_or(unstable, no_closed_impedance_words);
     Object::new().known("open_loop", linearization.open_loop.final_force_n, unstable).known(
         "closed_loop",
         closed_loop,

@@ -1,6 +1,7 @@
 //! A sweep for people and for programs, and its figure.
 
 use super::root_list;
+use super::words::no_bandwidth_words;
 use super::{Sweep, SweepPoint, Swept};
 use crate::answer::{Csv, Object, OutputFile, significant};
 use crate::caveat;
@@ -49,9 +50,12 @@ fn row(point: &SweepPoint) -> Object {
         .with("poles", poles)
         .with("resonance", resonance)
         .with("bandwidth_rad_per_s", found.and_then(|found| found.bandwidth_rad_per_s.ok()))
-        .maybe("bandwidth_rad_per_s_reason", found.and_then(|found| found.bandwidth_rad_per_s.err()))
+        .maybe(
+            "bandwidth_rad_per_s_reason",
+            found.and_then(|found| found.bandwidth_rad_per_s.err()).map(no_bandwidth_words),
+        )
         .with("passive", passive)
-        .maybe("reason", point.found.as_ref().err().map(String::as_str))
+        .maybe("reason", point.found.as_ref().err().map(ToString::to_string))
 }
 
 /// Frequency and damping ratio of the resonance.
@@ -130,7 +134,9 @@ fn cells(sweep: &Sweep, point: &SweepPoint) -> [String; 7] {
         root_list(&found.poles),
         frequency,
         damping,
-        found.bandwidth_rad_per_s.map_or_else(str::to_string, |bandwidth| significant(bandwidth, 4)),
+        found
+            .bandwidth_rad_per_s
+            .map_or_else(|why| no_bandwidth_words(why).to_string(), |bandwidth| significant(bandwidth, 4)),
         closed.map_or(open.to_string(), |closed| format!("{open}, closed loop {closed}")),
     ]
 }

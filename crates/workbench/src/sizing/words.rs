@@ -8,6 +8,7 @@ use super::{
 };
 use crate::answer::significant;
 use crate::quantity::DisplayUnit;
+use crate::rig::{FlowLimit, LargestFlow};
 
 /// The model's name in the project file.
 pub(crate) fn model_name(model: StiffnessModel) -> &'static str {
@@ -201,7 +202,7 @@ fn step_words(step: &SizingStep) -> Vec<(&'static str, String)> {
             let text = format!(
                 "Largest flow {} L/min ({}): bores from {smallest} to {largest} mm; on the market there are {}.",
                 DisplayUnit::LITRE_PER_MINUTE.number(flow.line(), 4),
-                flow.origin(),
+                flow_origin(flow),
                 if names.is_empty() { "none".to_string() } else { names.join(", ") }
             );
             vec![("c.3", text)]
@@ -348,4 +349,24 @@ fn too_long_words(branch: &Branch) -> Option<String> {
         number(first.length_m),
         if branch.is_alike() { "per line" } else { "in line A" }
     ))
+}
+
+/// Origin of the largest flow of a line.
+fn flow_origin(flow: &LargestFlow) -> String {
+    let litres = |value: f64| format!("{} L/min", DisplayUnit::LITRE_PER_MINUTE.number(value, 4));
+    let valve = "the valve's, fully open at this supply without load";
+    match (flow.limit, flow.pump) {
+        (FlowLimit::Pump, Some((pump, _))) => {
+            let through = match flow.line() > pump * (1.0 + 1e-9) {
+                true => format!("the pump's {} times the ratio of the areas", litres(pump)),
+                false => "the pump's".to_string(),
+            };
+            format!("{through}; the valve passes up to {} without load", litres(flow.valve))
+        }
+        (_, Some((pump, true))) => {
+            format!("{valve}; the pump gives {}, and the supply's accumulator more for a time", litres(pump))
+        }
+        (_, Some((pump, false))) => format!("{valve}; the pump gives {}", litres(pump)),
+        (_, None) => valve.to_string(),
+    }
 }
