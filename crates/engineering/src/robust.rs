@@ -268,15 +268,6 @@ impl RobustProblem {
         numbered(self.number_of(index), self.name_of(index))
     }
 
-    /// A specification of the project as a sentence names it: that of the file by its table and
-    /// number.
-    pub fn stated(&self, index: usize) -> String {
-        match self.number_of(index) {
-            Some(number) => format!("[[specification]] {number} ({})", self.name_of(index)),
-            None => format!("the limit on the {}", self.name_of(index)),
-        }
-    }
-
     /// Every frequency at which a bound is drawn, rad/s, increasing.
     pub fn design_frequencies(&self) -> Vec<f64> {
         let all = self.specifications.iter().flat_map(|one| one.frequencies_rad_per_s.iter().copied());

@@ -9,7 +9,7 @@ use crate::impossible_steps::late_of_step;
 use crate::project::LateError;
 use crate::quantity::{Units, significant};
 use crate::robust::RobustProblem;
-use crate::specification;
+use crate::specification::{self, stated};
 
 /// The requirements of a project that no loop can satisfy, each at its key.
 pub(crate) fn late_of_all(impossible: &Impossibilities, units: &Units) -> Vec<LateError> {
@@ -38,9 +38,9 @@ fn cure(problem: &RobustProblem, finding: &Finding) -> String {
             let at = significant(*frequency_rad_per_s, 3);
             format!(
                 "at {at} rad/s raise the limit of {} until |S| may be {}, or that of {} until |T| may be {}, or end the `band` of one of them before",
-                problem.stated(sensitivity.specification),
+                stated(problem, sensitivity.specification),
                 significant(1.0 - complementary.limit, 3),
-                problem.stated(complementary.specification),
+                stated(problem, complementary.specification),
                 significant(1.0 - sensitivity.limit, 3)
             )
         }

@@ -5,6 +5,7 @@ use phea_qft::verification::{PlantPoint, SpecificationMargin};
 
 use crate::limit_kind::DesignLimitKind;
 use crate::robust::RobustProblem;
+use crate::specification::SpecificationName;
 
 /// One fact that is impossible or hard for a controller.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,8 +39,13 @@ pub enum ExplainedFact {
 /// A specification that an explanation concerns.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ExplainedLimit {
-    /// A specification of the project, by its name.
-    Specification(String),
+    /// A specification of the project.
+    Specification {
+        /// Its number in the file, from 1; `None` for one that is not declared there.
+        number: Option<usize>,
+        /// Its name.
+        name: SpecificationName,
+    },
     /// A limit of what may be built.
     Design(DesignLimitKind),
 }
@@ -49,7 +55,10 @@ impl Explanation {
     pub fn of(finding: &Finding, problem: &RobustProblem) -> Explanation {
         let specifications = finding.specifications();
         Explanation {
-            limits: specifications.iter().map(|index| (*index, limit(problem, *index))).collect(),
+            limits: specifications
+                .iter()
+                .filter_map(|index| Some((*index, limit(problem, *index)?)))
+                .collect(),
             fact: ExplainedFact::Finding(finding.clone()),
             is_impossible: finding.severity() == FindingSeverity::Impossible,
             frequency_rad_per_s: frequency(finding),
@@ -60,11 +69,14 @@ impl Explanation {
     }
 }
 
-fn limit(problem: &RobustProblem, index: usize) -> ExplainedLimit {
+fn limit(problem: &RobustProblem, index: usize) -> Option<ExplainedLimit> {
     let own = problem.specifications.len() - problem.design_limits.len();
     match index.checked_sub(own).and_then(|limit| problem.design_limits.get(limit)) {
-        Some(kind) => ExplainedLimit::Design(*kind),
-        None => ExplainedLimit::Specification(problem.stated(index)),
+        Some(kind) => Some(ExplainedLimit::Design(*kind)),
+        None => {
+            let name = *problem.specification_names.get(index)?;
+            Some(ExplainedLimit::Specification { number: problem.number_of(index), name })
+        }
     }
 }
 

@@ -19,7 +19,7 @@ use crate::figure::{
     BoundGroup, Figure, FrequencySeries, NicholsChart, OpenLoopViolation, USUAL_CONTOURS_DB, Words, templates,
 };
 use crate::robust::{DesignFrequency, RobustProblem};
-use crate::specification::kind_key;
+use crate::specification::{kind_key, stated};
 
 /// The chapter; `chart` is the Nichols chart of the given loop if it is shown nowhere else.
 pub(super) fn chapter(problem: &RobustProblem, found: &[DesignFrequency], chart: Option<Figure>) -> Chapter {
@@ -75,7 +75,7 @@ fn specification_figures(problem: &RobustProblem, found: &[DesignFrequency]) -> 
             .collect();
         let requirement = &specification.requirement;
         let name = format!("bounds_{}_{}", index + 1, kind_key(requirement));
-        let title = format!("Bounds of {}", problem.stated(index));
+        let title = format!("Bounds of {}", stated(problem, index));
         let caption = format!(
             "Where the nominal loop may not be, so that every plant satisfies the limit of {}; ticks point to the forbidden side.",
             closed_loop_symbol(requirement)

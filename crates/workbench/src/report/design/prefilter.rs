@@ -12,6 +12,7 @@ use crate::audit::frequency_words;
 use crate::design::{AuditedController, ProjectDesign};
 use crate::figure::{Figure, PrefilterPanel, PrefilterPoint, Words, prefilter_band};
 use crate::robust::DEFAULT_TOLERANCE_DB;
+use crate::specification::stated;
 
 /// Distance of tracking limits below which they are not distinguishable in a figure, dB.
 const DISTINGUISHED_DB: f64 = 0.01;
@@ -53,7 +54,7 @@ fn figure(
         tightest.join(" ")
     );
     let name = format!("design_{}_prefilter", index + 1);
-    let words = Words::new(name, format!("Prefilter for {}", view.designed.problem.stated(index)), caption);
+    let words = Words::new(name, format!("Prefilter for {}", stated(&view.designed.problem, index)), caption);
     Ok(Some(prefilter_band(&words, &panels)))
 }
 
