@@ -1,5 +1,5 @@
-//! The stories of `examples/` and `examples/qft/` are run: each `console` block is executed and
-//! must say what it shows.
+//! The stories of `examples/` and `examples/qft/` and the README are run: each `console` block is
+//! executed and must print what it shows.
 //!
 //! Each story has a folder of its own, with a copy of the example projects in it, so that what a
 //! command writes disturbs neither the repository nor another story. `phea` in a story is the
@@ -29,7 +29,20 @@ fn stories() {
     }
 }
 
-/// Where a program of the system stands.
+/// The lines that the README quotes of the example are lines of that file, in their order.
+#[test]
+fn the_readme_quotes_the_example() {
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let read = |path: &str| fs::read_to_string(repository.join(path)).expect("the file is there");
+    let (readme, example) = (read("README.md"), read("examples/ybitu/hose.toml"));
+    let quoted = readme.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a block");
+    let mut lines = example.lines();
+    for quote in quoted.lines() {
+        assert!(lines.any(|line| line.starts_with(quote)), "{quote} is not in the example, or elsewhere");
+    }
+}
+
+/// Path of a program of the system.
 fn program(name: &str) -> Option<PathBuf> {
     env::split_paths(&env::var_os("PATH")?).map(|folder| folder.join(name)).find(|path| path.is_file())
 }
@@ -42,8 +55,8 @@ fn laid_out(examples: &Path, sandbox: &Path) -> io::Result<Vec<PathBuf>> {
     }
     let mut stories = Vec::new();
     let (rig, robust) = (fs::read_dir(examples)?, fs::read_dir(examples.join("qft"))?);
-    for entry in rig.chain(robust) {
-        let source = entry?.path();
+    let listed = rig.chain(robust).map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<PathBuf>>>()?;
+    for source in listed.into_iter().chain([examples.join("../README.md")]) {
         if source.extension().is_none_or(|extension| extension != "md") {
             continue;
         }
