@@ -9,11 +9,8 @@ mod prefilter;
 mod proven;
 mod rig_outside_family;
 mod signal_noise;
-mod stability;
 mod whole_loop;
-mod words;
 pub use signal_noise::{NoisySignal, SignalNoise, SignalNoiseEffect, UnknownNoiseEffect};
-pub(crate) use words::rounded;
 
 pub use crate::common_position::CommonPosition;
 pub use dead_time::LoopDeadTime;
@@ -27,9 +24,7 @@ pub use prefilter::PrefilterGain;
 pub use proven::{prove_audit, try_to_prove};
 pub use rig_outside_family::{LoopWithRig, OutsideFamily};
 pub(crate) use rig_outside_family::{caveat as caveat_of_rig, unexamined as unexamined_rig};
-pub use stability::{infinity_sentence, stability_reason, stability_sentence};
 pub use whole_loop::DelayedPaths;
-pub use words::{frequency_number, frequency_words, margin_words, verdict_key, verdict_words};
 
 use phea_dynamics::portable;
 use phea_qft::audit::audit_by;

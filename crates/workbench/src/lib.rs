@@ -52,6 +52,7 @@ pub mod simulate;
 pub mod sizing;
 pub mod specification;
 pub mod trial;
+mod verdict_words;
 
 pub use phea_engineering::{
     estimate, family, linear_loop, linear_step, option, plant_names, replaced, rig, robust, setup,

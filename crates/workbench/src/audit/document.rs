@@ -7,9 +7,9 @@ use phea_qft::verification::{SpecificationFinding, SpecificationMargin, Verdict}
 use super::family_and_loop::{family_sentence, loop_sentence, position_sentence};
 use super::proven::{standing_word, why_not_proven};
 use super::remark::remark_sentences;
+use super::stability::{infinity_sentence, stability_sentence};
 use super::words::{closed_loop_symbol, evidence_sentence, finding_sentence, place_words, worst_at_design};
 use super::{DelayedPaths, ProjectAudit, below_design, in_time, margins, noise_sentence};
-use super::{infinity_sentence, stability_sentence, verdict_words};
 use crate::caveat;
 use crate::document::{Cell, Document, Table};
 use crate::figure::Figure;
@@ -17,6 +17,7 @@ use crate::grouped::grouped;
 use crate::quantity::{DisplayUnit, significant};
 use crate::robust::DEFAULT_TOLERANCE_DB;
 use crate::trial::{self, Trial};
+use crate::verdict_words::verdict_words;
 
 /// The tables and sentences of `verify` for people, with the trial on the machine where there is
 /// one.

@@ -2,12 +2,10 @@
 
 use phea_qft::verification::Verdict;
 
-use super::{
-    PrefilterGain, ProjectAudit, TimeFinding, TimeOutcome, Unexamined, WorstStep, frequency_words,
-    margin_words,
-};
+use super::{PrefilterGain, ProjectAudit, TimeFinding, TimeOutcome, Unexamined, WorstStep};
 use crate::answer::significant;
 use crate::simulate::required_words;
+use crate::verdict_words::{frequency_words, margin_words};
 
 /// `2 tracking in time: at most 5 % overshoot and settled within 2 % in 0.8 s are required and not
 /// met; ...`

@@ -3,9 +3,10 @@
 use phea_engineering::design::AuditedController;
 use phea_qft::verification::Verdict;
 
-use crate::audit::{margin_words, verdict_words};
+use crate::audit::{above_one_again_words, crossover_words};
 use crate::document::Cell;
 use crate::quantity::{DisplayUnit, significant};
+use crate::verdict_words::{margin_words, verdict_words};
 
 /// A criterion by which controllers are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,12 +72,16 @@ fn figures(side: &AuditedController, per: Option<&str>) -> [(ComparedBy, &'stati
         (
             ComparedBy::Crossover,
             "crossover of the nominal loop",
-            or_dash(nominal.map(|margins| margins.crossovers.first_words())),
+            or_dash(nominal.map(|margins| crossover_words(&margins.crossovers))),
         ),
         (
             ComparedBy::AboveOneAgain,
             "|L| of the nominal loop above 1 again",
-            or_dash(nominal.map(|margins| margins.crossovers.again_words().unwrap_or("nowhere".to_string()))),
+            or_dash(
+                nominal.map(|margins| {
+                    above_one_again_words(&margins.crossovers).unwrap_or("nowhere".to_string())
+                }),
+            ),
         ),
         (
             ComparedBy::GainMargin,

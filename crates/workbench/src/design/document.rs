@@ -15,12 +15,13 @@ use super::unfinished::unfinished_sentence;
 use super::words::{searched_limit_name, structure_words, unusable_words, verdict_sentence};
 use super::{AuditedController, Explanation, ProjectDesign, Repair, RepairStatus};
 use crate::answer::significant;
-use crate::audit::{self, margin_words, summary};
+use crate::audit::{self, summary};
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::explanation::explanation_sentence;
 use crate::project::{Loaded, snippet};
 use crate::quantity::DisplayUnit;
 use crate::trial;
+use crate::verdict_words::margin_words;
 
 /// Accuracy to which a design keeps a reserve, dB.
 const RESERVE_KEPT_DB: f64 = 2e-3;

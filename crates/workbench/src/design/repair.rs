@@ -3,9 +3,10 @@
 use phea_engineering::design::{NEAREST_PROJECT, ProjectDesign, Repair, RepairRemedy, RepairStatus};
 use phea_qft::verification::Verdict;
 
-use crate::audit::{ProjectAudit, frequency_words, margin_words, stability_sentence};
+use crate::audit::{ProjectAudit, stability_sentence};
 use crate::quantity::{DisplayUnit, significant};
 use crate::trial::{Agreement, TrialRun, agreement_word};
+use crate::verdict_words::{frequency_words, margin_words};
 
 /// The word of the outcome of a repair, in JSON.
 pub(super) fn repair_key(status: RepairStatus) -> &'static str {

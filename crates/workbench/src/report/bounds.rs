@@ -11,7 +11,7 @@ use phea_qft::verification::Verdict;
 
 use super::chapter::Chapter;
 use crate::answer::significant;
-use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_number};
+use crate::audit::{ProjectAudit, closed_loop_symbol};
 use crate::design::drawn;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
@@ -20,6 +20,7 @@ use crate::figure::{
 };
 use crate::robust::{DesignFrequency, RobustProblem};
 use crate::specification::kind_key;
+use crate::verdict_words::frequency_number;
 
 /// The chapter; `chart` is the Nichols chart of the given loop if it is shown nowhere else.
 pub(super) fn chapter(problem: &RobustProblem, found: &[DesignFrequency], chart: Option<Figure>) -> Chapter {

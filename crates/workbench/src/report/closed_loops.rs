@@ -10,10 +10,11 @@ use phea_qft::verification::{SpecificationFinding, SpecificationMargin, Verdict}
 
 use super::specifications::titled;
 use crate::answer::significant;
-use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_words};
+use crate::audit::{ProjectAudit, closed_loop_symbol};
 use crate::figure::{FamilyEnvelope, FamilyMagnitude, Figure, MagnitudeCurve, MagnitudeMark, Words};
 use crate::robust::RobustProblem;
 use crate::specification::kind_key;
+use crate::verdict_words::frequency_words;
 
 /// Number of members that are drawn, in addition to the worst.
 pub(super) const DRAWN_MEMBERS: usize = 40;

@@ -5,7 +5,7 @@ use phea_dynamics::watch::Watch;
 
 use super::chapter::Chapter;
 use super::judged::Judged;
-use crate::audit::{ProjectAudit, audit_project, frequency_number};
+use crate::audit::{ProjectAudit, audit_project};
 use crate::derived::{replaced_sentences, replaced_table};
 use crate::document::{Cell, Document, Table};
 use crate::error::CommandError;
@@ -14,6 +14,7 @@ use crate::project::Project;
 use crate::replaced::{TemplateAreas, boxed, replaced_ranges, template_areas};
 use crate::setup::Setup;
 use crate::source::Source;
+use crate::verdict_words::frequency_number;
 
 /// `None` where the project says of no range that its family replaces it.
 pub(super) fn chapter(

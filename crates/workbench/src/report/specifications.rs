@@ -10,7 +10,7 @@ use phea_qft::specification::{
 
 use super::chapter::Chapter;
 use crate::answer::significant;
-use crate::audit::{closed_loop_symbol, frequency_number, frequency_words, meaning};
+use crate::audit::{closed_loop_symbol, meaning};
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
 use crate::project::Project;
@@ -18,6 +18,7 @@ use crate::quantity::{DisplayUnit, RATIO, display};
 use crate::robust::RobustProblem;
 use crate::simulate::{RequiredSteps, TimeRequirement, required_words};
 use crate::specification::{SpecificationError, wish_sentence, wishes};
+use crate::verdict_words::{frequency_number, frequency_words};
 
 pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chapter, CommandError> {
     let specifications = &problem.specifications;

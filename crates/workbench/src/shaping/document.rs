@@ -6,9 +6,10 @@ use phea_qft::manual_shaping::DesignMargin;
 
 use super::{ProjectShaping, Shaped};
 use crate::answer::significant;
-use crate::audit::{frequency_number, stability_sentence};
+use crate::audit::stability_sentence;
 use crate::caveat;
 use crate::document::{Cell, Document, Table};
+use crate::verdict_words::frequency_number;
 use phea_qft::verification::Verdict;
 
 /// The tables and sentences of `shape`.

@@ -8,10 +8,10 @@ use phea_qft::specification::Specification;
 use phea_qft::verification::Verdict;
 
 use crate::answer::significant;
-use crate::audit::frequency_words;
 use crate::design::{AuditedController, ProjectDesign};
 use crate::figure::{Figure, PrefilterPanel, PrefilterPoint, Words, prefilter_band};
 use crate::robust::DEFAULT_TOLERANCE_DB;
+use crate::verdict_words::frequency_words;
 
 /// Distance of tracking limits below which they are not distinguishable in a figure, dB.
 const DISTINGUISHED_DB: f64 = 0.01;

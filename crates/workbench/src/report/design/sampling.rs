@@ -2,8 +2,8 @@
 
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
-use crate::audit::margin_words;
 use crate::design::AuditedController;
+use crate::verdict_words::margin_words;
 
 /// Where the continuous design is worst compared with the one that takes sampling into account.
 pub(super) fn sentence(sampled: &AuditedController, continuous: &AuditedController) -> String {

@@ -11,7 +11,7 @@ use super::Contents;
 use super::side::Side;
 use super::steps::{NEVER_RISEN, NEVER_SETTLED, StepProperty, steps};
 use crate::answer::significant;
-use crate::audit::{ProjectAudit, frequency_words, in_time};
+use crate::audit::{ProjectAudit, in_time};
 use crate::caveat::{caveats, outside_parameters, sentence};
 use crate::design::{DESIGNED_PROJECT, ProjectDesign, rig_miss_words};
 use crate::project::{DeclaredSpecification, Project, SpecificationKind};
@@ -21,6 +21,7 @@ use crate::report::driven::{DESIGNED, GIVEN};
 use crate::setup::Setup;
 use crate::simulate::TimeRequirement;
 use crate::trial::{Agreement, Trial, TrialRun};
+use crate::verdict_words::frequency_words;
 
 /// Largest number of sentences.
 const MOST: usize = 6;

@@ -7,12 +7,13 @@ use super::Contents;
 use super::side::Side;
 use super::steps::{AllSteps, StepProperty, steps};
 use crate::answer::significant;
-use crate::audit::{frequency_words, position_words};
+use crate::audit::position_words;
 use crate::document::{Cell, StatusMark, Table};
 use crate::quantity::DisplayUnit;
 use crate::report::specifications::demand;
 use crate::simulate::{ScenarioRun, UNDETERMINED, required_overshoot, required_rise, required_settling};
 use crate::trial;
+use crate::verdict_words::frequency_words;
 
 type Rows = Vec<Vec<Cell>>;
 

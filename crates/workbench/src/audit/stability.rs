@@ -5,12 +5,12 @@ use phea_qft::verification::{
     ClosestApproach, Evidence, SearchedInfinity, StabilityFinding, StabilityMethod, StabilityReason, Verdict,
 };
 
-use super::PlantNames;
 use super::words::rounded;
+use crate::plant_names::PlantNames;
 use crate::quantity::significant;
 
 /// Whether the family is stable, and how this is known.
-pub fn stability_sentence(stability: &StabilityFinding, names: &PlantNames) -> String {
+pub(crate) fn stability_sentence(stability: &StabilityFinding, names: &PlantNames) -> String {
     let plant = match &stability.reason {
         StabilityReason::AllStable { closest: Some(closest), .. } => names.text(&closest.plant),
         _ => names.text(&stability.plant),
@@ -38,7 +38,7 @@ pub fn stability_sentence(stability: &StabilityFinding, names: &PlantNames) -> S
 }
 
 /// The evidence that no pole passes through infinity inside the box, where it is a search.
-pub fn infinity_sentence(stability: &StabilityFinding, names: &PlantNames) -> Option<String> {
+pub(super) fn infinity_sentence(stability: &StabilityFinding, names: &PlantNames) -> Option<String> {
     let found = stability.infinity.as_ref()?;
     Some(format!(
         "That no pole passes through infinity inside the box was searched for, since the enclosures of the leading \
@@ -57,7 +57,7 @@ fn moving_words(found: &SearchedInfinity, names: &PlantNames) -> String {
 }
 
 /// How stability was decided.
-pub fn stability_reason(stability: &StabilityFinding) -> String {
+pub(crate) fn stability_reason(stability: &StabilityFinding) -> String {
     match &stability.reason {
         StabilityReason::Unstable(instability) => instability_words(*instability),
         StabilityReason::UnstablePrefilter => "the prefilter itself is unstable".to_owned(),
