@@ -14,7 +14,7 @@ use phea_qft::specification::{
 
 pub use self::kind::{closed_loop_key, closed_loop_words, kind_key};
 use self::limit::TrackingSide;
-pub use self::name::SpecificationName;
+pub use self::name::{NamedSpecification, SpecificationName};
 pub(crate) use self::rounding::of_rounding;
 use crate::project::{self, FormulaError, Project};
 use crate::quantity::significant;

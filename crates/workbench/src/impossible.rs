@@ -11,7 +11,7 @@ use crate::explanation::explanation_sentence;
 use crate::project::LateError;
 use crate::quantity::{DisplayUnit, Units, significant};
 use crate::robust::RobustProblem;
-use crate::specification;
+use crate::specification::{self, stated};
 
 /// The requirements of a project that no loop can satisfy, each at its key.
 pub(crate) fn late_of_all(impossible: &Impossibilities, units: &Units) -> Vec<LateError> {
@@ -118,9 +118,9 @@ fn cure(problem: &RobustProblem, finding: &Finding) -> String {
             let at = significant(*frequency_rad_per_s, 3);
             format!(
                 "at {at} rad/s raise the limit of {} until |S| may be {}, or that of {} until |T| may be {}, or end the `band` of one of them before",
-                problem.stated(sensitivity.specification),
+                stated(problem.named(sensitivity.specification)),
                 significant(1.0 - complementary.limit, 3),
-                problem.stated(complementary.specification),
+                stated(problem.named(complementary.specification)),
                 significant(1.0 - sensitivity.limit, 3)
             )
         }

@@ -2,10 +2,12 @@
 
 mod answer;
 mod late;
+mod names;
 mod wish;
 
 pub use phea_engineering::specification::*;
 
 pub(crate) use answer::{document, wish_row};
 pub(crate) use late::late;
+pub(crate) use names::{name_words, numbered, stated};
 pub use wish::wish_sentence;

@@ -5,13 +5,18 @@
 use crate::ask::answer;
 use num_complex::Complex64;
 use phea_qft::design::{Constraint, ConstraintPlace, Finding, SharedLimit};
+use phea_qft::specification::ClosedLoop;
 use phea_qft::verification::PlantPoint;
 use phea_workbench::command::Request;
 use phea_workbench::design::{ExplainedFact, ExplainedLimit, Explanation, explanation_sentence};
+use phea_workbench::specification::{NamedSpecification, SpecificationName};
 
 /// The sentence of a finding, its specifications numbered from 3.
 fn sentence(finding: Finding) -> String {
-    let name = |index: &usize| ExplainedLimit::Specification(format!("[[specification]] {}", index + 3));
+    let name = |index: &usize| {
+        let name = SpecificationName::ClosedLoop(ClosedLoop::Sensitivity);
+        ExplainedLimit::Specification(NamedSpecification { number: Some(index + 3), name })
+    };
     let specifications = finding.specifications();
     explanation_sentence(&Explanation {
         limits: specifications.iter().map(|index| (*index, name(index))).collect(),
@@ -37,7 +42,8 @@ fn findings_read_as_sentences() {
     };
     let text = sentence(sum);
     assert!(
-        text.contains("[[specification]] 3 and [[specification]] 4") && text.contains("1.938 dB"),
+        text.contains("[[specification]] 3 (sensitivity) and [[specification]] 4 (sensitivity)")
+            && text.contains("1.938 dB"),
         "{text}"
     );
     let constraint = Constraint {

@@ -5,6 +5,7 @@ use phea_qft::verification::{PlantPoint, SpecificationMargin};
 
 use crate::limit_kind::DesignLimitKind;
 use crate::robust::RobustProblem;
+use crate::specification::NamedSpecification;
 
 /// One fact that is impossible or hard for a controller.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,8 +39,8 @@ pub enum ExplainedFact {
 /// A specification that an explanation concerns.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ExplainedLimit {
-    /// A specification of the project, by its name.
-    Specification(String),
+    /// A specification of the project.
+    Specification(NamedSpecification),
     /// A limit of what may be built.
     Design(DesignLimitKind),
 }
@@ -49,7 +50,10 @@ impl Explanation {
     pub fn of(finding: &Finding, problem: &RobustProblem) -> Explanation {
         let specifications = finding.specifications();
         Explanation {
-            limits: specifications.iter().map(|index| (*index, limit(problem, *index))).collect(),
+            limits: specifications
+                .iter()
+                .filter_map(|index| Some((*index, limit(problem, *index)?)))
+                .collect(),
             fact: ExplainedFact::Finding(finding.clone()),
             is_impossible: finding.severity() == FindingSeverity::Impossible,
             frequency_rad_per_s: frequency(finding),
@@ -60,11 +64,11 @@ impl Explanation {
     }
 }
 
-fn limit(problem: &RobustProblem, index: usize) -> ExplainedLimit {
+fn limit(problem: &RobustProblem, index: usize) -> Option<ExplainedLimit> {
     let own = problem.specifications.len() - problem.design_limits.len();
     match index.checked_sub(own).and_then(|limit| problem.design_limits.get(limit)) {
-        Some(kind) => ExplainedLimit::Design(*kind),
-        None => ExplainedLimit::Specification(problem.stated(index)),
+        Some(kind) => Some(ExplainedLimit::Design(*kind)),
+        None => problem.named(index).map(ExplainedLimit::Specification),
     }
 }
 

@@ -15,6 +15,15 @@ pub enum SpecificationName {
     RoundedMeasurement,
 }
 
+/// A specification by its number and its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NamedSpecification {
+    /// The number in the file, from 1; `None` for one that is not declared there.
+    pub number: Option<usize>,
+    /// The subject of its limit.
+    pub name: SpecificationName,
+}
+
 impl SpecificationName {
     /// The name for people.
     pub fn words(self) -> &'static str {

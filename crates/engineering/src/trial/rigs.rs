@@ -17,6 +17,7 @@ use crate::project::{
 use crate::rig::{Rig, quarter_wave, with_controller_of};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
+use crate::specification::NamedSpecification;
 
 /// A machine and its plant in the linear loop.
 #[derive(Clone, Debug)]
@@ -101,17 +102,23 @@ pub(super) fn rigs(
 /// verdict, with what it is the worst of.
 fn worst_plants(view: &ProjectAudit) -> impl Iterator<Item = (String, &PlantPoint)> {
     let of_limits = view.audit.specifications.iter().enumerate();
-    let of_limits =
-        of_limits.filter_map(|(index, finding)| Some((view.numbered(index), &finding.worst.as_ref()?.plant)));
+    let of_limits = of_limits
+        .filter_map(|(index, finding)| Some((numbered(view, index), &finding.worst.as_ref()?.plant)));
     let in_time = view.in_time.iter().filter(|finding| finding.requirement.follows);
     let in_time = in_time.filter_map(|finding| {
         let of = match finding.requirement.limits {
-            Some(index) => format!("{} in time", view.numbered(index)),
+            Some(index) => format!("{} in time", numbered(view, index)),
             None => "the required step".to_string(),
         };
         Some((of, &finding.nearest()?.plant))
     });
     of_limits.chain(in_time)
+}
+
+/// A specification by its number in the file, where it has one, and name.
+fn numbered(view: &ProjectAudit, index: usize) -> String {
+    let Some(NamedSpecification { number, name }) = view.named(index) else { return String::new() };
+    number.map_or_else(|| name.words().to_string(), |number| format!("{number} {}", name.words()))
 }
 
 /// Whether two projects have one machine, uncertainty and the side of null left out.

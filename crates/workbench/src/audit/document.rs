@@ -16,6 +16,7 @@ use crate::figure::Figure;
 use crate::grouped::grouped;
 use crate::quantity::{DisplayUnit, significant};
 use crate::robust::DEFAULT_TOLERANCE_DB;
+use crate::specification::{name_words, numbered};
 use crate::trial::{self, Trial};
 use crate::verdict_words::verdict_words;
 
@@ -59,7 +60,12 @@ pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
     let findings = view.audit.specifications.iter().enumerate();
     sentences.extend(findings.map(|(index, finding)| {
         let reached = view.reached.get(index).and_then(Option::as_ref);
-        finding_sentence(&view.numbered(index), finding, reached, stable.then_some(view.audit.tolerance_db))
+        finding_sentence(
+            &numbered(view.named(index)),
+            finding,
+            reached,
+            stable.then_some(view.audit.tolerance_db),
+        )
     }));
     sentences.extend(
         view.in_time
@@ -115,7 +121,7 @@ fn specifications(view: &ProjectAudit) -> Table {
     for (index, finding) in view.audit.specifications.iter().enumerate() {
         let mut row = vec![
             view.number_of(index).map_or_else(Cell::empty, Cell::count),
-            view.name_of(index).into(),
+            name_words(view.named(index)).into(),
             closed_loop_symbol(&finding.requirement).into(),
             Cell::verdict(finding.verdict),
         ];
@@ -155,7 +161,7 @@ pub(crate) fn proven(view: &ProjectAudit, title: &str) -> Document {
             true => most.then(Cell::from(allowed_words(view.audit.tolerance_db))),
             false => most,
         };
-        rows.row([view.numbered(index).into(), word(&own.standing), least, most]);
+        rows.row([numbered(view.named(index)).into(), word(&own.standing), least, most]);
     }
     out.section(title, rows);
     out.sentences(not_proven(view, proof));
@@ -173,8 +179,11 @@ fn allowed_words(tolerance_db: f64) -> String {
 
 /// Why claims are neither proven nor refuted, each reason once.
 fn not_proven(view: &ProjectAudit, proof: &Proof) -> Vec<String> {
-    let named =
-        proof.specifications.iter().enumerate().map(|(index, own)| (view.numbered(index), &own.standing));
+    let named = proof
+        .specifications
+        .iter()
+        .enumerate()
+        .map(|(index, own)| (numbered(view.named(index)), &own.standing));
     let all = std::iter::once(("stability".to_string(), &proof.stability)).chain(named);
     let told = all.filter_map(|(name, standing)| Some((why_not_proven(view, proof, standing)?, name)));
     grouped(told).into_iter().map(|(reason, names)| format!("{}: {reason}", names.join(", "))).collect()
@@ -201,7 +210,7 @@ fn worst_plants(view: &ProjectAudit) -> Vec<(String, Vec<String>)> {
     let findings = view.audit.specifications.iter().enumerate();
     let of = |(index, finding): (usize, &SpecificationFinding)| {
         let worst = finding.worst.as_ref()?;
-        let (name, own) = (view.numbered(index), view.names.cells(&worst.plant));
+        let (name, own) = (numbered(view.named(index)), view.names.cells(&worst.plant));
         Some(match &worst.other {
             None => vec![(name, own)],
             Some(other) => {
@@ -223,7 +232,7 @@ fn violations(view: &ProjectAudit) -> Table {
         for band in &finding.violations {
             let [from, to] = band.band_rad_per_s.map(Cell::frequency);
             let [margin, frequency] = margin_at(Some(&band.worst));
-            rows.row([view.numbered(index).into(), from, to, margin, frequency]);
+            rows.row([numbered(view.named(index)).into(), from, to, margin, frequency]);
         }
     }
     rows
@@ -273,7 +282,7 @@ fn folding(change: f64) -> Option<String> {
 fn remarks(view: &ProjectAudit) -> Vec<String> {
     let found = view.audit.specifications.iter().enumerate().flat_map(|(index, finding)| {
         let remarks = remark_sentences(finding, &view.names).into_iter();
-        remarks.map(move |remark| (remark, view.numbered(index)))
+        remarks.map(move |remark| (remark, numbered(view.named(index))))
     });
     grouped(found).into_iter().map(|(remark, names)| format!("{}: {remark}", names.join(", "))).collect()
 }

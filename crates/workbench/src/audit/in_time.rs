@@ -5,13 +5,14 @@ use phea_qft::verification::Verdict;
 use super::{PrefilterGain, ProjectAudit, TimeFinding, TimeOutcome, Unexamined, WorstStep};
 use crate::answer::significant;
 use crate::simulate::required_words;
+use crate::specification::numbered;
 use crate::verdict_words::{frequency_words, margin_words};
 
 /// `2 tracking in time: at most 5 % overshoot and settled within 2 % in 0.8 s are required and not
 /// met; ...`
 pub(crate) fn sentence(view: &ProjectAudit, finding: &TimeFinding) -> String {
     let name = match finding.requirement.limits {
-        Some(index) => format!("{} in time", view.numbered(index)),
+        Some(index) => format!("{} in time", numbered(view.named(index))),
         None => format!("{} step", finding.requirement.number),
     };
     let required = required_words(&finding.requirement.wish);

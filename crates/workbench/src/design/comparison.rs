@@ -6,6 +6,7 @@ use phea_qft::verification::Verdict;
 use crate::audit::{above_one_again_words, crossover_words};
 use crate::document::Cell;
 use crate::quantity::{DisplayUnit, significant};
+use crate::specification::numbered;
 use crate::verdict_words::{margin_words, verdict_words};
 
 /// A criterion by which controllers are compared.
@@ -45,7 +46,7 @@ pub(super) fn compared(side: &AuditedController, per: Option<&str>) -> Vec<Compa
     let mut rows = vec![ComparedFigure { by: ComparedBy::Verdict, name: "verdict".to_string(), cell }];
     rows.extend(side.view.audit.specifications.iter().enumerate().map(|(index, finding)| {
         let margin = finding.worst.as_ref().map_or("-".to_string(), |worst| margin_words(worst.margin_db));
-        let name = format!("margin of {}", side.view.numbered(index));
+        let name = format!("margin of {}", numbered(side.view.named(index)));
         ComparedFigure { by: ComparedBy::Margin(index), name, cell: margin.into() }
     }));
     let named = |(by, name, text): (ComparedBy, &str, String)| ComparedFigure {

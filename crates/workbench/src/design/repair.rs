@@ -5,6 +5,7 @@ use phea_qft::verification::Verdict;
 
 use crate::audit::{ProjectAudit, stability_sentence};
 use crate::quantity::{DisplayUnit, significant};
+use crate::specification::numbered;
 use crate::trial::{Agreement, TrialRun, agreement_word};
 use crate::verdict_words::{frequency_words, margin_words};
 
@@ -141,7 +142,7 @@ fn margins(view: &ProjectAudit) -> String {
         let worst = finding.worst.as_ref()?;
         Some(format!(
             "{} {} {}",
-            view.numbered(index),
+            numbered(view.named(index)),
             margin_words(worst.margin_db),
             frequency_words(worst.frequency_rad_per_s)
         ))

@@ -14,6 +14,7 @@ use crate::project::Project;
 use crate::replaced::{TemplateAreas, boxed, replaced_ranges, template_areas};
 use crate::setup::Setup;
 use crate::source::Source;
+use crate::specification::numbered;
 use crate::verdict_words::frequency_number;
 
 /// `None` where the project says of no range that its family replaces it.
@@ -85,6 +86,7 @@ fn margins(over_box: &ProjectAudit, own: &ProjectAudit) -> Table {
         Some(worst) => Cell::margin(worst.margin_db),
         None => Cell::Missing,
     };
-    let row = |(index, (found, boxed))| [Cell::from(own.numbered(index)), margin(boxed), margin(found)];
+    let row =
+        |(index, (found, boxed))| [Cell::from(numbered(own.named(index))), margin(boxed), margin(found)];
     Table::new(["specification", "worst margin over the box", "over the family"]).with(rows.map(row))
 }

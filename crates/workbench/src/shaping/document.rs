@@ -9,6 +9,7 @@ use crate::answer::significant;
 use crate::audit::stability_sentence;
 use crate::caveat;
 use crate::document::{Cell, Document, Table};
+use crate::specification::name_words;
 use crate::verdict_words::frequency_number;
 use phea_qft::verification::Verdict;
 
@@ -64,7 +65,8 @@ fn margins(view: &ProjectShaping) -> Table {
         let plants: Vec<String> = worst.plants().map(|plant| view.names.text(plant)).collect();
         [
             Cell::frequency(worst.frequency_rad_per_s),
-            format!("{} {}", worst.specification + 1, view.problem.name_of(worst.specification)).into(),
+            format!("{} {}", worst.specification + 1, name_words(view.problem.named(worst.specification)))
+                .into(),
             Cell::margin(worst.margin_db),
             placement(&margin.placement).into(),
             plants.join("; ").into(),

@@ -4,6 +4,7 @@ use phea_qft::proof::{Certificate, CertificateDifference, CertificateSide, diffe
 
 use crate::audit::audit_request;
 use crate::robust::RobustProblem;
+use crate::specification::stated;
 
 /// A sentence without its full stop for each difference.
 pub(super) fn words(certificate: &Certificate, problem: &RobustProblem) -> Vec<String> {
@@ -28,7 +29,7 @@ fn sentence(difference: &CertificateDifference, problem: &RobustProblem) -> Stri
                 CertificateSide::Upper => "limit",
                 CertificateSide::Lower => "lower limit",
             };
-            format!("the certificate does not claim the {limit} of {}", problem.stated(*index))
+            format!("the certificate does not claim the {limit} of {}", stated(problem.named(*index)))
         }
         CertificateDifference::NotStated(_) => {
             "no certificate can be of the loop of this project".to_string()

@@ -20,6 +20,7 @@ use crate::report::design::Designed;
 use crate::report::driven::{DESIGNED, GIVEN};
 use crate::setup::Setup;
 use crate::simulate::TimeRequirement;
+use crate::specification::numbered;
 use crate::trial::{Agreement, Trial, TrialRun};
 use crate::verdict_words::frequency_words;
 
@@ -134,7 +135,7 @@ fn given_words(view: &ProjectAudit) -> String {
     };
     format!(
         "the given controller violates {} by {} dB {}{}{more}",
-        view.numbered(*index),
+        numbered(view.named(*index)),
         significant(worst.margin_db.abs(), 3),
         frequency_words(worst.frequency_rad_per_s),
         plant_words(view, &worst.plant)
@@ -192,7 +193,7 @@ fn designed_words(view: &ProjectDesign, given_is_met: bool) -> String {
 fn infeasible_words(view: &ProjectDesign, relaxation: &Relaxation) -> String {
     let mut names: Vec<String> = Vec::new();
     for conflict in &relaxation.conflicts {
-        let name = view.designed.view.numbered(conflict.specification);
+        let name = numbered(view.designed.view.named(conflict.specification));
         if !names.contains(&name) {
             names.push(name);
         }
