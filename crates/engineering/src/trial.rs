@@ -10,25 +10,28 @@ mod corners;
 mod first_steps;
 mod judge;
 mod prediction;
+mod reason;
 mod required;
 mod rigs;
 mod run;
 mod steps;
-pub use judge::{OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, SETTLING_ROOM, percent_words};
+pub use judge::{OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, SETTLING_ROOM};
 
 pub use crate::linear_step::StepResponse;
 use corners::{runs_of_corners, worst_of};
 pub use first_steps::MOST_OF_SCENARIOS;
 use first_steps::RequiredOfSteps;
+pub use reason::{
+    DampingWall, DifferenceCause, MissedParameter, NoRig, NotDriven, OvershootNote, TrialFinding,
+    TrialMachine, TrialReason, UnsettledEnd, WorstOf,
+};
 pub(crate) use required::BAND_WITH_ROOM;
 pub use required::HeldRequirement;
 pub(crate) use rigs::waves_alone;
 pub use rigs::with_waves;
-pub use run::{
-    Agreement, BAND_PERCENT, Leg, StepSize, TrialRun, TrialStep, agreement_key, agreement_word,
-    largest_step_words,
-};
+pub use run::{Agreement, BAND_PERCENT, Leg, StepSize, TrialRun, TrialStep};
 use run::{DrivenSteps, TriedMachine};
+pub use steps::REACH;
 
 use crate::audit::ProjectAudit;
 use crate::rig::RigError;
@@ -74,7 +77,7 @@ pub struct Trial {
     /// `runs`.
     pub corners: Vec<TrialRun>,
     /// Plants for which no rig was found, and why, and steps that were left out.
-    pub not_driven: Vec<String>,
+    pub not_driven: Vec<NotDriven>,
 }
 
 /// When the corners of the box and the plants inside are driven.
@@ -149,10 +152,7 @@ pub fn tried(
     let rig = setup.rig()?;
     let (rigs, mut not_driven) = rigs::rigs(setup, rig, problem, view);
     let left_out = RequiredOfSteps::of(&problem.in_time).left_out((setup.project, rig));
-    let force = |force_n: f64| setup.project.units.force.short(force_n, 3);
-    let words =
-        |[from, to]: [f64; 2]| format!("a smaller step of a scenario, {} to {}", force(from), force(to));
-    not_driven.extend(left_out.into_iter().map(words));
+    not_driven.extend(left_out.into_iter().map(NotDriven::SmallerStep));
     let count = rigs.len() as f64 + CORNERS_SHARE;
     let from = rigs.len() as f64 / count;
     let all = driven(source, &rigs, problem, &mut within(&mut *watch, [0.0, 0.9 * from]))?;
@@ -165,7 +165,7 @@ pub fn tried(
                 let seen = (driven.as_slice(), &run, runs.as_slice());
                 let declared = rigs.first().unwrap_or(rig);
                 let on = (source, [rig, declared]);
-                run.reason = with_cause(on, seen, (problem, view), &mut within(&mut *watch, share))?;
+                run.reason.cause = cause(on, seen, (problem, view), &mut within(&mut *watch, share))?;
             }
             runs.push(run);
         }
@@ -199,17 +199,17 @@ fn driven(
     each.into_iter().collect()
 }
 
-/// The reason of a run with waves in its lines that does not agree, with its cause: the same steps
-/// without the noise of the sensors, and with lumped lines, tell noise from waves.
-fn with_cause(
+/// The cause of a run with waves in its lines that does not agree: the same steps without the noise
+/// of the sensors, and with lumped lines, distinguish noise from waves.
+fn cause(
     (source, [waves, declared]): (&dyn Source, [&rigs::Tried; 2]),
     (driven, run, runs): (&[DrivenSteps], &TrialRun, &[TrialRun]),
     (problem, view): (&RobustProblem, &ProjectAudit),
     watch: Watch<'_>,
-) -> Result<String, TrialError> {
+) -> Result<Option<DifferenceCause>, TrialError> {
     let machine = TriedMachine::of(waves, problem)?;
     let Some(steps) = driven.iter().find(|steps| steps.are_of(run)) else {
-        return Ok(machine.with_waves_named(run, None));
+        return Ok(machine.cause_of_waves(run, None));
     };
     let mut repeated = |rig: &rigs::Tried| -> Result<TrialRun, TrialError> {
         let machine = TriedMachine::of(rig, problem)?;
@@ -221,13 +221,14 @@ fn with_cause(
     if let Some(rig) = quiet_waves
         && repeated(rig)?.agreement < Agreement::Differs
     {
-        return Ok(run::with_noise_named(run));
+        return Ok(Some(DifferenceCause::Noise));
     }
-    let is_same = |one: &&TrialRun| one.machine_name() == declared.what && one.reference_n == run.reference_n;
+    let is_same =
+        |one: &&TrialRun| one.machine_driven == declared.machine && one.reference_n == run.reference_n;
     let known = runs.iter().find(is_same).filter(|_| quiet_declared.is_none());
     let lumped = match known {
         Some(known) => known.clone(),
         None => repeated(quiet_declared.as_ref().unwrap_or(declared))?,
     };
-    Ok(machine.with_waves_named(run, Some(&lumped)))
+    Ok(machine.cause_of_waves(run, Some(&lumped)))
 }

@@ -8,6 +8,7 @@ use phea_qft::design::Finding;
 
 use crate::caveat::{beyond_reach, force};
 use crate::explanation::explanation_sentence;
+use crate::plant_names::{plant_text, plant_words};
 use crate::project::LateError;
 use crate::quantity::{DisplayUnit, Units, significant};
 use crate::robust::RobustProblem;
@@ -75,7 +76,7 @@ fn before_force_moves((number, key): (usize, &str), settling: f64, still: &Still
 fn too_slow(slow: &SlowStep, units: &Units) -> (String, String) {
     let plant = match slow.plant.0.is_empty() {
         true => "the nominal plant".to_string(),
-        false => slow.plant.words(),
+        false => plant_words(&slow.plant),
     };
     let (of, smaller) = match slow.of_scenario {
         true => ("of a step of a scenario", "smaller steps in the scenarios"),
@@ -105,7 +106,7 @@ fn too_slow(slow: &SlowStep, units: &Units) -> (String, String) {
 /// What a few plants forbid, with the first of them.
 fn of_plants(path: &str, finding: &Finding, problem: &RobustProblem) -> LateError {
     let explanation = Explanation::of(finding, problem);
-    let plant = explanation.plants.first().map(|plant| problem.names.text(plant));
+    let plant = explanation.plants.first().map(|plant| plant_text(&problem.names, plant));
     let plant = plant.filter(|text| !text.is_empty()).map_or(String::new(), |text| format!(" ({text})"));
     let message = format!("{}{plant}", explanation_sentence(&explanation));
     LateError { path: path.to_string(), message, help: cure(problem, finding) }

@@ -9,5 +9,5 @@ pub use phea_engineering::specification::*;
 
 pub(crate) use answer::{document, wish_row};
 pub(crate) use late::late;
-pub(crate) use names::{name_words, numbered, stated};
+pub(crate) use names::{name_words, numbered, stated, subject_words};
 pub use wish::wish_sentence;

@@ -1,5 +1,6 @@
-//! Verdicts, margins and frequencies in words.
+//! Verdicts, agreements, margins and frequencies in words.
 
+use phea_engineering::trial::Agreement;
 use phea_qft::verification::Verdict;
 
 use crate::quantity::{RATIO, display};
@@ -46,5 +47,15 @@ pub(crate) fn frequency_number(frequency_rad_per_s: f64) -> String {
         "inf".to_string()
     } else {
         display(frequency_rad_per_s, &RATIO, 4)
+    }
+}
+
+/// The words of an agreement for people.
+pub(crate) fn agreement_word(agreement: Agreement) -> &'static str {
+    match agreement {
+        Agreement::Agrees => "agrees",
+        Agreement::AgreesButForSettling => "agrees but for the settling",
+        Agreement::Differs => "differs",
+        Agreement::Contradicts => "contradicts",
     }
 }

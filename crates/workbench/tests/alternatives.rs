@@ -259,6 +259,15 @@ fn every_column_has_a_sense() {
     assert!(found.len() > 20 && unknown.is_empty(), "{unknown:?}");
 }
 
+/// The tables for people have the names of the columns, not their keys.
+#[test]
+fn every_column_has_a_name() {
+    let text = &judged().0.text;
+    let keys = COLUMN_SENSES.iter().map(|(key, _)| *key).filter(|key| key.contains('_'));
+    let printed: Vec<&str> = keys.filter(|key| text.contains(key)).collect();
+    assert!(text.contains("oil in both lines") && printed.is_empty(), "{printed:?}");
+}
+
 /// The ranges of the rig that an alternative changes, and only these; without it the check says so.
 #[test]
 fn ranges_follow_the_rig_where_that_is_asked() {

@@ -30,7 +30,9 @@ use phea_workbench::robust::robust_problem;
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::ReachedStep;
 use phea_workbench::source::Memory;
-use phea_workbench::trial::{Agreement, HeldRequirement, Leg, StepResponse, StepSize, Trial, TrialRun};
+use phea_workbench::trial::{
+    Agreement, HeldRequirement, Leg, StepResponse, StepSize, Trial, TrialFinding, TrialMachine, TrialRun,
+};
 
 /// k/(s (s + 10)) with two specifications and a law that is too slow for the second.
 const PROJECT: &str = "schema = 1\ntitle = \"drive\"\n\n[plant]\nnumerator = \"k\"\ndenominator = \"s*(s + 10)\"\n\n\
@@ -421,7 +423,7 @@ fn run(view: &ProjectDesign, satisfied: &[bool]) -> TrialRun {
         is_satisfied: *is_satisfied,
     };
     TrialRun {
-        what: "the rig as declared".to_string(),
+        machine_driven: TrialMachine::Declared,
         size: StepSize::Required,
         plant: None,
         status: "completed",
@@ -436,7 +438,7 @@ fn run(view: &ProjectDesign, satisfied: &[bool]) -> TrialRun {
         linear_response: StepResponse::default(),
         machine_response: StepResponse::default(),
         agreement: Agreement::Agrees,
-        reason: String::new(),
+        reason: TrialFinding::NeitherSettles { overshoots: None }.into(),
         quarter_wave_rad_per_s: None,
         met: vec![],
     }

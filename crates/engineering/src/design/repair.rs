@@ -21,7 +21,7 @@ use crate::project::{DeclaredLine, Project};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::source::Source;
-use crate::trial::{self, Agreement, TrialRun, waves_alone};
+use crate::trial::{self, Agreement, StepSize, TrialMachine, TrialRun, waves_alone};
 use phea_dynamics::watch::{Stopped, Watch, part};
 
 /// What became of it.
@@ -51,7 +51,7 @@ pub struct Repair {
     /// What became of it.
     pub status: RepairStatus,
     /// The name of the run of the machine whose plant was added; `None` if none was.
-    pub taken_in: Option<String>,
+    pub taken_in: Option<(TrialMachine, StepSize)>,
     /// Where the slower line of that machine is a quarter of a wave long, rad/s.
     pub quarter_wave_rad_per_s: Option<f64>,
     /// That plant in the loop of the first design.
@@ -176,7 +176,7 @@ fn with_waves(
     };
     let before = audit_problem(&alone_in_loop(&plant, told), watch)?;
     let known = Repair {
-        taken_in: Some(contradicting.what.clone()),
+        taken_in: Some((contradicting.machine_driven.clone(), contradicting.size)),
         quarter_wave_rad_per_s: contradicting.quarter_wave_rad_per_s,
         before: Some(before.clone()),
         ..nothing

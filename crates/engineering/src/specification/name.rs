@@ -2,8 +2,6 @@
 
 use phea_qft::specification::ClosedLoop;
 
-use super::kind::closed_loop_words;
-
 /// The subject of a limit on a closed loop, by which the limit is named.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpecificationName {
@@ -22,15 +20,4 @@ pub struct NamedSpecification {
     pub number: Option<usize>,
     /// The subject of its limit.
     pub name: SpecificationName,
-}
-
-impl SpecificationName {
-    /// The name for people.
-    pub fn words(self) -> &'static str {
-        match self {
-            SpecificationName::ClosedLoop(closed_loop) => closed_loop_words(closed_loop),
-            SpecificationName::RoundedCommand => "force error of the rounded command",
-            SpecificationName::RoundedMeasurement => "command error of the rounded measurement",
-        }
-    }
 }

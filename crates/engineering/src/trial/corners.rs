@@ -7,6 +7,7 @@ use phea_dynamics::watch::Watch;
 use phea_qft::family::{Extent, Family, UncertainFamily};
 use phea_qft::verification::PlantPoint;
 
+use super::reason::TrialMachine;
 use super::rigs::{Tried, rig_with};
 use super::run::{TrialRun, TriedMachine};
 use super::{STAGE, TrialError};
@@ -66,15 +67,14 @@ pub(super) fn worst_of(runs: &[TrialRun]) -> Vec<TrialRun> {
 fn rigs(setup: &Setup<'_>, problem: &RobustProblem, view: &ProjectAudit) -> Result<Vec<Tried>, TrialError> {
     let Family::Uncertain(family) = &problem.family else { return Ok(vec![]) };
     let (corners, inside) = (corners(family), inside(family));
-    let what =
-        format!("the worst of {} corners of the box and {} plants inside", corners.len(), inside.len());
+    let machine = TrialMachine::WorstOfBox { corners: corners.len(), inside: inside.len() };
     let rig = setup.rig()?;
     let of = |values: Vec<f64>| {
         let plant = PlantPoint::Parameters(values.clone());
         let (names, numbers): (Vec<&str>, Vec<f64>) =
             view.names.numbers(&plant)?.map(|(name, _, value)| (name, value)).unzip();
         Some(Tried {
-            what: what.clone(),
+            machine: machine.clone(),
             named: Some(view.names.named(&plant)),
             quarter_wave_rad_per_s: None,
             project: rig_with(setup, rig, &names, &numbers).ok()?,

@@ -7,10 +7,10 @@ use phea_dynamics::portable::exp;
 use phea_qft::specification::ClosedLoop;
 use phea_qft::verification::Verdict;
 
+use super::reason::{OvershootNote, TrialFinding, UnsettledEnd};
 use super::run::{Agreement, BAND_PERCENT, Leg, StepSize, TrialStep};
 use super::steps::Steps;
 use crate::audit::ProjectAudit;
-use crate::quantity::{DisplayUnit, significant};
 use crate::robust::RobustProblem;
 use crate::simulate::{DIVERGED, ScenarioRun, SimulateError, TimeRequirement, UNDETERMINED};
 
@@ -26,8 +26,6 @@ pub const SETTLING_RATIO: f64 = 2.0;
 /// Percent of the step by which an overshoot may differ: friction has an effect of this size on a
 /// small step.
 pub const OVERSHOOT_ROOM_PERCENT: f64 = 5.0;
-
-const NEITHER_SETTLES: &str = "neither the linear loop nor the nonlinear simulation settles";
 
 /// A run of a machine, its steps, and what is known of the linear loop.
 pub(super) struct Driven<'a> {
@@ -78,10 +76,10 @@ impl Driven<'_> {
 }
 
 /// A machine without an equilibrium under its controller, or without equations.
-pub(super) fn not_started(error: &SimulateError, view: &ProjectAudit) -> (Agreement, String) {
+pub(super) fn not_started(error: &SimulateError, view: &ProjectAudit) -> (Agreement, TrialFinding) {
     let agreement =
         if view.audit.verdict == Verdict::Met { Agreement::Contradicts } else { Agreement::Differs };
-    (agreement, format!("the nonlinear simulation does not start: {error}"))
+    (agreement, TrialFinding::NotStarted(error.clone()))
 }
 
 /// How well it agrees, and why.
@@ -89,67 +87,60 @@ pub(super) fn judge(
     driven: &Driven<'_>,
     problem: &RobustProblem,
     view: &ProjectAudit,
-) -> (Agreement, String) {
+) -> (Agreement, TrialFinding) {
     let promised = view.audit.verdict != Verdict::Violated;
     let broken = if promised { Agreement::Contradicts } else { Agreement::Differs };
     if let Some(stopped) = driven.run.stopped() {
         if driven.grows && driven.run.divergence.is_some() {
-            return (Agreement::Agrees, NEITHER_SETTLES.to_string());
+            return (Agreement::Agrees, TrialFinding::NeitherSettles { overshoots: None });
         }
-        let time = DisplayUnit::MILLISECOND.text(stopped.time_s, 3);
-        let words = match stopped.word {
-            DIVERGED => format!("the nonlinear simulation diverges from {time} on"),
-            word => format!("the run ended after {time} as {word}"),
+        let finding = match stopped.word {
+            DIVERGED => TrialFinding::Diverges(stopped.time_s),
+            status => TrialFinding::Ended { time: stopped.time_s, status },
         };
-        return (broken, words);
+        return (broken, finding);
     }
-    let (whole, linear, force) = (driven.whole(), driven.linear, driven.run.record.units.force);
+    let (whole, linear) = (driven.whole(), driven.linear);
     if whole.settling_time_s.is_none() {
         let settles = !driven.grows && linear.is_none_or(|step| step.settling_time_s.is_some());
         return if settles { (broken, unsettled(driven)) } else { neither_settles(driven) };
     }
     let overshoot = whole.overshoot_percent.unwrap_or(0.0);
     let predicted = linear.and_then(|step| step.overshoot_percent);
-    let beside = predicted.map_or(String::new(), |predicted| {
-        format!(", where the linear loop has {}", percent_words(predicted))
-    });
-    let highest = driven.first_most(|leg| leg.overshoot_percent.unwrap_or(0.0));
-    let told = format!("it overshoots by {}{}{beside}", percent_words(overshoot), leg_words(highest));
+    let leg = driven.first_most(|leg| leg.overshoot_percent.unwrap_or(0.0));
+    let overshoots = |note| TrialFinding::Overshoots { percent: overshoot, leg, linear: predicted, note };
     let more = overshoot - predicted.unwrap_or(overshoot);
     let most = most_overshoot_percent(problem).filter(|_| driven.size != StepSize::Largest);
     // a prefilter may make more of it than the limit, in the linear loop too
-    let keeps = |most: f64| predicted.is_none_or(|predicted| predicted <= most);
-    if more > OVERSHOOT_ROOM_PERCENT && most.is_some_and(|most| overshoot > most && keeps(most)) {
-        return (broken, format!("{told}: more than the limit on |L/(1+L)| lets a loop overshoot"));
+    let satisfies = |most: f64| predicted.is_none_or(|predicted| predicted <= most);
+    if more > OVERSHOOT_ROOM_PERCENT && most.is_some_and(|most| overshoot > most && satisfies(most)) {
+        return (broken, overshoots(OvershootNote::BeyondLimit));
     }
     if let Some(range) = driven.remains().filter(|range| width(*range) > STILL * driven.steps.size()) {
-        return (
-            Agreement::Differs,
-            format!("{told}, and does not come to rest: {}", range_words(range, force)),
-        );
+        return (Agreement::Differs, overshoots(OvershootNote::Swings(range)));
     }
     if more.abs() > OVERSHOOT_ROOM_PERCENT {
-        return (Agreement::Differs, told);
+        return (Agreement::Differs, overshoots(OvershootNote::Nothing));
     }
     let settling = settling_agreement(whole.settling_time_s, linear.and_then(|step| step.settling_time_s));
-    if let Some((Agreement::Differs, words)) = settling {
-        return (Agreement::Differs, words);
+    if let Some((Agreement::Differs, finding)) = settling {
+        return (Agreement::Differs, finding);
     }
     if let Some(missed) = missed_in_time(&whole, driven, problem) {
         return (Agreement::Differs, missed);
     }
     if driven.run.status_word() == UNDETERMINED {
-        return (Agreement::Differs, format!("{told}, and no solver determines the result"));
+        return (Agreement::Differs, overshoots(OvershootNote::Undetermined));
     }
     match met(driven.run).first() {
-        Some(kind) => (Agreement::Differs, format!("{told}, and meets {}", kind.replace('_', " "))),
-        None => settling.unwrap_or((Agreement::Agrees, told)),
+        Some(kind) => (Agreement::Differs, overshoots(OvershootNote::Meets(kind))),
+        None => settling.unwrap_or((Agreement::Agrees, overshoots(OvershootNote::Nothing))),
     }
 }
 
-/// The agreement of two settling times in s that are further apart than [`SETTLING_ROOM`], in
-/// words; `None` for others, and where one of them is not known.
-fn settling_agreement(own_s: Option<f64>, predicted_s: Option<f64>) -> Option<(Agreement, String)> {
+/// The agreement of two settling times in s that are further apart than [`SETTLING_ROOM`]; `None`
+/// for others, and where one of them is not known.
+fn settling_agreement(own_s: Option<f64>, predicted_s: Option<f64>) -> Option<(Agreement, TrialFinding)> {
     let (own_s, predicted_s) = own_s.zip(predicted_s)?;
     let is_within = |factor: f64| (predicted_s / factor..=predicted_s * factor).contains(&own_s);
     if is_within(1.0 + SETTLING_ROOM) {
@@ -157,28 +148,26 @@ fn settling_agreement(own_s: Option<f64>, predicted_s: Option<f64>) -> Option<(A
     }
     let agreement =
         if is_within(SETTLING_RATIO) { Agreement::AgreesButForSettling } else { Agreement::Differs };
-    let [own, predicted] = [own_s, predicted_s].map(|time_s| DisplayUnit::MILLISECOND.text(time_s, 3));
-    Some((agreement, format!("it settles in {own}, where the linear loop takes {predicted}")))
+    Some((agreement, TrialFinding::Settles { machine: own_s, linear: predicted_s, required: None }))
 }
 
 /// Two loops that do not settle within the run: both grow, or the overshoot of a slow one is
 /// compared, as far as it was seen.
-fn neither_settles(driven: &Driven<'_>) -> (Agreement, String) {
+fn neither_settles(driven: &Driven<'_>) -> (Agreement, TrialFinding) {
     let own = driven.whole().overshoot_percent.unwrap_or(0.0);
     let predicted = driven.linear.and_then(|step| step.overshoot_percent);
     match predicted.filter(|predicted| !driven.grows && (own - predicted).abs() > OVERSHOOT_ROOM_PERCENT) {
         Some(predicted) => {
-            let [own, predicted] = [own, predicted].map(percent_words);
-            let told = format!("it overshoots by {own}, where the linear loop has {predicted}");
-            (Agreement::Differs, format!("{told}, and {NEITHER_SETTLES} within the run"))
+            let overshoots = Some([own, predicted]);
+            (Agreement::Differs, TrialFinding::NeitherSettles { overshoots })
         }
-        None => (Agreement::Agrees, NEITHER_SETTLES.to_string()),
+        None => (Agreement::Agrees, TrialFinding::NeitherSettles { overshoots: None }),
     }
 }
 
 /// The settling time that is required of these steps, where the linear loop satisfies it and the
 /// machine does not.
-fn missed_in_time(machine: &TrialStep, driven: &Driven<'_>, problem: &RobustProblem) -> Option<String> {
+fn missed_in_time(machine: &TrialStep, driven: &Driven<'_>, problem: &RobustProblem) -> Option<TrialFinding> {
     let linear = driven.linear;
     let of_verdict = |required: &&TimeRequirement| {
         let holds = !required.steps.are_stated() || driven.size == StepSize::Required;
@@ -187,16 +176,13 @@ fn missed_in_time(machine: &TrialStep, driven: &Driven<'_>, problem: &RobustProb
     let most = problem.in_time.iter().find(of_verdict)?.wish.settling_time_s?;
     let own = machine.settling_time_s.filter(|time_s| *time_s > most)?;
     let predicted = linear?.settling_time_s.filter(|time_s| *time_s <= most)?;
-    let [own, predicted, most] =
-        [own, predicted, most].map(|time_s| DisplayUnit::MILLISECOND.text(time_s, 3));
-    Some(format!("it settles in {own}, where {most} is required and the linear loop takes {predicted}"))
+    Some(TrialFinding::Settles { machine: own, linear: predicted, required: Some(most) })
 }
 
 /// Range of a force at rest, over its distance from the reference.
 const SWING: f64 = 0.5;
 
-fn unsettled(driven: &Driven<'_>) -> String {
-    let force = driven.run.record.units.force;
+fn unsettled(driven: &Driven<'_>) -> TrialFinding {
     let leg = driven.worst();
     let reference = driven.steps.reference(leg);
     let distance = |[low, high]: [f64; 2]| (0.5 * (low + high) - reference).abs();
@@ -204,16 +190,11 @@ fn unsettled(driven: &Driven<'_>) -> String {
     let is_still =
         |range: &[f64; 2]| width(*range) <= (AT_REST * driven.steps.size()).max(SWING * distance(*range));
     if let Some([low, high]) = driven.steps.remains(driven.run, leg).filter(is_still) {
-        let off = 100.0 * distance([low, high]) / driven.steps.size();
-        return format!(
-            "the force does not settle{}: it comes to rest at {}, {} of the step off its reference",
-            leg_words(leg),
-            force.text(0.5 * (low + high), 5),
-            percent_words(off)
-        );
+        let off_percent = 100.0 * distance([low, high]) / driven.steps.size();
+        let end = UnsettledEnd::AtRest { force: 0.5 * (low + high), off_percent };
+        return TrialFinding::Unsettled { leg, end: Some(end) };
     }
-    let words = driven.remains().map_or(String::new(), |range| format!(": {}", range_words(range, force)));
-    format!("the force does not settle{}{words}", leg_words(leg))
+    TrialFinding::Unsettled { leg, end: driven.remains().map(UnsettledEnd::Swings) }
 }
 
 /// The limits and ends that the machine reached, in order.
@@ -223,24 +204,6 @@ pub(super) fn met(driven: &ScenarioRun) -> Vec<&'static str> {
 
 fn width([low, high]: [f64; 2]) -> f64 {
     high - low
-}
-
-/// `2.10 %`; values below a hundredth count as zero.
-pub fn percent_words(percent: f64) -> String {
-    if percent < 0.01 { "0 %".to_string() } else { format!("{} %", significant(percent, 3)) }
-}
-
-fn leg_words(leg: Leg) -> &'static str {
-    match leg {
-        Leg::There => "",
-        Leg::Back => " on the way back",
-        Leg::Again => " when the step is repeated",
-    }
-}
-
-fn range_words([low, high]: [f64; 2], unit: DisplayUnit) -> String {
-    let newton = |force| unit.text(force, 3);
-    format!("at the end it swings between {} and {}", newton(low), newton(high))
 }
 
 /// The overshoot of a system of second order whose resonance reaches the least limit on |L/(1+L)|,

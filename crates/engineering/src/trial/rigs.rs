@@ -8,6 +8,7 @@ use phea_hydraulics::series::MOST_SEGMENTS;
 use phea_qft::family::Family;
 use phea_qft::verification::PlantPoint;
 
+use super::reason::{MissedParameter, NoRig, NotDriven, TrialMachine, WorstOf};
 use crate::audit::ProjectAudit;
 use crate::plant_names::NamedPlant;
 use crate::project::{
@@ -17,12 +18,11 @@ use crate::project::{
 use crate::rig::{Rig, quarter_wave, with_controller_of};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
-use crate::specification::NamedSpecification;
 
 /// A machine and its plant in the linear loop.
 #[derive(Clone, Debug)]
 pub(super) struct Tried {
-    pub(super) what: String,
+    pub(super) machine: TrialMachine,
     /// The plant of the audit that it was made of.
     pub(super) named: Option<NamedPlant>,
     /// Where the lines of a rig with waves begin to oscillate, rad/s.
@@ -48,24 +48,24 @@ pub(super) fn rigs(
     rig: &Rig,
     problem: &RobustProblem,
     view: &ProjectAudit,
-) -> (Vec<Tried>, Vec<String>) {
+) -> (Vec<Tried>, Vec<NotDriven>) {
     let project = setup.project;
     let seen = rig.in_loop();
     let plant = match seen.in_motion {
         None => PlantMember::Rational(seen.plant.coefficients()),
         Some(moving) => PlantMember::Responding(Arc::new(moving)),
     };
-    let of = |what: &str, project: Project, quarter_wave_rad_per_s| Tried {
-        what: what.to_string(),
+    let of = |machine: TrialMachine, project: Project, quarter_wave_rad_per_s| Tried {
+        machine,
         named: None,
         quarter_wave_rad_per_s,
         project,
         plant: Some(plant.clone()),
         is_declared: false,
     };
-    let mut rigs = vec![of("the rig as declared", project.clone(), None)];
+    let mut rigs = vec![of(TrialMachine::Declared, project.clone(), None)];
     let waves = with_waves(project);
-    rigs.extend(waves.map(|project| of("the rig with waves in its lines", project, quarter_wave(rig))));
+    rigs.extend(waves.map(|project| of(TrialMachine::WithWaves, project, quarter_wave(rig))));
     let mut missing = Vec::new();
     let mut known: Vec<&PlantPoint> = Vec::new();
     for (of, plant) in worst_plants(view) {
@@ -79,10 +79,9 @@ pub(super) fn rigs(
         if names.is_empty() {
             continue;
         }
-        let what = format!("the worst plant of {of}");
         match rig_with(setup, rig, &names, &values) {
             Ok(project) => rigs.push(Tried {
-                what,
+                machine: TrialMachine::WorstPlant(of),
                 named: Some(view.names.named(plant)),
                 quarter_wave_rad_per_s: None,
                 is_declared: is_same_machine(project.clone(), setup.project.clone()),
@@ -92,7 +91,9 @@ pub(super) fn rigs(
                     Family::Measured(_) => None,
                 },
             }),
-            Err(reason) => missing.push(format!("{what} ({}): {reason}", view.names.text(plant))),
+            Err(reason) => {
+                missing.push(NotDriven::Plant { of, plant: view.names.named(plant), reason });
+            }
         }
     }
     (rigs, missing)
@@ -100,25 +101,20 @@ pub(super) fn rigs(
 
 /// The worst plant of each specification, and of each requirement in time that is part of the
 /// verdict, with what it is the worst of.
-fn worst_plants(view: &ProjectAudit) -> impl Iterator<Item = (String, &PlantPoint)> {
+fn worst_plants(view: &ProjectAudit) -> impl Iterator<Item = (WorstOf, &PlantPoint)> {
     let of_limits = view.audit.specifications.iter().enumerate();
-    let of_limits = of_limits
-        .filter_map(|(index, finding)| Some((numbered(view, index), &finding.worst.as_ref()?.plant)));
+    let of_limits = of_limits.filter_map(|(index, finding)| {
+        Some((WorstOf::Specification(view.named(index)?), &finding.worst.as_ref()?.plant))
+    });
     let in_time = view.in_time.iter().filter(|finding| finding.requirement.follows);
     let in_time = in_time.filter_map(|finding| {
         let of = match finding.requirement.limits {
-            Some(index) => format!("{} in time", numbered(view, index)),
-            None => "the required step".to_string(),
+            Some(index) => WorstOf::InTime(view.named(index)?),
+            None => WorstOf::RequiredStep,
         };
         Some((of, &finding.nearest()?.plant))
     });
     of_limits.chain(in_time)
-}
-
-/// A specification by its number in the file, where it has one, and name.
-fn numbered(view: &ProjectAudit, index: usize) -> String {
-    let Some(NamedSpecification { number, name }) = view.named(index) else { return String::new() };
-    number.map_or_else(|| name.words().to_string(), |number| format!("{number} {}", name.words()))
 }
 
 /// Whether two projects have one machine, uncertainty and the side of null left out.
@@ -185,16 +181,16 @@ pub(super) fn rig_with(
     declared: &Rig,
     names: &[&str],
     values: &[f64],
-) -> Result<Project, String> {
+) -> Result<Project, NoRig> {
     let project = setup.project;
     let is_linear = |name: &str| LINEAR_PARAMETERS.iter().any(|parameter| parameter.key.name == name);
     let mut rig = with_controller_of(project.clone(), declared);
     let stated = names.iter().copied().zip(values.iter().copied()).filter(|(name, _)| !is_linear(name));
     for (name, value) in stated {
         if name == "operating_point.velocity" && value != 0.0 {
-            return Err("a machine is tried from rest, and this plant is one in motion".to_string());
+            return Err(NoRig::InMotion);
         }
-        rig = rig.with_number(name, value).ok_or_else(|| format!("no rig is known with another `{name}`"))?;
+        rig = rig.with_number(name, value).ok_or_else(|| NoRig::UnknownNumber(name.to_string()))?;
     }
     rig = rig.without_uncertainty();
     let wanted: Vec<(&str, f64)> =
@@ -202,53 +198,53 @@ pub(super) fn rig_with(
     if wanted.is_empty() {
         return Ok(rig);
     }
-    let mut found = lowered(&rig)?;
+    let mut found = assembled(&rig)?;
     let mut missed = Vec::new();
     for _ in 0..PASSES {
         missed.clear();
         for (name, value) in &wanted {
             let now = derived(&found, name)?;
             if (now - value).abs() > CLOSE * value.abs() {
-                missed.push(format!("{name} comes to {now:.4e} and not to {value:.4e}"));
+                missed.push(MissedParameter { name: (*name).to_string(), found: now, wanted: *value });
                 rig = towards(&rig, name, now, *value)?;
-                found = lowered(&rig)?;
+                found = assembled(&rig)?;
             }
         }
         if missed.is_empty() {
             return Ok(rig);
         }
     }
-    Err(format!("no rig was found whose linear model has these parameters: {}", missed.join("; ")))
+    Err(NoRig::Missed(missed))
 }
 
-fn lowered(project: &Project) -> Result<Rig, String> {
-    Setup::rig_of(project).map_err(|error| error.to_string())
+fn assembled(project: &Project) -> Result<Rig, NoRig> {
+    Ok(Setup::rig_of(project)?)
 }
 
 /// A parameter of the linear model as it follows from the rig.
-fn derived(rig: &Rig, name: &str) -> Result<f64, String> {
+fn derived(rig: &Rig, name: &str) -> Result<f64, NoRig> {
     let found = rig.parameters.iter().find(|parameter| parameter.name == name);
-    found.map(|parameter| parameter.derived).ok_or_else(|| format!("`{name}` is not a parameter"))
+    found.map(|parameter| parameter.derived).ok_or_else(|| NoRig::UnknownParameter(name.to_string()))
 }
 
 /// The rig after one secant step, in the logarithm, of the numbers that determine this parameter.
-fn towards(project: &Project, name: &str, now: f64, wanted: f64) -> Result<Project, String> {
+fn towards(project: &Project, name: &str, now: f64, wanted: f64) -> Result<Project, NoRig> {
     use phea_dynamics::portable::{ln, pow};
-    let nudged = lowered(&scaled(project, name, 1.0 + NUDGE)?)?;
+    let nudged = assembled(&scaled(project, name, 1.0 + NUDGE)?)?;
     let slope = ln(derived(&nudged, name)? / now) / ln(1.0 + NUDGE);
     if slope.is_nan() || slope.abs() < 1e-6 {
-        return Err(format!("nothing in the rig moves `{name}`"));
+        return Err(NoRig::Fixed(name.to_string()));
     }
     scaled(project, name, pow(wanted / now, 1.0 / slope))
 }
 
 /// The rig with the numbers that determine a parameter of the linear model multiplied by a factor.
-fn scaled(project: &Project, name: &str, factor: f64) -> Result<Project, String> {
+fn scaled(project: &Project, name: &str, factor: f64) -> Result<Project, NoRig> {
     let mut rig = project.clone();
-    let Some(actuator) = rig.actuator.as_mut() else { return Err("there is no rig".to_string()) };
+    let Some(actuator) = rig.actuator.as_mut() else { return Err(NoRig::NoActuator) };
     let numbers = behind(actuator, name);
     if numbers.is_empty() {
-        return Err(format!("nothing in the rig moves `{name}` alone"));
+        return Err(NoRig::Coupled(name.to_string()));
     }
     for number in numbers {
         *number *= factor;

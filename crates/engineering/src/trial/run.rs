@@ -3,15 +3,16 @@
 use super::first_steps::{FirstSteps, RequiredOfSteps};
 use super::judge::{Driven, judge, met, not_started};
 use super::prediction::{LONGEST_HOLD_S, LinearStep, SETTLING_TIMES};
+use super::reason::{DampingWall, DifferenceCause, TrialFinding, TrialMachine, TrialReason};
 use super::required::{HeldRequirement, held};
 use super::rigs::Tried;
-use super::steps::{CommandLimits, HeldLegs, REACH, Steps};
+use super::steps::{CommandLimits, HeldLegs, Steps};
 use super::{STAGE, TrialError};
 use crate::audit::ProjectAudit;
 use crate::linear_step::StepResponse;
 use crate::plant_names::NamedPlant;
 use crate::project::{LineMotion, Project};
-use crate::quantity::{Units, significant};
+use crate::quantity::Units;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::simulate::{
@@ -52,7 +53,7 @@ pub enum StepSize {
     Reversed,
     /// As a scenario of the project makes it.
     Scenario,
-    /// The largest within reach that meets no limit: see [`largest_step_words`].
+    /// The largest within reach that meets no limit: see [`REACH`].
     Largest,
     /// As a requirement in time states it.
     Required,
@@ -82,8 +83,8 @@ impl Leg {
 /// One machine, driven there, back and there again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrialRun {
-    /// Which machine, and whether its steps are the largest.
-    pub what: String,
+    /// The machine.
+    pub machine_driven: TrialMachine,
     /// How large its steps are.
     pub size: StepSize,
     /// The plant of the audit from which it was made, if any.
@@ -116,8 +117,8 @@ pub struct TrialRun {
     pub machine_response: StepResponse,
     /// The judgement.
     pub agreement: Agreement,
-    /// Why, in a sentence.
-    pub reason: String,
+    /// What the run shows, and the cause of a difference.
+    pub reason: TrialReason,
     /// Where the lines of a machine with waves begin to oscillate, rad/s; `None` for one without.
     pub quarter_wave_rad_per_s: Option<f64>,
     /// Events on the way, by the names of occurrences: the limit of the command, cavitation, an end
@@ -125,37 +126,7 @@ pub struct TrialRun {
     pub met: Vec<&'static str>,
 }
 
-/// The size of a step that is called the largest, in words.
-pub fn largest_step_words() -> String {
-    format!(
-        "up to {} % of the force that the supply can produce, the capacity of the force sensor and the limit of the command, whichever is least, and smaller where a run meets a limit all the same",
-        significant(100.0 * REACH, 3)
-    )
-}
-
-impl StepSize {
-    const ALL: [StepSize; 5] =
-        [StepSize::Tenth, StepSize::Reversed, StepSize::Scenario, StepSize::Largest, StepSize::Required];
-
-    /// End of the name of a run with such a step.
-    fn ending(self) -> &'static str {
-        match self {
-            StepSize::Tenth => "",
-            StepSize::Reversed => ", the other way",
-            StepSize::Scenario => ", step of a scenario",
-            StepSize::Largest => ", largest step",
-            StepSize::Required => ", required step",
-        }
-    }
-}
-
 impl TrialRun {
-    /// The machine, without the size of its steps.
-    pub fn machine_name(&self) -> &str {
-        let endings = StepSize::ALL.into_iter().map(StepSize::ending).filter(|ending| !ending.is_empty());
-        endings.into_iter().find_map(|ending| self.what.strip_suffix(ending)).unwrap_or(&self.what)
-    }
-
     /// How far the steps are from what is required of them: the largest ratio of what one reaches
     /// to what is required, zero where nothing is.
     pub(crate) fn excess(&self) -> f64 {
@@ -370,7 +341,7 @@ impl<'a> TriedMachine<'a> {
         let size = *size;
         let LinearStep { step: linear, ref response, grows } = self.linear;
         let blank = TrialRun {
-            what: format!("{}{}", self.tried.what, size.ending()),
+            machine_driven: self.tried.machine.clone(),
             size,
             plant: self.tried.named.clone(),
             status: "not_started",
@@ -385,20 +356,20 @@ impl<'a> TriedMachine<'a> {
             linear_response: response.clone(),
             machine_response: StepResponse::default(),
             agreement: Agreement::Differs,
-            reason: String::new(),
+            reason: TrialFinding::NeitherSettles { overshoots: None }.into(),
             quarter_wave_rad_per_s: self.tried.quarter_wave_rad_per_s,
             met: vec![],
         };
         let run = match outcome {
             Ok(run) => run,
             Err(error) => {
-                let (agreement, reason) = not_started(error, view);
-                return TrialRun { agreement, reason, ..blank };
+                let (agreement, finding) = not_started(error, view);
+                return TrialRun { agreement, reason: finding.into(), ..blank };
             }
         };
         let legs: Vec<(Leg, TrialStep)> = steps.driven().map(|leg| (leg, steps.step(run, leg))).collect();
         let driven = Driven { run, steps, size, legs: &legs, linear, grows };
-        let (agreement, reason) = judge(&driven, problem, view);
+        let (agreement, finding) = judge(&driven, problem, view);
         TrialRun {
             status: run.status_word(),
             machine: Some(driven.whole()),
@@ -407,7 +378,7 @@ impl<'a> TriedMachine<'a> {
             requirements: held(&problem.in_time, steps, (*required, run)),
             machine_response: steps.response(run, driven.worst()),
             agreement,
-            reason,
+            reason: finding.into(),
             met: met(run),
             legs: legs.into_iter().take(run.windows.len()).collect(),
             ..blank
@@ -428,27 +399,19 @@ impl<'a> TriedMachine<'a> {
         Ok(Some(self.judgement(&DrivenSteps { size, required, steps, outcome }, (problem, view))))
     }
 
-    /// The reason of a run with waves that does not agree: with their frequency and the cure,
-    /// unless the rig with lumped lines agrees as little in the same steps.
-    pub(super) fn with_waves_named(&self, run: &TrialRun, lumped: Option<&TrialRun>) -> String {
-        let reason = &run.reason;
-        let Some(quarter) = self.tried.quarter_wave_rad_per_s else { return reason.clone() };
+    /// The cause of a run with waves that does not agree: the waves, unless the rig with lumped
+    /// lines agrees as little in the same steps.
+    pub(super) fn cause_of_waves(
+        &self,
+        run: &TrialRun,
+        lumped: Option<&TrialRun>,
+    ) -> Option<DifferenceCause> {
+        let quarter_wave = self.tried.quarter_wave_rad_per_s?;
         if lumped.is_some_and(|lumped| lumped.agreement >= run.agreement) {
-            return format!(
-                "{reason}. The same steps with lumped lines do not agree either: the waves are not the cause"
-            );
+            return Some(DifferenceCause::OtherThanWaves);
         }
-        format!(
-            "{reason}. The lines are a quarter wave long at {} rad/s: a shorter line,{} or a loop with less gain from there on",
-            significant(quarter, 3),
-            damping_wall(&self.tried.project)
-        )
+        Some(DifferenceCause::Waves { quarter_wave, wall: damping_wall(&self.tried.project) })
     }
-}
-
-/// The reason of a run that agrees without the noise of its sensors.
-pub(super) fn with_noise_named(run: &TrialRun) -> String {
-    format!("{}. The same steps without the noise of the sensors agree: the noise is the cause", run.reason)
 }
 
 impl DrivenSteps {
@@ -458,37 +421,19 @@ impl DrivenSteps {
     }
 }
 
-/// The wall that may damp a wave in these lines, if their models include one; pipes have none.
-fn damping_wall(project: &Project) -> &'static str {
-    let Some(line) = project.actuator.as_ref().map(|actuator| &actuator.line) else { return "" };
+/// The declaration of a wall that damps a wave in these lines, if their models include one; pipes
+/// have none.
+fn damping_wall(project: &Project) -> Option<DampingWall> {
+    let line = &project.actuator.as_ref()?.line;
     let mut models = [&line.a, &line.b]
         .into_iter()
         .filter(|side| side.hose().is_some())
         .map(|side| &side.motion)
         .peekable();
-    if models.peek().is_none() {
-        ""
-    } else if models.all(|model| matches!(model, LineMotion::Segments(_) | LineMotion::Creeping { .. })) {
-        " a wall that damps (line.relaxation_time)"
-    } else {
-        " a wall that damps (line.model = \"segments\" with line.relaxation_time)"
-    }
-}
-
-/// The word of an agreement for programs.
-pub fn agreement_key(agreement: Agreement) -> &'static str {
-    match agreement {
-        Agreement::AgreesButForSettling => "agrees_but_for_settling",
-        Agreement::Agrees | Agreement::Differs | Agreement::Contradicts => agreement_word(agreement),
-    }
-}
-
-/// The words of an agreement for people.
-pub fn agreement_word(agreement: Agreement) -> &'static str {
-    match agreement {
-        Agreement::Agrees => "agrees",
-        Agreement::AgreesButForSettling => "agrees but for the settling",
-        Agreement::Differs => "differs",
-        Agreement::Contradicts => "contradicts",
-    }
+    models.peek()?;
+    let has_segments = |model| matches!(model, &LineMotion::Segments(_) | &LineMotion::Creeping { .. });
+    Some(match models.all(has_segments) {
+        true => DampingWall::RelaxationTime,
+        false => DampingWall::SegmentsWithRelaxationTime,
+    })
 }

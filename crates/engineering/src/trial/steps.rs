@@ -15,8 +15,8 @@ use crate::simulate::{RequiredSteps, ScenarioRun, stays_settled};
 
 /// The first step over the force that the supply can produce.
 const STEP_SHARE: f64 = 0.1;
-/// The reference stays within this share of that force.
-pub(super) const REACH: f64 = 0.8;
+/// Fraction of that force within which the reference stays.
+pub const REACH: f64 = 0.8;
 /// s, before the first step.
 const BEFORE_S: f64 = 0.05;
 /// Rows of a scenario for each step.

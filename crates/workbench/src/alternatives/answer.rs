@@ -8,6 +8,7 @@ use super::{AlternativeColumn, Alternatives, ColumnPart, JudgedAlternative, Judg
 use crate::answer::{Json, Object};
 use crate::design;
 use crate::linearize::{no_closed_impedance_words, passivity_body};
+use crate::specification::subject_words;
 use crate::trial;
 use crate::verdict_words::verdict_key;
 
@@ -88,7 +89,7 @@ fn columns(one: &JudgedAlternative) -> Object {
     own.with(
         "specifications",
         named(|part| match part {
-            ColumnPart::Specification(_, name) => Some(name.words()),
+            ColumnPart::Specification(_, name) => Some(subject_words(*name)),
             _ => None,
         }),
     )

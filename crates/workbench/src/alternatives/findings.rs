@@ -15,7 +15,7 @@ use crate::grouped::grouped;
 use crate::project::{AS_DECLARED, ImpedanceForm, LINEAR_PARAMETERS};
 use crate::quantity::{DisplayUnit, MotionKind, fitting, significant};
 use crate::simulate::{ScenarioRun, required_of_run, requirement_sentence};
-use crate::trial::Agreement;
+use crate::trial::{Agreement, finding_words, run_name};
 
 /// Of the declared load, and then of each load case.
 pub(crate) fn findings(found: &Alternatives) -> Vec<String> {
@@ -166,13 +166,13 @@ fn lacking(one: &JudgedAlternative) -> Vec<(&str, String)> {
     let contradicts: Vec<_> = runs.iter().filter(|run| run.agreement == Agreement::Contradicts).collect();
     let contradicts = contradicts.split_first().map(|(first, further)| {
         // what could be done about it is in the reason after the first sentence, and with `design`
-        let reason = first.reason.split(". ").next().unwrap_or_default();
+        let reason = finding_words(&first.reason.finding, first.units);
         let further = match further.len() {
             0 => String::new(),
             1 => ", and in another run".to_string(),
             count => format!(", and in {count} further runs"),
         };
-        format!("the nonlinear simulation contradicts the verdict: {}: {reason}{further}", first.what)
+        format!("the nonlinear simulation contradicts the verdict: {}: {reason}{further}", run_name(first))
     });
     let caveats = view.map(|view| &view.designed.view);
     let caveats = caveats.into_iter().flat_map(|view| caveat::sentences(&view.caveats, &view.units));

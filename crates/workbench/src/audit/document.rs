@@ -14,6 +14,7 @@ use crate::caveat;
 use crate::document::{Cell, Document, Table};
 use crate::figure::Figure;
 use crate::grouped::grouped;
+use crate::plant_names::plant_cells;
 use crate::quantity::{DisplayUnit, significant};
 use crate::robust::DEFAULT_TOLERANCE_DB;
 use crate::specification::{name_words, numbered};
@@ -210,18 +211,21 @@ fn worst_plants(view: &ProjectAudit) -> Vec<(String, Vec<String>)> {
     let findings = view.audit.specifications.iter().enumerate();
     let of = |(index, finding): (usize, &SpecificationFinding)| {
         let worst = finding.worst.as_ref()?;
-        let (name, own) = (numbered(view.named(index)), view.names.cells(&worst.plant));
+        let (name, own) = (numbered(view.named(index)), plant_cells(&view.names, &worst.plant));
         Some(match &worst.other {
             None => vec![(name, own)],
             Some(other) => {
-                let other = view.names.cells(other);
+                let other = plant_cells(&view.names, other);
                 vec![(format!("{name}, greatest |T|"), own), (format!("{name}, least |T|"), other)]
             }
         })
     };
     let in_time = view.in_time.iter().filter(|finding| finding.requirement.limits.is_none());
     let of_step = in_time.filter_map(|finding| {
-        Some((format!("{} step", finding.requirement.number), view.names.cells(&finding.nearest()?.plant)))
+        Some((
+            format!("{} step", finding.requirement.number),
+            plant_cells(&view.names, &finding.nearest()?.plant),
+        ))
     });
     findings.filter_map(of).flatten().chain(of_step).collect()
 }

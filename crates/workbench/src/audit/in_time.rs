@@ -4,6 +4,7 @@ use phea_qft::verification::Verdict;
 
 use super::{PrefilterGain, ProjectAudit, TimeFinding, TimeOutcome, Unexamined, WorstStep};
 use crate::answer::significant;
+use crate::plant_names::plant_text;
 use crate::simulate::required_words;
 use crate::specification::numbered;
 use crate::verdict_words::{frequency_words, margin_words};
@@ -39,7 +40,7 @@ pub(crate) fn sentence(view: &ProjectAudit, finding: &TimeFinding) -> String {
 }
 
 fn at(view: &ProjectAudit, words: &str, worst: &WorstStep) -> String {
-    let plant = view.names.text(&worst.plant);
+    let plant = plant_text(&view.names, &worst.plant);
     if plant.is_empty() { words.to_string() } else { format!("{words} ({plant})") }
 }
 

@@ -6,14 +6,14 @@ use phea_qft::verification::{
 };
 
 use super::words::rounded;
-use crate::plant_names::PlantNames;
+use crate::plant_names::{PlantNames, plant_text};
 use crate::quantity::significant;
 
 /// Whether the family is stable, and how this is known.
 pub(crate) fn stability_sentence(stability: &StabilityFinding, names: &PlantNames) -> String {
     let plant = match &stability.reason {
-        StabilityReason::AllStable { closest: Some(closest), .. } => names.text(&closest.plant),
-        _ => names.text(&stability.plant),
+        StabilityReason::AllStable { closest: Some(closest), .. } => plant_text(names, &closest.plant),
+        _ => plant_text(names, &stability.plant),
     };
     let rate = |value: f64| significant(value, 3);
     match (stability.verdict, stability.largest_real_part) {
@@ -44,7 +44,7 @@ pub(super) fn infinity_sentence(stability: &StabilityFinding, names: &PlantNames
         "That no pole passes through infinity inside the box was searched for, since the enclosures of the leading \
          coefficient are too wide there: it falls to {} of its nominal value at least ({}) and depends on {}.",
         significant(found.least_share, 3),
-        names.text(&found.plant),
+        plant_text(names, &found.plant),
         moving_words(found, names)
     ))
 }

@@ -6,8 +6,8 @@ use phea_qft::verification::Verdict;
 use crate::audit::{ProjectAudit, stability_sentence};
 use crate::quantity::{DisplayUnit, significant};
 use crate::specification::numbered;
-use crate::trial::{Agreement, TrialRun, agreement_word};
-use crate::verdict_words::{frequency_words, margin_words};
+use crate::trial::{Agreement, TrialRun, reason_words, run_name};
+use crate::verdict_words::{agreement_word, frequency_words, margin_words};
 
 /// The word of the outcome of a repair, in JSON.
 pub(super) fn repair_key(status: RepairStatus) -> &'static str {
@@ -200,7 +200,7 @@ fn nearest(found: &ProjectDesign) -> Option<String> {
     Some(format!(
         "under the nearest controller (`{NEAREST_PROJECT}`) the nonlinear simulation with waves {} with its linear loop: {}",
         agreement_word(waves.agreement),
-        waves.reason
+        reason_words(&waves.reason, waves.units)
     ))
 }
 
@@ -209,7 +209,7 @@ fn nearest(found: &ProjectDesign) -> Option<String> {
 fn stable_with_waves(run: &TrialRun) -> String {
     format!(
         "the linear loop satisfies every specification with waves in its plant too, and {} contradicts it all the same: so the waves are not the cause",
-        run.what
+        run_name(run)
     )
 }
 
@@ -223,7 +223,9 @@ fn nothing_found() -> String {
 fn left<'a>(runs: impl Iterator<Item = &'a TrialRun>) -> Vec<String> {
     let contradicting = runs.filter(|run| run.agreement == Agreement::Contradicts);
     let others = contradicting.filter(|run| run.quarter_wave_rad_per_s.is_none());
-    others.map(|run| format!("{}: {}: {}", run.what, run.reason, advice(run))).collect()
+    others
+        .map(|run| format!("{}: {}: {}", run_name(run), reason_words(&run.reason, run.units), advice(run)))
+        .collect()
 }
 
 /// What to change, by the events of the run.

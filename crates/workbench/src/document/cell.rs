@@ -1,7 +1,7 @@
 //! The content of a cell of a table, with its type.
 
-use crate::verdict_words::{frequency_number, margin_words, verdict_words};
-use phea_engineering::trial::{Agreement, agreement_word};
+use crate::verdict_words::{agreement_word, frequency_number, margin_words, verdict_words};
+use phea_engineering::trial::Agreement;
 use phea_qft::verification::Verdict;
 
 use std::borrow::Cow;

@@ -1,6 +1,7 @@
 //! The key `machine` of an answer.
 
-use super::{Agreement, HeldRequirement, Leg, StepSize, Trial, TrialRun, TrialStep, agreement_key};
+use super::words::{agreement_key, not_driven, reason_words, run_name};
+use super::{Agreement, HeldRequirement, Leg, StepSize, Trial, TrialRun, TrialStep};
 use crate::answer::Object;
 use crate::simulate::satisfied_word;
 
@@ -10,18 +11,18 @@ pub(crate) fn body(trial: &Trial) -> Object {
         .with("verdict", agreement_key(trial.agreement()))
         .maybe("requirements", trial.satisfies().map(satisfied_word))
         .each("runs", &trial.runs, row)
-        .with("not_driven", trial.not_driven.as_slice())
+        .with("not_driven", not_driven(trial))
 }
 
 fn row(run: &TrialRun) -> Object {
     let no_step = "the linear loop has no step response in closed form, or grows";
     Object::new()
-        .with("what", run.what.as_str())
+        .with("what", run_name(run))
         .maybe("plant", run.plant.clone())
         .with("status", run.status)
         .with("agrees", run.agreement <= Agreement::AgreesButForSettling)
         .with("agreement", agreement_key(run.agreement))
-        .with("reason", run.reason.as_str())
+        .with("reason", reason_words(&run.reason, run.units))
         .with("reference_n", run.reference_n)
         .with("step", size_word(run.size))
         .with("worst_step", leg_word(run.worst))

@@ -1,13 +1,16 @@
 //! The trial of a verdict on the machine, for people.
 
+use super::words::{have_one_name, largest_step_words, not_driven, percent_words, reason_words, run_name};
 use super::{
     Agreement, BAND_PERCENT, Leg, MOST_OF_SCENARIOS, OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, SETTLING_ROOM,
-    StepResponse, StepSize, Trial, TrialRun, TrialStep, agreement_word, largest_step_words, percent_words,
+    StepResponse, StepSize, Trial, TrialRun, TrialStep,
 };
 use crate::document::{Cell, Document, Table};
 use crate::figure::{FamilySteps, Figure, TimeSeries, Words};
+use crate::plant_names::plant_words;
 use crate::quantity::DisplayUnit;
 use crate::simulate::{reached_words, required_words, satisfied_word};
+use crate::verdict_words::agreement_word;
 use phea_qft::verification::Verdict;
 
 /// The agreement in words; where it lacks nothing but the settling time, those that are furthest
@@ -89,7 +92,7 @@ fn cells(run: &TrialRun) -> [Cell; 8] {
     };
     let (linear, machine) = (run.linear.as_ref(), run.machine.as_ref());
     [
-        run.what.as_str().into(),
+        run_name(run).into(),
         step_words(run).into(),
         Cell::agreement(run.agreement),
         overshoot(machine),
@@ -162,7 +165,7 @@ fn required(trial: &Trial) -> Document {
     for (run, held) in distinct(trial).flat_map(|run| run.requirements.iter().map(move |held| (run, held))) {
         let verdict = if held.is_satisfied { Verdict::Met } else { Verdict::Violated };
         rows.row([
-            run.what.as_str().into(),
+            run_name(run).into(),
             required_words(&held.wish).into(),
             Cell::from(satisfied_word(held.is_satisfied)).marked(verdict),
             reached_words(&held.wish, &held.reached).into(),
@@ -182,11 +185,11 @@ fn required(trial: &Trial) -> Document {
 
 /// The corner of the box or plant inside that is the worst, and by what.
 fn corners(trial: &Trial) -> Vec<String> {
-    let is_corner = |run: &&TrialRun| trial.corners.iter().any(|corner| corner.what == run.what);
+    let is_corner = |run: &&TrialRun| trial.corners.iter().any(|corner| have_one_name(corner, run));
     let words = |run: &TrialRun| {
         Some(match repeated(trial, run) {
-            Some(other) => format!("{}: that is {}", run.what, other.what),
-            None => format!("{}: {}", run.what, run.plant.as_ref()?.words()),
+            Some(other) => format!("{}: that is {}", run_name(run), run_name(other)),
+            None => format!("{}: {}", run_name(run), plant_words(run.plant.as_ref()?)),
         })
     };
     let mut told: Vec<String> = trial.runs.iter().filter(is_corner).filter_map(words).collect();
@@ -222,8 +225,8 @@ fn remaining_words(run: &TrialRun, amplitude_n: f64) -> String {
 /// Why a machine does not behave like the linear loop, and which plants were not driven.
 fn reasons(trial: &Trial) -> Vec<String> {
     let others = trial.runs.iter().filter(|run| run.agreement != Agreement::Agrees);
-    let told = others.map(|run| format!("{}: {}", run.what, run.reason));
-    told.chain(trial.not_driven.iter().map(|missing| format!("not driven: {missing}"))).collect()
+    let told = others.map(|run| format!("{}: {}", run_name(run), reason_words(&run.reason, run.units)));
+    told.chain(not_driven(trial).into_iter().map(|missing| format!("not driven: {missing}"))).collect()
 }
 
 /// Number of settling times of the linear loop that are drawn, and of required ones at least.
@@ -251,7 +254,7 @@ fn figure(trial: &Trial, [name, title]: [&str; 2]) -> Option<Figure> {
     let is_first = |size| matches!(size, StepSize::Tenth | StepSize::Required);
     let stands_out = |run: &TrialRun| run.agreement != Agreement::Agrees || !run.satisfies();
     let drawn = runs.iter().filter(|run| is_first(run.size) || stands_out(run));
-    let named = drawn.filter_map(|run| series(&run.what, &run.machine_response)).collect();
+    let named = drawn.filter_map(|run| series(&run_name(run), &run.machine_response)).collect();
     let quantity = "Force, part of the step".to_string();
     let chart = FamilySteps { quantity, nominal, named, ..FamilySteps::default() };
     let waves = if runs.iter().any(|run| run.quarter_wave_rad_per_s.is_some()) {
@@ -269,7 +272,7 @@ fn figure(trial: &Trial, [name, title]: [&str; 2]) -> Option<Figure> {
 pub(crate) fn words(trial: &Trial) -> String {
     let word = headline(trial);
     match trial.runs.iter().find(|run| run.agreement == trial.agreement()) {
-        Some(run) if run.agreement >= Agreement::Differs => format!("{word}: {}", run.what),
+        Some(run) if run.agreement >= Agreement::Differs => format!("{word}: {}", run_name(run)),
         _ => word,
     }
 }

@@ -1,10 +1,13 @@
 //! Machines of a trial and what their runs show, in words.
 
 use super::{
-    Agreement, DampingWall, DifferenceCause, Leg, NotDriven, OvershootNote, REACH, StepSize, TrialFinding,
-    Trial, TrialMachine, TrialReason, TrialRun, UnsettledEnd, WorstOf,
+    Agreement, DampingWall, DifferenceCause, Leg, NotDriven, OvershootNote, REACH, StepSize, Trial,
+    TrialFinding, TrialMachine, TrialReason, TrialRun, UnsettledEnd, WorstOf,
 };
+use crate::plant_names::plant_words;
 use crate::quantity::{DisplayUnit, Units, significant};
+use crate::specification::numbered;
+use crate::verdict_words::agreement_word;
 
 /// The machine of a run, without the size of its steps.
 pub(crate) fn machine_words(machine: &TrialMachine) -> String {
@@ -20,22 +23,27 @@ pub(crate) fn machine_words(machine: &TrialMachine) -> String {
 
 fn worst_plant(of: &WorstOf) -> String {
     match of {
-        WorstOf::Specification(name) => format!("the worst plant of {name}"),
-        WorstOf::InTime(name) => format!("the worst plant of {name} in time"),
+        WorstOf::Specification(named) => format!("the worst plant of {}", numbered(Some(*named))),
+        WorstOf::InTime(named) => format!("the worst plant of {} in time", numbered(Some(*named))),
         WorstOf::RequiredStep => "the worst plant of the required step".to_string(),
     }
 }
 
 /// The name of a run: its machine, and the size of its steps where it is not the usual one.
 pub(crate) fn run_name(run: &TrialRun) -> String {
-    let ending = match run.size {
+    name_of(&run.machine_driven, run.size)
+}
+
+/// The name of a run through steps of this size.
+pub(crate) fn name_of(machine: &TrialMachine, size: StepSize) -> String {
+    let ending = match size {
         StepSize::Tenth => "",
         StepSize::Reversed => ", the other way",
         StepSize::Scenario => ", step of a scenario",
         StepSize::Largest => ", largest step",
         StepSize::Required => ", required step",
     };
-    format!("{}{ending}", machine_words(&run.machine_driven))
+    format!("{}{ending}", machine_words(machine))
 }
 
 /// True where two runs have the same machine and steps of the same size.
@@ -56,16 +64,6 @@ pub(crate) fn agreement_key(agreement: Agreement) -> &'static str {
     match agreement {
         Agreement::AgreesButForSettling => "agrees_but_for_settling",
         Agreement::Agrees | Agreement::Differs | Agreement::Contradicts => agreement_word(agreement),
-    }
-}
-
-/// The words of an agreement for people.
-pub(crate) fn agreement_word(agreement: Agreement) -> &'static str {
-    match agreement {
-        Agreement::Agrees => "agrees",
-        Agreement::AgreesButForSettling => "agrees but for the settling",
-        Agreement::Differs => "differs",
-        Agreement::Contradicts => "contradicts",
     }
 }
 
@@ -216,7 +214,9 @@ fn cause_of_difference(cause: &DifferenceCause) -> String {
 /// What a trial does not drive.
 fn not_driven_words(one: &NotDriven, units: Units) -> String {
     match one {
-        NotDriven::Plant { of, plant, reason } => format!("{} ({plant}): {reason}", worst_plant(of)),
+        NotDriven::Plant { of, plant, reason } => {
+            format!("{} ({}): {reason}", worst_plant(of), plant_words(plant))
+        }
         NotDriven::SmallerStep(forces) => {
             let [from, to] = forces.map(|force| units.force.short(force, 3));
             format!("a smaller step of a scenario, {from} to {to}")

@@ -24,7 +24,11 @@ pub(super) fn row(view: &ProjectDesign, repair: &Repair) -> Object {
     let rounds = nearest.map(|design| design.design.rounds.iter().map(round).collect::<Vec<_>>());
     Object::new()
         .with("status", repair_key(repair.status))
-        .known("taken_in", repair.taken_in.as_deref(), no_plant)
+        .known(
+            "taken_in",
+            repair.taken_in.as_ref().map(|(machine, size)| trial::name_of(machine, *size)),
+            no_plant,
+        )
         .known("quarter_wave_rad_per_s", repair.quarter_wave_rad_per_s, "no waves were looked at")
         .known("relaxation_db", relaxation_db, "the repair was not found infeasible")
         .with("conflicts", nearest.map_or_else(Vec::new, conflicts))

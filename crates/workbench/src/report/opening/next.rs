@@ -14,6 +14,7 @@ use crate::answer::significant;
 use crate::audit::{ProjectAudit, in_time};
 use crate::caveat::{caveats, outside_parameters, sentence};
 use crate::design::{DESIGNED_PROJECT, ProjectDesign, rig_miss_words};
+use crate::plant_names::plant_text;
 use crate::project::{DeclaredSpecification, Project, SpecificationKind};
 use crate::quantity::DisplayUnit;
 use crate::report::design::Designed;
@@ -21,7 +22,7 @@ use crate::report::driven::{DESIGNED, GIVEN};
 use crate::setup::Setup;
 use crate::simulate::TimeRequirement;
 use crate::specification::numbered;
-use crate::trial::{Agreement, Trial, TrialRun};
+use crate::trial::{self, Agreement, Trial, TrialRun, brief_reason, run_name};
 use crate::verdict_words::frequency_words;
 
 /// Largest number of sentences.
@@ -153,7 +154,7 @@ fn missed_words(view: &ProjectAudit) -> String {
 fn plant_words(view: &ProjectAudit, plant: &phea_qft::verification::PlantPoint) -> String {
     match view.names.headings().len() {
         0 => String::new(),
-        1 | 2 => format!(" (plant {})", view.names.text(plant)),
+        1 | 2 => format!(" (plant {})", plant_text(&view.names, plant)),
         _ => " (its plant is listed in the audit)".to_string(),
     }
 }
@@ -222,13 +223,13 @@ fn machine(side: &Side<'_>) -> Vec<String> {
 
 fn machine_words(side: &Side<'_>, run: &TrialRun) -> String {
     // the chapter on the machine has the rest: the range of the force, and the time of a wave
-    let why = run.reason.split(". The lines are").next().unwrap_or_default();
-    let why = why.split(": at the end it swings").next().unwrap_or_default();
+    let why = brief_reason(&run.reason, run.units);
     let satisfies = side.trial.and_then(Trial::satisfies) == Some(true);
     if satisfies && run.agreement != Agreement::Contradicts {
         return format!(
             "Take times from the nonlinear simulation and not from the linear loop: {} satisfies what is required under the {} controller, and {why}.",
-            run.what, side.name
+            run_name(run),
+            side.name
         );
     }
     let verdict = match run.agreement {
@@ -243,7 +244,7 @@ fn machine_words(side: &Side<'_>, run: &TrialRun) -> String {
         ),
         None if run.plant.is_some() => format!(
             "Narrow `[uncertainty]`, or take care near {}: simulated as a rig with the {} controller, {verdict}{why}.",
-            run.machine_name(),
+            trial::machine_words(&run.machine_driven),
             side.name
         ),
         None => format!(

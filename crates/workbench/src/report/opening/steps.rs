@@ -9,10 +9,11 @@ use phea_dynamics::time_response::{StepBaseline, step_metrics};
 use super::side::Side;
 use crate::answer::significant;
 use crate::audit::{TimeOutcome, WorstStep};
+use crate::plant_names::{plant_text, plant_words};
 use crate::simulate::{
     Metrics, ReachedStep, TimeRequirement, TrackingWish, Unmeasured, cause_words, concerns,
 };
-use crate::trial::{Trial, TrialRun};
+use crate::trial::{Trial, TrialRun, have_one_name, run_name};
 
 /// Which property of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,9 +90,9 @@ pub(super) fn steps(side: &Side<'_>, required: &TimeRequirement, property: StepP
         !required.steps.are_stated() || numbers.any(|number| number == required.number)
     };
     // the worst of the corners and of the plants inside the box are among the runs already
-    let is_corner = |trial: &Trial, run: &TrialRun| trial.corners.iter().any(|one| one.what == run.what);
+    let is_corner = |trial: &Trial, run: &TrialRun| trial.corners.iter().any(|one| have_one_name(one, run));
     let runs = side.trial.iter().flat_map(|trial| {
-        let own = trial.runs.iter().filter(|run| !is_corner(trial, run)).map(|run| (run, run.what.clone()));
+        let own = trial.runs.iter().filter(|run| !is_corner(trial, run)).map(|run| (run, run_name(run)));
         own.chain(trial.corners.iter().map(|run| (run, corner_words(run))))
     });
     let runs = runs.filter(|(run, _)| is_about(run));
@@ -122,8 +123,8 @@ pub(super) fn steps(side: &Side<'_>, required: &TimeRequirement, property: StepP
 /// A corner of the box, or a plant inside it, by its parameters.
 fn corner_words(run: &TrialRun) -> String {
     match &run.plant {
-        Some(plant) => format!("nonlinear simulation at {}", plant.words()),
-        None => run.what.clone(),
+        Some(plant) => format!("nonlinear simulation at {}", plant_words(plant)),
+        None => run_name(run),
     }
 }
 
@@ -180,7 +181,7 @@ fn of_family(side: &Side<'_>, number: usize, property: StepProperty) -> (Option<
     let one = |worst: &WorstStep| {
         let plant = match view.names.headings().len() {
             0 => String::new(),
-            1 | 2 => format!(", {}", view.names.text(&worst.plant)),
+            1 | 2 => format!(", {}", plant_text(&view.names, &worst.plant)),
             _ => String::new(),
         };
         OneStep { origin: StepOrigin::Family, value: worst.value, place: format!("linear loop{plant}") }
