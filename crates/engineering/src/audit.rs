@@ -22,7 +22,6 @@ pub(crate) use nominal::nominal_margins;
 pub use nominal::{Crossovers, NominalMargins};
 pub use prefilter::PrefilterGain;
 pub use proven::{prove_audit, try_to_prove};
-pub use rig_outside_family::{LoopWithRig, OutsideFamily};
 pub(crate) use rig_outside_family::{caveat as caveat_of_rig, unexamined as unexamined_rig};
 pub use whole_loop::DelayedPaths;
 

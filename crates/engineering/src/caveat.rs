@@ -11,6 +11,7 @@ mod leakage_humps;
 mod misfit;
 mod moved_roots;
 mod null_sides;
+mod outside_family;
 pub(crate) mod overlap;
 
 use phea_hydraulics::cross_port::Restrictor;
@@ -26,6 +27,7 @@ use overlap::overlap;
 
 pub use effect::{CountedSettings, FeedForwardObstacle, UncountedEffect};
 pub use misfit::{MISFIT_BOUND, MisfitConsequence, UnexplainedKind, UnexplainedPart, unexplained_parts};
+pub use outside_family::{LoopWithRig, OutsideFamily};
 
 use crate::family::shut_gas;
 use crate::project::{CrossPortKind, DeclaredSeries, Load, Project, Pump, SupplyModel};

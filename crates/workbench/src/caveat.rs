@@ -10,10 +10,11 @@ mod valve;
 pub use phea_engineering::caveat::*;
 
 pub(crate) use misfit::misfits_in_runs;
-pub(crate) use rig::{beyond_reach, exceeded_force, force, outside, outside_parameters};
+pub(crate) use rig::{outside, outside_parameters};
 
 use crate::quantity::Units;
 use crate::setup::Setup;
+use crate::simulate::beyond_reach;
 
 /// The sentences of caveats, in their order.
 pub(crate) fn sentences(caveats: &[Caveat], units: &Units) -> Vec<String> {
@@ -50,7 +51,7 @@ pub(crate) fn sentence(effect: &UncountedEffect, units: &Units) -> String {
             rig::friction_directions(*extending, *retracting)
         }
         Effect::BeyondReach(beyond) => {
-            let (sentence, cure) = rig::beyond_reach(beyond, units);
+            let (sentence, cure) = beyond_reach(beyond, units);
             format!("{sentence}; {cure}")
         }
         Effect::OutsideFamily(outside) => rig::outside_family(outside),

@@ -39,6 +39,7 @@ pub mod friction;
 mod grouped;
 pub mod identify;
 mod impossible;
+mod impossible_steps;
 mod limit_kind;
 mod line_choice;
 pub mod line_test;

@@ -5,6 +5,7 @@ mod check;
 mod document;
 mod exceeded;
 mod figures;
+mod force_limits;
 mod foreseen;
 mod frequency;
 mod metrics;
@@ -24,6 +25,7 @@ pub(crate) use document::{
 };
 pub(crate) use exceeded::exceeded_words;
 pub(crate) use figures::{comparison_files, figure_files, laid_over, pictures, turns};
+pub(crate) use force_limits::{beyond_reach, force};
 pub(crate) use foreseen::foreseen_late;
 pub(crate) use frequency::{
     document as frequency_document, files as frequency_files, pictures as frequency_pictures,

@@ -8,8 +8,8 @@ use phea_dynamics::portable::exp;
 use phea_qft::specification::ClosedLoop;
 use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::Verdict;
-use phea_workbench::audit::{self, LoopWithRig, OutsideFamily, ProjectAudit, audit_project};
-use phea_workbench::caveat::{Caveat, UncountedEffect};
+use phea_workbench::audit::{self, ProjectAudit, audit_project};
+use phea_workbench::caveat::{Caveat, LoopWithRig, OutsideFamily, UncountedEffect};
 use phea_workbench::command::Request;
 use phea_workbench::linear_loop::linear_loop;
 use phea_workbench::linearize::{Linearization, linearize};
@@ -306,7 +306,8 @@ fn a_path_that_no_specification_limits_decides_nothing() {
 }
 
 /// The box of Table 6.3 begins above the K_c that the edges of Table 5.1 make: what the loop does
-/// with that rig is told.
+/// with that rig is reported.
+// ORIGIN: thesis, Table 6.3, and K_c of the edges of Table 5.1
 #[test]
 fn a_family_that_does_not_contain_the_rig_says_so_first() {
     let view = audited(&satisfied(&[]));

@@ -11,7 +11,7 @@ use phea_workbench::command::Request;
 use phea_workbench::design::{ExplainedFact, ExplainedLimit, Explanation, explanation_sentence};
 use phea_workbench::specification::{NamedSpecification, SpecificationName};
 
-/// The sentence of a finding, its specifications numbered from 3.
+/// The sentence of a finding, of limits on the sensitivity, numbered from 3.
 fn sentence(finding: Finding) -> String {
     let name = |index: &usize| {
         let name = SpecificationName::ClosedLoop(ClosedLoop::Sensitivity);

@@ -30,9 +30,7 @@ use phea_workbench::robust::robust_problem;
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::ReachedStep;
 use phea_workbench::source::Memory;
-use phea_workbench::trial::{
-    Agreement, HeldRequirement, Leg, StepResponse, StepSize, Trial, TrialFinding, TrialMachine, TrialRun,
-};
+use phea_workbench::trial::{self, Agreement, HeldRequirement, Leg, StepSize, Trial, TrialFinding, TrialRun};
 
 /// k/(s (s + 10)) with two specifications and a law that is too slow for the second.
 const PROJECT: &str = "schema = 1\ntitle = \"drive\"\n\n[plant]\nnumerator = \"k\"\ndenominator = \"s*(s + 10)\"\n\n\
@@ -423,7 +421,7 @@ fn run(view: &ProjectDesign, satisfied: &[bool]) -> TrialRun {
         is_satisfied: *is_satisfied,
     };
     TrialRun {
-        machine_driven: TrialMachine::Declared,
+        machine_driven: trial::TrialMachine::Declared,
         size: StepSize::Required,
         plant: None,
         status: "completed",
@@ -435,8 +433,8 @@ fn run(view: &ProjectDesign, satisfied: &[bool]) -> TrialRun {
         remaining_amplitude_n: None,
         requirements: satisfied.iter().map(held).collect(),
         units: Default::default(),
-        linear_response: StepResponse::default(),
-        machine_response: StepResponse::default(),
+        linear_response: Default::default(),
+        machine_response: Default::default(),
         agreement: Agreement::Agrees,
         reason: TrialFinding::NeitherSettles { overshoots: None }.into(),
         quarter_wave_rad_per_s: None,

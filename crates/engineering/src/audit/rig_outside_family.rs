@@ -4,32 +4,9 @@ use phea_dynamics::watch::{Stopped, Watch};
 use phea_qft::verification::{Audit, Verdict};
 
 use super::audit_request;
-use crate::caveat::{Caveat, UncountedEffect};
+use crate::caveat::{Caveat, LoopWithRig, OutsideFamily, UncountedEffect};
 use crate::rig::OutsideParameter;
 use crate::robust::RobustProblem;
-use crate::specification::SpecificationName;
-
-/// The rig itself, which the family does not contain.
-#[derive(Clone, Debug, PartialEq)]
-pub struct OutsideFamily {
-    /// The parameters that the family does not contain.
-    pub parameters: Vec<OutsideParameter>,
-    /// Verdict on the loop with the rig.
-    pub with_rig: LoopWithRig,
-}
-
-/// Verdict on the loop with the rig itself.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum LoopWithRig {
-    /// It is stable and satisfies every specification.
-    Satisfied,
-    /// It is unstable.
-    Unstable,
-    /// It violates these specifications, each with its number, from 1, and name.
-    Violates(Vec<(usize, SpecificationName)>),
-    /// Nothing is proven.
-    NotProven,
-}
 
 /// The audit of the rig itself in the loop of a problem, where the family does not contain it.
 pub(crate) fn caveat(problem: &RobustProblem, watch: Watch<'_>) -> Result<Option<Caveat>, Stopped> {

@@ -3,7 +3,7 @@
 use phea_dynamics::linear::{Discretization, MovedRoot};
 
 use super::misfit::{MisfitConsequence, UnexplainedPart};
-use crate::audit::OutsideFamily;
+use super::outside_family::OutsideFamily;
 use crate::family::ShutGas;
 use crate::simulate::BeyondReach;
 

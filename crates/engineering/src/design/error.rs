@@ -28,7 +28,7 @@ pub enum DesignError {
     NoController(Vec<Explanation>),
     /// Required steps that no controller makes on the rig.
     #[error("no controller makes {} of the required steps on this rig", .0.steps.len())]
-    ImpossibleSteps(ImpossibleSteps),
+    ImpossibleSteps(Box<ImpossibleSteps>),
     /// A part of the problem cannot be searched with.
     #[error(transparent)]
     Search(#[from] phea_qft::design::LoopDesignError),
@@ -69,7 +69,7 @@ pub(super) fn refuse_impossible_steps(setup: &Setup<'_>, problem: &RobustProblem
         none if none.is_empty() => Ok(()),
         steps => {
             let units = setup.project.units;
-            Err(DesignError::ImpossibleSteps(ImpossibleSteps { steps, units }))
+            Err(DesignError::ImpossibleSteps(Box::new(ImpossibleSteps { steps, units })))
         }
     }
 }

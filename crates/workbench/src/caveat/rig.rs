@@ -1,11 +1,10 @@
 //! Effects of spring, load, supply and friction, and steps that the rig does not reach.
 
-use phea_engineering::audit::{LoopWithRig, OutsideFamily};
+use phea_engineering::caveat::{LoopWithRig, OutsideFamily};
 use phea_hydraulics::series::MOST_SEGMENTS;
 
-use crate::quantity::{DisplayUnit, FORCE, PRESSURE, Units, display, significant};
+use crate::quantity::{DisplayUnit, Units, display, significant};
 use crate::rig::OutsideParameter;
-use crate::simulate::{BeyondReach, ExceededForce, RestLimit, StepEnd};
 use crate::specification::{SpecificationName, subject_words};
 
 pub(super) const TRANSMISSION_AS_SPRING: &str = "inertia and resistance of the transmission are counted in the plant and its impedance alone: the other models have \
@@ -105,46 +104,6 @@ pub(super) fn friction_directions(extending: f64, retracting: f64) -> String {
     )
 }
 
-/// A required step that the rig does not reach, and its cure.
-pub(crate) fn beyond_reach(step: &BeyondReach, units: &Units) -> (String, String) {
-    let verb = match step.end {
-        StepEnd::Begin => "begins at",
-        StepEnd::End => "goes to",
-    };
-    let (reason, cure) = exceeded_force(&step.exceeded, units);
-    let sentence = format!(
-        "[[specification]] {}, `{}`: the step {verb} {}, {reason}",
-        step.number,
-        step.end.key(),
-        force(step.force, units)
-    );
-    (sentence, cure)
-}
-
-/// A force of the rig's motion.
-pub(crate) fn force(value: f64, units: &Units) -> String {
-    display(value, units.motion.dimension(&FORCE), 4)
-}
-
-/// A limit on the force that is exceeded, and what changes that.
-pub(crate) fn exceeded_force(exceeded: &ExceededForce, units: &Units) -> (String, String) {
-    let reached = force(exceeded.greatest, units);
-    match exceeded.limit {
-        RestLimit::Stall { pressure, force: stalls } => (
-            format!(
-                "and at a supply of {} the piston stalls at {}: no controller reaches it",
-                display(pressure, &PRESSURE, 4),
-                force(stalls, units)
-            ),
-            format!("stay within {reached}, raise the supply pressure, or take a larger actuator"),
-        ),
-        RestLimit::Capacity(capacity) => (
-            format!("beyond the sensor's `capacity` of {}", force(capacity, units)),
-            format!("stay within {reached}, or take a sensor of more capacity"),
-        ),
-    }
-}
-
 /// The rig itself, which the family does not contain, and its loop.
 pub(super) fn outside_family(found: &OutsideFamily) -> String {
     let with_rig = match &found.with_rig {
@@ -177,33 +136,4 @@ pub(crate) fn outside_parameters(parameters: &[OutsideParameter]) -> String {
         format!("{} is {}, the box has {least} to {most}", one.name, number(one.value))
     };
     parameters.iter().map(of).collect::<Vec<_>>().join("; ")
-}
-
-#[cfg(test)]
-mod tests {
-    use phea_qft::specification::ClosedLoop;
-
-    use super::*;
-    use crate::quantity::RATIO;
-
-    #[test]
-    fn the_rig_outside_of_its_family_is_named_with_its_bounds() {
-        let parameter = OutsideParameter {
-            name: "cylinder.moving_mass".to_string(),
-            value: 0.3,
-            bounds: [0.5, 0.75],
-            dimension: Some(&RATIO),
-        };
-        let with_rig = LoopWithRig::Violates(vec![
-            (1, SpecificationName::ClosedLoop(ClosedLoop::RobustStability)),
-            (2, SpecificationName::RoundedCommand),
-        ]);
-        let found = OutsideFamily { parameters: vec![parameter.clone(), parameter], with_rig };
-        assert_eq!(
-            outside_family(&found),
-            "the family does not contain the rig as it is derived (cylinder.moving_mass is 0.3, the box has 0.5 to 0.75; \
-             cylinder.moving_mass is 0.3, the box has 0.5 to 0.75): the loop with it violates 1 robust stability, \
-             2 force error of the rounded command"
-        );
-    }
 }

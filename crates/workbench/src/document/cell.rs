@@ -1,6 +1,6 @@
 //! The content of a cell of a table, with its type.
 
-use crate::verdict_words::{agreement_word, frequency_number, margin_words, verdict_words};
+use crate::verdict_words::{frequency_number, margin_words, verdict_words};
 use phea_engineering::trial::Agreement;
 use phea_qft::verification::Verdict;
 
@@ -156,12 +156,6 @@ impl Cell {
     pub(crate) fn verdict(verdict: Verdict) -> Cell {
         Cell::from(verdict_words(verdict)).marked(verdict)
     }
-
-    /// The mark for the trial of a verdict on the machine.
-    pub(crate) fn agreement(agreement: Agreement) -> Cell {
-        Cell::from(agreement_word(agreement)).marked(agreement)
-    }
-
     /// Whether it is a number.
     pub(super) fn is_numeric(&self) -> bool {
         match self {

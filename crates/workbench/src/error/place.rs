@@ -11,7 +11,7 @@ use phea_engineering::sizing::SizingError;
 
 use super::CommandError;
 use super::tables::tables;
-use crate::impossible::late_of_steps;
+use crate::impossible_steps::late_of_steps;
 use crate::project::{LateError, Project};
 use crate::specification;
 

@@ -3,7 +3,7 @@
 use phea_engineering::design::DesignError;
 
 use crate::explanation::explanation_sentence;
-use crate::impossible::late_of_steps;
+use crate::impossible_steps::late_of_steps;
 use crate::project::LateError;
 
 /// The error of a design: of one without a controller with the facts that are known of its problem,

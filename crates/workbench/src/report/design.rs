@@ -22,7 +22,7 @@ use crate::document::{Document, StatusMark};
 use crate::error::CommandError;
 use crate::explanation::explanation_sentence;
 use crate::figure::Figure;
-use crate::impossible::late_of_steps;
+use crate::impossible_steps::late_of_steps;
 use crate::project::{LateError, Loaded, Project};
 use crate::robust::DesignFrequency;
 use crate::setup::Setup;

@@ -1,7 +1,7 @@
 //! What a rig cannot follow of its scenarios, in sentences.
 
+use super::force_limits::{exceeded_force, force};
 use super::{BeyondRig, Foreseen};
-use crate::caveat::{exceeded_force, force};
 use crate::project::LateError;
 use crate::quantity::{LENGTH, TIME, Units, display};
 

@@ -4,6 +4,7 @@ use super::{
     Agreement, DampingWall, DifferenceCause, Leg, NotDriven, OvershootNote, REACH, StepSize, Trial,
     TrialFinding, TrialMachine, TrialReason, TrialRun, UnsettledEnd, WorstOf,
 };
+use crate::document::Cell;
 use crate::plant_names::plant_words;
 use crate::quantity::{DisplayUnit, Units, significant};
 use crate::specification::numbered;
@@ -64,6 +65,13 @@ pub(crate) fn agreement_key(agreement: Agreement) -> &'static str {
     match agreement {
         Agreement::AgreesButForSettling => "agrees_but_for_settling",
         Agreement::Agrees | Agreement::Differs | Agreement::Contradicts => agreement_word(agreement),
+    }
+}
+
+impl Cell {
+    /// The mark for the trial of a verdict on the machine.
+    pub(crate) fn agreement(agreement: Agreement) -> Cell {
+        Cell::from(agreement_word(agreement)).marked(agreement)
     }
 }
 

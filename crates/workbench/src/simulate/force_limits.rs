@@ -1,0 +1,44 @@
+//! Limits on the force at rest that required steps and references exceed, in sentences.
+
+use super::{BeyondReach, ExceededForce, RestLimit, StepEnd};
+use crate::quantity::{FORCE, PRESSURE, Units, display};
+
+/// A required step that the rig does not reach, and its cure.
+pub(crate) fn beyond_reach(step: &BeyondReach, units: &Units) -> (String, String) {
+    let verb = match step.end {
+        StepEnd::Begin => "begins at",
+        StepEnd::End => "goes to",
+    };
+    let (reason, cure) = exceeded_force(&step.exceeded, units);
+    let sentence = format!(
+        "[[specification]] {}, `{}`: the step {verb} {}, {reason}",
+        step.number,
+        step.end.key(),
+        force(step.force, units)
+    );
+    (sentence, cure)
+}
+
+/// A force of the rig's motion.
+pub(crate) fn force(value: f64, units: &Units) -> String {
+    display(value, units.motion.dimension(&FORCE), 4)
+}
+
+/// A limit on the force that is exceeded, and what changes that.
+pub(crate) fn exceeded_force(exceeded: &ExceededForce, units: &Units) -> (String, String) {
+    let reached = force(exceeded.greatest, units);
+    match exceeded.limit {
+        RestLimit::Stall { pressure, force: stalls } => (
+            format!(
+                "and at a supply of {} the piston stalls at {}: no controller reaches it",
+                display(pressure, &PRESSURE, 4),
+                force(stalls, units)
+            ),
+            format!("stay within {reached}, raise the supply pressure, or take a larger actuator"),
+        ),
+        RestLimit::Capacity(capacity) => (
+            format!("beyond the sensor's `capacity` of {}", force(capacity, units)),
+            format!("stay within {reached}, or take a sensor of more capacity"),
+        ),
+    }
+}
