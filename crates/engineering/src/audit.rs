@@ -9,9 +9,7 @@ mod prefilter;
 mod proven;
 mod rig_outside_family;
 mod signal_noise;
-mod stability;
 mod whole_loop;
-mod words;
 pub use signal_noise::{NoisySignal, SignalNoise, SignalNoiseEffect, UnknownNoiseEffect};
 
 pub use crate::common_position::CommonPosition;
@@ -25,9 +23,7 @@ pub use nominal::{Crossovers, NominalMargins};
 pub use prefilter::PrefilterGain;
 pub use proven::{prove_audit, try_to_prove};
 pub(crate) use rig_outside_family::{caveat as caveat_of_rig, unexamined as unexamined_rig};
-pub use stability::{infinity_sentence, stability_reason, stability_sentence};
 pub use whole_loop::DelayedPaths;
-pub use words::{frequency_number, frequency_words, margin_words, verdict_key, verdict_words};
 
 use phea_dynamics::portable;
 use phea_qft::audit::audit_by;
@@ -41,11 +37,11 @@ use crate::caveat::Caveat;
 use crate::limit_kind::JudgedLimits;
 use crate::plant_names::PlantNames;
 use crate::quantity::Units;
-use crate::robust::{NoPolynomials, RobustError, RobustProblem, numbered, robust_problem};
+use crate::robust::{NoPolynomials, RobustError, RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::side_by_side::{all_cores, both};
 use crate::source::Source;
-use crate::specification::SpecificationName;
+use crate::specification::{NamedSpecification, SpecificationName};
 use phea_dynamics::watch::{Stopped, Watch, part, unwatched};
 
 /// Why there is nothing to audit.
@@ -337,9 +333,10 @@ impl ProjectAudit {
         self.in_time.iter().any(TimeFinding::violates)
     }
 
-    /// What a specification is called.
-    pub fn name_of(&self, index: usize) -> &'static str {
-        self.specification_names.get(index).map_or("", |name| name.words())
+    /// A specification by its number and its name.
+    pub fn named(&self, index: usize) -> Option<NamedSpecification> {
+        let name = *self.specification_names.get(index)?;
+        Some(NamedSpecification { number: self.number_of(index), name })
     }
 
     /// Whether the plants have lines with waves, which are fitted.
@@ -350,10 +347,5 @@ impl ProjectAudit {
     /// The number of a specification in the file, from 1; `None` for one that is not declared.
     pub fn number_of(&self, index: usize) -> Option<usize> {
         self.specification_numbers.get(index).copied()
-    }
-
-    /// A specification by its number in the file, where it has one, and name.
-    pub fn numbered(&self, index: usize) -> String {
-        numbered(self.number_of(index), self.name_of(index))
     }
 }

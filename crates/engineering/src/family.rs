@@ -31,7 +31,7 @@ use crate::setup::Setup;
 use crate::source::Source;
 
 pub(crate) use gain_slopes::gain_slopes;
-pub use shut_gas::{ShutGas, shut_gas};
+pub use shut_gas::{NumberAt, ShutGas, shut_gas};
 pub use visited_box::{Extreme, VisitedRange, visited_box};
 
 /// Why a project has no uncertain plant.

@@ -1,10 +1,10 @@
-//! The names of the plants of a family, for people and programs.
+//! The names of the plants of a family.
 
 use phea_qft::family::Family;
 use phea_qft::verification::PlantPoint;
 
 use crate::project::Project;
-use crate::quantity::{Dimension, RATIO, display, parse};
+use crate::quantity::{Dimension, RATIO};
 
 /// What the numbers of a plant are called.
 #[derive(Clone, Debug)]
@@ -24,21 +24,10 @@ pub struct NamedPlant(pub Vec<(String, NamedValue)>);
 pub enum NamedValue {
     /// A parameter, SI, with its dimension.
     Number(f64, &'static Dimension),
-    /// A measurement, or where the plant comes from.
-    Text(String),
-}
-
-impl NamedPlant {
-    /// `load.stiffness 5 kN/mm, fluid.bulk_modulus 1.2 GPa`
-    pub fn words(&self) -> String {
-        let part = |(name, value): &(String, NamedValue)| match value {
-            NamedValue::Number(value, dimension) => {
-                format!("{name} {}", place_words(name, *value, dimension))
-            }
-            NamedValue::Text(text) => text.clone(),
-        };
-        self.0.iter().map(part).collect::<Vec<String>>().join(", ")
-    }
+    /// The name of a measurement.
+    Measurement(String),
+    /// A plant that was added to the family.
+    Added,
 }
 
 impl PlantNames {
@@ -75,35 +64,7 @@ impl PlantNames {
         Some(names.iter().zip(values).map(|((name, dimension), value)| (name.as_str(), *dimension, *value)))
     }
 
-    /// `viscous_friction 100 N.s/m, flow_gain 5.61e-5 m3/(s.V)`, or the name of the measurement.
-    pub fn text(&self, plant: &PlantPoint) -> String {
-        let Some(numbers) = self.numbers(plant) else {
-            return match (self, plant) {
-                (_, PlantPoint::Beside(_)) => "the plant that was taken in".to_string(),
-                (PlantNames::Measured(names), PlantPoint::Measured(index)) => {
-                    names.get(*index).cloned().unwrap_or_default()
-                }
-                _ => String::new(),
-            };
-        };
-        let parts: Vec<String> = numbers
-            .map(|(name, dimension, value)| format!("{name} {}", place_words(name, value, dimension)))
-            .collect();
-        if parts.is_empty() { "the nominal plant".to_string() } else { parts.join(", ") }
-    }
-
-    /// The values of a plant one by one, as the columns of a table; in the order of
-    /// [`PlantNames::headings`].
-    pub fn cells(&self, plant: &PlantPoint) -> Vec<String> {
-        match self.numbers(plant) {
-            Some(numbers) => {
-                numbers.map(|(name, dimension, value)| place_words(name, value, dimension)).collect()
-            }
-            None => vec![self.text(plant)],
-        }
-    }
-
-    /// The headings of the columns of [`PlantNames::cells`].
+    /// The names of the values of a plant, in their order.
     pub fn headings(&self) -> Vec<&str> {
         match self {
             PlantNames::Parameters(names) => names.iter().map(|(name, _)| name.as_str()).collect(),
@@ -119,29 +80,14 @@ impl PlantNames {
                     .map(|(name, dimension, value)| (name.to_string(), NamedValue::Number(value, dimension)))
                     .collect(),
             ),
-            None => {
-                let key = if matches!(plant, PlantPoint::Beside(_)) { "beside" } else { "measured" };
-                NamedPlant(vec![(key.to_string(), NamedValue::Text(self.text(plant)))])
-            }
+            None => NamedPlant(vec![match (self, plant) {
+                (_, PlantPoint::Beside(_)) => ("beside".to_string(), NamedValue::Added),
+                (PlantNames::Measured(names), PlantPoint::Measured(index)) => {
+                    let name = names.get(*index).cloned().unwrap_or_default();
+                    ("measured".to_string(), NamedValue::Measurement(name))
+                }
+                _ => ("measured".to_string(), NamedValue::Measurement(String::new())),
+            }]),
         }
     }
-}
-
-/// Digits of a coefficient of a linear model.
-const DIGITS: usize = 4;
-/// Relative accuracy to which a number of the project reads back: a spool is at one side of null by
-/// a hundred-millionth of its range.
-const READS_BACK: f64 = 1e-9;
-
-/// The value of a parameter; of a number of the project, such as `operating_point.velocity`, with
-/// as many digits as it takes to read back as the same plant: its coefficients may jump there.
-fn place_words(name: &str, value: f64, dimension: &'static Dimension) -> String {
-    if !name.contains('.') {
-        return display(value, dimension, DIGITS);
-    }
-    let is_same = |text: &String| {
-        parse(text, dimension).is_ok_and(|read| (read - value).abs() <= READS_BACK * value.abs())
-    };
-    let mut texts = (DIGITS..=17).map(|digits| display(value, dimension, digits));
-    texts.find(is_same).unwrap_or_else(|| display(value, dimension, DIGITS))
 }

@@ -26,7 +26,7 @@ use crate::side_by_side::left_behind;
 use crate::simulate::{TimeRequirement, time_requirements};
 use crate::source::Source;
 use crate::specification::{
-    SpecificationError, SpecificationName, closed_loops, of_rounding, specifications,
+    NamedSpecification, SpecificationError, SpecificationName, closed_loops, of_rounding, specifications,
 };
 use phea_dynamics::watch::{Stopped, Watch, part};
 
@@ -48,7 +48,7 @@ pub struct RobustProblem {
     pub has_prefilter: bool,
     /// The specifications in file order, then those for the rounding of converters.
     pub specifications: Vec<Specification>,
-    /// The name of each but the limits of a design: its kind, or the signal that is rounded.
+    /// The name of each but the limits of a design.
     pub specification_names: Vec<SpecificationName>,
     /// The number in the file, from 1, of each that is declared there; the others come after them.
     pub specification_numbers: Vec<usize>,
@@ -247,25 +247,16 @@ fn named_specifications(
     Ok((specifications, names))
 }
 
-/// `2 tracking`; the name alone of a specification that is not declared.
-pub(crate) fn numbered(number: Option<usize>, name: &str) -> String {
-    number.map_or_else(|| name.to_string(), |number| format!("{number} {name}"))
-}
-
 impl RobustProblem {
-    /// What a specification is called.
-    pub fn name_of(&self, index: usize) -> &'static str {
-        self.specification_names.get(index).map_or("", |name| name.words())
+    /// A specification by its number and its name; `None` for a limit of a design.
+    pub fn named(&self, index: usize) -> Option<NamedSpecification> {
+        let name = *self.specification_names.get(index)?;
+        Some(NamedSpecification { number: self.number_of(index), name })
     }
 
     /// The number of a specification in the file, from 1; `None` for one that is not declared.
     pub fn number_of(&self, index: usize) -> Option<usize> {
         self.specification_numbers.get(index).copied()
-    }
-
-    /// A specification by its number in the file, where it has one, and name.
-    pub fn numbered(&self, index: usize) -> String {
-        numbered(self.number_of(index), self.name_of(index))
     }
 
     /// Every frequency at which a bound is drawn, rad/s, increasing.

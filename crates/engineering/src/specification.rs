@@ -12,9 +12,9 @@ use phea_qft::specification::{
     ClosedLoop, LimitError, MarginError, Requirement, Specification, TimeDomainError, WishCheck, WishOutcome,
 };
 
-pub use self::kind::{closed_loop_key, closed_loop_words, kind_key};
+pub use self::kind::{closed_loop_key, kind_key};
 use self::limit::TrackingSide;
-pub use self::name::SpecificationName;
+pub use self::name::{NamedSpecification, SpecificationName};
 pub(crate) use self::rounding::of_rounding;
 use crate::project::{self, FormulaError, Project};
 use crate::quantity::significant;

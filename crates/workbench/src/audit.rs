@@ -10,6 +10,7 @@ mod margins;
 mod proven;
 mod remark;
 mod signal_noise;
+mod stability;
 mod words;
 
 pub use phea_engineering::audit::*;
@@ -22,5 +23,7 @@ pub use certificate::{CERTIFICATE_FILE, CertificateError, check_certificate, che
 pub use document::output;
 pub(crate) use document::{basis, document, proven, summary};
 pub(crate) use family_and_loop::position_words;
+pub use margins::{above_one_again_words, crossover_words};
 pub use signal_noise::noise_sentence;
+pub(crate) use stability::{stability_reason, stability_sentence};
 pub(crate) use words::{closed_loop_symbol, meaning};

@@ -10,7 +10,7 @@ use phea_qft::design::{Constraint, ConstraintPlace, Finding};
 use phea_qft::verification::SpecificationMargin;
 
 use crate::limit_kind::limit_words;
-use crate::specification::stated_words;
+use crate::specification::stated;
 
 /// The sentence of an explanation.
 pub fn explanation_sentence(explanation: &Explanation) -> String {
@@ -30,9 +30,9 @@ const NOTHING_ASKS: &str = "nothing asks for feedback: the plants of the family 
 
 fn limit_name(limit: &ExplainedLimit) -> String {
     match limit {
-        ExplainedLimit::Specification { number, name } => stated_words(*number, name.words()),
+        ExplainedLimit::Specification(named) => stated(Some(*named)),
         ExplainedLimit::Design(kind) if kind.has_key() => format!("the limit `design.{}`", limit_key(*kind)),
-        ExplainedLimit::Design(kind) => stated_words(None, limit_words(*kind)),
+        ExplainedLimit::Design(kind) => format!("the limit on the {}", limit_words(*kind)),
     }
 }
 

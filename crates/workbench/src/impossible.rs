@@ -6,6 +6,7 @@ use phea_qft::design::Finding;
 
 use crate::explanation::explanation_sentence;
 use crate::impossible_steps::late_of_step;
+use crate::plant_names::plant_text;
 use crate::project::LateError;
 use crate::quantity::{Units, significant};
 use crate::robust::RobustProblem;
@@ -25,7 +26,7 @@ pub(crate) fn late_of_all(impossible: &Impossibilities, units: &Units) -> Vec<La
 /// What a few plants forbid, with the first of them.
 fn of_plants(path: &str, finding: &Finding, problem: &RobustProblem) -> LateError {
     let explanation = Explanation::of(finding, problem);
-    let plant = explanation.plants.first().map(|plant| problem.names.text(plant));
+    let plant = explanation.plants.first().map(|plant| plant_text(&problem.names, plant));
     let plant = plant.filter(|text| !text.is_empty()).map_or(String::new(), |text| format!(" ({text})"));
     let message = format!("{}{plant}", explanation_sentence(&explanation));
     LateError { path: path.to_string(), message, help: cure(problem, finding) }
@@ -38,9 +39,9 @@ fn cure(problem: &RobustProblem, finding: &Finding) -> String {
             let at = significant(*frequency_rad_per_s, 3);
             format!(
                 "at {at} rad/s raise the limit of {} until |S| may be {}, or that of {} until |T| may be {}, or end the `band` of one of them before",
-                stated(problem, sensitivity.specification),
+                stated(problem.named(sensitivity.specification)),
                 significant(1.0 - complementary.limit, 3),
-                stated(problem, complementary.specification),
+                stated(problem.named(complementary.specification)),
                 significant(1.0 - sensitivity.limit, 3)
             )
         }

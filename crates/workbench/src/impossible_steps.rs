@@ -3,6 +3,7 @@
 
 use phea_engineering::impossible::{ImpossibleStep, ImpossibleSteps, SlowStep, StillTimes};
 
+use crate::plant_names::plant_words;
 use crate::project::LateError;
 use crate::quantity::{DisplayUnit, Units, significant};
 use crate::simulate::{beyond_reach, force};
@@ -58,7 +59,7 @@ fn before_force_moves((number, key): (usize, &str), settling: f64, still: &Still
 fn too_slow(slow: &SlowStep, units: &Units) -> (String, String) {
     let plant = match slow.plant.0.is_empty() {
         true => "the nominal plant".to_string(),
-        false => slow.plant.words(),
+        false => plant_words(&slow.plant),
     };
     let (of, smaller) = match slow.of_scenario {
         true => ("of a step of a scenario", "smaller steps in the scenarios"),

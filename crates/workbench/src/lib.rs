@@ -46,6 +46,7 @@ pub mod line_test;
 pub mod linearize;
 pub(crate) mod motion;
 pub(crate) mod over_time;
+pub mod plant_names;
 pub mod report;
 pub mod response;
 pub mod shaping;
@@ -53,9 +54,10 @@ pub mod simulate;
 pub mod sizing;
 pub mod specification;
 pub mod trial;
+mod verdict_words;
 
 pub use phea_engineering::{
-    estimate, family, linear_loop, linear_step, option, plant_names, replaced, rig, robust, setup,
+    estimate, family, linear_loop, linear_step, option, replaced, rig, robust, setup,
 };
 pub use phea_figure as figure;
 pub use phea_project::{self as project, catalogue, source};

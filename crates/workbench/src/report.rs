@@ -38,7 +38,7 @@ use phea_qft::verification::{SpecificationFinding, Verdict};
 
 use crate::alternatives::Alternatives;
 use crate::answer::{OutputFile, picture_files, significant};
-use crate::audit::{CERTIFICATE_FILE, ProjectAudit, TimeFinding, certificate_of, verdict_words};
+use crate::audit::{CERTIFICATE_FILE, ProjectAudit, TimeFinding, certificate_of};
 use crate::derived::{self, derive};
 use crate::error::CommandError;
 use crate::figure::Figure;
@@ -50,6 +50,7 @@ use crate::rig::Rig;
 use crate::setup::Setup;
 use crate::sizing::{Question, Sizing, SizingError, SizingProblem, hose_name, length_words, size};
 use crate::source::Source;
+use crate::verdict_words::verdict_words;
 
 use campaign::CampaignChapter;
 use chapter::Chapter;

@@ -2,12 +2,12 @@
 
 mod answer;
 mod late;
-mod stated;
+mod names;
 mod wish;
 
 pub use phea_engineering::specification::*;
 
 pub(crate) use answer::{document, wish_row};
 pub(crate) use late::late;
-pub(crate) use stated::{stated, stated_words};
+pub(crate) use names::{name_words, numbered, stated, subject_words};
 pub use wish::wish_sentence;

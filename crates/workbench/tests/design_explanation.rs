@@ -9,13 +9,13 @@ use phea_qft::specification::ClosedLoop;
 use phea_qft::verification::PlantPoint;
 use phea_workbench::command::Request;
 use phea_workbench::design::{ExplainedFact, ExplainedLimit, Explanation, explanation_sentence};
-use phea_workbench::specification::SpecificationName;
+use phea_workbench::specification::{NamedSpecification, SpecificationName};
 
 /// The sentence of a finding, of limits on the sensitivity, numbered from 3.
 fn sentence(finding: Finding) -> String {
-    let name = |index: &usize| ExplainedLimit::Specification {
-        number: Some(index + 3),
-        name: SpecificationName::ClosedLoop(ClosedLoop::Sensitivity),
+    let name = |index: &usize| {
+        let name = SpecificationName::ClosedLoop(ClosedLoop::Sensitivity);
+        ExplainedLimit::Specification(NamedSpecification { number: Some(index + 3), name })
     };
     let specifications = finding.specifications();
     explanation_sentence(&Explanation {

@@ -6,6 +6,7 @@
 
 use crate::ask::{self, HOSE, answer, json, try_answer};
 use phea_workbench::command::{CommandError, Progress, Request, answer_into};
+use phea_workbench::plant_names::{PlantNames, plant_text};
 use phea_workbench::shaping::Shaped;
 use serde_json::Value;
 
@@ -176,11 +177,11 @@ fn plants_are_named_with_the_units_of_their_numbers() {
         ["load={ model = \"spring_mass_damper\", mass = 80, stiffness = 2e6, damping = 500 }".to_string()];
     let loaded = phea_workbench::project::read(&source, "rig.toml", &settings, &[]).unwrap();
     let names = ["load.mass", "load.stiffness", "viscous_friction", "operating_point.velocity", "other"];
-    let names = phea_workbench::plant_names::PlantNames::of_parameters(&loaded.project, names.into_iter());
+    let names = PlantNames::of_parameters(&loaded.project, names.into_iter());
     let plant = phea_qft::verification::PlantPoint::Parameters(vec![80.0, 2e6, 100.0, 0.02, 3.0]);
     let expected = "load.mass 80 kg, load.stiffness 2 kN/mm, viscous_friction 100 N.s/m, \
                     operating_point.velocity 20 mm/s, other 3";
-    assert_eq!(names.text(&plant), expected);
+    assert_eq!(plant_text(&names, &plant), expected);
 }
 
 /// k/(s - 1) closed with gain 2 is stable for k above 1/2: from k = 4 its gain may fall to an

@@ -6,7 +6,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::ask::{HOSE, answer, json};
-use phea_workbench::audit::Crossovers;
+use phea_workbench::audit::{Crossovers, above_one_again_words, crossover_words};
 use phea_workbench::command::Request;
 use serde_json::{Value, json as object_of};
 
@@ -193,7 +193,7 @@ fn the_crossover_is_the_first_fall_through_one() {
     assert_eq!((lag.first_rad_per_s, lag.again_rad_per_s), (Some(1.0), None));
     let resonant = of(&[1.0, 3.0, 5.0], 1.0);
     assert_eq!((resonant.first_rad_per_s, resonant.again_rad_per_s), (Some(1.0), Some([3.0, 5.0])));
-    assert_eq!(resonant.again_words().as_deref(), Some("between 3.00 and 5.00 rad/s"));
+    assert_eq!(above_one_again_words(&resonant).as_deref(), Some("between 3.00 and 5.00 rad/s"));
     let twice = of(&[1.0, 3.0, 5.0, 7.0, 9.0], 1.0);
     assert_eq!(twice.again_rad_per_s, Some([3.0, 9.0]));
     // a peak that touches 1 is no crossing: e^-(w - 2)^2
@@ -203,5 +203,5 @@ fn the_crossover_is_the_first_fall_through_one() {
     assert_eq!((resonance.first_rad_per_s, resonance.again_rad_per_s), (Some(4.0), None));
     assert_eq!(of(&[2.0], -1.0), Crossovers::default());
     assert_eq!(of(&[1.0, 3.0], 1.0).again_rad_per_s, Some([3.0, f64::INFINITY]));
-    assert_eq!(of(&[], -1.0).first_words(), "none");
+    assert_eq!(crossover_words(&of(&[], -1.0)), "none");
 }

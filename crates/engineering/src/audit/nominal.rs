@@ -5,7 +5,6 @@ use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::portable;
 
 use super::margins::{margins_of, nominal_point};
-use crate::quantity::significant;
 use crate::robust::RobustProblem;
 
 /// Margins of the nominal loop.
@@ -65,22 +64,6 @@ impl Crossovers {
             .zip(beyond.last())
             .and_then(|(low, high)| Some([next(low.checked_sub(1)?)?, next(*high).unwrap_or(f64::INFINITY)]));
         Crossovers { first_rad_per_s: next(first), again_rad_per_s: again }
-    }
-
-    /// `40.9 rad/s`; `none` where |L| does not fall below 1.
-    pub fn first_words(&self) -> String {
-        self.first_rad_per_s
-            .map_or("none".to_string(), |rad_per_s| format!("{} rad/s", significant(rad_per_s, 3)))
-    }
-
-    /// `between 655 and 681 rad/s`, where |L| is above 1 again; `None` where it remains below.
-    pub fn again_words(&self) -> Option<String> {
-        let [low, high] = self.again_rad_per_s?;
-        let low = significant(low, 3);
-        Some(match high.is_infinite() {
-            true => format!("from {low} rad/s on"),
-            false => format!("between {low} and {} rad/s", significant(high, 3)),
-        })
     }
 }
 

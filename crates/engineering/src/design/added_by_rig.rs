@@ -111,7 +111,7 @@ fn values(family: &UncertainFamily, run: &TrialRun) -> Option<Vec<f64>> {
     let Some(NamedPlant(numbers)) = &run.plant else { return Some(family.plant().nominal()) };
     let number = |(_, value): &(String, NamedValue)| match value {
         NamedValue::Number(value, _) => Some(*value),
-        NamedValue::Text(_) => None,
+        NamedValue::Measurement(_) | NamedValue::Added => None,
     };
     numbers.iter().map(number).collect()
 }

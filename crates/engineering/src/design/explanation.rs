@@ -5,7 +5,7 @@ use phea_qft::verification::{PlantPoint, SpecificationMargin};
 
 use crate::limit_kind::DesignLimitKind;
 use crate::robust::RobustProblem;
-use crate::specification::SpecificationName;
+use crate::specification::NamedSpecification;
 
 /// One fact that is impossible or hard for a controller.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,12 +40,7 @@ pub enum ExplainedFact {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ExplainedLimit {
     /// A specification of the project.
-    Specification {
-        /// Its number in the file, from 1; `None` for one that is not declared there.
-        number: Option<usize>,
-        /// Its name.
-        name: SpecificationName,
-    },
+    Specification(NamedSpecification),
     /// A limit of what may be built.
     Design(DesignLimitKind),
 }
@@ -73,10 +68,7 @@ fn limit(problem: &RobustProblem, index: usize) -> Option<ExplainedLimit> {
     let own = problem.specifications.len() - problem.design_limits.len();
     match index.checked_sub(own).and_then(|limit| problem.design_limits.get(limit)) {
         Some(kind) => Some(ExplainedLimit::Design(*kind)),
-        None => {
-            let name = *problem.specification_names.get(index)?;
-            Some(ExplainedLimit::Specification { number: problem.number_of(index), name })
-        }
+        None => problem.named(index).map(ExplainedLimit::Specification),
     }
 }
 

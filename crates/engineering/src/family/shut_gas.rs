@@ -5,6 +5,7 @@ use phea_qft::family::{Extent, UncertainFamily};
 use super::null_sides::SIDE;
 use super::visited::Visited;
 use super::{ProjectFamilyError, uncertain, uncertain_plant};
+use crate::quantity::Dimension;
 use crate::setup::Setup;
 
 /// The plants at which the pressure of a chamber is below the precharge of its gas: they are as
@@ -17,8 +18,19 @@ pub struct ShutGas {
     pub examined: usize,
     /// The chamber of the first, A or B.
     pub side: char,
-    /// The uncertain numbers of the first that are not nominal, in words.
-    pub at: String,
+    /// The uncertain numbers of the first that are not nominal.
+    pub at: Vec<NumberAt>,
+}
+
+/// An uncertain number at a plant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NumberAt {
+    /// Path of the number in the project, or name of the parameter.
+    pub name: String,
+    /// Value, SI.
+    pub value: f64,
+    /// Dimension; `None` where the project has no number of this name.
+    pub dimension: Option<&'static Dimension>,
 }
 
 /// Largest number of uncertain numbers whose corners are all examined.
@@ -49,12 +61,13 @@ pub fn shut_gas(setup: &Setup<'_>) -> Result<Option<ShutGas>, ProjectFamilyError
     let count = 1 + shut.count();
     let moved =
         parameters.iter().zip(first).filter(|(one, value)| one.name != SIDE && one.nominal != **value);
-    let words: Vec<String> = moved
-        .map(|(parameter, value)| {
-            format!("{} = {}", parameter.name, project.in_words(&parameter.name, *value))
-        })
-        .collect();
-    Ok(Some(ShutGas { count, examined: plants.len(), side, at: words.join(", ") }))
+    let dimensions = project.dimensions();
+    let at = moved.map(|(one, value)| NumberAt {
+        name: one.name.clone(),
+        value: *value,
+        dimension: dimensions.get(&one.name).copied(),
+    });
+    Ok(Some(ShutGas { count, examined: plants.len(), side, at: at.collect() }))
 }
 
 /// The members, and the corners of a box of a few numbers.

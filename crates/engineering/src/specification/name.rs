@@ -2,8 +2,6 @@
 
 use phea_qft::specification::ClosedLoop;
 
-use super::kind::closed_loop_words;
-
 /// The subject of a limit on a closed loop, by which the limit is named.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpecificationName {
@@ -15,13 +13,11 @@ pub enum SpecificationName {
     RoundedMeasurement,
 }
 
-impl SpecificationName {
-    /// The name for people.
-    pub fn words(self) -> &'static str {
-        match self {
-            SpecificationName::ClosedLoop(closed_loop) => closed_loop_words(closed_loop),
-            SpecificationName::RoundedCommand => "force error of the rounded command",
-            SpecificationName::RoundedMeasurement => "command error of the rounded measurement",
-        }
-    }
+/// A specification by its number and its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NamedSpecification {
+    /// The number in the file, from 1; `None` for one that is not declared there.
+    pub number: Option<usize>,
+    /// The subject of its limit.
+    pub name: SpecificationName,
 }

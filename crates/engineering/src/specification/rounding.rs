@@ -6,12 +6,12 @@ use phea_qft::specification::Specification;
 use super::SpecificationName;
 use crate::setup::Setup;
 
-/// A specification and its name.
-pub(super) type NamedSpecification = (Specification, SpecificationName);
-
 /// The specifications of `allowed_force_error` and `allowed_command_error`, with bounds at these
 /// frequencies, rad/s.
-pub(crate) fn of_rounding(setup: &Setup<'_>, frequencies_rad_per_s: &[f64]) -> Vec<NamedSpecification> {
+pub(crate) fn of_rounding(
+    setup: &Setup<'_>,
+    frequencies_rad_per_s: &[f64],
+) -> Vec<(Specification, SpecificationName)> {
     let Some(declared) = setup.project.controller.as_ref().and_then(|one| one.quantization.as_ref()) else {
         return vec![];
     };

@@ -1,8 +1,10 @@
 //! What a run of a machine shows against its linear loop, and which machine it was, as facts.
 
 use super::run::Leg;
+use crate::plant_names::NamedPlant;
 use crate::rig::RigError;
 use crate::simulate::SimulateError;
+use crate::specification::NamedSpecification;
 
 /// A machine that is driven.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,10 +27,10 @@ pub enum TrialMachine {
 /// What a plant is the worst of.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum WorstOf {
-    /// A specification, with its number and name.
-    Specification(String),
-    /// The requirement in time of a specification, with its number and name.
-    InTime(String),
+    /// A specification.
+    Specification(NamedSpecification),
+    /// The requirement in time of a specification.
+    InTime(NamedSpecification),
     /// The required step.
     RequiredStep,
 }
@@ -158,8 +160,8 @@ pub enum NotDriven {
     Plant {
         /// What it is the worst of.
         of: WorstOf,
-        /// Its parameters, or its name.
-        plant: String,
+        /// The plant.
+        plant: NamedPlant,
         /// Why it has no rig.
         reason: NoRig,
     },

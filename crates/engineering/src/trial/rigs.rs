@@ -92,7 +92,7 @@ pub(super) fn rigs(
                 },
             }),
             Err(reason) => {
-                missing.push(NotDriven::Plant { of, plant: view.names.text(plant), reason });
+                missing.push(NotDriven::Plant { of, plant: view.names.named(plant), reason });
             }
         }
     }
@@ -104,12 +104,12 @@ pub(super) fn rigs(
 fn worst_plants(view: &ProjectAudit) -> impl Iterator<Item = (WorstOf, &PlantPoint)> {
     let of_limits = view.audit.specifications.iter().enumerate();
     let of_limits = of_limits.filter_map(|(index, finding)| {
-        Some((WorstOf::Specification(view.numbered(index)), &finding.worst.as_ref()?.plant))
+        Some((WorstOf::Specification(view.named(index)?), &finding.worst.as_ref()?.plant))
     });
     let in_time = view.in_time.iter().filter(|finding| finding.requirement.follows);
     let in_time = in_time.filter_map(|finding| {
         let of = match finding.requirement.limits {
-            Some(index) => WorstOf::InTime(view.numbered(index)),
+            Some(index) => WorstOf::InTime(view.named(index)?),
             None => WorstOf::RequiredStep,
         };
         Some((of, &finding.nearest()?.plant))

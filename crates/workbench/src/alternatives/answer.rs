@@ -6,10 +6,11 @@ use super::front;
 use super::words::{judge_error_words, no_number_words, undecided_words};
 use super::{AlternativeColumn, Alternatives, ColumnPart, JudgedAlternative, JudgedCase, MovedRange};
 use crate::answer::{Json, Object};
-use crate::audit::verdict_key;
 use crate::design;
 use crate::linearize::{no_closed_impedance_words, passivity_body};
+use crate::specification::subject_words;
 use crate::trial;
+use crate::verdict_words::verdict_key;
 
 /// What `alternatives` says to programs.
 pub(crate) fn body(found: &Alternatives) -> Object {
@@ -88,7 +89,7 @@ fn columns(one: &JudgedAlternative) -> Object {
     own.with(
         "specifications",
         named(|part| match part {
-            ColumnPart::Specification(_, name) => Some(name.words()),
+            ColumnPart::Specification(_, name) => Some(subject_words(*name)),
             _ => None,
         }),
     )

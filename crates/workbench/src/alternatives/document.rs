@@ -11,6 +11,7 @@ use crate::linearize::PortView;
 use crate::quantity::{DisplayUnit, significant};
 use crate::rig::OutsideParameter;
 use crate::simulate::ScenarioRun;
+use crate::specification::subject_words;
 use phea_qft::verification::Verdict;
 
 /// The table and the findings, below what must be known first.
@@ -200,7 +201,7 @@ fn group(part: &ColumnPart) -> String {
         ColumnPart::Loop => "loop".to_string(),
         ColumnPart::Rig => "rig".to_string(),
         ColumnPart::Impedance(frequency) => format!("|Z| at {} rad/s", significant(*frequency, 4)),
-        ColumnPart::Specification(index, name) => format!("{} {}", index + 1, name.words()),
+        ColumnPart::Specification(index, name) => format!("{} {}", index + 1, subject_words(*name)),
         ColumnPart::Scenario(name) => name.clone(),
     }
 }

@@ -12,6 +12,7 @@ use crate::figure::{Figure, FrequencySeries, ImpedanceDiagram, Words};
 use crate::linearize::frequency_grid;
 use crate::project::{IdentifiedUse, Project, print};
 use crate::simulate::{ScenarioRun, laid_over};
+use crate::specification::subject_words;
 
 /// All of them.
 pub(crate) fn files(found: &Alternatives) -> Vec<OutputFile> {
@@ -128,7 +129,9 @@ fn heading(part: &ColumnPart, key: &str) -> String {
     match part {
         ColumnPart::Loop | ColumnPart::Rig => key.to_string(),
         ColumnPart::Impedance(frequency) => quoted(&format!("{frequency} rad/s: {key}")),
-        ColumnPart::Specification(index, name) => quoted(&format!("{} {}: {key}", index + 1, name.words())),
+        ColumnPart::Specification(index, name) => {
+            quoted(&format!("{} {}: {key}", index + 1, subject_words(*name)))
+        }
         ColumnPart::Scenario(name) => quoted(&format!("{name}: {key}")),
     }
 }

@@ -5,7 +5,7 @@ use super::{AlternativeColumns, Alternatives, JudgedAlternative};
 use crate::document::{Cell, Table};
 use crate::quantity::significant;
 use crate::simulate::{ScenarioRun, settling_within};
-use crate::trial::agreement_word;
+use crate::verdict_words::agreement_word;
 
 /// What the group of the project's own load is called, where there are load cases too.
 pub(super) const DECLARED_LOAD: &str = "declared load";

@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::Number;
-use crate::plant_names::{NamedPlant, NamedValue};
+use crate::plant_names::{ADDED, NamedPlant, NamedValue};
 
 /// A value of JSON. A number that is not finite is printed as [`Number`] does.
 #[derive(Clone, Debug, PartialEq)]
@@ -165,7 +165,8 @@ impl From<NamedPlant> for Json {
     fn from(plant: NamedPlant) -> Json {
         let named = plant.0.into_iter().map(|(name, value)| match value {
             NamedValue::Number(number, _) => (name, Json::Number(number)),
-            NamedValue::Text(text) => (name, Json::Text(text)),
+            NamedValue::Measurement(own) => (name, Json::Text(own)),
+            NamedValue::Added => (name, Json::Text(ADDED.to_string())),
         });
         Json::Object(Object(named.collect()))
     }

@@ -7,17 +7,18 @@ use super::in_time::unexamined_words;
 use super::proven::why_not_proven;
 use super::remark::remark_sentences;
 use super::signal_noise::unknown_words;
+use super::stability_reason;
 use super::words::evidence_key;
 use super::{
     NoisySignal, PrefilterGain, ProjectAudit, ReachedLimit, SignalNoise, TimeFinding, TimeOutcome, WorstStep,
 };
 use super::{below_design, margins};
-use super::{stability_reason, verdict_key};
 use crate::answer::{Csv, Object, OutputFile, envelope};
 use crate::caveat;
 use crate::plant_names::PlantNames;
 use crate::project::Loaded;
-use crate::specification::{SpecificationName, kind_key};
+use crate::specification::{SpecificationName, kind_key, subject_words};
+use crate::verdict_words::verdict_key;
 use phea_engineering::limit_kind::limit_key;
 
 /// The JSON object of `verify`, as a file.
@@ -155,7 +156,7 @@ fn specification(view: &ProjectAudit, index: usize, finding: &SpecificationFindi
     let reached = view.reached.get(index).copied().flatten();
     Object::new()
         .with("kind", kind_key(&finding.requirement))
-        .maybe("name", name.map(|name| name.words()))
+        .maybe("name", name.map(|name| subject_words(*name)))
         .with("verdict", verdict_key(finding.verdict))
         .with("evidence", evidence_key(finding.evidence))
         .with("worst_margin_db", worst.map(|worst| worst.margin_db))

@@ -7,16 +7,19 @@ use phea_qft::verification::{SpecificationFinding, SpecificationMargin, Verdict}
 use super::family_and_loop::{family_sentence, loop_sentence, position_sentence};
 use super::proven::{standing_word, why_not_proven};
 use super::remark::remark_sentences;
+use super::stability::{infinity_sentence, stability_sentence};
 use super::words::{closed_loop_symbol, evidence_sentence, finding_sentence, place_words, worst_at_design};
 use super::{DelayedPaths, ProjectAudit, below_design, in_time, margins, noise_sentence};
-use super::{infinity_sentence, stability_sentence, verdict_words};
 use crate::caveat;
 use crate::document::{Cell, Document, Table};
 use crate::figure::Figure;
 use crate::grouped::grouped;
+use crate::plant_names::plant_cells;
 use crate::quantity::{DisplayUnit, significant};
 use crate::robust::DEFAULT_TOLERANCE_DB;
+use crate::specification::{name_words, numbered};
 use crate::trial::{self, Trial};
+use crate::verdict_words::verdict_words;
 
 /// The tables and sentences of `verify` for people, with the trial on the machine where there is
 /// one.
@@ -58,7 +61,12 @@ pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
     let findings = view.audit.specifications.iter().enumerate();
     sentences.extend(findings.map(|(index, finding)| {
         let reached = view.reached.get(index).and_then(Option::as_ref);
-        finding_sentence(&view.numbered(index), finding, reached, stable.then_some(view.audit.tolerance_db))
+        finding_sentence(
+            &numbered(view.named(index)),
+            finding,
+            reached,
+            stable.then_some(view.audit.tolerance_db),
+        )
     }));
     sentences.extend(
         view.in_time
@@ -114,7 +122,7 @@ fn specifications(view: &ProjectAudit) -> Table {
     for (index, finding) in view.audit.specifications.iter().enumerate() {
         let mut row = vec![
             view.number_of(index).map_or_else(Cell::empty, Cell::count),
-            view.name_of(index).into(),
+            name_words(view.named(index)).into(),
             closed_loop_symbol(&finding.requirement).into(),
             Cell::verdict(finding.verdict),
         ];
@@ -154,7 +162,7 @@ pub(crate) fn proven(view: &ProjectAudit, title: &str) -> Document {
             true => most.then(Cell::from(allowed_words(view.audit.tolerance_db))),
             false => most,
         };
-        rows.row([view.numbered(index).into(), word(&own.standing), least, most]);
+        rows.row([numbered(view.named(index)).into(), word(&own.standing), least, most]);
     }
     out.section(title, rows);
     out.sentences(not_proven(view, proof));
@@ -172,8 +180,11 @@ fn allowed_words(tolerance_db: f64) -> String {
 
 /// Why claims are neither proven nor refuted, each reason once.
 fn not_proven(view: &ProjectAudit, proof: &Proof) -> Vec<String> {
-    let named =
-        proof.specifications.iter().enumerate().map(|(index, own)| (view.numbered(index), &own.standing));
+    let named = proof
+        .specifications
+        .iter()
+        .enumerate()
+        .map(|(index, own)| (numbered(view.named(index)), &own.standing));
     let all = std::iter::once(("stability".to_string(), &proof.stability)).chain(named);
     let told = all.filter_map(|(name, standing)| Some((why_not_proven(view, proof, standing)?, name)));
     grouped(told).into_iter().map(|(reason, names)| format!("{}: {reason}", names.join(", "))).collect()
@@ -200,18 +211,21 @@ fn worst_plants(view: &ProjectAudit) -> Vec<(String, Vec<String>)> {
     let findings = view.audit.specifications.iter().enumerate();
     let of = |(index, finding): (usize, &SpecificationFinding)| {
         let worst = finding.worst.as_ref()?;
-        let (name, own) = (view.numbered(index), view.names.cells(&worst.plant));
+        let (name, own) = (numbered(view.named(index)), plant_cells(&view.names, &worst.plant));
         Some(match &worst.other {
             None => vec![(name, own)],
             Some(other) => {
-                let other = view.names.cells(other);
+                let other = plant_cells(&view.names, other);
                 vec![(format!("{name}, greatest |T|"), own), (format!("{name}, least |T|"), other)]
             }
         })
     };
     let in_time = view.in_time.iter().filter(|finding| finding.requirement.limits.is_none());
     let of_step = in_time.filter_map(|finding| {
-        Some((format!("{} step", finding.requirement.number), view.names.cells(&finding.nearest()?.plant)))
+        Some((
+            format!("{} step", finding.requirement.number),
+            plant_cells(&view.names, &finding.nearest()?.plant),
+        ))
     });
     findings.filter_map(of).flatten().chain(of_step).collect()
 }
@@ -222,7 +236,7 @@ fn violations(view: &ProjectAudit) -> Table {
         for band in &finding.violations {
             let [from, to] = band.band_rad_per_s.map(Cell::frequency);
             let [margin, frequency] = margin_at(Some(&band.worst));
-            rows.row([view.numbered(index).into(), from, to, margin, frequency]);
+            rows.row([numbered(view.named(index)).into(), from, to, margin, frequency]);
         }
     }
     rows
@@ -272,7 +286,7 @@ fn folding(change: f64) -> Option<String> {
 fn remarks(view: &ProjectAudit) -> Vec<String> {
     let found = view.audit.specifications.iter().enumerate().flat_map(|(index, finding)| {
         let remarks = remark_sentences(finding, &view.names).into_iter();
-        remarks.map(move |remark| (remark, view.numbered(index)))
+        remarks.map(move |remark| (remark, numbered(view.named(index))))
     });
     grouped(found).into_iter().map(|(remark, names)| format!("{}: {remark}", names.join(", "))).collect()
 }

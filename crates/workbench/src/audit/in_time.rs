@@ -2,18 +2,18 @@
 
 use phea_qft::verification::Verdict;
 
-use super::{
-    PrefilterGain, ProjectAudit, TimeFinding, TimeOutcome, Unexamined, WorstStep, frequency_words,
-    margin_words,
-};
+use super::{PrefilterGain, ProjectAudit, TimeFinding, TimeOutcome, Unexamined, WorstStep};
 use crate::answer::significant;
+use crate::plant_names::plant_text;
 use crate::simulate::required_words;
+use crate::specification::numbered;
+use crate::verdict_words::{frequency_words, margin_words};
 
 /// `2 tracking in time: at most 5 % overshoot and settled within 2 % in 0.8 s are required and not
 /// met; ...`
 pub(crate) fn sentence(view: &ProjectAudit, finding: &TimeFinding) -> String {
     let name = match finding.requirement.limits {
-        Some(index) => format!("{} in time", view.numbered(index)),
+        Some(index) => format!("{} in time", numbered(view.named(index))),
         None => format!("{} step", finding.requirement.number),
     };
     let required = required_words(&finding.requirement.wish);
@@ -40,7 +40,7 @@ pub(crate) fn sentence(view: &ProjectAudit, finding: &TimeFinding) -> String {
 }
 
 fn at(view: &ProjectAudit, words: &str, worst: &WorstStep) -> String {
-    let plant = view.names.text(&worst.plant);
+    let plant = plant_text(&view.names, &worst.plant);
     if plant.is_empty() { words.to_string() } else { format!("{words} ({plant})") }
 }
 

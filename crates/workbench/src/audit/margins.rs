@@ -2,7 +2,7 @@
 
 use phea_qft::verification::Remark;
 
-use super::{LoopMargin, MarginSet, NominalMargins, ProjectAudit};
+use super::{Crossovers, LoopMargin, MarginSet, NominalMargins, ProjectAudit};
 use crate::answer::Object;
 use crate::document::{Cell, Table};
 use crate::plant_names::PlantNames;
@@ -145,5 +145,21 @@ pub(super) fn reduction_sentence(margins: &NominalMargins) -> Option<String> {
             "the nominal loop needs its gain: it becomes unstable where that falls by {} dB",
             significant(-db, 3)
         )
+    })
+}
+
+/// `40.9 rad/s`; `none` where |L| does not fall below 1.
+pub fn crossover_words(crossovers: &Crossovers) -> String {
+    let first = crossovers.first_rad_per_s;
+    first.map_or("none".to_string(), |rad_per_s| format!("{} rad/s", significant(rad_per_s, 3)))
+}
+
+/// `between 655 and 681 rad/s`, where |L| is above 1 again; `None` where it remains below.
+pub fn above_one_again_words(crossovers: &Crossovers) -> Option<String> {
+    let [low, high] = crossovers.again_rad_per_s?;
+    let low = significant(low, 3);
+    Some(match high.is_infinite() {
+        true => format!("from {low} rad/s on"),
+        false => format!("between {low} and {} rad/s", significant(high, 3)),
     })
 }

@@ -3,7 +3,7 @@
 use phea_qft::verification::{PlantPoint, Remark, SpecificationFinding};
 
 use super::words::rounded;
-use crate::plant_names::PlantNames;
+use crate::plant_names::{PlantNames, plant_text};
 
 /// The remarks of a finding, each a sentence.
 pub(super) fn remark_sentences(finding: &SpecificationFinding, names: &PlantNames) -> Vec<String> {
@@ -87,7 +87,7 @@ fn named(names: &PlantNames, plant: &PlantPoint) -> String {
             format!("the plant with {}", parameters.join(", "))
         }
         (PlantNames::Measured(_), None) if matches!(plant, PlantPoint::Measured(_)) => {
-            format!("the measured plant {}", names.text(plant))
+            format!("the measured plant {}", plant_text(names, plant))
         }
         _ => "the plant".to_string(),
     }

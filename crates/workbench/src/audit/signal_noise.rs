@@ -5,7 +5,7 @@ use phea_qft::verification::PlantPoint;
 
 use super::family_and_loop::no_polynomials_words;
 use super::{NoisySignal, SignalNoise, UnknownNoiseEffect};
-use crate::plant_names::PlantNames;
+use crate::plant_names::{PlantNames, plant_text};
 use crate::quantity::{PRESSURE, VELOCITY, display, significant};
 
 /// The noise and its largest effects, or why these are not known.
@@ -19,7 +19,7 @@ pub fn noise_sentence(noise: &SignalNoise, names: &PlantNames) -> String {
         Ok(effect) => {
             let of = |plant: &PlantPoint| match names.headings().is_empty() {
                 true => String::new(),
-                false => format!(" ({})", names.text(plant)),
+                false => format!(" ({})", plant_text(names, plant)),
             };
             format!(
                 "the noise of the {what}, {rms} rms, moves the command at the valve by {} mV rms{} and the force by {} rms{}",

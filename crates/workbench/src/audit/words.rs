@@ -4,8 +4,9 @@ use phea_dynamics::portable;
 use phea_qft::specification::{ClosedLoop, Requirement};
 use phea_qft::verification::{Evidence, SpecificationFinding, SpecificationMargin, Verdict};
 
-use super::{LimitSide, ProjectAudit, ReachedLimit, frequency_words, margin_words};
+use super::{LimitSide, ProjectAudit, ReachedLimit};
 use crate::quantity::{RATIO, display, significant};
+use crate::verdict_words::{frequency_words, margin_words};
 
 /// The word of the evidence in JSON.
 pub(super) fn evidence_key(evidence: Evidence) -> &'static str {

@@ -1,7 +1,7 @@
 //! Effects of accumulators at the chambers.
 
 use super::CountedSettings;
-use crate::family::ShutGas;
+use crate::family::{NumberAt, ShutGas};
 use crate::quantity::{PRESSURE, Units, display, significant};
 
 pub(super) const NECK_LOSS: &str = "line.accumulator.neck_loss_coefficient is not counted for small motions, which the laminar resistance of the neck \
@@ -36,7 +36,12 @@ pub(super) fn gas(
              shows a motion that goes there"
         )
     });
+    let number = |one: &NumberAt| match one.dimension {
+        Some(dimension) => format!("{} = {}", one.name, display(one.value, dimension, 4)),
+        None => format!("{} = {}", one.name, one.value),
+    };
     let of_family = of_family.map(|ShutGas { count, examined, side, at }| {
+        let at = at.iter().map(number).collect::<Vec<_>>().join(", ");
         format!(
             "; at {count} of {examined} plants of the family it is shut off, and they are as stiff as without it, the first at chamber {side} \
              with {at}"

@@ -5,7 +5,7 @@ use phea_hydraulics::series::MOST_SEGMENTS;
 
 use crate::quantity::{DisplayUnit, Units, display, significant};
 use crate::rig::OutsideParameter;
-use crate::specification::SpecificationName;
+use crate::specification::{SpecificationName, subject_words};
 
 pub(super) const TRANSMISSION_AS_SPRING: &str = "inertia and resistance of the transmission are counted in the plant and its impedance alone: the other models have \
      its oil as a spring in series with the force sensor";
@@ -110,7 +110,8 @@ pub(super) fn outside_family(found: &OutsideFamily) -> String {
         LoopWithRig::Satisfied => "the loop with it is stable and satisfies every specification".to_string(),
         LoopWithRig::Unstable => "the loop with it is unstable".to_string(),
         LoopWithRig::Violates(violated) => {
-            let words = |(number, name): &(usize, SpecificationName)| format!("{number} {}", name.words());
+            let words =
+                |(number, name): &(usize, SpecificationName)| format!("{number} {}", subject_words(*name));
             let violated: Vec<String> = violated.iter().map(words).collect();
             format!("the loop with it violates {}", violated.join(", "))
         }

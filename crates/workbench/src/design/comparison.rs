@@ -3,9 +3,11 @@
 use phea_engineering::design::AuditedController;
 use phea_qft::verification::Verdict;
 
-use crate::audit::{margin_words, verdict_words};
+use crate::audit::{above_one_again_words, crossover_words};
 use crate::document::Cell;
 use crate::quantity::{DisplayUnit, significant};
+use crate::specification::numbered;
+use crate::verdict_words::{margin_words, verdict_words};
 
 /// A criterion by which controllers are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +46,7 @@ pub(super) fn compared(side: &AuditedController, per: Option<&str>) -> Vec<Compa
     let mut rows = vec![ComparedFigure { by: ComparedBy::Verdict, name: "verdict".to_string(), cell }];
     rows.extend(side.view.audit.specifications.iter().enumerate().map(|(index, finding)| {
         let margin = finding.worst.as_ref().map_or("-".to_string(), |worst| margin_words(worst.margin_db));
-        let name = format!("margin of {}", side.view.numbered(index));
+        let name = format!("margin of {}", numbered(side.view.named(index)));
         ComparedFigure { by: ComparedBy::Margin(index), name, cell: margin.into() }
     }));
     let named = |(by, name, text): (ComparedBy, &str, String)| ComparedFigure {
@@ -71,12 +73,16 @@ fn figures(side: &AuditedController, per: Option<&str>) -> [(ComparedBy, &'stati
         (
             ComparedBy::Crossover,
             "crossover of the nominal loop",
-            or_dash(nominal.map(|margins| margins.crossovers.first_words())),
+            or_dash(nominal.map(|margins| crossover_words(&margins.crossovers))),
         ),
         (
             ComparedBy::AboveOneAgain,
             "|L| of the nominal loop above 1 again",
-            or_dash(nominal.map(|margins| margins.crossovers.again_words().unwrap_or("nowhere".to_string()))),
+            or_dash(
+                nominal.map(|margins| {
+                    above_one_again_words(&margins.crossovers).unwrap_or("nowhere".to_string())
+                }),
+            ),
         ),
         (
             ComparedBy::GainMargin,

@@ -15,12 +15,14 @@ use super::unfinished::unfinished_sentence;
 use super::words::{searched_limit_name, structure_words, unusable_words, verdict_sentence};
 use super::{AuditedController, Explanation, ProjectDesign, Repair, RepairStatus};
 use crate::answer::significant;
-use crate::audit::{self, margin_words, summary};
+use crate::audit::{self, summary};
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::explanation::explanation_sentence;
+use crate::plant_names::{plant_cells, plant_text};
 use crate::project::{Loaded, snippet};
 use crate::quantity::DisplayUnit;
 use crate::trial;
+use crate::verdict_words::margin_words;
 
 /// Accuracy to which a design keeps a reserve, dB.
 const RESERVE_KEPT_DB: f64 = 2e-3;
@@ -235,7 +237,7 @@ fn led_sentence(view: &ProjectDesign) -> Option<String> {
 /// The sentence, and the first plant that it concerns.
 pub(crate) fn explanation_words(view: &ProjectDesign, explanation: &Explanation) -> String {
     let kind = if explanation.is_impossible { "" } else { "to be kept in mind: " };
-    let plant = explanation.plants.first().map(|plant| view.designed.view.names.text(plant));
+    let plant = explanation.plants.first().map(|plant| plant_text(&view.designed.view.names, plant));
     let plant = plant.filter(|text| !text.is_empty()).map_or(String::new(), |text| format!(" ({text})"));
     format!("{kind}{}{plant}", explanation_sentence(explanation))
 }
@@ -317,7 +319,7 @@ fn limits(view: &ProjectDesign, margins: &[SpecificationMargin]) -> Table {
     for SpecificationMargin { specification, frequency_rad_per_s, margin_db, plant, .. } in margins {
         let name = searched_limit_name(view, view.searched_limit(*specification)).into();
         let row = [name, Cell::frequency(*frequency_rad_per_s), Cell::margin(*margin_db)];
-        found.row(row.into_iter().chain(names.cells(plant).into_iter().map(Cell::from)));
+        found.row(row.into_iter().chain(plant_cells(names, plant).into_iter().map(Cell::from)));
     }
     found
 }

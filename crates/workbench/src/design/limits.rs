@@ -12,6 +12,7 @@ use crate::answer::{Object, significant};
 use crate::audit::PrefilterGain;
 use crate::document::{Cell, Document, Table};
 use crate::limit_kind::{limit_words, origin_words};
+use crate::plant_names::plant_words;
 use crate::quantity::DisplayUnit;
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::portable::magnitude;
@@ -120,8 +121,8 @@ fn set_by(view: &ProjectDesign, command: &CommandOfSteps) -> String {
     match set_by.0.len() {
         0 if count == 0 => String::new(),
         0 => ", at every plant alike".to_string(),
-        own if own == count => format!(" ({})", set_by.words()),
-        _ => format!(" ({}, whatever the other parameters)", set_by.words()),
+        own if own == count => format!(" ({})", plant_words(&set_by)),
+        _ => format!(" ({}, whatever the other parameters)", plant_words(&set_by)),
     }
 }
 

@@ -12,6 +12,7 @@ use crate::document::Document;
 use crate::limit_kind::limit_words;
 use crate::quantity::DisplayUnit;
 use crate::simulate::required_words;
+use crate::specification::numbered;
 
 /// A gain below this is within the accuracy of the search, dB.
 const ACCURACY_DB: f64 = 0.01;
@@ -66,7 +67,7 @@ fn gained(view: &ProjectDesign, one: &RelaxedGain) -> Object {
 
 fn name(view: &ProjectDesign, limit: RelaxedLimit) -> String {
     match limit {
-        RelaxedLimit::Specification(index) => view.designed.view.numbered(index),
+        RelaxedLimit::Specification(index) => numbered(view.designed.view.named(index)),
         RelaxedLimit::Steps(_) => "required step".to_string(),
         RelaxedLimit::Design(kind) => limit_words(kind).to_string(),
     }

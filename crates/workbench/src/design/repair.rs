@@ -3,9 +3,11 @@
 use phea_engineering::design::{NEAREST_PROJECT, ProjectDesign, Repair, RepairRemedy, RepairStatus};
 use phea_qft::verification::Verdict;
 
-use crate::audit::{ProjectAudit, frequency_words, margin_words, stability_sentence};
+use crate::audit::{ProjectAudit, stability_sentence};
 use crate::quantity::{DisplayUnit, significant};
-use crate::trial::{Agreement, TrialRun, agreement_word, reason_words, run_name};
+use crate::specification::numbered;
+use crate::trial::{Agreement, TrialRun, reason_words, run_name};
+use crate::verdict_words::{agreement_word, frequency_words, margin_words};
 
 /// The word of the outcome of a repair, in JSON.
 pub(super) fn repair_key(status: RepairStatus) -> &'static str {
@@ -140,7 +142,7 @@ fn margins(view: &ProjectAudit) -> String {
         let worst = finding.worst.as_ref()?;
         Some(format!(
             "{} {} {}",
-            view.numbered(index),
+            numbered(view.named(index)),
             margin_words(worst.margin_db),
             frequency_words(worst.frequency_rad_per_s)
         ))

@@ -7,7 +7,7 @@ use super::ProjectDesign;
 use super::comparison::gain_at_high_frequency;
 use super::words::{reached_words, searched_limit_name};
 use crate::answer::{Object, significant};
-use crate::audit::NominalMargins;
+use crate::audit::{NominalMargins, above_one_again_words, crossover_words};
 use crate::document::{Cell, Document, Table};
 use crate::limit_kind::limit_words;
 use crate::quantity::DisplayUnit;
@@ -95,7 +95,7 @@ fn laws_that_differ(view: &ProjectDesign) -> Vec<String> {
         Some(format!("{}: a {name} whose T_d would not be positive", reached_words(one)))
     });
     let again = |one: &ReachedStructure| {
-        Some(format!("{} {}", reached_words(one), one.nominal?.crossovers.again_words()?))
+        Some(format!("{} {}", reached_words(one), above_one_again_words(&one.nominal?.crossovers)?))
     };
     let again: Vec<String> = view.structures.iter().filter_map(again).collect();
     let risen = (!again.is_empty()).then(|| {
@@ -167,7 +167,7 @@ fn row(view: &ProjectDesign, one: &ReachedStructure) -> Vec<Cell> {
         let degree = i64::from(one.relative_degree);
         gain_at_high_frequency(&significant(gain_db, 4), degree, view.controlled_unit())
     });
-    let crossover = one.nominal.map(|margins| margins.crossovers.first_words());
+    let crossover = one.nominal.map(|margins| crossover_words(&margins.crossovers));
     let delay = one.nominal.map(|margins| match margins.delay_margin_s {
         f64::INFINITY => "unlimited".to_string(),
         delay_s => DisplayUnit::MILLISECOND.text(delay_s, 3),

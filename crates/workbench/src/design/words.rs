@@ -13,6 +13,7 @@ use crate::audit::DelayedPaths;
 use crate::limit_kind::limit_words;
 use crate::project::{DESIGN_OBJECTIVES, word_of};
 use crate::quantity::significant;
+use crate::specification::numbered;
 
 /// The word of a verdict in JSON.
 pub(super) fn verdict_key(verdict: &DesignVerdict) -> &'static str {
@@ -161,7 +162,7 @@ pub(super) fn unusable_words(view: &ProjectDesign) -> Option<String> {
 /// The name of a limit that the search keeps.
 pub(super) fn searched_limit_name(view: &ProjectDesign, limit: SearchedLimit) -> String {
     match limit {
-        SearchedLimit::Specification(index) => view.designed.view.numbered(index),
+        SearchedLimit::Specification(index) => numbered(view.designed.view.named(index)),
         SearchedLimit::Design(kind) => limit_words(kind).to_string(),
     }
 }

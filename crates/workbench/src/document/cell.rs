@@ -1,6 +1,6 @@
 //! The content of a cell of a table, with its type.
 
-use phea_engineering::audit::{frequency_number, margin_words, verdict_words};
+use crate::verdict_words::{frequency_number, margin_words, verdict_words};
 use phea_engineering::trial::Agreement;
 use phea_qft::verification::Verdict;
 

@@ -11,7 +11,7 @@ use phea_qft::verification::Verdict;
 
 use super::chapter::Chapter;
 use crate::answer::significant;
-use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_number};
+use crate::audit::{ProjectAudit, closed_loop_symbol};
 use crate::design::drawn;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
@@ -19,7 +19,8 @@ use crate::figure::{
     BoundGroup, Figure, FrequencySeries, NicholsChart, OpenLoopViolation, USUAL_CONTOURS_DB, Words, templates,
 };
 use crate::robust::{DesignFrequency, RobustProblem};
-use crate::specification::{kind_key, stated};
+use crate::specification::{kind_key, name_words, stated};
+use crate::verdict_words::frequency_number;
 
 /// The chapter; `chart` is the Nichols chart of the given loop if it is shown nowhere else.
 pub(super) fn chapter(problem: &RobustProblem, found: &[DesignFrequency], chart: Option<Figure>) -> Chapter {
@@ -75,13 +76,13 @@ fn specification_figures(problem: &RobustProblem, found: &[DesignFrequency]) -> 
             .collect();
         let requirement = &specification.requirement;
         let name = format!("bounds_{}_{}", index + 1, kind_key(requirement));
-        let title = format!("Bounds of {}", stated(problem, index));
+        let title = format!("Bounds of {}", stated(problem.named(index)));
         let caption = format!(
             "Where the nominal loop may not be, so that every plant satisfies the limit of {}; ticks point to the forbidden side.",
             closed_loop_symbol(requirement)
         );
         let chart = NicholsChart {
-            bounds: vec![BoundGroup { name: problem.name_of(index).to_string(), bounds: &bounds }],
+            bounds: vec![BoundGroup { name: name_words(problem.named(index)).to_string(), bounds: &bounds }],
             contours_db: USUAL_CONTOURS_DB.to_vec(),
             ..NicholsChart::default()
         };
@@ -271,7 +272,7 @@ fn placement(problem: &RobustProblem, placement: &Placement) -> Cell {
 }
 
 fn named(problem: &RobustProblem, index: usize) -> String {
-    let name = problem.name_of(index);
+    let name = name_words(problem.named(index));
     problem.number_of(index).map_or_else(|| name.to_string(), |number| format!("{number} ({name})"))
 }
 

@@ -10,10 +10,11 @@ use phea_qft::verification::{SpecificationFinding, SpecificationMargin, Verdict}
 
 use super::specifications::titled;
 use crate::answer::significant;
-use crate::audit::{ProjectAudit, closed_loop_symbol, frequency_words};
+use crate::audit::{ProjectAudit, closed_loop_symbol};
 use crate::figure::{FamilyEnvelope, FamilyMagnitude, Figure, MagnitudeCurve, MagnitudeMark, Words};
 use crate::robust::RobustProblem;
-use crate::specification::kind_key;
+use crate::specification::{kind_key, name_words};
+use crate::verdict_words::frequency_words;
 
 /// Number of members that are drawn, in addition to the worst.
 pub(super) const DRAWN_MEMBERS: usize = 40;
@@ -163,7 +164,7 @@ fn figure(family: &[LoopFamily<'_>; 1], index: usize, specification: &Specificat
             chart.members.len(),
             if chart.lower_limit.is_some() { " and the least" } else { "" }
         );
-        (problem.name_of(index), caption)
+        (name_words(problem.named(index)), caption)
     };
     let name = format!("audit_{}_{}", index + 1, kind_key(requirement));
     Some(chart.draw(&Words::new(name, titled(problem.number_of(index), title), caption)))

@@ -5,7 +5,7 @@ use phea_dynamics::watch::Watch;
 
 use super::chapter::Chapter;
 use super::judged::Judged;
-use crate::audit::{ProjectAudit, audit_project, frequency_number};
+use crate::audit::{ProjectAudit, audit_project};
 use crate::derived::{replaced_sentences, replaced_table};
 use crate::document::{Cell, Document, Table};
 use crate::error::CommandError;
@@ -14,6 +14,8 @@ use crate::project::Project;
 use crate::replaced::{TemplateAreas, boxed, replaced_ranges, template_areas};
 use crate::setup::Setup;
 use crate::source::Source;
+use crate::specification::numbered;
+use crate::verdict_words::frequency_number;
 
 /// `None` where the project says of no range that its family replaces it.
 pub(super) fn chapter(
@@ -84,6 +86,7 @@ fn margins(over_box: &ProjectAudit, own: &ProjectAudit) -> Table {
         Some(worst) => Cell::margin(worst.margin_db),
         None => Cell::Missing,
     };
-    let row = |(index, (found, boxed))| [Cell::from(own.numbered(index)), margin(boxed), margin(found)];
+    let row =
+        |(index, (found, boxed))| [Cell::from(numbered(own.named(index))), margin(boxed), margin(found)];
     Table::new(["specification", "worst margin over the box", "over the family"]).with(rows.map(row))
 }

@@ -12,13 +12,13 @@ use super::driven::{DESIGNED, GIVEN, MachineChapter};
 use super::judged::Judged;
 use super::{Facts, NOMINAL_LOOP};
 use crate::answer::Object;
-use crate::audit::verdict_key;
 use crate::design::explanation_words;
 use crate::document::{Document, StatusMark};
 use crate::figure::Figure;
 use crate::setup::Setup;
 use crate::simulate::at_a_glance;
 use crate::trial::agreement_key;
+use crate::verdict_words::verdict_key;
 use next::next_steps;
 use side::{Side, sides};
 

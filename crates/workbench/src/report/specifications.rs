@@ -10,18 +10,19 @@ use phea_qft::specification::{
 
 use super::chapter::Chapter;
 use crate::answer::significant;
-use crate::audit::{closed_loop_symbol, frequency_number, frequency_words, meaning};
+use crate::audit::{closed_loop_symbol, meaning};
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::error::CommandError;
 use crate::project::Project;
 use crate::quantity::{DisplayUnit, RATIO, display};
 use crate::robust::RobustProblem;
 use crate::simulate::{RequiredSteps, TimeRequirement, required_words};
-use crate::specification::{SpecificationError, stated, wish_sentence, wishes};
+use crate::specification::{SpecificationError, name_words, stated, wish_sentence, wishes};
+use crate::verdict_words::{frequency_number, frequency_words};
 
 pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chapter, CommandError> {
     let specifications = &problem.specifications;
-    let row = |(index, one)| row(problem.number_of(index), problem.name_of(index), one);
+    let row = |(index, one)| row(problem.number_of(index), name_words(problem.named(index)), one);
     let heads = ["", "specification", "demand", "where it must hold", "design frequencies (rad/s)"];
     let wishes = wishes(project)?;
     let margins = margins(problem)?;
@@ -32,7 +33,7 @@ pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chap
     steps.for_each(|one| rows.row(step_row(one, project.units.force)));
     out.table(rows);
     for (index, specification) in specifications.iter().enumerate() {
-        spread(&mut out, &stated(problem, index), specification);
+        spread(&mut out, &stated(problem.named(index)), specification);
     }
     if !wishes.is_empty() {
         out.heading("Tracking limits in time");
@@ -193,7 +194,7 @@ fn margins(problem: &RobustProblem) -> Result<Vec<String>, SpecificationError> {
         let number = problem.number_of(index).unwrap_or(index + 1);
         let refused = |reason| SpecificationError { number, key: "limit", reason };
         if let Some(margins) = found.map_err(|error| refused(error.into()))? {
-            sentences.push(margin_sentence(&stated(problem, index), &margins));
+            sentences.push(margin_sentence(&stated(problem.named(index)), &margins));
         }
     }
     Ok(sentences)

@@ -4,9 +4,10 @@ use phea_qft::manual_shaping::DesignMargin;
 use super::ProjectShaping;
 use super::document::polar;
 use crate::answer::{Csv, Object, OutputFile};
-use crate::audit::{self, stability_reason, stable, verdict_key};
+use crate::audit::{self, stability_reason, stable};
 use crate::caveat;
 use crate::specification::kind_key;
+use crate::verdict_words::verdict_key;
 
 /// What `shape` says to programs.
 pub(crate) fn body(view: &ProjectShaping) -> Object {

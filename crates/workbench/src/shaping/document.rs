@@ -6,9 +6,12 @@ use phea_qft::manual_shaping::DesignMargin;
 
 use super::{ProjectShaping, Shaped};
 use crate::answer::significant;
-use crate::audit::{frequency_number, stability_sentence};
+use crate::audit::stability_sentence;
 use crate::caveat;
 use crate::document::{Cell, Document, Table};
+use crate::plant_names::plant_text;
+use crate::specification::name_words;
+use crate::verdict_words::frequency_number;
 use phea_qft::verification::Verdict;
 
 /// The tables and sentences of `shape`.
@@ -60,10 +63,11 @@ pub(crate) fn document(view: &ProjectShaping) -> Document {
 fn margins(view: &ProjectShaping) -> Table {
     let row = |margin: &DesignMargin| {
         let worst = &margin.worst;
-        let plants: Vec<String> = worst.plants().map(|plant| view.names.text(plant)).collect();
+        let plants: Vec<String> = worst.plants().map(|plant| plant_text(&view.names, plant)).collect();
         [
             Cell::frequency(worst.frequency_rad_per_s),
-            format!("{} {}", worst.specification + 1, view.problem.name_of(worst.specification)).into(),
+            format!("{} {}", worst.specification + 1, name_words(view.problem.named(worst.specification)))
+                .into(),
             Cell::margin(worst.margin_db),
             placement(&margin.placement).into(),
             plants.join("; ").into(),

@@ -1,16 +1,16 @@
 //! The trial of a verdict on the machine, for people.
 
-use super::words::{
-    agreement_word, have_one_name, largest_step_words, not_driven, percent_words, reason_words, run_name,
-};
+use super::words::{have_one_name, largest_step_words, not_driven, percent_words, reason_words, run_name};
 use super::{
     Agreement, BAND_PERCENT, Leg, MOST_OF_SCENARIOS, OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, SETTLING_ROOM,
     StepResponse, StepSize, Trial, TrialRun, TrialStep,
 };
 use crate::document::{Cell, Document, Table};
 use crate::figure::{FamilySteps, Figure, TimeSeries, Words};
+use crate::plant_names::plant_words;
 use crate::quantity::DisplayUnit;
 use crate::simulate::{reached_words, required_words, satisfied_word};
+use crate::verdict_words::agreement_word;
 use phea_qft::verification::Verdict;
 
 /// The agreement in words; where it lacks nothing but the settling time, those that are furthest
@@ -189,7 +189,7 @@ fn corners(trial: &Trial) -> Vec<String> {
     let words = |run: &TrialRun| {
         Some(match repeated(trial, run) {
             Some(other) => format!("{}: that is {}", run_name(run), run_name(other)),
-            None => format!("{}: {}", run_name(run), run.plant.as_ref()?.words()),
+            None => format!("{}: {}", run_name(run), plant_words(run.plant.as_ref()?)),
         })
     };
     let mut told: Vec<String> = trial.runs.iter().filter(is_corner).filter_map(words).collect();

@@ -5,7 +5,10 @@ use super::{
     TrialFinding, TrialMachine, TrialReason, TrialRun, UnsettledEnd, WorstOf,
 };
 use crate::document::Cell;
+use crate::plant_names::plant_words;
 use crate::quantity::{DisplayUnit, Units, significant};
+use crate::specification::numbered;
+use crate::verdict_words::agreement_word;
 
 /// The machine of a run, without the size of its steps.
 pub(crate) fn machine_words(machine: &TrialMachine) -> String {
@@ -21,8 +24,8 @@ pub(crate) fn machine_words(machine: &TrialMachine) -> String {
 
 fn worst_plant(of: &WorstOf) -> String {
     match of {
-        WorstOf::Specification(name) => format!("the worst plant of {name}"),
-        WorstOf::InTime(name) => format!("the worst plant of {name} in time"),
+        WorstOf::Specification(named) => format!("the worst plant of {}", numbered(Some(*named))),
+        WorstOf::InTime(named) => format!("the worst plant of {} in time", numbered(Some(*named))),
         WorstOf::RequiredStep => "the worst plant of the required step".to_string(),
     }
 }
@@ -62,16 +65,6 @@ pub(crate) fn agreement_key(agreement: Agreement) -> &'static str {
     match agreement {
         Agreement::AgreesButForSettling => "agrees_but_for_settling",
         Agreement::Agrees | Agreement::Differs | Agreement::Contradicts => agreement_word(agreement),
-    }
-}
-
-/// The words of an agreement for people.
-pub(crate) fn agreement_word(agreement: Agreement) -> &'static str {
-    match agreement {
-        Agreement::Agrees => "agrees",
-        Agreement::AgreesButForSettling => "agrees but for the settling",
-        Agreement::Differs => "differs",
-        Agreement::Contradicts => "contradicts",
     }
 }
 
@@ -229,7 +222,9 @@ fn cause_of_difference(cause: &DifferenceCause) -> String {
 /// What a trial does not drive.
 fn not_driven_words(one: &NotDriven, units: Units) -> String {
     match one {
-        NotDriven::Plant { of, plant, reason } => format!("{} ({plant}): {reason}", worst_plant(of)),
+        NotDriven::Plant { of, plant, reason } => {
+            format!("{} ({}): {reason}", worst_plant(of), plant_words(plant))
+        }
         NotDriven::SmallerStep(forces) => {
             let [from, to] = forces.map(|force| units.force.short(force, 3));
             format!("a smaller step of a scenario, {from} to {to}")

@@ -29,7 +29,7 @@ fn sentence(difference: &CertificateDifference, problem: &RobustProblem) -> Stri
                 CertificateSide::Upper => "limit",
                 CertificateSide::Lower => "lower limit",
             };
-            format!("the certificate does not claim the {limit} of {}", stated(problem, *index))
+            format!("the certificate does not claim the {limit} of {}", stated(problem.named(*index)))
         }
         CertificateDifference::NotStated(_) => {
             "no certificate can be of the loop of this project".to_string()

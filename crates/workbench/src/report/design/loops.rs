@@ -4,10 +4,10 @@ use phea_dynamics::linear::LinearError;
 use phea_qft::bound::Placement;
 
 use super::super::bounds::{NO_BOUNDS, WITHIN_TOLERANCE, group, nearest_bounds, nearest_words, nominal_loop};
-use crate::audit::frequency_number;
 use crate::design::{AuditedController, ProjectDesign};
 use crate::figure::{Figure, FrequencySeries, NicholsChart, OpenLoopViolation, Words};
 use crate::robust::DesignFrequency;
+use crate::verdict_words::frequency_number;
 
 /// The chart; `None` without a nominal plant.
 pub(super) fn figure(view: &ProjectDesign, found: &[DesignFrequency]) -> Result<Option<Figure>, LinearError> {

@@ -8,7 +8,7 @@ use super::super::specifications::titled;
 
 use crate::design::ProjectDesign;
 use crate::figure::{FamilyMagnitude, Figure, Words};
-use crate::specification::kind_key;
+use crate::specification::{kind_key, name_words};
 
 /// One figure for each specification that a loop has a margin to.
 pub(super) fn figures(view: &ProjectDesign) -> Result<Vec<Figure>, LinearError> {
@@ -19,7 +19,7 @@ pub(super) fn figures(view: &ProjectDesign) -> Result<Vec<Figure>, LinearError> 
     let specifications = view.designed.problem.specifications.iter().enumerate();
     let figures = specifications.filter_map(|(index, specification)| {
         let (chart, by_spread) = magnitudes(&loops, index, specification)?;
-        let name = titled(view.designed.view.number_of(index), view.designed.view.name_of(index));
+        let name = titled(view.designed.view.number_of(index), name_words(view.designed.view.named(index)));
         let words = words((index, &name), &specification.requirement, &chart, by_spread);
         Some(FamilyMagnitude { members: vec![], ..chart }.draw(&words))
     });

@@ -8,11 +8,11 @@ use phea_qft::specification::Specification;
 use phea_qft::verification::Verdict;
 
 use crate::answer::significant;
-use crate::audit::frequency_words;
 use crate::design::{AuditedController, ProjectDesign};
 use crate::figure::{Figure, PrefilterPanel, PrefilterPoint, Words, prefilter_band};
 use crate::robust::DEFAULT_TOLERANCE_DB;
 use crate::specification::stated;
+use crate::verdict_words::frequency_words;
 
 /// Distance of tracking limits below which they are not distinguishable in a figure, dB.
 const DISTINGUISHED_DB: f64 = 0.01;
@@ -54,7 +54,8 @@ fn figure(
         tightest.join(" ")
     );
     let name = format!("design_{}_prefilter", index + 1);
-    let words = Words::new(name, format!("Prefilter for {}", stated(&view.designed.problem, index)), caption);
+    let words =
+        Words::new(name, format!("Prefilter for {}", stated(view.designed.problem.named(index))), caption);
     Ok(Some(prefilter_band(&words, &panels)))
 }
 

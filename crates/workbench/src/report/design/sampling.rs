@@ -2,15 +2,16 @@
 
 use phea_qft::verification::{SpecificationFinding, Verdict};
 
-use crate::audit::margin_words;
 use crate::design::AuditedController;
+use crate::specification::numbered;
+use crate::verdict_words::margin_words;
 
 /// Where the continuous design is worst compared with the one that takes sampling into account.
 pub(super) fn sentence(sampled: &AuditedController, continuous: &AuditedController) -> String {
     let margin = |finding: &SpecificationFinding| finding.worst.as_ref().map(|worst| worst.margin_db);
     let pairs = sampled.view.audit.specifications.iter().zip(&continuous.view.audit.specifications);
     let changes = pairs.enumerate().filter_map(|(index, (here, there))| {
-        Some((sampled.view.numbered(index), margin(here)?, margin(there)?))
+        Some((numbered(sampled.view.named(index)), margin(here)?, margin(there)?))
     });
     let most = changes.min_by(|one, other| (one.2 - one.1).total_cmp(&(other.2 - other.1)));
     let all = "The last column is the design for the continuous loop without delay, sampled and delayed as this loop is.";

@@ -11,16 +11,19 @@ use super::Contents;
 use super::side::Side;
 use super::steps::{NEVER_RISEN, NEVER_SETTLED, StepProperty, steps};
 use crate::answer::significant;
-use crate::audit::{ProjectAudit, frequency_words, in_time};
+use crate::audit::{ProjectAudit, in_time};
 use crate::caveat::{caveats, outside_parameters, sentence};
 use crate::design::{DESIGNED_PROJECT, ProjectDesign, rig_miss_words};
+use crate::plant_names::plant_text;
 use crate::project::{DeclaredSpecification, Project, SpecificationKind};
 use crate::quantity::DisplayUnit;
 use crate::report::design::Designed;
 use crate::report::driven::{DESIGNED, GIVEN};
 use crate::setup::Setup;
 use crate::simulate::TimeRequirement;
+use crate::specification::numbered;
 use crate::trial::{self, Agreement, Trial, TrialRun, brief_reason, run_name};
+use crate::verdict_words::frequency_words;
 
 /// Largest number of sentences.
 const MOST: usize = 6;
@@ -133,7 +136,7 @@ fn given_words(view: &ProjectAudit) -> String {
     };
     format!(
         "the given controller violates {} by {} dB {}{}{more}",
-        view.numbered(*index),
+        numbered(view.named(*index)),
         significant(worst.margin_db.abs(), 3),
         frequency_words(worst.frequency_rad_per_s),
         plant_words(view, &worst.plant)
@@ -151,7 +154,7 @@ fn missed_words(view: &ProjectAudit) -> String {
 fn plant_words(view: &ProjectAudit, plant: &phea_qft::verification::PlantPoint) -> String {
     match view.names.headings().len() {
         0 => String::new(),
-        1 | 2 => format!(" (plant {})", view.names.text(plant)),
+        1 | 2 => format!(" (plant {})", plant_text(&view.names, plant)),
         _ => " (its plant is listed in the audit)".to_string(),
     }
 }
@@ -191,7 +194,7 @@ fn designed_words(view: &ProjectDesign, given_is_met: bool) -> String {
 fn infeasible_words(view: &ProjectDesign, relaxation: &Relaxation) -> String {
     let mut names: Vec<String> = Vec::new();
     for conflict in &relaxation.conflicts {
-        let name = view.designed.view.numbered(conflict.specification);
+        let name = numbered(view.designed.view.named(conflict.specification));
         if !names.contains(&name) {
             names.push(name);
         }

@@ -9,6 +9,7 @@ use phea_dynamics::time_response::{StepBaseline, step_metrics};
 use super::side::Side;
 use crate::answer::significant;
 use crate::audit::{TimeOutcome, WorstStep};
+use crate::plant_names::{plant_text, plant_words};
 use crate::simulate::{
     Metrics, ReachedStep, TimeRequirement, TrackingWish, Unmeasured, cause_words, concerns,
 };
@@ -122,7 +123,7 @@ pub(super) fn steps(side: &Side<'_>, required: &TimeRequirement, property: StepP
 /// A corner of the box, or a plant inside it, by its parameters.
 fn corner_words(run: &TrialRun) -> String {
     match &run.plant {
-        Some(plant) => format!("nonlinear simulation at {}", plant.words()),
+        Some(plant) => format!("nonlinear simulation at {}", plant_words(plant)),
         None => run_name(run),
     }
 }
@@ -180,7 +181,7 @@ fn of_family(side: &Side<'_>, number: usize, property: StepProperty) -> (Option<
     let one = |worst: &WorstStep| {
         let plant = match view.names.headings().len() {
             0 => String::new(),
-            1 | 2 => format!(", {}", view.names.text(&worst.plant)),
+            1 | 2 => format!(", {}", plant_text(&view.names, &worst.plant)),
             _ => String::new(),
         };
         OneStep { origin: StepOrigin::Family, value: worst.value, place: format!("linear loop{plant}") }

@@ -7,12 +7,14 @@ use super::Contents;
 use super::side::Side;
 use super::steps::{AllSteps, StepProperty, steps};
 use crate::answer::significant;
-use crate::audit::{frequency_words, position_words};
+use crate::audit::position_words;
 use crate::document::{Cell, StatusMark, Table};
 use crate::quantity::DisplayUnit;
 use crate::report::specifications::demand;
 use crate::simulate::{ScenarioRun, UNDETERMINED, required_overshoot, required_rise, required_settling};
+use crate::specification::numbered;
 use crate::trial;
+use crate::verdict_words::frequency_words;
 
 type Rows = Vec<Vec<Cell>>;
 
@@ -66,7 +68,7 @@ fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
         Some(Cell::from(word).marked(verdict).then(proven(is_proven)))
     }));
     for (index, specification) in judged.problem.specifications.iter().enumerate() {
-        let name = Cell::from(format!("{}, ", judged.problem.numbered(index)))
+        let name = Cell::from(format!("{}, ", numbered(judged.problem.named(index))))
             .then(Cell::Equation(demand(&specification.requirement)));
         rows.extend(row(name, sides, |side| {
             let is_proven = side.proof().and_then(|proof| proof.specifications.get(index));

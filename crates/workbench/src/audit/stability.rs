@@ -5,15 +5,15 @@ use phea_qft::verification::{
     ClosestApproach, Evidence, SearchedInfinity, StabilityFinding, StabilityMethod, StabilityReason, Verdict,
 };
 
-use super::PlantNames;
 use super::words::rounded;
+use crate::plant_names::{PlantNames, plant_text};
 use crate::quantity::significant;
 
 /// Whether the family is stable, and how this is known.
-pub fn stability_sentence(stability: &StabilityFinding, names: &PlantNames) -> String {
+pub(crate) fn stability_sentence(stability: &StabilityFinding, names: &PlantNames) -> String {
     let plant = match &stability.reason {
-        StabilityReason::AllStable { closest: Some(closest), .. } => names.text(&closest.plant),
-        _ => names.text(&stability.plant),
+        StabilityReason::AllStable { closest: Some(closest), .. } => plant_text(names, &closest.plant),
+        _ => plant_text(names, &stability.plant),
     };
     let rate = |value: f64| significant(value, 3);
     match (stability.verdict, stability.largest_real_part) {
@@ -38,13 +38,13 @@ pub fn stability_sentence(stability: &StabilityFinding, names: &PlantNames) -> S
 }
 
 /// The evidence that no pole passes through infinity inside the box, where it is a search.
-pub fn infinity_sentence(stability: &StabilityFinding, names: &PlantNames) -> Option<String> {
+pub(super) fn infinity_sentence(stability: &StabilityFinding, names: &PlantNames) -> Option<String> {
     let found = stability.infinity.as_ref()?;
     Some(format!(
         "That no pole passes through infinity inside the box was searched for, since the enclosures of the leading \
          coefficient are too wide there: it falls to {} of its nominal value at least ({}) and depends on {}.",
         significant(found.least_share, 3),
-        names.text(&found.plant),
+        plant_text(names, &found.plant),
         moving_words(found, names)
     ))
 }
@@ -57,7 +57,7 @@ fn moving_words(found: &SearchedInfinity, names: &PlantNames) -> String {
 }
 
 /// How stability was decided.
-pub fn stability_reason(stability: &StabilityFinding) -> String {
+pub(crate) fn stability_reason(stability: &StabilityFinding) -> String {
     match &stability.reason {
         StabilityReason::Unstable(instability) => instability_words(*instability),
         StabilityReason::UnstablePrefilter => "the prefilter itself is unstable".to_owned(),

@@ -1,12 +1,12 @@
-//! Verdicts, margins and frequencies in words.
+//! Verdicts, agreements, margins and frequencies in words.
 
-use phea_dynamics::portable;
+use phea_engineering::trial::Agreement;
 use phea_qft::verification::Verdict;
 
 use crate::quantity::{RATIO, display};
 
 /// The word of a verdict in JSON.
-pub fn verdict_key(verdict: Verdict) -> &'static str {
+pub(crate) fn verdict_key(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Met => "met",
         Verdict::Violated => "violated",
@@ -15,7 +15,7 @@ pub fn verdict_key(verdict: Verdict) -> &'static str {
 }
 
 /// The same for people.
-pub fn verdict_words(verdict: Verdict) -> &'static str {
+pub(crate) fn verdict_words(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::NotProven => "not proven",
         other => verdict_key(other),
@@ -23,7 +23,7 @@ pub fn verdict_words(verdict: Verdict) -> &'static str {
 }
 
 /// `4.31 dB`, with its sign; the zero of a limit that is just reached without one.
-pub fn margin_words(margin_db: f64) -> String {
+pub(crate) fn margin_words(margin_db: f64) -> String {
     match margin_db {
         _ if margin_db == f64::INFINITY => "unlimited".to_string(),
         _ if margin_db.abs() < 5e-4 => "0.000 dB".to_string(),
@@ -33,7 +33,7 @@ pub fn margin_words(margin_db: f64) -> String {
 }
 
 /// `at 1304 rad/s`, `towards zero frequency`, `towards infinite frequency`.
-pub fn frequency_words(frequency_rad_per_s: f64) -> String {
+pub(crate) fn frequency_words(frequency_rad_per_s: f64) -> String {
     match frequency_rad_per_s {
         0.0 => "towards zero frequency".to_string(),
         f64::INFINITY => "towards infinite frequency".to_string(),
@@ -42,7 +42,7 @@ pub fn frequency_words(frequency_rad_per_s: f64) -> String {
 }
 
 /// A frequency with four digits, without trailing zeros: `0.01`, `1304`.
-pub fn frequency_number(frequency_rad_per_s: f64) -> String {
+pub(crate) fn frequency_number(frequency_rad_per_s: f64) -> String {
     if frequency_rad_per_s == f64::INFINITY {
         "inf".to_string()
     } else {
@@ -50,7 +50,12 @@ pub fn frequency_number(frequency_rad_per_s: f64) -> String {
     }
 }
 
-/// To four significant digits, for a reader.
-pub(crate) fn rounded(value: f64) -> f64 {
-    portable::rounded(value, 4)
+/// The words of an agreement for people.
+pub(crate) fn agreement_word(agreement: Agreement) -> &'static str {
+    match agreement {
+        Agreement::Agrees => "agrees",
+        Agreement::AgreesButForSettling => "agrees but for the settling",
+        Agreement::Differs => "differs",
+        Agreement::Contradicts => "contradicts",
+    }
 }

@@ -1,0 +1,50 @@
+//! The names of specifications, for people.
+
+use phea_qft::specification::ClosedLoop;
+
+use super::{NamedSpecification, SpecificationName};
+
+/// The name of a limit on a closed loop.
+pub(crate) fn subject_words(name: SpecificationName) -> &'static str {
+    match name {
+        SpecificationName::ClosedLoop(closed_loop) => closed_loop_words(closed_loop),
+        SpecificationName::RoundedCommand => "force error of the rounded command",
+        SpecificationName::RoundedMeasurement => "command error of the rounded measurement",
+    }
+}
+
+/// The kind that limits a closed loop, for people.
+fn closed_loop_words(closed_loop: ClosedLoop) -> &'static str {
+    match closed_loop {
+        ClosedLoop::RobustStability => "robust stability",
+        ClosedLoop::Sensitivity => "sensitivity",
+        ClosedLoop::PlantInputDisturbance => "plant input disturbance",
+        ClosedLoop::ControlEffort => "control effort",
+        ClosedLoop::LoadMotion => "load motion",
+        ClosedLoop::Tracking => "tracking",
+    }
+}
+
+/// `tracking`; empty where there is no specification.
+pub(crate) fn name_words(named: Option<NamedSpecification>) -> &'static str {
+    named.map_or("", |named| subject_words(named.name))
+}
+
+/// `2 tracking`; the name alone of a specification that is not declared.
+pub(crate) fn numbered(named: Option<NamedSpecification>) -> String {
+    let name = name_words(named);
+    number(named).map_or_else(|| name.to_string(), |number| format!("{number} {name}"))
+}
+
+/// A specification as a sentence names it: that of the file by its table and number.
+pub(crate) fn stated(named: Option<NamedSpecification>) -> String {
+    let name = name_words(named);
+    match number(named) {
+        Some(number) => format!("[[specification]] {number} ({name})"),
+        None => format!("the limit on the {name}"),
+    }
+}
+
+fn number(named: Option<NamedSpecification>) -> Option<usize> {
+    named.and_then(|named| named.number)
+}
