@@ -49,7 +49,8 @@ pub mod specification;
 pub mod trial;
 
 pub use phea_engineering::{
-    caveat, estimate, family, linear_loop, linear_step, option, plant_names, replaced, rig, robust, setup,
+    caveat, estimate, family, identify_error, linear_loop, linear_step, option, plant_names, replaced, rig,
+    robust, setup,
 };
 pub use phea_figure as figure;
 pub use phea_project::{self as project, catalogue, source};

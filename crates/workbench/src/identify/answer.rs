@@ -5,6 +5,7 @@ use phea_hydraulics::servovalve::{LeakageModel, StaticCoefficients};
 use serde::Serialize;
 
 use super::files::{TestBody, WarningBody};
+use super::misfit::declared_misfit;
 use super::numbers;
 use super::region::{FoundRegion, RegionBody, body};
 use super::{
@@ -391,7 +392,7 @@ pub fn files(found: &Identification) -> Vec<OutputFile> {
         more.push_str(&format!("\n[valve.leakage_shapes]\n{shapes}"));
     }
     let files: Vec<&str> = found.recordings.iter().map(|one| one.file.as_str()).collect();
-    let misfit = found.declared_misfit().map(|one| format!("misfit = {}\n", one.in_toml()));
+    let misfit = declared_misfit(found).map(|one| format!("misfit = {}\n", one.in_toml()));
     let misfit = misfit.unwrap_or_default();
     let text = format!(
         "# Identified by phea from {}.\n[valve]\nnominal_voltage = \"{} V\"\ntransition_pressure = \"{} Pa\"\ntare_pressure = \"{} Pa\"\nleakage_model = \"{}\"\n{}{misfit}\n[valve.flow_coefficients]    # m3/(s.Pa^0.5)\n{}\n[valve.leakage_coefficients]\n{}{more}",
