@@ -154,9 +154,10 @@ fn frequency(piece: &TextPiece<'_>, findings: &mut Findings) -> Option<f64> {
     match quantity::parse(piece.words, &ANGULAR_FREQUENCY) {
         Ok(value) => Some(value),
         Err(error) => {
-            let found =
-                RawFinding::error(piece.place_of(&error.range), error.message).maybe_expected(error.expected);
-            findings.push(found.maybe_help(error.help));
+            let place = piece.place_of(&error.range);
+            let found = RawFinding::error(place, error.fault.to_string());
+            let found = found.maybe_expected(error.expected.map(|expected| expected.to_string()));
+            findings.push(found.maybe_help(error.help.map(|help| help.to_string())));
             None
         }
     }
