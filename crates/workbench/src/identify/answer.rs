@@ -358,7 +358,10 @@ pub fn files(found: &Identification) -> Vec<OutputFile> {
     let line = |index: usize| {
         let (name, unit) = COEFFICIENT_NAMES.get(index).copied().unwrap_or_default();
         let value = numbers.get(index).copied().unwrap_or(f64::NAN);
-        let key = name.rsplit('.').next().unwrap_or(name);
+        let key = match name {
+            "leakage_shape" if found.tested.terms.leakage_by_edge => "supply_to_a",
+            name => name.rsplit('.').next().unwrap_or(name),
+        };
         let text = match unit {
             "1" | "m3/(s.Pa^0.5)" => in_toml(value, 5),
             unit => format!("\"{} {unit}\"", in_toml(value, 5)),
@@ -388,7 +391,7 @@ pub fn files(found: &Identification) -> Vec<OutputFile> {
         more.push_str(&format!("\n[valve.lap]    # over full travel\n{}", lines(12..14)));
     }
     if has.leakage_by_edge {
-        let shapes = format!("supply_to_a{}{}", line(8).trim_start_matches("leakage_shape"), lines(15..18));
+        let shapes = line(8) + &lines(15..18);
         more.push_str(&format!("\n[valve.leakage_shapes]\n{shapes}"));
     }
     let files: Vec<&str> = found.recordings.iter().map(|one| one.file.as_str()).collect();
