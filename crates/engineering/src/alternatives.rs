@@ -10,8 +10,10 @@ mod by_other_means;
 mod cases;
 mod columns;
 mod comparison;
+mod error;
 mod front;
 mod hardware;
+mod no_number;
 mod port;
 mod recentred;
 
@@ -19,11 +21,14 @@ pub use asked::{AskedAlternative, asked};
 pub use cases::{AskedCase, JudgedCase, asked_cases};
 pub use columns::{AlternativeColumn, AlternativeColumns, ColumnPart};
 pub use comparison::{
-    COLUMN_SENSES, COMPARED_AT_A_GLANCE, ColumnSense, ComparedMeasure, ComparedMeasures, MEASURES,
-    MEASURES_IF_STATED, dominates,
+    COLUMN_SENSES, ColumnSense, ComparedMeasure, ComparedMeasures, MEASURES, MEASURES_IF_STATED, dominates,
 };
-pub use front::{Front, FrontColumn, FrontPoint, FrontRequest, FrontValue};
+pub use error::{AlternativesError, JudgeError, NoHose, PrepareError};
+pub use front::{
+    FeasibilityUnknown, Front, FrontColumn, FrontPoint, FrontRequest, FrontValue, NoFrontValue, SWEPT,
+};
 pub use hardware::retracted_length;
+pub use no_number::{LengthUnknown, NoNumber};
 pub use port::IMPEDANCE_AT;
 pub use recentred::MovedRange;
 
@@ -32,43 +37,15 @@ use phea_dynamics::watch::{Progress, Watch};
 use crate::catalogue::{self, Catalogue};
 use crate::design::{DesignError, ProjectDesign, design_project};
 use crate::linearize::{Linearization, linearize};
-use crate::option::OptionError;
 use crate::parts::PartsCounted;
-use crate::project::{ImpedanceForm, Loaded, Project, Refusal};
-use crate::rig::{Rig, RigError};
+use crate::project::{ImpedanceForm, Loaded, Project};
+use crate::rig::{OutsideParameter, Rig, RigError};
 use crate::setup::{ControlError, Setup};
 use crate::simulate::{ScenarioRun, simulate_project};
 use crate::sizing::{Question, Sizing, size, sizing_problem};
 use crate::source::Source;
 use crate::trial::Agreement;
 use asked::ReadingAgain;
-
-/// Why no alternatives are judged.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum AlternativesError {
-    /// There is only the project itself.
-    #[error(
-        "the project has no [[alternative]]: add one with `name` and `set = {{ \"line.length\" = \"3 m\" }}`"
-    )]
-    NoAlternative,
-    /// There is no specification for a controller.
-    #[error(transparent)]
-    NoSpecification(DesignError),
-    /// The requested front is invalid.
-    #[error(transparent)]
-    Option(#[from] OptionError),
-    /// The catalogue, or a project that was changed, cannot be read.
-    #[error("{0}")]
-    Refused(Refusal),
-    /// An alternative that cannot be prepared.
-    #[error("alternative `{name}`: {reason}")]
-    Alternative {
-        /// Its name.
-        name: String,
-        /// What is wrong, and what to do.
-        reason: String,
-    },
-}
 
 /// The project as it is declared and its alternatives, judged.
 #[derive(Clone, Debug)]
@@ -98,35 +75,35 @@ impl Default for AlternativesOptions {
     }
 }
 
-/// An alternative with everything that was found about it; a text says why something was not.
+/// An alternative with everything that was found about it, or why something was not.
 #[derive(Clone, Debug)]
 pub struct JudgedAlternative {
     /// Its name.
     pub name: String,
     /// The project with its settings.
     pub loaded: Loaded,
-    /// The rig of that project, or why there is none.
-    pub rig: Result<Rig, String>,
+    /// The rig of that project.
+    pub rig: Result<Rig, JudgeError>,
     /// The ranges of `[uncertainty]` that follow its rig.
     pub moved: Vec<MovedRange>,
-    /// The parameters of its rig outside of their ranges in `[uncertainty]`, in words; `None` where
+    /// The parameters of its rig outside of their ranges in `[uncertainty]`, or `None` where
     /// they are those of the project as it is declared.
-    pub outside: Option<String>,
+    pub outside: Option<Vec<OutsideParameter>>,
     /// Frequencies in rad/s at which its impedance is stated.
     pub impedance_at: Vec<f64>,
     /// What is counted of the parts of all that are compared.
     pub counted: PartsCounted,
     /// Hoses of the catalogue for its `[sizing]`.
-    pub sizing: Result<Sizing, String>,
+    pub sizing: Result<Sizing, JudgeError>,
     /// The designed controller with its audit and its trial on the machine.
-    pub design: Result<ProjectDesign, String>,
+    pub design: Result<ProjectDesign, JudgeError>,
     /// The project with the designed laws in place of its own.
-    pub deployed: Result<Project, String>,
+    pub deployed: Result<Project, JudgeError>,
     /// The linear models of its rig, the closed loop with the designed controller.
-    pub linearization: Result<Linearization, String>,
+    pub linearization: Result<Linearization, JudgeError>,
     /// Every scenario under the designed controller and prefilter; empty where there is none, or no
     /// machine.
-    pub runs: Result<Vec<ScenarioRun>, String>,
+    pub runs: Result<Vec<ScenarioRun>, JudgeError>,
 }
 
 impl Alternatives {
@@ -157,27 +134,25 @@ impl JudgedAlternative {
     /// Whether it may be said to dominate another: it satisfies every specification, was driven to
     /// the end of its scenarios, and the machine does not contradict its verdict.
     pub fn is_comparable(&self) -> bool {
-        self.feasible() == Ok(true) && self.is_judged() && !self.is_contradicted()
+        self.feasible() == Some(true) && self.is_judged() && !self.is_contradicted()
     }
 
     /// True where the designed loop satisfies every specification, and the nonlinear rig what is
-    /// required in time; or why this is not known.
-    pub fn feasible(&self) -> Result<bool, String> {
+    /// required in time; `None` where this is not known, for which the design has the reason.
+    pub fn feasible(&self) -> Option<bool> {
         use phea_qft::design::DesignStatus;
-        let view = self.design.as_ref().map_err(Clone::clone)?;
+        let view = self.design.as_ref().ok()?;
         match view.design.status {
-            _ if view.is_met() && !view.misses_on_rig() => Ok(true),
-            DesignStatus::Infeasible(_) | DesignStatus::NotStabilised => Ok(false),
+            _ if view.is_met() && !view.misses_on_rig() => Some(true),
+            DesignStatus::Infeasible(_) | DesignStatus::NotStabilised => Some(false),
             DesignStatus::Met
                 if !view.tolerates_its_delay
                     || view.designed.view.misses_in_time()
                     || view.misses_on_rig() =>
             {
-                Ok(false)
+                Some(false)
             }
-            DesignStatus::Met | DesignStatus::NotConverged { .. } => {
-                Err(crate::design::status_sentence(view))
-            }
+            DesignStatus::Met | DesignStatus::NotConverged { .. } => None,
         }
     }
 }
@@ -264,16 +239,16 @@ impl Judging<'_> {
         let setup = Setup::around(&project, rig.clone());
         let setup = setup.as_ref().map_err(Clone::clone);
         let design = match no_hose {
-            Some(reason) => Err(reason),
+            Some(reason) => Err(reason.into()),
             None => match designed(self.source, setup.clone(), &mut designing) {
                 Err(DesignError::Stopped(_)) => return None,
                 Ok(view) if view.is_stopped() => return None,
-                design => design.map_err(|error| error.to_string()),
+                design => design.map_err(JudgeError::from),
             },
         };
         let deployed = match &design {
             Ok(view) => Ok(view.deployed(&project)),
-            Err(_) => Err("no controller was designed".to_string()),
+            Err(_) => Err(JudgeError::NoController),
         };
         let mut driving = |progress: Progress| {
             watch(Progress { share: DESIGNING + (1.0 - DESIGNING) * progress.share, ..progress })
@@ -291,7 +266,7 @@ impl Judging<'_> {
             outside,
             impedance_at: self.impedance_at.to_vec(),
             counted: self.counted,
-            rig: rig.map_err(|error| error.to_string()),
+            rig: rig.map_err(JudgeError::from),
             sizing: sized(setup, self.catalogue),
             linearization: linearized(last),
             design,
@@ -322,17 +297,13 @@ fn designed(source: &dyn Source, setup: Lowered<'_>, watch: Watch<'_>) -> Result
     design_project(source, setup?, None, watch)
 }
 
-fn sized(setup: Lowered<'_>, catalogue: &Catalogue) -> Result<Sizing, String> {
-    let setup = setup.map_err(|error| error.to_string())?;
-    let problem = sizing_problem(setup, catalogue).map_err(|error| error.to_string())?;
-    Ok(size(&problem, Question::Both))
+fn sized(setup: Lowered<'_>, catalogue: &Catalogue) -> Result<Sizing, JudgeError> {
+    Ok(size(&sizing_problem(setup?, catalogue)?, Question::Both))
 }
 
-fn linearized(setup: Lowered<'_>) -> Result<Linearization, String> {
-    let setup = setup.map_err(|error| error.to_string())?;
-    let rig = setup.rig().map_err(|error| error.to_string())?;
-    let found = linearize(rig, setup.controller.as_ref(), &setup.sensor);
-    found.map_err(|error| format!("the linear models: {error}"))
+fn linearized(setup: Lowered<'_>) -> Result<Linearization, JudgeError> {
+    let setup = setup?;
+    Ok(linearize(setup.rig()?, setup.controller.as_ref(), &setup.sensor)?)
 }
 
 fn driven(
@@ -340,15 +311,14 @@ fn driven(
     project: &Project,
     setup: Lowered<'_>,
     watch: Watch<'_>,
-) -> Result<Vec<ScenarioRun>, String> {
+) -> Result<Vec<ScenarioRun>, JudgeError> {
     if project.actuator.is_none() || project.scenarios.is_empty() {
         return Ok(vec![]);
     }
-    let setup = setup.map_err(|error| error.to_string())?;
-    simulate_project(source, setup, watch).map_err(|error| error.to_string())
+    Ok(simulate_project(source, setup?, watch)?)
 }
 
 /// Why there is nothing of a machine.
-fn no_rig() -> String {
-    RigError::NoActuator.to_string()
+fn no_rig() -> NoNumber {
+    NoNumber::NotJudged(RigError::NoActuator.into())
 }

@@ -1,5 +1,5 @@
 //! The audit of a given controller: family, loop and specifications from the project, findings from
-//! `phea_qft`, and their wording.
+//! `phea_qft`.
 
 mod dead_time;
 mod in_time;
@@ -7,15 +7,13 @@ mod margins;
 mod nominal;
 mod prefilter;
 mod proven;
-mod remark;
 mod rig_outside_family;
 mod signal_noise;
 mod stability;
 mod whole_loop;
 mod words;
-pub use signal_noise::{NoisySignal, SignalNoise, SignalNoiseEffect};
+pub use signal_noise::{NoisySignal, SignalNoise, SignalNoiseEffect, UnknownNoiseEffect};
 pub(crate) use words::rounded;
-pub use words::{evidence_key, evidence_sentence, finding_sentence, place_words};
 
 pub use crate::common_position::CommonPosition;
 pub use dead_time::LoopDeadTime;
@@ -26,15 +24,12 @@ pub(crate) use margins::{highest_crossover, plants_of_margins};
 pub(crate) use nominal::nominal_margins;
 pub use nominal::{Crossovers, NominalMargins};
 pub use prefilter::PrefilterGain;
-pub use proven::{prove_audit, standing_word, try_to_prove, why_not_proven};
-pub use remark::remark_sentences;
+pub use proven::{prove_audit, try_to_prove};
+pub use rig_outside_family::{LoopWithRig, OutsideFamily};
 pub(crate) use rig_outside_family::{caveat as caveat_of_rig, unexamined as unexamined_rig};
 pub use stability::{infinity_sentence, stability_reason, stability_sentence};
 pub use whole_loop::DelayedPaths;
-pub use words::{
-    closed_loop_symbol, frequency_number, frequency_words, margin_words, meaning, verdict_key, verdict_words,
-    worst_at_design,
-};
+pub use words::{frequency_number, frequency_words, margin_words, verdict_key, verdict_words};
 
 use phea_dynamics::portable;
 use phea_qft::audit::audit_by;
@@ -47,11 +42,12 @@ use phea_qft::verification::{
 use crate::caveat::Caveat;
 use crate::limit_kind::JudgedLimits;
 use crate::plant_names::PlantNames;
-use crate::quantity::DisplayUnit;
-use crate::robust::{LINES_IN_MOTION, RobustError, RobustProblem, numbered, robust_problem};
+use crate::quantity::Units;
+use crate::robust::{NoPolynomials, RobustError, RobustProblem, numbered, robust_problem};
 use crate::setup::Setup;
 use crate::side_by_side::{all_cores, both};
 use crate::source::Source;
+use crate::specification::SpecificationName;
 use phea_dynamics::watch::{Stopped, Watch, part, unwatched};
 
 /// Why there is nothing to audit.
@@ -147,7 +143,7 @@ pub struct ProjectAudit {
     /// The names of the parameters of a plant.
     pub names: PlantNames,
     /// What each specification is called.
-    pub specification_names: Vec<String>,
+    pub specification_names: Vec<SpecificationName>,
     /// The number in the file, from 1, of each that is declared there; the others come after them.
     pub specification_numbers: Vec<usize>,
     /// Position of every plant; `None` where they differ in it or its stiffness, and without a rig.
@@ -157,7 +153,7 @@ pub struct ProjectAudit {
     /// Whether everything between them belongs to the family.
     pub whole_box: bool,
     /// Why its plants have no polynomials; `None` where they have them.
-    pub without_polynomials: Option<&'static str>,
+    pub without_polynomials: Option<NoPolynomials>,
     /// Paths that the delay margin delays with the controller; gain, phase and modulus margins are
     /// those of the force loop around them.
     pub delayed_paths: DelayedPaths,
@@ -167,6 +163,8 @@ pub struct ProjectAudit {
     pub delay_s: f64,
     /// Dead time of plant, sensor and controller.
     pub dead_time: LoopDeadTime,
+    /// Motion of the rig and units of display.
+    pub units: Units,
     /// Declared effects that the audit does not include.
     pub caveats: Vec<Caveat>,
     /// What the worst plant of each specification reaches, where that is a magnitude against a
@@ -301,6 +299,7 @@ impl ProjectAudit {
             sample_time_s: compensation.sample_time_s(),
             delay_s: compensation.delay_s(),
             dead_time: LoopDeadTime::of(problem),
+            units: problem.units,
             caveats,
             velocity_noise,
             pressure_noise,
@@ -341,13 +340,13 @@ impl ProjectAudit {
     }
 
     /// What a specification is called.
-    pub fn name_of(&self, index: usize) -> &str {
-        self.specification_names.get(index).map_or("", String::as_str)
+    pub fn name_of(&self, index: usize) -> &'static str {
+        self.specification_names.get(index).map_or("", |name| name.words())
     }
 
     /// Whether the plants have lines with waves, which are fitted.
     pub fn has_lines_in_motion(&self) -> bool {
-        self.without_polynomials == Some(LINES_IN_MOTION)
+        self.without_polynomials == Some(NoPolynomials::LinesInMotion)
     }
 
     /// The number of a specification in the file, from 1; `None` for one that is not declared.
@@ -359,68 +358,4 @@ impl ProjectAudit {
     pub fn numbered(&self, index: usize) -> String {
         numbered(self.number_of(index), self.name_of(index))
     }
-
-    /// Which plants were audited, in a sentence.
-    pub fn family_sentence(&self) -> String {
-        let why = self.without_polynomials.map(|why| format!(", every plant by its response with {why}"));
-        let moving = why.unwrap_or_default();
-        match &self.names {
-            PlantNames::Measured(names) => format!("Family: {}.", counted(names.len(), "measured response")),
-            PlantNames::Parameters(names) if names.is_empty() => format!("Family: one plant{moving}."),
-            PlantNames::Parameters(names) if self.whole_box => {
-                // the members of a family with lines in motion are without the corners
-                let beside = if self.has_lines_in_motion() { " beside the corners" } else { "" };
-                format!(
-                    "Family: {}{beside} of a box over {}, and everything between them{moving}.",
-                    counted(self.members, "plant"),
-                    counted(names.len(), "uncertain parameter")
-                )
-            }
-            PlantNames::Parameters(names) => {
-                format!(
-                    "Family: {} with {}{moving}.",
-                    counted(self.members, "given plant"),
-                    counted(names.len(), "uncertain parameter")
-                )
-            }
-        }
-    }
-
-    /// Delay and samples of the loop, in a sentence.
-    pub fn loop_sentence(&self) -> String {
-        let of_parts = self.dead_time.words();
-        let in_lines = self.without_polynomials == Some(LINES_IN_MOTION);
-        let delay = match self.delay_s {
-            0.0 if of_parts.is_empty() && in_lines => {
-                "without delay but that of its lines in motion".to_string()
-            }
-            0.0 if of_parts.is_empty() => "without delay".to_string(),
-            0.0 => format!("without delay of its own, {of_parts}"),
-            delay => {
-                let parts =
-                    [format!("with a delay of {}", DisplayUnit::MILLISECOND.text(delay, 3)), of_parts];
-                parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
-            }
-        };
-        match self.sample_time_s {
-            None => format!("Loop: continuous, {delay}."),
-            Some(sample_time) => {
-                let images = match self.names {
-                    PlantNames::Measured(_) => {
-                        " Beyond the measurements the response is assumed to be no larger than at their ends."
-                    }
-                    PlantNames::Parameters(_) => "",
-                };
-                format!(
-                    "Loop: sampled every {} with a zero-order hold, {delay}.{images}",
-                    DisplayUnit::MILLISECOND.text(sample_time, 3)
-                )
-            }
-        }
-    }
-}
-
-/// `1 plant`, `2 plants`.
-fn counted(count: usize, noun: &str) -> String {
-    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }

@@ -126,7 +126,7 @@ pub enum CampaignError {
         /// Counted from 1.
         line: usize,
         /// What is wrong with it.
-        fault: &'static str,
+        fault: RowFault,
     },
     /// Another program has rewritten the table.
     #[error(
@@ -158,4 +158,18 @@ pub enum CampaignError {
     /// A run, written as settings, is no longer a valid project.
     #[error("{0}")]
     Settings(Box<Refusal>),
+}
+
+/// Fault of a line of the kept table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RowFault {
+    /// Its checksum is wrong.
+    #[error("is not as it was written")]
+    Changed,
+    /// Its index is not that of its place.
+    #[error("belongs to another run")]
+    OfAnotherRun,
+    /// Its numbers are not those of its index.
+    #[error("has other numbers than its run draws")]
+    OtherNumbers,
 }

@@ -4,6 +4,7 @@
 //! the verdict; where a specification depends on it, the verdict is not proven.
 
 mod beyond_reach;
+mod effect;
 mod fed;
 mod friction_directions;
 mod leakage_humps;
@@ -13,8 +14,7 @@ mod null_sides;
 pub(crate) mod overlap;
 
 use phea_hydraulics::cross_port::Restrictor;
-use phea_hydraulics::operating_point::{Condition, OperatingPoint};
-use phea_hydraulics::series::MOST_SEGMENTS;
+use phea_hydraulics::operating_point::Condition;
 
 use beyond_reach::beyond_reach;
 use fed::{fed_in_loop, feed_forward, impedance, measured_without_pressures, pressures_in_loop};
@@ -24,21 +24,28 @@ use misfit::misfits;
 use moved_roots::moved_roots;
 use overlap::overlap;
 
-pub use misfit::misfits_in_runs;
+pub use effect::{CountedSettings, FeedForwardObstacle, UncountedEffect};
+pub use misfit::{MISFIT_BOUND, MisfitConsequence, UnexplainedKind, UnexplainedPart, unexplained_parts};
 
-use crate::family::{ShutGas, shut_gas};
+use crate::family::shut_gas;
 use crate::project::{CrossPortKind, DeclaredSeries, Load, Project, Pump, SupplyModel};
-use crate::quantity::{DisplayUnit, PRESSURE, display, significant};
 use crate::rig::{ChargedRange, accumulator_place, charged_range, cross_port_at_point, waves_right_to};
 use crate::setup::Setup;
 
 /// A declared effect that the linear loop does not include.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Caveat {
-    /// What it is, and where it is included.
-    pub sentence: String,
-    /// Whether a specification that the linear loop satisfies may be violated because of it.
+    /// The effect, with its numbers.
+    pub effect: UncountedEffect,
+    /// True where a specification that the linear loop satisfies may be violated because of it.
     pub unproven: bool,
+}
+
+impl Caveat {
+    /// An effect that leaves the verdict as it is.
+    fn noted(effect: UncountedEffect) -> Caveat {
+        Caveat { effect, unproven: false }
+    }
 }
 
 /// Declared effects that no linear loop includes.
@@ -47,10 +54,7 @@ pub fn caveats(setup: &Setup<'_>) -> Vec<Caveat> {
         supply(setup).into_iter().chain(accumulator(setup)).chain(cross_port(setup)).chain(neck(setup));
     let of_rig = of_rig.chain(adjustment(setup)).chain(gas_valve(setup));
     let of_rig = apart_from_lines(setup).chain(of_rig).chain(progression(setup)).chain(segments(setup));
-    let of_valve = leakage_humps(setup)
-        .into_iter()
-        .chain(overlap(setup))
-        .map(|sentence| Caveat { sentence, unproven: false });
+    let of_valve = leakage_humps(setup).into_iter().chain(overlap(setup)).map(Caveat::noted);
     of_valve
         .chain(misfits(setup))
         .chain(beyond_reach(setup))
@@ -71,23 +75,16 @@ fn blocked_piston(setup: &Setup<'_>) -> Option<Caveat> {
     }
     let (force, parts) = (rig.point.hydraulic_force, rig.actuator.components());
     let is_visible = force.abs() > LEAST_FORCE * parts.cylinder.greatest_areas()[0] * parts.supply.pressure;
-    is_visible.then(|| Caveat {
-        sentence: format!(
-            "family.operating_region has positions alone: its plants are those of a piston blocked at null, which pushes with {}, and not \
-             of zero force, for which operating_point.load_force = 0 is stated",
-            setup.project.units.force.short(force, 4)
-        ),
-        unproven: false,
-    })
+    is_visible.then(|| Caveat::noted(UncountedEffect::BlockedPiston { force }))
 }
 
 /// Part of the largest force from which on it changes a plant.
 const LEAST_FORCE: f64 = 1e-3;
 
-/// Declared effects that no linear model includes, in sentences.
-pub fn of_models(setup: &Setup<'_>) -> Vec<String> {
+/// Declared effects that no linear model includes.
+pub fn of_models(setup: &Setup<'_>) -> Vec<UncountedEffect> {
     let project = setup.project;
-    let others = apart_from_lines(setup).map(|caveat| caveat.sentence);
+    let others = apart_from_lines(setup).map(|caveat| caveat.effect);
     lumped(project)
         .into_iter()
         .chain(others)
@@ -97,11 +94,11 @@ pub fn of_models(setup: &Setup<'_>) -> Vec<String> {
         .chain(fed_in_loop(setup))
         .chain(pressures_in_loop(project))
         .chain(beside_spring(project))
-        .chain(standing(project))
+        .chain(fixed_setting(project))
         .chain(null_sides::null_sides(setup))
         .chain(leakage_humps(setup))
         .chain(overlap(setup))
-        .chain(misfits(setup).into_iter().map(|caveat| caveat.sentence))
+        .chain(misfits(setup).into_iter().map(|caveat| caveat.effect))
         .collect()
 }
 
@@ -114,82 +111,37 @@ fn progression(setup: &Setup<'_>) -> Option<Caveat> {
     if declared.progression == 0.0 {
         return None;
     }
-    let stiffness = |value: f64| DisplayUnit::MEGANEWTON_PER_METRE.text(value, 3);
-    let here = setup.rig().ok()?.plant.series?.stiffness();
+    let counted = setup.rig().ok()?.plant.series?.stiffness();
     let stiffest = declared.stiffness * (1.0 + 3.0 * declared.progression);
-    Some(Caveat {
-        sentence: format!(
-            "series.progression is counted for small motions, with the {} that the spring has at the operating point: it has {} at rest and \
-             {} at the end of its travel, and only a simulation shows a large step through both",
-            stiffness(here),
-            stiffness(declared.stiffness),
-            stiffness(stiffest)
-        ),
-        unproven: false,
-    })
+    Some(Caveat::noted(UncountedEffect::ProgressiveSpring { counted, at_rest: declared.stiffness, stiffest }))
 }
 
 /// The waves of a transmission beyond its segments.
 fn segments(setup: &Setup<'_>) -> Option<Caveat> {
     let declared = setup.project.actuator.as_ref()?.series.as_ref()?.transmission()?;
     let right_to = waves_right_to(setup.rig().ok()?)?;
-    Some(Caveat {
-        sentence: format!(
-            "the line of the transmission is counted in segments, here {}, whose waves are right to 3 % up to {} rad/s: a margin beyond that may \
-             be that of its segments{}{}",
-            declared.segments,
-            significant(right_to, 3),
-            if (declared.segments as usize) < MOST_SEGMENTS { "; `--on-machine` tries more" } else { "" },
-            if declared.segments > PROVEN_SEGMENTS {
-                "; `--prove` encloses two segments, and no more"
-            } else {
-                ""
-            }
-        ),
-        unproven: false,
-    })
+    Some(Caveat::noted(UncountedEffect::TransmissionSegments { segments: declared.segments, right_to }))
 }
 
-/// Segments up to which the polynomials of the plant can be enclosed.
-const PROVEN_SEGMENTS: u32 = 2;
-
 /// A linear model has fixed settings.
-fn standing(project: &Project) -> Option<String> {
+fn fixed_setting(project: &Project) -> Option<UncountedEffect> {
     let adjusted: Vec<_> = project.actuator.as_ref()?.adjustments().into_iter().flatten().collect();
     let moves_gas = adjusted.iter().any(|one| one.valve().is_none());
-    let brings = if moves_gas { ", and one that moves brings energy in" } else { "" };
-    (!adjusted.is_empty()).then(|| {
-        format!(
-            "line.accumulator.adjustment is counted at its setting of rest: stiffness and passivity are those of a fixed setting{brings}"
-        )
-    })
+    (!adjusted.is_empty()).then_some(UncountedEffect::FixedSetting { moves_gas })
 }
 
 /// Effects of a series element that the models with one load pressure do not include.
-fn beside_spring(project: &Project) -> Option<String> {
-    let series = match project.actuator.as_ref()?.series.as_ref()? {
-        DeclaredSeries::Spring(spring) => spring,
-        DeclaredSeries::Transmission(_) => {
-            return Some(
-                "inertia and resistance of the transmission are counted in the plant and its impedance alone: the other models have \
-                 its oil as a spring in series with the force sensor"
-                    .to_string(),
-            );
+fn beside_spring(project: &Project) -> Option<UncountedEffect> {
+    match project.actuator.as_ref()?.series.as_ref()? {
+        DeclaredSeries::Spring(spring) => {
+            let (damping, mass) = (spring.damping > 0.0, spring.mass > 0.0);
+            (damping || mass).then_some(UncountedEffect::SeriesParts { damping, mass })
         }
-    };
-    let keys = [("series.damping", series.damping), ("series.mass", series.mass)];
-    let beside: Vec<&str> = keys.iter().filter(|(_, value)| *value > 0.0).map(|(key, _)| *key).collect();
-    let verb = if beside.len() > 1 { "are" } else { "is" };
-    (!beside.is_empty()).then(|| {
-        format!(
-            "{} {verb} counted in the plant and its impedance alone: the other models have the series spring without it, in series with the \
-             force sensor",
-            beside.join(" and ")
-        )
-    })
+        DeclaredSeries::Transmission(_) => Some(UncountedEffect::TransmissionAsSpring),
+    }
 }
 
-/// What no linear model counts.
+/// Effects that no linear model includes, without those of the lines.
 fn apart_from_lines(setup: &Setup<'_>) -> impl Iterator<Item = Caveat> {
     let project = setup.project;
     let fed = [feed_forward(project), measured_without_pressures(project), impedance(setup)];
@@ -206,34 +158,20 @@ fn stages(project: &Project) -> Option<Caveat> {
     let in_region = region.is_some_and(|region| region.velocity.is_some());
     let moves =
         in_region || project.resolved_operating_point().velocity.is_some_and(|velocity| velocity != 0.0);
-    let sentence = match moves {
-        false => {
-            "cylinder.stage is counted with the areas at each operating point: only a simulation shows a motion from one stage to the next"
-        }
-        true => {
-            "cylinder.stage is counted with the areas at each operating point, and not with their change at a steady velocity through a \
-                 transition: only a simulation shows it"
-        }
-    };
-    Some(Caveat { sentence: sentence.to_string(), unproven: moves })
+    Some(Caveat { effect: UncountedEffect::TelescopicStages { moves }, unproven: moves })
 }
 
 /// A wall without a stated mass of the load.
 fn load(project: &Project) -> Option<Caveat> {
     let load = &project.actuator.as_ref()?.load;
-    matches!(load, Load::Wall { mass: None, .. }).then(|| Caveat {
-        sentence: "load.model = \"wall\" is not included without load.mass: this is the loop with a load that does not move"
-            .to_string(),
-        unproven: true,
-    })
+    matches!(load, Load::Wall { mass: None, .. })
+        .then_some(Caveat { effect: UncountedEffect::WallWithoutMass, unproven: true })
 }
 
 /// Effects of the lines that the models of a linearisation do not include.
-fn lumped(project: &Project) -> Option<String> {
-    let (place, model) = moving(project)?;
-    Some(format!(
-        "{place} = \"{model}\" is not counted in these models, which have lumped lines: verify, design and simulate count it"
-    ))
+fn lumped(project: &Project) -> Option<UncountedEffect> {
+    let (key, model) = moving(project)?;
+    Some(UncountedEffect::LinesInMotion { key, model })
 }
 
 /// The key that sets lines in motion, and its word.
@@ -254,26 +192,14 @@ fn moving(project: &Project) -> Option<(&'static str, &'static str)> {
 fn supply(setup: &Setup<'_>) -> Option<Caveat> {
     let project = setup.project;
     let supply = &project.actuator.as_ref()?.supply;
-    let SupplyModel::PumpLimited(Pump { flow: gives, .. }) = supply.model else { return None };
+    let SupplyModel::PumpLimited(Pump { flow: delivered, .. }) = supply.model else { return None };
     if is_measured(project) {
         return None;
     }
     let found = setup.rig().ok()?.supply?;
-    let flow = |value: f64| project.units.flow.text(value, 3);
-    let (taken, gives_words) = (flow(found.taken), flow(gives));
-    let pressure = project.units.pressure.text(found.supply.pressure, 4);
-    let rests = found.taken < gives;
-    let sentence = match rests {
-        true => format!(
-            "supply.model = \"pump_limited\" is included for small motions, at {pressure} where the valve takes {taken} of the \
-             pump's {gives_words}: only a simulation shows what a large step takes beyond that"
-        ),
-        false => format!(
-            "supply.model = \"pump_limited\" has no equilibrium at the operating point, where the valve takes {taken} and the pump gives \
-             {gives_words}: the plant is that at {pressure}, where the relief valve shuts"
-        ),
-    };
-    Some(Caveat { sentence, unproven: !rests })
+    let (pressure, taken) = (found.supply.pressure, found.taken);
+    let effect = UncountedEffect::LimitedPump { pressure, taken, delivered };
+    Some(Caveat { effect, unproven: taken >= delivered })
 }
 
 /// The gas of accumulators is counted at the pressures of each operating point; where a force
@@ -285,35 +211,20 @@ fn accumulator(setup: &Setup<'_>) -> Option<Caveat> {
     let declared = setup.project.actuator.as_ref()?;
     let ChargedRange { least, greatest } = charged_range(setup.rig().ok()?)?;
     let [of_a, of_b] = accumulator_place(declared);
-    let unit = setup.project.units.force;
-    let newton = |point: OperatingPoint| unit.text(point.hydraulic_force, 3);
-    let shut = shut_gas(setup).ok().flatten();
-    let (place, beyond) = match (least, greatest) {
-        (None, None) => (if shut.as_ref()?.side == 'A' { of_a } else { of_b }, None),
-        (Some(least), None) => (of_a, Some(format!("below {}", newton(least)))),
-        (None, Some(greatest)) => (of_b, Some(format!("above {}", newton(greatest)))),
-        (Some(least), Some(greatest)) => {
-            (of_a, Some(format!("below {} and above {}", newton(least), newton(greatest))))
+    let of_family = shut_gas(setup).ok().flatten();
+    let shut_beyond = [least, greatest].map(|point| point.map(|point| point.hydraulic_force));
+    let key = match shut_beyond {
+        [None, None] => {
+            if of_family.as_ref()?.side == 'A' {
+                of_a
+            } else {
+                of_b
+            }
         }
+        [None, Some(_)] => of_b,
+        [Some(_), _] => of_a,
     };
-    let declared = beyond.map(|beyond| {
-        format!(
-            ": at forces {beyond} a chamber of the declared rig falls below the precharge, its gas is shut off, and only a simulation \
-             shows a motion that goes there"
-        )
-    });
-    let of_family = shut.map(|ShutGas { count, examined, side, at }| {
-        format!(
-            "; at {count} of {examined} plants of the family it is shut off, and they are as stiff as without it, the first at chamber {side} \
-             with {at}"
-        )
-    });
-    let sentence = format!(
-        "{place} is counted for small motions, with its gas at the pressures of the operating point{}{}",
-        declared.unwrap_or_default(),
-        of_family.unwrap_or_default()
-    );
-    Some(Caveat { sentence, unproven: false })
+    Some(Caveat::noted(UncountedEffect::Gas { key, shut_beyond, of_family }))
 }
 
 /// The loss at the ends of a neck has no slope where nothing flows.
@@ -324,12 +235,7 @@ fn neck(setup: &Setup<'_>) -> Option<Caveat> {
     let line = &setup.project.actuator.as_ref()?.line;
     let gas = [&line.a, &line.b].into_iter().filter_map(|side| side.accumulator.as_ref());
     let loses = gas.filter_map(|gas| gas.neck).any(|neck| neck.loss_coefficient > 0.0);
-    loses.then(|| Caveat {
-        sentence: "line.accumulator.neck_loss_coefficient is not counted for small motions, which the laminar resistance of the neck \
-                   alone damps: only a simulation shows what its ends lose of a large flow"
-            .to_string(),
-        unproven: false,
-    })
+    loses.then_some(Caveat::noted(UncountedEffect::NeckLoss))
 }
 
 /// A verdict is for fixed settings.
@@ -341,25 +247,15 @@ fn adjustment(setup: &Setup<'_>) -> Option<Caveat> {
     let first = adjusted.into_iter().flatten().next()?;
     let mut ranges = setup.project.uncertainty.iter();
     let range = ranges.find(|uncertain| uncertain.name.ends_with(SETTING_PATH));
-    let at = |value: f64| significant(value, 3);
-    let counted = match (range, adjusted) {
-        (Some(range), _) => {
-            format!("at every fixed setting from {} to {}", at(range.minimum), at(range.maximum))
-        }
+    let settings = match (range, adjusted) {
+        (Some(range), _) => CountedSettings::Range([range.minimum, range.maximum]),
         (None, [Some(a), Some(b)]) if a.setting != b.setting => {
-            format!("at its settings of rest, {} at A and {} at B", at(a.setting), at(b.setting))
+            CountedSettings::OfSides([a.setting, b.setting])
         }
-        (None, _) => format!("at its setting of rest, {}", at(first.setting)),
+        (None, _) => CountedSettings::OfRest(first.setting),
     };
     let moves_gas = adjusted.into_iter().flatten().any(|one| one.valve().is_none());
-    let brings = if moves_gas { "brings energy in and " } else { "" };
-    Some(Caveat {
-        sentence: format!(
-            "line.accumulator.adjustment is counted {counted}: one that moves {brings}makes the loop vary with time, which only a simulation \
-             shows (`setting_change`)"
-        ),
-        unproven: false,
-    })
+    Some(Caveat::noted(UncountedEffect::Adjustment { settings, moves_gas }))
 }
 
 /// End of the path of a setting.
@@ -375,45 +271,20 @@ fn gas_valve(setup: &Setup<'_>) -> Option<Caveat> {
     let valves = [0, 1].map(|side| components.gas_valve(side).filter(|valve| !valve.shut));
     let valve = valves.into_iter().flatten().next()?;
     let covers = |name: &String| name.ends_with(SETTING_PATH) || name.ends_with(TRANSITION_PATH);
-    let is_open = setup.project.uncertainty.iter().any(|uncertain| covers(&uncertain.name));
-    let cure = match is_open {
-        true => "the ranges of setting and transition_pressure say up to which oscillation",
-        false => {
-            "state a range of line.accumulator.adjustment.setting or transition_pressure in [uncertainty], or judge by a simulation"
-        }
-    };
-    let sentence = format!(
-        "the valve of line.accumulator.adjustment has no drop at rest, and is counted with the slope of its transition_pressure of {}: an \
-         oscillation beyond that finds it narrower: {cure}",
-        display(valve.transition_pressure, &PRESSURE, 3)
-    );
-    Some(Caveat { sentence, unproven: !is_open })
+    let has_range = setup.project.uncertainty.iter().any(|uncertain| covers(&uncertain.name));
+    let effect = UncountedEffect::GasValve { transition_pressure: valve.transition_pressure, has_range };
+    Some(Caveat { effect, unproven: !has_range })
 }
 
 /// Necks and heat of accumulators, which the models of a linearisation do not include.
-fn of_gas(project: &Project) -> Option<String> {
+fn of_gas(project: &Project) -> Option<UncountedEffect> {
     let line = &project.actuator.as_ref()?.line;
     let gas = [&line.a, &line.b].into_iter().filter_map(|side| side.accumulator.as_ref());
     let (necks, heat) = gas.fold((false, false), |(necks, heat), gas| {
         (necks || gas.neck.is_some(), heat || gas.thermal_time_constant.is_some())
     });
     let valve = project.actuator.as_ref()?.adjustments().into_iter().flatten().any(|of| of.valve().is_some());
-    let (what, verb, without) = match (necks, heat) {
-        (false, false) if valve => {
-            ("the valve of line.accumulator.adjustment", "is", "have its gas at the chamber")
-        }
-        (false, false) => return None,
-        (true, false) => ("the neck of line.accumulator", "is", "have its gas at the chamber"),
-        (false, true) => ("line.accumulator.thermal_time_constant", "is", "have the isothermal gas of rest"),
-        (true, true) => (
-            "the neck of line.accumulator and its thermal_time_constant",
-            "are",
-            "have the isothermal gas of rest at the chamber",
-        ),
-    };
-    Some(format!(
-        "{what} {verb} counted in the plant and the impedance at the load: the other models and the asymptotes of the impedance {without}"
-    ))
+    (necks || heat || valve).then_some(UncountedEffect::GasOutsideModels { necks, heat })
 }
 
 /// Drops of an orifice in transition pressures below which its slope is that of the transition.
@@ -428,49 +299,30 @@ fn cross_port(setup: &Setup<'_>) -> Option<Caveat> {
     }
     let found = cross_port_at_point(setup.rig().ok()?)?;
     let Restrictor::Orifice { transition_pressure, .. } = found.valve.restrictor else { return None };
-    let drop = if found.valve.capacity.is_some() { 0.0 } else { found.drop };
-    if drop.abs() >= IN_TRANSITION * transition_pressure {
+    let drop = found.valve.capacity.is_none().then_some(found.drop);
+    if drop.unwrap_or(0.0).abs() >= IN_TRANSITION * transition_pressure {
         return None;
     }
-    let path = "cross_port.transition_pressure";
-    let is_open = project.uncertainty.iter().any(|uncertain| uncertain.name == path);
-    let conductance = significant(found.conductance, 3);
-    let transition = display(transition_pressure, &PRESSURE, 3);
-    let at = match found.valve.capacity {
-        Some(_) => "no drop at rest".to_string(),
-        None => format!("a drop of {} at rest", display(drop, &PRESSURE, 3)),
-    };
-    let cure = match is_open {
-        true => format!("the range of {path} says up to which oscillation"),
-        false => format!(
-            "state a range of {path} in [uncertainty], up to 0.81 times the amplitude of the drop, or judge by a simulation"
-        ),
-    };
-    let sentence = format!(
-        "cross_port is counted for small motions: its orifice has {at}, and there the slope of its transition_pressure of {transition}, \
-         {conductance} m3/(s.Pa); an oscillation beyond that is damped less: {cure}"
-    );
-    Some(Caveat { sentence, unproven: !is_open })
+    let has_range = project.uncertainty.iter().any(|uncertain| uncertain.name == CROSS_PORT_TRANSITION);
+    let conductance = found.conductance;
+    let effect = UncountedEffect::CrossPortOrifice { drop, transition_pressure, conductance, has_range };
+    Some(Caveat { effect, unproven: !has_range })
 }
 
+/// Path of the transition pressure of an orifice between the chambers.
+const CROSS_PORT_TRANSITION: &str = "cross_port.transition_pressure";
+
 /// Dynamic pressure feedback, which the models of a linearisation do not include.
-fn fed_between_chambers(project: &Project) -> Option<String> {
+fn fed_between_chambers(project: &Project) -> Option<UncountedEffect> {
     let port = project.actuator.as_ref()?.cross_port.as_ref()?;
-    matches!(port.kind, CrossPortKind::DynamicPressureFeedback { .. }).then(|| {
-        "cross_port.kind = \"dynamic_pressure_feedback\" is counted in the plant and the impedance at the load: the other models and the \
-         asymptotes of the impedance are without it"
-            .to_string()
-    })
+    matches!(port.kind, CrossPortKind::DynamicPressureFeedback { .. })
+        .then_some(UncountedEffect::DynamicPressureFeedback)
 }
 
 /// Effects of the supply that the models of a linearisation do not include.
-fn constant_supply(project: &Project) -> Option<String> {
+fn constant_supply(project: &Project) -> Option<UncountedEffect> {
     let supply = &project.actuator.as_ref()?.supply;
-    matches!(supply.model, SupplyModel::PumpLimited(_)).then(|| {
-        "supply.model = \"pump_limited\" is counted in the plant alone: the other models have the pressure at which it settles, held \
-         constant"
-            .to_string()
-    })
+    matches!(supply.model, SupplyModel::PumpLimited(_)).then_some(UncountedEffect::ConstantSupply)
 }
 
 /// Whether the plants of the family are responses that were measured.

@@ -10,7 +10,8 @@ pub struct CommonPosition {
     pub position: f64,
     /// The length of the stroke.
     pub stroke: f64,
-    units: Units,
+    /// How the rig moves.
+    pub units: Units,
 }
 
 impl CommonPosition {
@@ -27,19 +28,5 @@ impl CommonPosition {
         let rig = setup.rig().ok()?;
         let stroke = rig.actuator.components().cylinder.stroke.length()?;
         Some(CommonPosition { position: rig.point.position, stroke, units: project.units })
-    }
-
-    /// `100 mm of 200 mm of stroke`
-    pub fn words(&self) -> String {
-        let [position, stroke] = [self.position, self.stroke].map(|x| self.units.position.short(x, 4));
-        format!("{position} of {stroke} of stroke")
-    }
-
-    /// The same, with what includes other positions.
-    pub fn sentence(&self) -> String {
-        format!(
-            "Position: every plant is taken at {}. Elsewhere the oil is stiffer or softer: nothing is said of a loop there, unless `position` in [family.operating_region] includes it.",
-            self.words()
-        )
     }
 }

@@ -19,10 +19,13 @@ mod visited_box;
 
 use phea_dynamics::closed_loop::ClosedLoop;
 use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant, UncertainPlantError};
+use phea_hydraulics::actuator::ActuatorError;
 use phea_hydraulics::line::LineError;
+use phea_hydraulics::operating_point::OperatingPointError;
 use phea_qft::family::{Family, MeasurementError};
 
 use crate::project::{FormulaError, Project, Refusal};
+use crate::quantity::significant;
 use crate::rig::RigError;
 use crate::setup::Setup;
 use crate::source::Source;
@@ -103,19 +106,68 @@ pub enum ProjectFamilyError {
         /// The names of these parameters.
         numbers: Vec<String>,
         /// Why it does not exist.
-        reason: String,
+        reason: NoOperatingPoint,
     },
     /// A region that the flow of the pump does not reach.
-    #[error("[family.operating_region] `velocity`: {0}")]
-    Region(String),
+    #[error(
+        "[family.operating_region] `velocity`: the pump gives {least} to {most}, and the nominal velocity is {nominal}"
+    )]
+    Region {
+        /// Least velocity that the pump supplies, with its unit.
+        least: String,
+        /// Greatest velocity that the pump supplies, with its unit.
+        most: String,
+        /// Nominal velocity, with its unit.
+        nominal: String,
+    },
     /// An uncertain number without a formula that relates it to the linear model.
     #[error("[uncertainty] `{path}`: {reason}")]
     Path {
         /// The path.
         path: String,
-        /// Why it does not exist, and what to use instead.
-        reason: String,
+        /// Why it does not affect the linear model.
+        reason: NoEffect,
     },
+}
+
+/// The reason why a plant of the box has no operating point.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoOperatingPoint {
+    /// Its components do not make an actuator.
+    #[error(transparent)]
+    Actuator(#[from] ActuatorError),
+    /// Nothing balances its pressures.
+    #[error(transparent)]
+    Unbalanced(#[from] OperatingPointError),
+    /// The recorded pressures are not those that balance.
+    #[error(
+        "the pressures recorded for it miss those that balance by {} % of the supply's",
+        significant(100.0 * .fraction, 2)
+    )]
+    Missed {
+        /// Sum of the errors of both pressures as fractions of the supply pressure, and of the
+        /// command as a fraction of the nominal voltage.
+        fraction: f64,
+    },
+}
+
+/// The reason why an uncertain number does not affect the linear model.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoEffect {
+    /// The project states a parameter of the linear model that would follow from it.
+    #[error("what the project states goes before what would follow from it")]
+    StatedInstead,
+    /// It affects only the waves in the lines, which are those of the declared oil.
+    #[error(
+        "it does not enter the linear model but through the waves in the lines, which are those of the declared oil: verify other oils one by one, `--set {path}=...`"
+    )]
+    OnlyInWaves {
+        /// The path of the number.
+        path: String,
+    },
+    /// No equation of the linear model contains it.
+    #[error("it does not enter the linear model")]
+    NotInModel,
 }
 
 /// The family of a project: the linear model of its actuator, or the transfer function it states,

@@ -1,18 +1,38 @@
 //! Requirements that no loop can satisfy, found before any search, each with the key that states
-//! it and what would satisfy it.
+//! it.
 
 use phea_qft::design::{DesignProblem, Finding, FindingSeverity, diagnose};
 use phea_qft::family::Family;
 use phea_qft::specification::ClosedLoop;
 
-use crate::design::{Explanation, design_problem};
+use crate::design::design_problem;
+pub use crate::impossible_steps::{ImpossibleStep, ImpossibleSteps, SlowStep, StillTimes};
 use crate::impossible_steps::{few_plants, impossible_steps};
-use crate::project::{LateError, Project};
-use crate::quantity::significant;
+use crate::project::Project;
 use crate::robust::{RobustProblem, robust_problem};
 use crate::setup::Setup;
 use crate::source::Source;
 use crate::specification::{SpecificationError, closed_loops, crossed_limits};
+
+/// A requirement that no linear loop can satisfy.
+#[derive(Clone, Debug)]
+pub enum Impossibility {
+    /// Limits that cross.
+    CrossedLimits(SpecificationError),
+    /// A step.
+    Step(ImpossibleStep),
+    /// What a few plants forbid, with the path of the key that states it.
+    Plants(String, Finding),
+}
+
+/// The requirements of a project that no linear loop can satisfy.
+#[derive(Clone, Debug)]
+pub struct Impossibilities {
+    /// The requirements.
+    pub found: Vec<Impossibility>,
+    /// The robust problem; `None` where there is none.
+    pub problem: Option<RobustProblem>,
+}
 
 /// Requirements that no linear loop can satisfy: limits that cross; what a few plants forbid
 /// (the nominal one, some corners, some members), whatever the controller; times shorter than a
@@ -22,40 +42,41 @@ use crate::specification::{SpecificationError, closed_loops, crossed_limits};
 ///
 /// # Errors
 /// [`SpecificationError`] for a limit that is absent or not a function of frequency.
-pub fn impossibilities(source: &dyn Source, setup: &Setup<'_>) -> Result<Vec<LateError>, SpecificationError> {
+pub fn impossibilities(
+    source: &dyn Source,
+    setup: &Setup<'_>,
+) -> Result<Impossibilities, SpecificationError> {
     let project = setup.project;
-    let crossed = crossed_limits(project)?;
-    let mut found: Vec<LateError> = crossed.iter().map(SpecificationError::at).collect();
+    let crossed = crossed_limits(project)?.into_iter();
+    let mut found: Vec<Impossibility> = crossed.map(Impossibility::CrossedLimits).collect();
     if project.specifications.is_empty() {
-        return Ok(found);
+        return Ok(Impossibilities { found, problem: None });
     }
-    let Ok(problem) = robust_problem(source, setup) else { return Ok(found) };
-    found.extend(impossible_steps(setup, &problem));
+    let Ok(problem) = robust_problem(source, setup) else {
+        return Ok(Impossibilities { found, problem: None });
+    };
+    found.extend(impossible_steps(setup, &problem).into_iter().map(Impossibility::Step));
     found.extend(of_plants(setup, &problem, few_plants(&problem.family)));
-    Ok(found)
+    Ok(Impossibilities { found, problem: Some(problem) })
 }
 
 /// What a few plants forbid.
-fn of_plants(setup: &Setup<'_>, problem: &RobustProblem, family: Family) -> Vec<LateError> {
+fn of_plants(setup: &Setup<'_>, problem: &RobustProblem, family: Family) -> Vec<Impossibility> {
     let few = DesignProblem { family, ..design_problem(setup, problem) };
     let is_new = |finding: &Finding| {
         finding.severity() == FindingSeverity::Impossible && !matches!(finding, Finding::CrossedLimits { .. })
     };
-    let findings = diagnose(&few);
-    findings.iter().filter(|finding| is_new(finding)).map(|one| stated(setup.project, problem, one)).collect()
+    let findings = diagnose(&few).into_iter().filter(is_new);
+    findings.map(|finding| Impossibility::Plants(path(setup.project, &finding), finding)).collect()
 }
 
-/// A finding at the key of the first specification that it concerns, with the plant.
-fn stated(project: &Project, problem: &RobustProblem, finding: &Finding) -> LateError {
-    let explanation = Explanation::of(finding, &|index| problem.stated(index));
-    let plant = explanation.plants.first().map(|plant| problem.names.text(plant));
-    let plant = plant.filter(|text| !text.is_empty()).map_or(String::new(), |text| format!(" ({text})"));
-    let path = match explanation.specifications.first() {
+/// The path of the key of the first specification that a finding concerns.
+fn path(project: &Project, finding: &Finding) -> String {
+    match finding.specifications().first() {
         Some(first) => key_of(project, *first).unwrap_or_else(|| "controller.quantization".to_string()),
         None if matches!(finding, Finding::DelayMargin { .. }) => "design.minimum_delay_margin".to_string(),
         None => "uncertainty".to_string(),
-    };
-    LateError { path, message: format!("{}{plant}", explanation.sentence), help: cure(problem, finding) }
+    }
 }
 
 /// The key of a limit on a closed loop, by its index.
@@ -63,40 +84,4 @@ fn key_of(project: &Project, index: usize) -> Option<String> {
     let (number, closed_loop, _) = closed_loops(project).nth(index)?;
     let key = if closed_loop == ClosedLoop::Tracking { "lower" } else { "limit" };
     Some(format!("specification[{}].{key}", number - 1))
-}
-
-/// What would satisfy it.
-fn cure(problem: &RobustProblem, finding: &Finding) -> String {
-    match finding {
-        Finding::SumBelowOne { frequency_rad_per_s, sensitivity, complementary, .. } => {
-            let at = significant(*frequency_rad_per_s, 3);
-            format!(
-                "at {at} rad/s raise the limit of {} until |S| may be {}, or that of {} until |T| may be {}, or end the `band` of one of them before",
-                problem.stated(sensitivity.specification),
-                significant(1.0 - complementary.limit, 3),
-                problem.stated(complementary.specification),
-                significant(1.0 - sensitivity.limit, 3)
-            )
-        }
-        Finding::DelayMargin { greatest_s, .. } => {
-            format!("require less than {} ms", significant(1e3 * greatest_s, 3))
-        }
-        Finding::GainSign { .. } => "narrow the ranges so that all plants have one sign".to_string(),
-        Finding::PoleOnTheAxis { frequency_rad_per_s, .. } => {
-            format!("allow |T| = 1 at {} rad/s, or end `band` before", significant(*frequency_rad_per_s, 3))
-        }
-        Finding::ZeroOnTheAxis { frequency_rad_per_s, .. } => {
-            format!("allow |S| = 1 at {} rad/s, or begin `band` beyond", significant(*frequency_rad_per_s, 3))
-        }
-        _ => match finding.relaxation_db() {
-            Some(relaxation_db) => {
-                format!(
-                    "raise its limits by more than {} dB, or end their `band` before",
-                    significant(relaxation_db, 3)
-                )
-            }
-            None => "another plant: less dead time, or slower poles and faster zeros in the right half plane"
-                .to_string(),
-        },
-    }
 }

@@ -6,9 +6,13 @@ mod on_rig;
 
 use phea_qft::family::{Extent, Family, UncertainFamily, vertices};
 
-use crate::project::LateError;
+pub use in_time::StillTimes;
+pub use on_rig::SlowStep;
+
+use crate::quantity::Units;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
+use crate::simulate::BeyondReach;
 
 /// Plants of a box that are examined: corners, and members.
 const CORNERS: usize = 8;
@@ -16,9 +20,50 @@ const MEMBERS: usize = 8;
 /// Coordinates of a box whose corners are listed.
 const COORDINATES_MAXIMUM: usize = 8;
 
+/// A required step that no controller makes on the rig.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ImpossibleStep {
+    /// It is to settle before the force can move.
+    BeforeForceMoves {
+        /// Number of the specification, from 1.
+        number: usize,
+        /// Key of the settling time in it.
+        key: &'static str,
+        /// Required settling time, s.
+        settling: f64,
+        /// Times that pass before the force moves.
+        still: StillTimes,
+    },
+    /// It is beyond the piston or the force sensor.
+    BeyondReach(BeyondReach),
+    /// It is beyond the valve.
+    TooSlow(SlowStep),
+}
+
+impl ImpossibleStep {
+    /// The path of the key that states it.
+    pub fn path(&self) -> String {
+        let (number, key) = match self {
+            ImpossibleStep::BeforeForceMoves { number, key, .. } => (number, *key),
+            ImpossibleStep::BeyondReach(beyond) => (&beyond.number, beyond.end.key()),
+            ImpossibleStep::TooSlow(slow) => (&slow.number, "settling_time"),
+        };
+        format!("specification[{}].{key}", number - 1)
+    }
+}
+
+/// Required steps that no controller makes on the rig, with the units of its project.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImpossibleSteps {
+    /// The steps.
+    pub steps: Vec<ImpossibleStep>,
+    /// Motion of the rig and units of display.
+    pub units: Units,
+}
+
 /// Steps that the project requires and that no controller makes on its rig: shorter than a delay,
 /// or beyond what valve, piston or force sensor do. Found before any search.
-pub(crate) fn impossible_steps(setup: &Setup<'_>, problem: &RobustProblem) -> Vec<LateError> {
+pub(crate) fn impossible_steps(setup: &Setup<'_>, problem: &RobustProblem) -> Vec<ImpossibleStep> {
     let few = few_plants(&problem.family);
     [in_time::findings(setup, problem), on_rig::findings(setup, problem, &few)].concat()
 }

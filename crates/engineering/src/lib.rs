@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! Project -> setup::Setup { rig, controller, prefilter, sensor, timing }
-//! Setup   -> derived, sizing, linearize                       what follows from the rig
+//! Setup   -> sizing, linearize                                what follows from the rig
 //! Setup   -> family -> robust::RobustProblem -> audit, shaping, design (-> trial on the machine -> repair)
 //! Setup   -> simulate::ControlledMachine -> simulate, campaign the nonlinear model
 //! Setup   -> bench                                            static tests of the valve
@@ -23,7 +23,6 @@ pub mod campaign;
 pub mod caveat;
 mod common_position;
 pub mod csv;
-pub mod derived;
 pub mod design;
 pub mod estimate;
 pub mod family;

@@ -20,7 +20,7 @@ use phea_dynamics::closed_loop::ClosedLoop;
 
 use crate::audit::highest_crossover;
 use crate::design::{DesignLimitKind, design_limits, highest_bandwidth};
-use crate::project::{ChosenLines, Loaded, Project, ReachedBy};
+use crate::project::{ChosenLines, Loaded, Project, ReachedBy, WavesHindrance};
 use crate::rig::{Rig, quarter_wave_of};
 use crate::robust::{RobustProblem, robust_problem};
 use crate::setup::Setup;
@@ -83,11 +83,12 @@ fn choice(source: &dyn Source, project: &Project, question: LoopInQuestion) -> O
 }
 
 /// Why a rig is not computed with waves.
-fn hindrance(project: &Project) -> Option<String> {
+fn hindrance(project: &Project) -> Option<WavesHindrance> {
     if project.has_free_load() {
-        return Some("the load is a mass without stiffness".to_string());
+        return Some(WavesHindrance::FreeLoad);
     }
-    Setup::rig_of(&project.clone().with_chosen_lines(true)).err().map(|error| error.to_string())
+    let rig = Setup::rig_of(&project.clone().with_chosen_lines(true));
+    rig.err().map(|error| WavesHindrance::Rig(error.to_string()))
 }
 
 /// The highest frequency that loop and requirements reach, and by what.

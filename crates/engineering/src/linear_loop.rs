@@ -4,7 +4,7 @@ use phea_dynamics::controller::Controller;
 use phea_dynamics::frequency::{Margins, margins};
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::time_response::{
-    Interpolation, SampledSignal, Settling, StepBaseline, StepMetrics, TimeResponseError, forced_response,
+    Interpolation, SampledSignal, StepBaseline, StepMetrics, TimeResponseError, forced_response,
     sampled_loop_step, step_metrics, step_response, uniform_times,
 };
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
@@ -28,7 +28,7 @@ pub struct LinearLoop {
     /// Whether the closed loop is stable.
     pub stability: LoopStability,
     /// F P G/(1 + L), where it can be computed.
-    pub step: Result<StepView, String>,
+    pub step: Result<StepView, NoStep>,
 }
 
 /// Whether a closed loop is stable.
@@ -39,7 +39,32 @@ pub enum LoopStability {
     /// A pole of the closed loop does not decay.
     Unstable,
     /// Its poles cannot be computed, with the reason.
-    Unknown(String),
+    Unknown(UnknownStability),
+}
+
+/// The reason why the stability of a closed loop is not known.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum UnknownStability {
+    /// The turns of its characteristic function cannot be counted.
+    #[error("its characteristic function was not resolved")]
+    Unresolved,
+    /// The closed loop cannot be built.
+    #[error(transparent)]
+    Linear(#[from] LinearError),
+}
+
+/// The reason why there is no step response.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoStep {
+    /// The response grows without bound.
+    #[error("the closed loop is unstable, its response grows without bound")]
+    UnstableLoop,
+    /// The prefiltered reference grows without bound.
+    #[error("the prefilter is unstable")]
+    UnstablePrefilter,
+    /// The response cannot be computed.
+    #[error(transparent)]
+    Loop(#[from] LoopError),
 }
 
 /// A unit step through prefilter and closed loop.
@@ -68,8 +93,6 @@ pub enum LoopError {
     Time(#[from] TimeResponseError),
 }
 
-const GROWS: &str = "the closed loop is unstable, its response grows without bound";
-const PREFILTER_UNSTABLE: &str = "the prefilter is unstable";
 /// Number of samples of a step response.
 const SAMPLES: usize = 2000;
 /// A pole that is this close to a zero, relative to its own magnitude, leaves a tail of about this
@@ -137,10 +160,9 @@ fn rational_loop(
     let open_loop = with_sensor.series(&feedback)?;
     let stability = stability(&open_loop)?;
     let step = match () {
-        () if stability == LoopStability::Unstable => Err(GROWS.to_string()),
-        () if !prefilter.is_stable() => Err(PREFILTER_UNSTABLE.to_string()),
-        () => step_view(plant, &with_sensor, &feedback, &prefilter, band_percent)
-            .map_err(|error| error.to_string()),
+        () if stability == LoopStability::Unstable => Err(NoStep::UnstableLoop),
+        () if !prefilter.is_stable() => Err(NoStep::UnstablePrefilter),
+        () => step_view(plant, &with_sensor, &feedback, &prefilter, band_percent).map_err(NoStep::Loop),
     };
     Ok(LinearLoop {
         margins: margins(&open_loop),
@@ -177,14 +199,12 @@ fn loop_of_member(
     let stability = match member_stability(&member, &around).status {
         StabilityStatus::Stable => LoopStability::Stable,
         StabilityStatus::Unstable(_) => LoopStability::Unstable,
-        StabilityStatus::NotResolved(_) => {
-            LoopStability::Unknown("its characteristic function was not resolved".to_string())
-        }
+        StabilityStatus::NotResolved(_) => LoopStability::Unknown(UnknownStability::Unresolved),
     };
     let step = match stability {
-        LoopStability::Unstable => Err(GROWS.to_string()),
-        _ if !around.prefilter().is_stable() => Err(PREFILTER_UNSTABLE.to_string()),
-        _ => step_of_member(&member, &around, band_percent).map_err(|error| error.to_string()),
+        LoopStability::Unstable => Err(NoStep::UnstableLoop),
+        _ if !around.prefilter().is_stable() => Err(NoStep::UnstablePrefilter),
+        _ => step_of_member(&member, &around, band_percent).map_err(NoStep::Loop),
     };
     Ok(LinearLoop {
         margins: margins(&open_loop),
@@ -240,12 +260,11 @@ fn command(
 }
 
 fn stability(open_loop: &TransferFunction) -> Result<LoopStability, LinearError> {
-    let reason = |words: String| Ok(LoopStability::Unknown(words));
     let unity = TransferFunction::gain_only(1.0).in_domain(open_loop.domain())?;
     match open_loop.feedback(&unity) {
         Ok(closed) if closed.is_stable() => Ok(LoopStability::Stable),
         Ok(_) => Ok(LoopStability::Unstable),
-        Err(error) => reason(error.to_string()),
+        Err(error) => Ok(LoopStability::Unknown(error.into())),
     }
 }
 
@@ -298,15 +317,4 @@ fn instants(ends_s: &[f64]) -> Result<Vec<f64>, LoopError> {
 fn duration(of: &TransferFunction) -> f64 {
     let slowest = of.poles().iter().map(|pole| -pole.re).fold(f64::INFINITY, f64::min);
     if slowest > 0.0 { (8.0 / slowest).clamp(0.1, 60.0) } else { 1.0 }
-}
-
-/// A settling time in words, with its band.
-pub fn settling_words(metrics: &StepMetrics) -> String {
-    let band = crate::quantity::significant(metrics.settling_band_percent, 2);
-    match metrics.settling {
-        Settling::Settled { time_s, .. } => {
-            format!("{} s (band {band} %)", crate::quantity::significant(time_s, 3))
-        }
-        _ => format!("not settled within the time shown (band {band} %)"),
-    }
 }

@@ -34,12 +34,13 @@ pub use agreement::AgreementBand;
 pub use agreement::{FIRST_ORDER, LUMPED, WITHIN_DB, WITHIN_DEG};
 pub use linkage::{LinkagePlace, LinkagePosition, linkage_places};
 pub use over_force::{StiffnessOverForce, stiffness_over_force};
-pub(crate) use port::hidden_above;
-pub use port::{AskedAt, AskedImpedance, HidingMass, SHOWN_AT, WITHIN_PERCENT};
-pub use sweep::{POINTS, Sweep, SweepError, SweepPoint, SweepRequest, Swept, sweep};
+pub use port::{AskedAt, AskedImpedance, HidingMass, SHOWN_AT, WITHIN_PERCENT, hidden_above};
+pub use sweep::{
+    NoBandwidth, NoSweptModels, POINTS, Sweep, SweepError, SweepPoint, SweepRequest, Swept, sweep,
+};
 pub(crate) use sweep::{points, range, values};
 
-use crate::quantity::{DisplayUnit, MotionKind, TORSIONAL_STIFFNESS, fitting};
+use crate::quantity::MotionKind;
 use crate::rig::{Rig, components_at_setting};
 
 /// Frequency up to which the thesis compares its models, rad/s.
@@ -98,7 +99,7 @@ pub struct Linearization {
     /// time.
     pub closed_loop: Option<PortView>,
     /// Why there is no closed loop.
-    pub closed_loop_absent: Option<String>,
+    pub closed_loop_absent: Option<NoClosedImpedance>,
     /// What a virtual impedance asks of the port, and what the loop shows there; `None` without
     /// one, or without a controller.
     pub asked: Option<AskedImpedance>,
@@ -220,15 +221,22 @@ fn is_continuous(function: &TransferFunction) -> bool {
     function.domain() == phea_dynamics::linear::TimeDomain::Continuous
 }
 
-fn absence(controller: Option<&TransferFunction>, view: Option<&PortView>) -> Option<String> {
-    let reason = match (controller, view) {
-        (_, Some(_)) => return None,
-        (None, None) => "the project gives no controller",
-        (Some(_), None) => {
-            "the controller is sampled or the loop has dead time, so that its impedance is not a rational function"
-        }
-    };
-    Some(reason.to_string())
+/// Reason why there is no impedance of the closed loop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoClosedImpedance {
+    /// The project gives no controller.
+    NoController,
+    /// The controller is sampled or the loop has dead time, so that the impedance is not a rational
+    /// function.
+    NotRational,
+}
+
+fn absence(controller: Option<&TransferFunction>, view: Option<&PortView>) -> Option<NoClosedImpedance> {
+    match (controller, view) {
+        (_, Some(_)) => None,
+        (None, None) => Some(NoClosedImpedance::NoController),
+        (Some(_), None) => Some(NoClosedImpedance::NotRational),
+    }
 }
 
 fn open_loop_view(rig: &Rig, [port, plant]: [&LinearModel; 2]) -> Result<PortView, LinearError> {
@@ -366,56 +374,4 @@ fn compare(grid: &[f64], reference: &TransferFunction, other: &TransferFunction)
         |grid: &[f64]| response_difference(grid, |w| reference.at_frequency(w), |w| other.at_frequency(w));
     let low: Vec<f64> = grid.iter().copied().filter(|frequency| *frequency <= COMPARISON_END).collect();
     ReductionDifference { low: difference(&low), all: difference(grid) }
-}
-
-/// Share by which the two stiffness models may differ and still be said to agree.
-const AGREEMENT: f64 = 0.005;
-
-/// The least and the greatest stiffness, or the one that it has everywhere, with the place.
-///
-/// A motor's is shown in the unit that fits it: motors are of very different sizes.
-pub fn stiffness_words(motion: MotionKind, stiffness: &StrokeStiffness) -> [String; 2] {
-    let unit = match motion {
-        MotionKind::Linear => DisplayUnit::MEGANEWTON_PER_METRE,
-        MotionKind::Rotary => fitting(stiffness.minimum, &TORSIONAL_STIFFNESS),
-    };
-    let [least, greatest] = [stiffness.minimum, stiffness.maximum];
-    match motion.is_rotary() && least == greatest {
-        true => [unit.text(least, 3), "at every angle".to_string()],
-        false => {
-            let range = format!("{} to {}", unit.number(least, 3), unit.text(greatest, 3));
-            [range, "over the stroke".to_string()]
-        }
-    }
-}
-
-/// One sentence on the two stiffness models.
-pub fn stiffness_sentence(linearization: &Linearization) -> String {
-    let Linearization { motion, stiffness_models: difference, .. } = linearization;
-    let range = |stiffness: &StrokeStiffness| stiffness_words(*motion, stiffness)[0].clone();
-    let [_, place] = stiffness_words(*motion, &difference.by_volume);
-    let percent = |share: f64| crate::quantity::significant(100.0 * share, 2);
-    let ratios = [difference.minimum_ratio, difference.maximum_ratio];
-    let gas = match difference.gas_compliance_share {
-        0.0 => String::new(),
-        share => format!(" The gas of accumulators provides {} % of the compliance.", percent(share)),
-    };
-    if ratios.iter().all(|ratio| (ratio - 1.0).abs() < AGREEMENT) {
-        return format!(
-            "K_H is {} {place}, by either stiffness model (uniform, by_volume): the lines are hardly softer \
-             than the oil, and {} % of the oil is in the chambers.{gas}",
-            range(&difference.by_volume),
-            percent(difference.chamber_volume_share)
-        );
-    }
-    format!(
-        "With one modulus for line and chamber (uniform) K_H is {} {place}; if the oil in the chambers \
-         keeps its own (by_volume) it is {}, and its least value {} times as high: {} % of the oil is in the chambers, \
-         and the lines account for {} % of the compliance.{gas}",
-        range(&difference.uniform),
-        range(&difference.by_volume),
-        crate::quantity::significant(difference.minimum_ratio, 3),
-        percent(difference.chamber_volume_share),
-        percent(difference.line_compliance_share),
-    )
 }

@@ -48,37 +48,26 @@ pub enum PartKind {
     Servovalve,
 }
 
-impl PartKind {
-    /// One of it, several, and the name of a quantity.
-    fn words(self) -> [&'static str; 3] {
-        match self {
-            PartKind::Hose => ["hose", "hoses", "hose"],
-            PartKind::Pipe => ["pipe", "pipes", "pipe"],
-            PartKind::Accumulator => ["accumulator", "accumulators", "accumulator"],
-            PartKind::CrossPort => ["cross-port valve", "cross-port valves", "cross_port"],
-            PartKind::SeriesSpring => ["series spring", "series springs", "series"],
-            PartKind::TransmissionCylinders => {
-                ["cylinders of the transmission", "cylinders of transmissions", "series"]
-            }
-            PartKind::TransmissionLine => {
-                ["line of the transmission", "lines of transmissions", "series.line"]
-            }
-            PartKind::Servovalve => ["servovalve", "servovalves", "valve"],
-        }
-    }
+/// Why a sum over the parts of a rig is not known.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PartsUnknown {
+    /// No part states a price.
+    NoPrice,
+    /// No part states a mass.
+    NoMass,
+    /// These do not.
+    NotStated(Vec<UnstatedPart>),
 }
 
-impl CostedPart {
-    /// Its name in a list of quantities, such as `hose.a`.
-    pub fn name(&self) -> String {
-        let [_, _, name] = self.kind.words();
-        self.side.map_or(name.to_string(), |side| format!("{name}.{}", side.to_lowercase()))
-    }
-
-    fn words(&self) -> String {
-        let [one, ..] = self.kind.words();
-        self.side.map_or(one.to_string(), |side| format!("{one} {side}"))
-    }
+/// A part that states no price or no mass, or both of a pair that do not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UnstatedPart {
+    /// Kind of the part.
+    pub kind: PartKind,
+    /// The chamber whose line or accumulator it is; `None` for both.
+    pub side: Option<&'static str>,
+    /// True for a pair.
+    pub both: bool,
 }
 
 /// What is counted of the parts of several rigs that are compared.
@@ -219,10 +208,10 @@ fn tube(pipe: &DeclaredPipe) -> Option<f64> {
 /// What all parts cost together, in the currency that is counted.
 ///
 /// # Errors
-/// The parts that state no price; that none does.
-pub fn price(parts: &[CostedPart], counted: PartsCounted) -> Result<f64, String> {
+/// [`PartsUnknown`] if parts state no price.
+pub fn price(parts: &[CostedPart], counted: PartsCounted) -> Result<f64, PartsUnknown> {
     if counted.currency.is_none() {
-        return Err("no part states a price".to_string());
+        return Err(PartsUnknown::NoPrice);
     }
     let wanted = parts.iter().filter(|part| part.kind != PartKind::Servovalve || counted.servovalve[0]);
     total(wanted, |part| part.price)
@@ -231,10 +220,10 @@ pub fn price(parts: &[CostedPart], counted: PartsCounted) -> Result<f64, String>
 /// What all parts weigh together in kg, with the oil in both lines and in a transmission.
 ///
 /// # Errors
-/// The parts that state no mass; that none does.
-pub fn mass(parts: &[CostedPart], rig: &Rig, counted: PartsCounted) -> Result<f64, String> {
+/// [`PartsUnknown`] if parts state no mass.
+pub fn mass(parts: &[CostedPart], rig: &Rig, counted: PartsCounted) -> Result<f64, PartsUnknown> {
     if !counted.masses {
-        return Err("no part states a mass".to_string());
+        return Err(PartsUnknown::NoMass);
     }
     let wanted = parts.iter().filter(|part| part.kind != PartKind::Servovalve || counted.servovalve[1]);
     Ok(total(wanted, |part| part.mass)? + oil_in_lines(rig))
@@ -249,7 +238,7 @@ pub(crate) fn transmission(rig: &Rig) -> Option<&Transmission> {
 }
 
 /// kg, of the oil in both lines, and in a transmission.
-pub(crate) fn oil_in_lines(rig: &Rig) -> f64 {
+pub fn oil_in_lines(rig: &Rig) -> f64 {
     let components = rig.actuator.components();
     let volume: f64 = [&components.line_a, &components.line_b].map(Line::volume).iter().sum();
     let closed = transmission(rig).map_or(0.0, |transmission| transmission.oil_volume());
@@ -259,19 +248,18 @@ pub(crate) fn oil_in_lines(rig: &Rig) -> f64 {
 fn total<'p>(
     parts: impl Iterator<Item = &'p CostedPart> + Clone,
     of: fn(&CostedPart) -> Option<f64>,
-) -> Result<f64, String> {
+) -> Result<f64, PartsUnknown> {
     let lacking: Vec<&CostedPart> = parts.clone().filter(|part| of(part).is_none()).collect();
     if lacking.is_empty() {
         return Ok(parts.filter_map(of).sum());
     }
-    let mut names: Vec<String> = Vec::new();
+    let mut unstated: Vec<UnstatedPart> = Vec::new();
     for part in &lacking {
-        let pair = lacking.iter().filter(|other| other.kind == part.kind).count() == 2;
-        let [_, several, _] = part.kind.words();
-        let name = if pair { several.to_string() } else { part.words() };
-        if !names.contains(&name) {
-            names.push(name);
+        let both = lacking.iter().filter(|other| other.kind == part.kind).count() == 2;
+        let one = UnstatedPart { kind: part.kind, side: part.side.filter(|_| !both), both };
+        if !unstated.contains(&one) {
+            unstated.push(one);
         }
     }
-    Err(format!("not stated: {}", names.join(", ")))
+    Err(PartsUnknown::NotStated(unstated))
 }

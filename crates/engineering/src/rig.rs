@@ -35,15 +35,15 @@ use phea_hydraulics::two_pressure::{
 use crate::project::{self, Project};
 use crate::quantity::MotionKind;
 
-pub use accumulator::EmptyAccumulator;
-pub(crate) use accumulator::{ChargedRange, accumulator_place, charged_range};
+pub(crate) use accumulator::accumulator_place;
+pub use accumulator::{ChargedRange, EmptyAccumulator, charged_range};
 pub(crate) use assembly::{ExpansionPressures, VolumetricExpansion, hose, stiffening};
 pub use assembly::{actuator, components};
 pub use cross_port::{CrossPortAtPoint, cross_port_at_point};
-pub(crate) use gas::components_at_setting;
-pub use ideal_valve::is_ideal;
+pub use gas::components_at_setting;
+pub(crate) use ideal_valve::stand_in_coefficient;
 use ideal_valve::{in_the_limit, shut};
-pub(crate) use ideal_valve::{reduced, stand_in_coefficient, two_pressures};
+pub use ideal_valve::{is_ideal, reduced, two_pressures};
 pub use in_loop::{FeedForwardPath, PressureFeedbackPath};
 pub(crate) use in_loop::{
     inner_feedback, limits_load_motion, pressure_ratio, velocity_gain, with_controller_of,
@@ -52,18 +52,19 @@ pub use largest_flow::{FlowLimit, LargestFlow, largest_flow};
 pub use lines::{in_motion, line_model, lines};
 pub(crate) use lines::{quarter_wave, quarter_wave_of};
 pub use numbers::Numbers;
+pub use outside::OutsideParameter;
 pub(crate) use outside::outside;
 pub use parameters::{ParameterOrigin, ResolvedParameter};
 pub use place::place;
 pub(crate) use place::spool_side;
 pub(crate) use plant::are_equal;
 pub(crate) use plant::has_gas_states;
+pub(crate) use plant::load_at;
 pub(crate) use plant::states_one_pressure;
 pub(crate) use plant::with_gas;
 pub(crate) use plant::with_supply;
-pub use plant::{LoadLever, YieldingLoad, linear, plant, sides, stated};
-pub(crate) use plant::{load_at, rod_end};
-pub(crate) use series::{series_coil, stall_force, waves_right_to};
+pub use plant::{LoadLever, YieldingLoad, linear, plant, rod_end, sides, stated};
+pub use series::{series_coil, stall_force, waves_right_to};
 
 pub(crate) use supply::{power_at_rest, yielding_supply};
 pub use supply::{power_unit, settled_supply};
@@ -207,7 +208,7 @@ impl Rig {
     }
 
     /// K_qU that follows from the rig, with the slopes of one side of a spool at null.
-    pub(crate) fn flow_gain(&self, side: SpoolDirection) -> f64 {
+    pub fn flow_gain(&self, side: SpoolDirection) -> f64 {
         reduced(&two_pressures(&self.model, &self.point, side)).flow_gain
     }
 

@@ -20,11 +20,14 @@ use crate::family::{ProjectFamilyError, family};
 use crate::limit_kind::{DesignLimitKind, limit_key};
 use crate::plant_names::PlantNames;
 use crate::quantity::Units;
+use crate::rig::OutsideParameter;
 use crate::setup::{ControlError, Setup, pressure_noise, velocity_noise, with_pressure_feedback};
 use crate::side_by_side::left_behind;
 use crate::simulate::{TimeRequirement, time_requirements};
 use crate::source::Source;
-use crate::specification::{SpecificationError, closed_loops, kind_words, of_rounding, specifications};
+use crate::specification::{
+    SpecificationError, SpecificationName, closed_loops, of_rounding, specifications,
+};
 use phea_dynamics::watch::{Stopped, Watch, part};
 
 /// A family of plants within a loop, and the specifications of the loop.
@@ -46,7 +49,7 @@ pub struct RobustProblem {
     /// The specifications in file order, then those for the rounding of converters.
     pub specifications: Vec<Specification>,
     /// The name of each: its kind, or the signal that is rounded.
-    pub specification_names: Vec<String>,
+    pub specification_names: Vec<SpecificationName>,
     /// The number in the file, from 1, of each that is declared there; the others come after them.
     pub specification_numbers: Vec<usize>,
     /// The last of the specifications where they are limits of a design: which, in their order.
@@ -55,9 +58,9 @@ pub struct RobustProblem {
     pub in_time: Vec<TimeRequirement>,
     /// The rig itself as a family of one, where the family does not contain it, and what of it is
     /// outside.
-    pub rig_outside: Option<(Family, String)>,
+    pub rig_outside: Option<(Family, Vec<OutsideParameter>)>,
     /// Why the plants of the family have no polynomials; `None` where they have them.
-    pub without_polynomials: Option<&'static str>,
+    pub without_polynomials: Option<NoPolynomials>,
     /// Noise of the velocity that a sampled controller feeds forward, m/s rms; zero without.
     pub velocity_noise: f64,
     /// Noise of the pressure signal at the samples in Pa rms, where it is fed back; zero without.
@@ -155,7 +158,7 @@ pub fn robust_problem(source: &dyn Source, setup: &Setup<'_>) -> Result<RobustPr
     let (specifications, specification_names) =
         named_specifications(setup, compensation.highest_frequency_rad_per_s())?;
     let family = family(setup, source)?;
-    let has_lines_in_motion = without_polynomials(setup, &family) == Some(LINES_IN_MOTION);
+    let has_lines_in_motion = without_polynomials(setup, &family) == Some(NoPolynomials::LinesInMotion);
     let default_tolerance_db =
         if has_lines_in_motion { TOLERANCE_IN_MOTION_DB } else { DEFAULT_TOLERANCE_DB };
     Ok(RobustProblem {
@@ -201,17 +204,25 @@ pub const DEFAULT_TOLERANCE_DB: f64 = 0.01;
 /// The same where lines move, whose fitted waves are known to 0.3 dB near their resonances.
 pub const TOLERANCE_IN_MOTION_DB: f64 = 0.1;
 
-/// Why plants whose lines move have no polynomials.
-pub(crate) const LINES_IN_MOTION: &str = "lines in motion";
+/// The reason why the plants of a family have no polynomials.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoPolynomials {
+    /// Waves travel in the lines.
+    LinesInMotion,
+    /// A continuous controller feeds the pressures back late.
+    PressuresFedBackLate,
+    /// The velocity of the load is fed forward late.
+    LoadVelocityFedForwardLate,
+}
 
-fn without_polynomials(setup: &Setup<'_>, family: &Family) -> Option<&'static str> {
+fn without_polynomials(setup: &Setup<'_>, family: &Family) -> Option<NoPolynomials> {
     let Family::Uncertain(family) = family else { return None };
     let rig = setup.rig().ok()?;
     let late = rig.fed_back.is_some_and(|back| !back.sampled && back.delay_s > 0.0);
     let why = match (rig.in_motion.is_some(), late) {
-        (true, _) => LINES_IN_MOTION,
-        (false, true) => "pressures fed back late",
-        (false, false) => "the load's velocity fed forward late",
+        (true, _) => NoPolynomials::LinesInMotion,
+        (false, true) => NoPolynomials::PressuresFedBackLate,
+        (false, false) => NoPolynomials::LoadVelocityFedForwardLate,
     };
     (!family.plant().is_rational()).then_some(why)
 }
@@ -221,16 +232,17 @@ fn without_polynomials(setup: &Setup<'_>, family: &Family) -> Option<&'static st
 fn named_specifications(
     setup: &Setup<'_>,
     highest_frequency_rad_per_s: f64,
-) -> Result<(Vec<Specification>, Vec<String>), SpecificationError> {
+) -> Result<(Vec<Specification>, Vec<SpecificationName>), SpecificationError> {
     let mut specifications = specifications(setup.project)?;
-    let mut names: Vec<String> = specifications.iter().map(|one| kind_words(&one.requirement)).collect();
+    let of_kind = |one: &Specification| SpecificationName::ClosedLoop(one.requirement.closed_loop());
+    let mut names: Vec<SpecificationName> = specifications.iter().map(of_kind).collect();
     let mut frequencies: Vec<f64> =
         specifications.iter().flat_map(|one| one.frequencies_rad_per_s.iter().copied()).collect();
     frequencies.retain(|frequency| *frequency <= highest_frequency_rad_per_s);
     let frequencies = sorted_distinct(frequencies);
     for (specification, name) in of_rounding(setup, &frequencies) {
         specifications.push(specification);
-        names.push(name.to_string());
+        names.push(name);
     }
     Ok((specifications, names))
 }
@@ -242,8 +254,8 @@ pub(crate) fn numbered(number: Option<usize>, name: &str) -> String {
 
 impl RobustProblem {
     /// What a specification is called.
-    pub fn name_of(&self, index: usize) -> &str {
-        self.specification_names.get(index).map_or("", String::as_str)
+    pub fn name_of(&self, index: usize) -> &'static str {
+        self.specification_names.get(index).map_or("", |name| name.words())
     }
 
     /// The number of a specification in the file, from 1; `None` for one that is not declared.

@@ -13,9 +13,9 @@ use phea_qft::closed_loop::Compensation;
 use phea_qft::design::quantization::{CoefficientFormat, Quantization, rounded};
 
 use crate::project::Project;
-use crate::rig::{Rig, RigError, outside};
+use crate::rig::{OutsideParameter, Rig, RigError, outside};
 
-pub use control::ControlError;
+pub use control::{ControlError, LawPlace};
 pub(crate) use control::{
     element, from_formulas, is_of_position, pressure_noise, velocity_noise, with_pressure_feedback,
 };
@@ -119,7 +119,7 @@ impl<'a> Setup<'a> {
 
     /// The project without its uncertainty, and the parameters of the rig that the box does not
     /// contain. `None` where the box contains the rig, or there is no rig.
-    pub fn outside(&self) -> Option<(Project, String)> {
+    pub fn outside(&self) -> Option<(Project, Vec<OutsideParameter>)> {
         outside(self.project, self.rig.as_ref().ok()?)
     }
 
@@ -149,7 +149,7 @@ impl<'a> Setup<'a> {
     /// # Errors
     /// [`ControlError`] if it cannot be sampled or rounded.
     pub fn compensation(&self, controller: &Controller) -> Result<Compensation, ControlError> {
-        let linear = |error| ControlError::Linear { place: "[controller]", error };
+        let linear = |error| ControlError::Linear { place: LawPlace::Controller, error };
         Compensation::new(&self.deployed(controller)?, self.sensor.clone()).map_err(linear)
     }
 }

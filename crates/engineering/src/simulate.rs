@@ -39,7 +39,7 @@ mod sums;
 mod tally;
 mod wish;
 pub use file_names::{file_names, state_names};
-pub use metrics::{NOT_SETTLED, stays_settled};
+pub use metrics::stays_settled;
 
 pub use adjusted::AdjustmentWork;
 pub use bench::ControlledMachine;
@@ -47,15 +47,19 @@ pub use check::{Difference, MetricDifferences, ToleranceCheck, simulate_checked}
 pub use columns::SignalParts;
 pub use compare::{ScenarioComparison, compare_projects};
 pub use divergence::Divergence;
-pub use exceeded::{Exceeded, LINE_OCCURRENCES, LimitPlace, RigLimit, words as exceeded_words};
-pub use frequency::{FrequencyRequest, MachineResponse, MachineResponses, ResponsePoint, frequency_response};
+pub use equilibrium::MovingState;
+pub use exceeded::{Exceeded, LINE_OCCURRENCES, LimitPlace, RigLimit};
+pub use frequency::{
+    FrequencyRequest, MachineResponse, MachineResponses, NoClosedLoop, ResponsePoint, frequency_response,
+};
 pub use gas::GasRange;
-pub use ledgers::{AccountSum, RunLedger};
+
+pub use ledgers::{AccountSum, NoLedger, RunLedger};
 pub(crate) use line_limits::LineWatch;
 pub use line_limits::{LAMINAR_UP_TO, LineLimits};
 pub use measured::Overlay;
 pub use metric::{Metric, PerMetric};
-pub use metrics::{Cause, Measured, Metrics, Window};
+pub use metrics::{Cause, Measured, Metrics, Unmeasured, Window};
 pub use record::{ControlSignals, Record, Sample};
 pub use repetition::{
     Pass, PassAgreement, PassPlan, PassResult, PassSpread, Repetition, SMALLEST_TOLERANCE, moved, repeated,
@@ -67,7 +71,7 @@ pub use run::{
     amplification,
 };
 pub(crate) use run::{outside_model_s, status_word};
-pub use saved::SavedState;
+pub use saved::{NotSaved, SavedState};
 
 pub use bench::options;
 pub(crate) use course::{PreparedScenario, course_of};
@@ -76,14 +80,15 @@ pub(crate) use file_names::table_names;
 pub use files::{RunTable, files};
 pub use follower::Follower;
 pub use force_limits::ForceLimit;
-pub(crate) use force_limits::{BeyondReach, ForceLimits, steps_beyond};
-pub use foreseen::{foreseen, unreadable};
+pub use force_limits::{BeyondReach, ExceededForce, RestLimit, StepEnd};
+pub(crate) use force_limits::{ForceLimits, steps_beyond};
+pub use foreseen::{BeyondRig, Foreseen, foreseen, unreadable};
 pub use reference_step::{ReferenceStep, SteppedReference, stepped_references};
 pub(crate) use required::concerned;
 pub use required::{NotJudged, ScenarioRequirement, concerns, required_of_run};
 pub use requirement::{RequiredSteps, TimeRequirement, time_requirements};
 pub use run::occurrences;
-pub use wish::{HeldWish, ReachedStep, TrackingWish};
+pub use wish::{NO_OVERSHOOT_PERCENT, ReachedStep, TrackingWish};
 
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::simulation::{Attention, EquilibriumError, ProfileError, SimulationError};
@@ -170,7 +175,7 @@ pub enum SimulateError {
         /// Reference at time zero, N.
         reference_n: f64,
         /// What moves.
-        what: &'static str,
+        what: MovingState,
         /// 1/s.
         rate: f64,
     },

@@ -12,17 +12,24 @@ mod candidate;
 mod of_project;
 mod other_means;
 mod problem;
+mod reason;
 mod sensitivity;
+mod step;
 
 pub use bore::{BoreVerdict, CommercialBore};
-pub use branch::{Branch, GainStep, model_name};
-pub use candidate::{Candidate, Consequence, SizingReason};
+pub use branch::{Branch, GainStep};
+pub use candidate::Candidate;
 pub(crate) use of_project::own_hoses;
 pub use of_project::{SizingError, sizing_problem};
-pub(crate) use other_means::TOO_FEW_COILS;
-pub use other_means::{OtherMeans, OtherMeansProblem, SizedGas, SizedPipe, SizedSpring, SizedValve};
-pub use problem::{HoseOption, SizedLoad, SizingProblem};
-pub use sensitivity::{Influence, sensitivity};
+pub use other_means::{
+    CoilUnknown, OtherMeans, OtherMeansError, OtherMeansProblem, SizedGas, SizedPipe, SizedSpring, SizedValve,
+};
+pub use problem::{
+    HoseName, HoseOption, SizedLoad, SizingProblem, SoonerRequirement, TimeConstantOrigin, UnlikeLines,
+};
+pub use reason::{Consequence, SizingReason};
+pub use sensitivity::{Influence, UncertainHoseNumber, sensitivity};
+pub use step::{SizedSystem, SizingStep};
 
 use phea_hydraulics::stiffness::StiffnessModel;
 
@@ -37,15 +44,6 @@ pub enum Question {
     Gain(f64),
     /// Which gain does this length need? Length of each line in m.
     Length(f64),
-}
-
-/// One step of the procedure and what was decided there.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SizingStep {
-    /// Letter of the step in the flowchart, section 6.3.2.
-    pub step: &'static str,
-    /// What was decided, with its numbers.
-    pub text: String,
 }
 
 /// The outcome of the procedure.
@@ -85,7 +83,7 @@ pub fn size(problem: &SizingProblem, question: Question) -> Sizing {
     for option in &problem.hoses {
         for model in [StiffnessModel::Uniform, StiffnessModel::ByVolume] {
             for branch in branch::branches(problem, option, model, question) {
-                branch.record(option, &mut decisions);
+                decisions.push(SizingStep::Branch(option.name.clone(), branch.clone()));
                 candidates.push(candidate::assess(problem, option, branch));
             }
         }

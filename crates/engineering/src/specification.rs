@@ -2,8 +2,8 @@
 
 mod kind;
 mod limit;
+mod name;
 mod rounding;
-mod wish;
 
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::linear::LinearError;
@@ -12,10 +12,11 @@ use phea_qft::specification::{
     ClosedLoop, LimitError, MarginError, Requirement, Specification, TimeDomainError, WishCheck, WishOutcome,
 };
 
-pub use self::kind::{closed_loop_key, kind_key, kind_words};
+pub use self::kind::{closed_loop_key, closed_loop_words, kind_key};
 use self::limit::TrackingSide;
+pub use self::name::SpecificationName;
 pub(crate) use self::rounding::of_rounding;
-use crate::project::{self, FormulaError, LateError, Project};
+use crate::project::{self, FormulaError, Project};
 use crate::quantity::significant;
 
 /// Why a declared specification cannot be used.
@@ -28,20 +29,6 @@ pub struct SpecificationError {
     pub key: &'static str,
     /// What is wrong with it.
     pub reason: SpecificationProblem,
-}
-
-impl SpecificationError {
-    /// The error at the place of its limit.
-    pub fn at(&self) -> LateError {
-        let help = match self.reason {
-            SpecificationProblem::Crossed { .. } => {
-                "no loop is between them: raise `upper`, lower `lower`, or leave these frequencies out of `frequencies` and `band`"
-            }
-            _ => "",
-        };
-        let path = format!("specification[{}].{}", self.number - 1, self.key);
-        LateError { path, message: self.to_string(), help: help.to_string() }
-    }
 }
 
 /// What is wrong with a limit.
@@ -81,9 +68,12 @@ pub enum SpecificationProblem {
         /// The frequencies around it at which they cross, rad/s, or the ends of the band.
         span_rad_per_s: [f64; 2],
     },
-    /// A form of limit that belongs to another kind of specification.
-    #[error("this kind of specification does not take {0}")]
-    Form(&'static str),
+    /// Margins, which belong to another kind of specification.
+    #[error("this kind of specification does not take margins")]
+    TakesNoMargins,
+    /// A requirement in time, which belongs to another kind of specification.
+    #[error("this kind of specification does not take a wish in time")]
+    TakesNoWish,
 }
 
 /// A limit of tracking that was stated in time, and its own step response.
@@ -103,13 +93,6 @@ impl CheckedWish {
     /// Whether the limit meets the wish.
     pub fn is_met(&self) -> bool {
         self.check.outcome() == WishOutcome::Met
-    }
-
-    /// What was wished, whether the limit meets it, and what the limit itself reaches.
-    pub fn sentence(&self) -> String {
-        let met = if self.is_met() { "met" } else { "not met" };
-        let words = wish::words(&self.check);
-        format!("Specification {}, {} limit, {met}; {words}.", self.number, self.key)
     }
 }
 

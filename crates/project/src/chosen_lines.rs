@@ -13,7 +13,16 @@ pub struct ChosenLines {
     /// there is neither.
     pub reach: Option<(f64, ReachedBy)>,
     /// Why they are lumped although waves are reached.
-    pub hindrance: Option<String>,
+    pub hindrance: Option<WavesHindrance>,
+}
+
+/// Why no model with waves is computed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum WavesHindrance {
+    /// The load is a mass without stiffness.
+    FreeLoad,
+    /// The rig cannot be computed with them; the message of its error.
+    Rig(String),
 }
 
 impl ChosenLines {

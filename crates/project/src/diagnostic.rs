@@ -119,6 +119,11 @@ pub struct LateError {
 }
 
 impl LateError {
+    /// A file that cannot be read.
+    pub fn of_file(path: String, message: String) -> LateError {
+        LateError { path, message, help: "paths are relative to the project file".to_string() }
+    }
+
     /// The error and its cure in one sentence.
     pub fn sentence(&self) -> String {
         format!("{}: {}", self.message, self.help)

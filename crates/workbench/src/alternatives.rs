@@ -6,6 +6,7 @@ mod files;
 mod findings;
 mod front;
 mod summary;
+mod words;
 
 pub use phea_engineering::alternatives::*;
 

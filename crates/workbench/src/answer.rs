@@ -19,6 +19,7 @@ pub use phea_engineering::number_table::{NumberTable, TableFormat};
 
 pub use crate::source::OutputFile;
 use chosen_lines::body_of_lines;
+pub(crate) use chosen_lines::hindrance_words;
 pub use pictures::picture_of;
 pub(crate) use pictures::{part_files, picture_files};
 pub(crate) use recorded::{body_in_use, kept_because};

@@ -4,8 +4,13 @@ mod answer;
 mod below_design;
 mod certificate;
 mod document;
+mod family_and_loop;
 pub(crate) mod in_time;
 mod margins;
+mod proven;
+mod remark;
+mod signal_noise;
+mod words;
 
 pub use phea_engineering::audit::*;
 
@@ -16,3 +21,6 @@ pub(crate) use certificate::certificate_of;
 pub use certificate::{CERTIFICATE_FILE, CertificateError, check_certificate, check_certificate_of};
 pub use document::output;
 pub(crate) use document::{basis, document, proven, summary};
+pub(crate) use family_and_loop::position_words;
+pub use signal_noise::noise_sentence;
+pub(crate) use words::{closed_loop_symbol, meaning};

@@ -1,9 +1,22 @@
-//! The output of `check`: text, JSON, files and figures.
+//! The output of `check`: every quantity that follows from what a project declares, with its
+//! equation, and any contradiction with a declared one, as text, JSON and files.
 
+mod accumulator;
 mod answer;
+mod cross_port;
 mod document;
+mod dynamics;
+mod impedance;
+mod linkage;
+mod list;
+mod parts;
+mod quantity;
+mod rig;
+mod series;
+mod valve;
 
-pub use phea_engineering::derived::*;
+pub use quantity::{Derived, Stated};
+pub use rig::derive;
 
 pub(crate) use answer::body;
 pub use answer::files;

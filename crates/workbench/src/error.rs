@@ -1,6 +1,7 @@
 //! Why a command has no answer: the one error of everything that the workbench computes.
 
 mod place;
+mod tables;
 
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::time_response::TimeResponseError;

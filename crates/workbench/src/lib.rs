@@ -20,13 +20,15 @@
 //! ```
 //!
 //! The module X of a procedure has the name of that procedure's module in `phea_engineering`, and
-//! exports its values beside their output, so that a caller finds both in one place.
+//! exports its values beside their output, so that a caller finds both in one place. The list of
+//! `derived` quantities is output alone: no procedure reads it.
 
 pub mod alternatives;
 pub mod answer;
 pub mod audit;
 pub mod bench;
 pub mod campaign;
+pub mod caveat;
 pub mod command;
 pub mod derived;
 pub mod design;
@@ -35,6 +37,7 @@ pub(crate) mod error;
 pub mod friction;
 mod grouped;
 pub mod identify;
+mod impossible;
 mod line_choice;
 pub mod line_test;
 pub mod linearize;
@@ -49,8 +52,8 @@ pub mod specification;
 pub mod trial;
 
 pub use phea_engineering::{
-    caveat, estimate, family, identify_error, linear_loop, linear_step, option, plant_names, replaced, rig,
-    robust, setup,
+    estimate, family, identify_error, linear_loop, linear_step, option, plant_names, replaced, rig, robust,
+    setup,
 };
 pub use phea_figure as figure;
 pub use phea_project::{self as project, catalogue, source};

@@ -1,6 +1,6 @@
 //! The model that was chosen for lines without a stated one, for people.
 
-use crate::answer::significant;
+use crate::answer::{hindrance_words, significant};
 use crate::document::Document;
 use crate::project::{ChosenLines, Loaded, ReachedBy};
 use crate::quantity::DisplayUnit;
@@ -36,7 +36,8 @@ pub(crate) fn sentence(lines: &ChosenLines) -> String {
     };
     let stated = |model: &str| format!("`line.model = \"{model}\"` states it otherwise");
     match (&lines.hindrance, lines.with_waves) {
-        (Some(reason), _) => {
+        (Some(hindrance), _) => {
+            let reason = hindrance_words(hindrance);
             format!("Lines: lumped, although {of_reach}: no model with waves is computed ({reason}).")
         }
         (None, true) => format!("Lines: with waves, since {of_reach}; {}.", stated("lumped")),

@@ -3,6 +3,7 @@
 mod answer;
 mod document;
 mod sweep_answer;
+mod words;
 
 pub use phea_engineering::linearize::*;
 
@@ -15,3 +16,4 @@ pub(crate) use document::{
 };
 pub(crate) use sweep_answer::sweep_document;
 pub(crate) use sweep_answer::{sweep_figure, sweep_files};
+pub(crate) use words::{hiding_mass_words, no_closed_impedance_words, stiffness_sentence, stiffness_words};

@@ -42,13 +42,13 @@ use crate::audit::{CERTIFICATE_FILE, ProjectAudit, TimeFinding, certificate_of, 
 use crate::derived::{self, derive};
 use crate::error::CommandError;
 use crate::figure::Figure;
-use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop_of, settling_words};
+use crate::linear_loop::{LinearLoop, LoopStability, StepView, linear_loop_of};
 use crate::linearize::{Linearization, linearize, stiffness_at_settings, stiffness_words};
 use crate::project::{DeclaredActuator, InputSignal, Loaded, Project, WrittenUnits};
 use crate::quantity::MotionKind;
 use crate::rig::Rig;
 use crate::setup::Setup;
-use crate::sizing::{Question, Sizing, SizingError, SizingProblem, size};
+use crate::sizing::{Question, Sizing, SizingError, SizingProblem, hose_name, length_words, size};
 use crate::source::Source;
 
 use campaign::CampaignChapter;
@@ -375,9 +375,9 @@ fn summary(
     });
     if let Some(best) = best {
         let gain = significant(best.branch.gain_v_per_n, 3);
-        let length = best.branch.length_words(3);
+        let length = length_words(&best.branch, 3);
         let open = if best.accepted() { "" } else { "; not accepted before its working pressure is stated" };
-        facts.push(("Hose", format!("{}, {length} at K_p = {gain} V/N{open}", best.option.name)));
+        facts.push(("Hose", format!("{}, {length} at K_p = {gain} V/N{open}", hose_name(&best.option.name))));
     } else if sizing.is_some() {
         facts.push(("Hose", "none of the catalogue fits".to_string()));
     }
@@ -399,7 +399,7 @@ fn loop_words(given: &LinearLoop) -> String {
         (_, Ok(StepView { metrics, .. })) => {
             let verb = if metrics.settling.time_s().is_some() { "settles in " } else { "" };
             let overshoot = significant(metrics.overshoot_percent, 2);
-            format!("{overshoot} % overshoot, {verb}{}", settling_words(metrics))
+            format!("{overshoot} % overshoot, {verb}{}", response::settling_words(metrics))
         }
     }
 }

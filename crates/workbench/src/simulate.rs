@@ -3,13 +3,17 @@
 mod answer;
 mod check;
 mod document;
+mod exceeded;
 mod figures;
+mod foreseen;
 mod frequency;
 mod metrics;
+mod reasons;
 mod repetition;
 mod required;
 mod span;
 mod together;
+mod wish;
 
 pub use phea_engineering::simulate::*;
 
@@ -18,11 +22,15 @@ pub(crate) use document::{
     adjustment_sentence, cause_words, coarse_sentence, comparison, document, gas_sentence, headline,
     measured, metrics_row, occurrence_sentences, published, published_row, windows, wish_of,
 };
+pub(crate) use exceeded::exceeded_words;
 pub(crate) use figures::{comparison_files, figure_files, laid_over, pictures, turns};
+pub(crate) use foreseen::foreseen_late;
 pub(crate) use frequency::{
     document as frequency_document, files as frequency_files, pictures as frequency_pictures,
 };
 pub(crate) use metrics::{cells_of, label_within, settling_within, shown_in};
+pub(crate) use reasons::unmeasured_words;
 pub(crate) use required::{not_judged_words, requirement_sentence, satisfied_word};
 pub(crate) use span::around;
 pub(crate) use together::{NamedRun, at_a_glance, close_ups, measured_together, together};
+pub(crate) use wish::{reached_words, required_overshoot, required_rise, required_settling, required_words};

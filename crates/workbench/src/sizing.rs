@@ -2,9 +2,11 @@
 
 mod answer;
 mod document;
+mod words;
 
 pub use phea_engineering::sizing::*;
 
 pub(crate) use answer::body;
 pub use answer::files;
 pub(crate) use document::document;
+pub(crate) use words::{coil_unknown_words, hose_name, length_words, model_name, uncertain_name};

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use crate::ask::{HOSE, answer, load, retracted_length, source};
 use crate::json_contract::unexplained;
-use phea_workbench::alternatives::{COLUMN_SENSES, asked as asked_of};
+use phea_workbench::alternatives::{COLUMN_SENSES, LengthUnknown, asked as asked_of};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{AlternativesRequest, Request, answer_into};
 use serde_json::Value;
@@ -157,14 +157,14 @@ fn a_spring_on_the_rod_has_a_length() {
     let spring = coils["value"].as_f64().unwrap();
     // ORIGIN: analytic, 0.5 m of stroke and 0.3 m; thesis chapter 7 has the spring with it
     assert!(spring > 0.1 && (found.unwrap() - (0.8 + spring)).abs() < 1e-12);
-    assert_eq!(length("").0.unwrap_err(), "not stated: series.coil, which has a length");
+    assert_eq!(length("").0.unwrap_err(), LengthUnknown::NoCoil);
     let few = length(", coil = { index = 12, allowed_shear_stress = \"600 MPa\" }").0.unwrap_err();
-    assert_eq!(few, "the coils of the series spring are too few to be wound");
+    assert_eq!(few, LengthUnknown::TooFewCoils);
     let plain = retracted_length(&load(HOSE, &["cylinder.dead_length=0.3 m"], &[]).project);
     // ORIGIN: analytic, 0.5 m and 0.3 m
     assert!((plain.unwrap() - 0.8).abs() < 1e-12);
     let unstated = retracted_length(&load(HOSE, &[], &[]).project).unwrap_err();
-    assert_eq!(unstated, "not stated: cylinder.dead_length");
+    assert_eq!(unstated, LengthUnknown::NoDeadLength);
 }
 
 /// Under a load case each is designed for as with its settings, the alternative's own set last.

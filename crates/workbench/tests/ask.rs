@@ -3,7 +3,7 @@
 
 use std::sync::OnceLock;
 
-use phea_workbench::alternatives;
+use phea_workbench::alternatives::{self, LengthUnknown};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{self, CommandError, IdentifyError, Request};
 use phea_workbench::project::{self, Loaded, Project};
@@ -40,7 +40,7 @@ pub(crate) fn source(project: &str) -> Memory {
 }
 
 /// From mount to mount, as `alternatives` tells it.
-pub(crate) fn retracted_length(project: &Project) -> Result<f64, &'static str> {
+pub(crate) fn retracted_length(project: &Project) -> Result<f64, LengthUnknown> {
     let rig = Setup::rig_of(project).unwrap();
     alternatives::retracted_length(project.actuator.as_ref().unwrap(), &rig)
 }

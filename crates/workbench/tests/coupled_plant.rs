@@ -5,9 +5,11 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable::exp;
+use phea_qft::specification::ClosedLoop;
 use phea_qft::stability::{StabilityStatus, member_stability};
 use phea_qft::verification::Verdict;
-use phea_workbench::audit::{self, ProjectAudit, audit_project};
+use phea_workbench::audit::{self, LoopWithRig, OutsideFamily, ProjectAudit, audit_project};
+use phea_workbench::caveat::{Caveat, UncountedEffect};
 use phea_workbench::command::Request;
 use phea_workbench::linear_loop::linear_loop;
 use phea_workbench::linearize::{Linearization, linearize};
@@ -16,6 +18,7 @@ use phea_workbench::robust::robust_problem;
 use phea_workbench::setup::Setup;
 use phea_workbench::simulate::simulate_project;
 use phea_workbench::source::Memory;
+use phea_workbench::specification::SpecificationName;
 use serde_json::Value;
 
 use super::ask::{answer, project_of};
@@ -158,8 +161,10 @@ fn a_prefilter_before_the_samples_acts_in_continuous_time() {
 fn a_limited_pump_is_counted() {
     let view = audited(&satisfied(&["supply.model=pump_limited"]));
     assert_eq!(view.audit.verdict, Verdict::Met);
-    let told = view.caveats.iter().find(|caveat| caveat.sentence.contains("supply.model")).unwrap();
-    assert!(told.sentence.contains("is included for small motions") && !told.unproven, "{told:?}");
+    let of_pump = |caveat: &&Caveat| matches!(caveat.effect, UncountedEffect::LimitedPump { .. });
+    let pump = view.caveats.iter().find(of_pump).unwrap();
+    let UncountedEffect::LimitedPump { taken, delivered, .. } = pump.effect else { unreachable!() };
+    assert!(taken < delivered && !pump.unproven, "{pump:?}");
     let rig = Setup::rig_of(&project_of(HOSE, &["supply.model=pump_limited"])).unwrap();
     let found = rig.supply.unwrap();
     // what the pump gives above what is taken goes through a relief valve that opens over 5 bar
@@ -306,11 +311,16 @@ fn a_path_that_no_specification_limits_decides_nothing() {
 fn a_family_that_does_not_contain_the_rig_says_so_first() {
     let view = audited(&satisfied(&[]));
     let [outside] = &view.caveats[..] else { panic!("{:?}", view.caveats) };
+    let UncountedEffect::OutsideFamily(OutsideFamily { parameters, with_rig }) = &outside.effect else {
+        panic!("{outside:?}")
+    };
+    let [coefficient] = &parameters[..] else { panic!("{parameters:?}") };
     assert_eq!(
-        outside.sentence,
-        "the family does not contain the rig as it is derived (flow_pressure_coefficient is 5.929e-13 m3/(s.Pa), the box has \
-         6.42e-13 m3/(s.Pa) to 7e-11 m3/(s.Pa)): the loop with it is stable and satisfies every specification"
+        (coefficient.name.as_str(), coefficient.bounds),
+        ("flow_pressure_coefficient", [6.42e-13, 7e-11])
     );
+    assert!((coefficient.value / 5.929e-13 - 1.0).abs() < 1e-4, "{coefficient:?}");
+    assert_eq!(*with_rig, LoopWithRig::Satisfied);
     // half the flow gain of the rig, and a limit that holds for that alone
     let range = "uncertainty.flow_gain={ nominal = 2.5e-5, minimum = 2.4e-5, maximum = 2.6e-5 }";
     let mut far = satisfied(&[range]);
@@ -319,10 +329,13 @@ fn a_family_that_does_not_contain_the_rig_says_so_first() {
     let view = audited(&far);
     assert_eq!(view.audit.verdict, Verdict::NotProven);
     assert_eq!(view.audit.specifications[0].verdict, Verdict::Met);
-    assert!(view.caveats[0].sentence.contains("flow_gain is 5.2"), "{:?}", view.caveats);
-    assert!(
-        view.caveats[0].sentence.ends_with("the loop with it violates 1 robust stability"),
-        "{:?}",
-        view.caveats
+    let UncountedEffect::OutsideFamily(OutsideFamily { parameters, with_rig }) = &view.caveats[0].effect
+    else {
+        panic!("{:?}", view.caveats)
+    };
+    assert!((parameters[0].value / 5.2e-5 - 1.0).abs() < 0.02, "{parameters:?}");
+    assert_eq!(
+        *with_rig,
+        LoopWithRig::Violates(vec![(1, SpecificationName::ClosedLoop(ClosedLoop::RobustStability))])
     );
 }

@@ -12,7 +12,9 @@ use phea_workbench::linearize::linearize;
 use phea_workbench::project::{self, Loaded};
 use phea_workbench::quantity::MotionKind;
 use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{FrequencyRequest, MachineResponses, ResponsePoint, frequency_response};
+use phea_workbench::simulate::{
+    FrequencyRequest, MachineResponses, NoClosedLoop, ResponsePoint, frequency_response,
+};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -330,7 +332,7 @@ fn an_open_loop_needs_no_controller() {
     let loaded =
         project::read(&source, "rig.toml", &settings, &[]).unwrap_or_else(|report| panic!("{report}"));
     let found = shaken(&loaded, &[50.0], [1e-2, 1.0]);
-    assert_eq!(found.closed_loop, Err("the project gives no controller".to_string()));
+    assert_eq!(found.closed_loop, Err(NoClosedLoop::NoController));
     assert_eq!(found.open_loop.points.len(), 1);
 }
 

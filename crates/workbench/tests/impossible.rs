@@ -224,7 +224,10 @@ fn an_impossible_step_ends_a_design_at_once() {
         true
     });
     let Err(DesignError::ImpossibleSteps(found)) = refused else { panic!("{refused:?}") };
-    assert_eq!((found.len(), found[0].path.as_str(), stages), (1, "specification[0].amplitude", 0));
+    assert_eq!(
+        (found.steps.len(), found.steps[0].path().as_str(), stages),
+        (1, "specification[0].amplitude", 0)
+    );
     let page = report(&Memory::default(), &loaded, &setup, None, &mut |_| true).unwrap().html;
     assert!(page.contains("no controller makes the step") && page.contains("stalls at 47.12 kN"));
 }

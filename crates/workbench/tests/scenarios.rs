@@ -11,7 +11,7 @@ use phea_workbench::campaign::Plan;
 use phea_workbench::command::{self, Request};
 use phea_workbench::project::{self, Loaded};
 use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{Cause, ScenarioRun, simulate_project};
+use phea_workbench::simulate::{Cause, NotSaved, ScenarioRun, Unmeasured, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -92,7 +92,7 @@ fn a_reference_is_the_sum_of_its_parts() {
     );
     // a sine has no overshoot; what follows it has an error, and the largest is that of its rows
     let (window, metrics) = &run.windows[3];
-    assert_eq!(metrics.overshoot_percent, Err("the reference moves"));
+    assert_eq!(metrics.overshoot_percent, Err(Unmeasured::ReferenceMoves));
     let from = row(&run, window.start_s);
     let errors = run.record.reference_n.iter().zip(run.record.signal(Signal::Force)).skip(from);
     let largest = errors.map(|(reference, force)| (reference - force).abs()).fold(0.0, f64::max);
@@ -176,7 +176,7 @@ fn a_command_played_back_gives_the_force_it_was_recorded_with() {
     let (window, metrics) = &open.windows[0];
     assert_eq!(window.cause, Cause::CommandMotion { kind: "file" });
     assert!(open.record.reference_n.is_empty() && open.record.signal(Signal::FilteredReference).is_empty());
-    assert_eq!(metrics.overshoot_percent, Err("open loop: there is no reference"));
+    assert_eq!(metrics.overshoot_percent, Err(Unmeasured::OpenLoop));
     let largest = open.record.signal(Signal::Force).into_iter().map(f64::abs).fold(0.0, f64::max);
     let found = metrics.force_peak_n.unwrap();
     assert!(found >= largest && found < 1.001 * largest, "{found} {largest}");
@@ -425,12 +425,12 @@ fn a_state_is_refused_where_it_does_not_fit_and_not_written_where_it_would_not_b
         run_with(&change(rig(&first)), &Memory::default()).end.unwrap_err()
     };
     let delayed = |text: String| text.replace("saturation", "delay = \"0.5 ms\"\nsaturation");
-    assert_eq!(unsaved(&delayed), "what is in transit in a delay or along a line is not a state");
+    assert_eq!(unsaved(&delayed), NotSaved::InTransit);
     let slow = |text: String| text.replace("saturation", "sample_time = \"3 ms\"\nsaturation");
-    assert_eq!(unsaved(&slow), "it ends between two samples of the controller");
+    assert_eq!(unsaved(&slow), NotSaved::BetweenSamples);
     let late =
         |text: String| text.replace("saturation", "sample_time = \"1 ms\"\ndelay = \"1 ms\"\nsaturation");
-    assert_eq!(unsaved(&late), "a command is under way in the delay of the controller");
+    assert_eq!(unsaved(&late), NotSaved::CommandDelayed);
 }
 
 /// The expansion of a hose is known up to the pressure it is stated at: beyond, supply and chambers

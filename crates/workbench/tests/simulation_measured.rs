@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 use phea_workbench::command::{self, Request, SimulateRequest};
 use phea_workbench::project;
 use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{ScenarioRun, SimulateError, simulate_project};
+use phea_workbench::simulate::{ScenarioRun, SimulateError, Unmeasured, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -73,7 +73,7 @@ fn what_does_not_change_has_no_range() {
     let declared = "[[scenario.measured]]\nfile = \"bench.csv\"\nsignals = [{ signal = \"position_m\" }]\n";
     let overlay = run(declared, "time_s,position_m\n0,0.25\n1,0.25\n2,0.25\n").measured.remove(0);
     assert!(overlay.rmse.unwrap() < 1e-3);
-    assert!(overlay.nrmse.unwrap_err().contains("no range"));
+    assert_eq!(overlay.nrmse, Err(Unmeasured::NoRange));
 }
 
 #[test]

@@ -12,7 +12,7 @@ use phea_dynamics::portable;
 use phea_qft::specification::{Limit, LoopResponse, Specification, WishOutcome};
 use phea_workbench::project::{self, Project};
 use phea_workbench::source::Memory;
-use phea_workbench::specification::{SpecificationError, specifications, wishes};
+use phea_workbench::specification::{SpecificationError, specifications, wish_sentence, wishes};
 
 fn loaded(wishes: &str) -> Project {
     let text = format!(
@@ -159,7 +159,7 @@ fn checks_of_wishes_read_as_sentences() {
              lower = {{ numerator = \"{gain}\", denominator = \"s + 10\", settling_time = \"{settling_time}\", \
              settling_band_percent = 1 }}\n"
         );
-        wishes(&loaded(&text)).unwrap()[side].sentence()
+        wish_sentence(&wishes(&loaded(&text)).unwrap()[side])
     };
     let wished = "Specification 1, lower limit, not met; wished: no overshoot, settled within 1 % in";
     let of_itself = "the limit itself has no overshoot and";

@@ -121,7 +121,7 @@ fn what_it_costs_and_weighs() {
     // ORIGIN: analytic, 0.5 m of stroke, 0.3 m and two cylinders of 0.2 m
     near(length(&["cylinder.dead_length=0.3 m"]).unwrap(), 1.2, 1e-12);
     let unstated = length(&["cylinder.dead_length=0.3 m", PIPE]).unwrap_err();
-    assert_eq!(unstated, "not stated: series.cylinder_length");
+    assert_eq!(unstated, phea_workbench::alternatives::LengthUnknown::NoSeriesCylinderLength);
     let costs = [
         "series.price=180 EUR",
         "series.cylinders_mass=3 kg",

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 use phea_hydraulics::signal::Signal;
-use phea_workbench::audit::{ProjectAudit, audit_project};
+use phea_workbench::audit::{ProjectAudit, audit_project, noise_sentence};
 use phea_workbench::campaign::{Effort, Plan};
 use phea_workbench::command::{self, Request};
 use phea_workbench::project::{self, Loaded, Project};
@@ -231,7 +231,11 @@ fn noise_reaches_command_and_force_as_the_verdict_says() {
         let [command, force] = [rms(&commands) / effect.command_rms_v, rms(&forces) / effect.force_rms_n];
         assert!((command - 1.0).abs() < 0.03, "{load}: {command}");
         assert!((force - 1.0).abs() < 0.12, "{load}: {force}");
-        assert!(told.sentence(&view.names).contains("mV rms"), "{}", told.sentence(&view.names));
+        assert!(
+            noise_sentence(told, &view.names).contains("mV rms"),
+            "{}",
+            noise_sentence(told, &view.names)
+        );
     }
 }
 
@@ -256,7 +260,11 @@ fn noise_of_pressures_reaches_command_and_force_as_the_verdict_says() {
         let [command, force] = [rms(&commands) / effect.command_rms_v, rms(&forces) / effect.force_rms_n];
         assert!((command - 1.0).abs() < 0.03, "{load}: {command}");
         assert!((force - 1.0).abs() < 0.15, "{load}: {force}");
-        assert!(told.sentence(&view.names).contains("mV rms"), "{}", told.sentence(&view.names));
+        assert!(
+            noise_sentence(told, &view.names).contains("mV rms"),
+            "{}",
+            noise_sentence(told, &view.names)
+        );
     }
 }
 

@@ -1,8 +1,8 @@
 //! The alternatives of a project as projects, ready to be judged: with their settings, with the
 //! hose that `[sizing]` finds where one asks for it, and with the ranges that follow their rig.
 
-use super::AlternativesError;
 use super::by_other_means::OtherPart;
+use super::error::{AlternativesError, NoHose, PrepareError};
 use super::recentred::{self, MovedRange};
 use crate::catalogue::{self, Catalogue, CatalogueKind};
 use crate::line_choice::{LoopInQuestion, with_chosen_lines};
@@ -10,9 +10,9 @@ use crate::parts::PartsCounted;
 use crate::project::{
     self, AS_DECLARED, Alternative, Component, DeclaredLine, Loaded, read_alternative, refused_alternative,
 };
-use crate::rig::{Rig, RigError, outside};
+use crate::rig::{OutsideParameter, Rig, RigError, outside};
 use crate::setup::Setup;
-use crate::sizing::{Candidate, Question, own_hoses, size, sizing_problem};
+use crate::sizing::{Candidate, HoseName, Question, own_hoses, size, sizing_problem};
 use crate::source::Source;
 
 /// An alternative, ready to be judged.
@@ -25,13 +25,13 @@ pub struct AskedAlternative {
     /// The rig of that project.
     pub rig: Result<Rig, RigError>,
     /// Why `[sizing]` finds no hose, where it asks for one.
-    pub no_hose: Option<String>,
+    pub no_hose: Option<NoHose>,
     /// The ranges of `[uncertainty]` that were moved.
     pub moved: Vec<MovedRange>,
 }
 
 impl AskedAlternative {
-    pub(super) fn new(name: &str, loaded: Loaded, no_hose: Option<String>) -> AskedAlternative {
+    pub(super) fn new(name: &str, loaded: Loaded, no_hose: Option<NoHose>) -> AskedAlternative {
         let rig = Setup::rig_of(&loaded.project);
         AskedAlternative { name: name.to_string(), loaded, rig, no_hose, moved: vec![] }
     }
@@ -44,14 +44,14 @@ impl AskedAlternative {
         }
     }
 
-    /// The parameters of its rig that lie outside of their ranges in `[uncertainty]`, in words;
-    /// `None` where they are those of the project as it is declared, the first of all.
-    pub fn outside(&self, all: &[AskedAlternative]) -> Option<String> {
-        let words = |one: &AskedAlternative| {
+    /// The parameters of its rig that lie outside of their ranges in `[uncertainty]`; `None` where
+    /// they are those of the project as it is declared, the first of all.
+    pub fn outside(&self, all: &[AskedAlternative]) -> Option<Vec<OutsideParameter>> {
+        let of = |one: &AskedAlternative| {
             let rig = one.rig.as_ref().ok()?;
-            outside(&one.loaded.project, rig).map(|(_, words)| words)
+            outside(&one.loaded.project, rig).map(|(_, parameters)| parameters)
         };
-        words(self).filter(|own| all.first().and_then(words).as_ref() != Some(own))
+        of(self).filter(|own| all.first().and_then(of).as_ref() != Some(own))
     }
 
     /// The same with its ranges moved from those of the rig of another project.
@@ -128,10 +128,7 @@ fn counted(all: &[AskedAlternative]) -> Result<PartsCounted, AlternativesError> 
     let projects = |count: usize| all.iter().take(count).map(|one| &one.loaded.project);
     for (index, one) in all.iter().enumerate() {
         if let Err([first, other]) = PartsCounted::of(projects(index + 1)) {
-            let [first, other] = [first.code(), other.code()];
-            let reason = format!(
-                "it states a price in {other} where others are in {first}, and no rate is known: state all in one currency"
-            );
+            let reason = PrepareError::TwoCurrencies { first, other };
             return Err(AlternativesError::Alternative { name: one.name.clone(), reason });
         }
     }
@@ -150,23 +147,22 @@ fn sized(
     if !alternative.size {
         return Ok(one(other, None));
     }
-    let wrong =
-        |reason: &str| AlternativesError::Alternative { name: name.clone(), reason: reason.to_string() };
+    let wrong = |reason: PrepareError| AlternativesError::Alternative { name: name.clone(), reason };
     let is_hose = |line: &DeclaredLine| matches!(line.component, Component::Hose { .. });
     let lines = other.project.actuator.as_ref().map(|actuator| [&actuator.line.a, &actuator.line.b]);
     let Some(lines) = lines.filter(|lines| lines.iter().all(|line| is_hose(line))) else {
         let actuators = declared.loaded.project.actuator.as_ref().zip(other.project.actuator.as_ref());
         let part = actuators.and_then(|(one, two)| Some((OtherPart::of(one, two)?, two)));
         let Some((part, actuator)) = part else {
-            return Err(wrong("`size` finds the hoses of both sides: its [line] must have them"));
+            return Err(wrong(PrepareError::NoHoses));
         };
-        let settings = part.settings(declared, actuator, catalogue).map_err(|reason| wrong(&reason))?;
+        let settings = part.settings(declared, actuator, catalogue).map_err(wrong)?;
         return Ok(one(again.with(&other, &settings)?, None));
     };
     let alike = lines[0] == lines[1];
     let named = lines[0].hose_name().map(str::to_string);
-    let setup = Setup::new(&other.project).map_err(|error| wrong(&error.to_string()))?;
-    let problem = sizing_problem(&setup, catalogue).map_err(|error| wrong(&error.to_string()))?;
+    let setup = Setup::new(&other.project).map_err(|error| wrong(error.into()))?;
+    let problem = sizing_problem(&setup, catalogue).map_err(|error| wrong(error.into()))?;
     let sizing = size(&problem, Question::Both);
     // of unequal lines the lengths of their own hoses
     let own = other.project.actuator.as_ref().filter(|_| !alike).and_then(own_hoses);
@@ -175,27 +171,30 @@ fn sized(
         accepted && own.as_ref().is_none_or(|own| candidate.option.name == *own)
     };
     let Some(best) = sizing.candidates.iter().find(of_own) else {
-        return Ok(one(other, Some("no hose of the catalogue is accepted by [sizing]".to_string())));
+        return Ok(one(other, Some(NoHose::NoneAccepted)));
     };
     if best.length_m() == 0.0 {
-        return Ok(one(other, Some("[sizing] finds that no hose is needed".to_string())));
+        return Ok(one(other, Some(NoHose::NoneNeeded)));
     }
     let [length_a, length_b] = best.branch.lengths_m;
     let mut settings = match alike {
         true => vec![format!("line.length={length_a:e}")],
         false => vec![format!("line.a.length={length_a:e}"), format!("line.b.length={length_b:e}")],
     };
-    if alike && catalogue.find(CatalogueKind::Hose, &best.option.name).is_some() {
-        settings.insert(0, format!("line.hose=\"{}\"", best.option.name));
+    let best_name = match &best.option.name {
+        HoseName::Both(name) => name.as_deref(),
+        HoseName::Each(_) => None,
+    };
+    let of_catalogue = best_name.filter(|name| alike && catalogue.find(CatalogueKind::Hose, name).is_some());
+    if let Some(name) = of_catalogue {
+        settings.insert(0, format!("line.hose=\"{name}\""));
     }
     let found = one(again.with(&other, &settings)?, None);
     let components = found.rig.as_ref().map(|rig| rig.actuator.components());
     let has = components.map(|components| [components.line_a, components.line_b]);
     let same = has.is_ok_and(|lines| lines == best.option.lines(best.branch.lengths_m));
-    if !same && (!alike || named.as_deref() != Some(best.option.name.as_str())) {
-        return Err(wrong(
-            "[line] states properties of its own hose, which the hose that [sizing] finds would take over: state them in a catalogue",
-        ));
+    if !same && (!alike || named.is_none() || named.as_deref() != best_name) {
+        return Err(wrong(PrepareError::OwnHose));
     }
     Ok(found)
 }

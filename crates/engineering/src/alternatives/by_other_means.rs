@@ -1,7 +1,7 @@
 //! An alternative whose gas, spring, pipe or valve between the chambers is sized for the stiffness
 //! of the hose that `[sizing]` finds for the project as it is declared.
 
-use super::AskedAlternative;
+use super::{AskedAlternative, PrepareError};
 use crate::catalogue::Catalogue;
 use crate::project::{Component, CrossPortKind, DeclaredActuator};
 use crate::setup::Setup;
@@ -49,40 +49,36 @@ impl OtherPart {
         declared: &AskedAlternative,
         other: &DeclaredActuator,
         catalogue: &Catalogue,
-    ) -> Result<Vec<String>, String> {
-        let setup = Setup::around(&declared.loaded.project, declared.rig.clone());
-        let setup = setup.map_err(|error| error.to_string())?;
-        let problem = sizing_problem(&setup, catalogue).map_err(|error| error.to_string())?;
-        let found = size(&problem, Question::Both).other_means.ok_or(
-            "gas, a spring, a pipe and a valve are sized by [sizing.other_means], with a hose that is accepted: state that table",
-        )?;
+    ) -> Result<Vec<String>, PrepareError> {
+        let setup = Setup::around(&declared.loaded.project, declared.rig.clone())?;
+        let problem = sizing_problem(&setup, catalogue)?;
+        let found = size(&problem, Question::Both).other_means.ok_or(PrepareError::NoOtherMeans)?;
         self.of_means(&found, other)
     }
 
-    fn of_means(self, found: &OtherMeans, other: &DeclaredActuator) -> Result<Vec<String>, String> {
+    fn of_means(self, found: &OtherMeans, other: &DeclaredActuator) -> Result<Vec<String>, PrepareError> {
         match self {
             OtherPart::Gas => {
-                let gas = found.gas.clone()?;
+                let gas = found.gas?;
                 Ok(vec![
                     format!("line.accumulator.gas_volume={:e}", gas.volume),
                     format!("line.accumulator.precharge_pressure={:e}", gas.precharge),
                 ])
             }
             OtherPart::Spring => {
-                let spring = found.spring.clone()?;
+                let spring = found.spring?;
                 let limited = other.series.as_ref().and_then(|one| one.spring()?.travel);
                 let travel =
                     limited.map(|_| format!("series.travel={:e}", (1.0 + SPARE_TRAVEL) * spring.travel));
                 Ok([format!("series.stiffness={:e}", spring.stiffness)].into_iter().chain(travel).collect())
             }
             OtherPart::Valve => {
-                let [_, alone] = found.valves.clone()?;
-                let conductance =
-                    alone.conductance.ok_or("no valve between the chambers damps the load cell so much")?;
+                let [_, alone] = found.valves?;
+                let conductance = alone.conductance.ok_or(PrepareError::NoValve)?;
                 Ok(vec![format!("cross_port.conductance={conductance:e}")])
             }
             OtherPart::Pipe => {
-                let pipe = found.pipe.clone()?;
+                let pipe = found.pipe?;
                 Ok(vec![format!("line.pipe.bore={:e}", pipe.bore), format!("line.length={:e}", pipe.length)])
             }
         }

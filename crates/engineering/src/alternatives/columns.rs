@@ -4,24 +4,23 @@ use phea_hydraulics::signal::Signal;
 use phea_qft::design::DesignStatus;
 
 use super::comparison::{ColumnSense, sense_of};
-use super::{JudgedAlternative, no_rig};
+use super::{JudgedAlternative, NoNumber, no_rig};
 use crate::design::LoopFigures;
 use crate::quantity::DisplayUnit;
-use crate::simulate::{DIVERGED, Metrics, NOT_SETTLED, ScenarioRun, StoppedRun, UNDETERMINED};
+use crate::simulate::{Metrics, ScenarioRun, StoppedRun, UNDETERMINED, Unmeasured};
+use crate::specification::SpecificationName;
 
 /// A number of an alternative.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlternativeColumn {
     /// Its name for programs, with its unit.
     pub key: &'static str,
-    /// For people.
-    pub words: &'static str,
     /// The unit for people.
     pub unit: DisplayUnit,
     /// Significant digits for people; 0 for a whole number.
     pub digits: usize,
-    /// In SI, or why there is none.
-    pub value: Result<f64, String>,
+    /// In SI.
+    pub value: Result<f64, NoNumber>,
 }
 
 /// The part of an alternative that a column belongs to.
@@ -34,7 +33,7 @@ pub enum ColumnPart {
     /// The impedance at the load at a frequency in rad/s.
     Impedance(f64),
     /// A specification, by its number from 0 and its name.
-    Specification(usize, String),
+    Specification(usize, SpecificationName),
     /// A scenario.
     Scenario(String),
 }
@@ -49,7 +48,7 @@ impl AlternativeColumns {
     /// force does not settle in one of them.
     pub fn worst(&self, key: &str) -> Option<f64> {
         let columns = || self.0.iter().filter(|(_, column)| column.key == key);
-        if columns().any(|(_, column)| column.value.as_ref().is_err_and(|reason| reason == NOT_SETTLED)) {
+        if columns().any(|(_, column)| column.value == Err(NoNumber::NoMetric(Unmeasured::NotSettled))) {
             return None;
         }
         let worse = match sense_of(key) {
@@ -78,48 +77,31 @@ impl JudgedAlternative {
     }
 
     fn loop_columns(&self) -> Vec<AlternativeColumn> {
-        let figure = |of: fn(&LoopFigures) -> Result<f64, &'static str>| match &self.design {
-            Ok(view) => of(&view.designed.figures).map_err(String::from),
-            Err(reason) => Err(reason.clone()),
+        let figure = |of: fn(&LoopFigures) -> f64| match &self.design {
+            Ok(view) => Ok(of(&view.designed.figures)),
+            Err(reason) => Err(NoNumber::from(reason.clone())),
         };
         let relaxation = match &self.design {
             Ok(view) => match &view.design.status {
                 DesignStatus::Infeasible(relaxation) => Ok(relaxation.relaxation_db),
-                _ if self.feasible() == Ok(true) => Ok(0.0),
-                _ => Err("the specifications were not found infeasible".to_string()),
+                _ if self.feasible() == Some(true) => Ok(0.0),
+                _ => Err(NoNumber::NotFoundInfeasible),
             },
-            Err(reason) => Err(reason.clone()),
+            Err(reason) => Err(reason.clone().into()),
         };
-        let unknown = "not known of a family that is not known to be stable";
-        let modulus = figure(|figures| figures.modulus_margin.ok_or("")).map_err(|_| unknown.to_string());
-        let delay = figure(|figures| figures.delay_margin_s.ok_or("")).map_err(|_| unknown.to_string());
-        let one = DisplayUnit::ONE;
+        let of_stable = |of: fn(&LoopFigures) -> Option<f64>| {
+            let found = self.design.as_ref().ok().and_then(|view| of(&view.designed.figures));
+            found.ok_or(NoNumber::NotKnownStable)
+        };
+        let (one, milliseconds) = (DisplayUnit::ONE, DisplayUnit::MILLISECOND);
         vec![
-            column("relaxation_db", "relaxation needed", DECIBEL, 3, relaxation),
-            column("order", "order of G", one, 0, figure(|figures| Ok(figures.order as f64))),
-            column(
-                "prefilter_order",
-                "order of F",
-                one,
-                0,
-                figure(|figures| Ok(figures.prefilter_order as f64)),
-            ),
-            column(
-                "relative_degree",
-                "relative degree of G",
-                one,
-                0,
-                figure(|figures| Ok(figures.relative_degree as f64)),
-            ),
-            column(
-                "high_frequency_gain_db",
-                "high-frequency gain",
-                DECIBEL,
-                4,
-                figure(|figures| Ok(figures.high_frequency_gain_db)),
-            ),
-            column("modulus_margin", "modulus margin", one, 3, modulus),
-            column("delay_margin_s", "delay tolerated", DisplayUnit::MILLISECOND, 3, delay),
+            column("relaxation_db", DECIBEL, 3, relaxation),
+            column("order", one, 0, figure(|figures| figures.order as f64)),
+            column("prefilter_order", one, 0, figure(|figures| figures.prefilter_order as f64)),
+            column("relative_degree", one, 0, figure(|figures| figures.relative_degree as f64)),
+            column("high_frequency_gain_db", DECIBEL, 4, figure(|figures| figures.high_frequency_gain_db)),
+            column("modulus_margin", one, 3, of_stable(|figures| figures.modulus_margin)),
+            column("delay_margin_s", milliseconds, 3, of_stable(|figures| figures.delay_margin_s)),
         ]
     }
 
@@ -127,11 +109,12 @@ impl JudgedAlternative {
     fn margins(&self) -> Vec<(ColumnPart, AlternativeColumn)> {
         let Ok(view) = &self.design else { return vec![] };
         let audited = &view.designed.view;
-        let each = audited.audit.specifications.iter().enumerate().map(|(index, finding)| {
+        let named = audited.audit.specifications.iter().zip(&audited.specification_names).enumerate();
+        let each = named.map(|(index, (finding, name))| {
             let worst = finding.worst.as_ref().map(|worst| worst.margin_db);
-            let value = worst.ok_or_else(|| "there is nothing by which to judge it".to_string());
-            let part = ColumnPart::Specification(index, audited.name_of(index).to_string());
-            (part, column("worst_margin_db", "least margin", DECIBEL, 3, value))
+            let value = worst.ok_or(NoNumber::NothingToJudgeBy);
+            let part = ColumnPart::Specification(index, *name);
+            (part, column("worst_margin_db", DECIBEL, 3, value))
         });
         each.collect()
     }
@@ -141,7 +124,7 @@ impl JudgedAlternative {
         let columns = declared.iter().enumerate().flat_map(|(index, scenario)| {
             let run = match &self.runs {
                 Ok(runs) => runs.get(index).ok_or_else(no_rig),
-                Err(reason) => Err(reason.clone()),
+                Err(reason) => Err(reason.clone().into()),
             };
             let part = ColumnPart::Scenario(scenario.name.clone());
             driven(run, self.loaded.project.units.force).into_iter().map(move |column| (part.clone(), column))
@@ -152,16 +135,15 @@ impl JudgedAlternative {
 
 pub(super) fn column(
     key: &'static str,
-    words: &'static str,
     unit: DisplayUnit,
     digits: usize,
-    value: Result<f64, String>,
+    value: Result<f64, NoNumber>,
 ) -> AlternativeColumn {
-    AlternativeColumn { key, words, unit, digits, value }
+    AlternativeColumn { key, unit, digits, value }
 }
 
 /// The columns of a scenario: of each metric the greatest of all its events.
-fn driven(run: Result<&ScenarioRun, String>, force: DisplayUnit) -> [AlternativeColumn; 6] {
+fn driven(run: Result<&ScenarioRun, NoNumber>, force: DisplayUnit) -> [AlternativeColumn; 6] {
     let of = |metric: fn(&Metrics) -> crate::simulate::Measured| match &run {
         Ok(run) => greatest(run, metric),
         Err(reason) => Err(reason.clone()),
@@ -169,12 +151,12 @@ fn driven(run: Result<&ScenarioRun, String>, force: DisplayUnit) -> [Alternative
     let energy = run.as_ref().map_err(Clone::clone).and_then(|run| energy_from_supply(run));
     let (second, volt) = (DisplayUnit::SECOND, DisplayUnit::VOLT);
     [
-        column("overshoot_percent", "overshoot", PERCENT, 3, of(|metrics| metrics.overshoot_percent)),
-        column("settling_time_s", "settling", second, 3, of(|metrics| metrics.settling_time_s)),
-        column("disturbance_peak_n", "disturbance", force, 4, of(|metrics| metrics.disturbance_peak_n)),
-        column("control_peak_v", "control peak", volt, 3, of(|metrics| metrics.control_peak_v)),
-        column("control_rms_v", "control rms", volt, 3, of(|metrics| metrics.control_rms_v)),
-        column("energy_from_supply_j", "energy from supply", DisplayUnit::JOULE, 3, energy),
+        column("overshoot_percent", PERCENT, 3, of(|metrics| metrics.overshoot_percent)),
+        column("settling_time_s", second, 3, of(|metrics| metrics.settling_time_s)),
+        column("disturbance_peak_n", force, 4, of(|metrics| metrics.disturbance_peak_n)),
+        column("control_peak_v", volt, 3, of(|metrics| metrics.control_peak_v)),
+        column("control_rms_v", volt, 3, of(|metrics| metrics.control_rms_v)),
+        column("energy_from_supply_j", DisplayUnit::JOULE, 3, energy),
     ]
 }
 
@@ -183,7 +165,7 @@ fn driven(run: Result<&ScenarioRun, String>, force: DisplayUnit) -> [Alternative
 /// ```text
 /// E = integral of p_S q_S dt                  by the trapezoidal rule over the samples of the record
 /// ```
-fn energy_from_supply(run: &ScenarioRun) -> Result<f64, String> {
+fn energy_from_supply(run: &ScenarioRun) -> Result<f64, NoNumber> {
     if let Some(reason) = without_result(run) {
         return Err(reason);
     }
@@ -195,30 +177,27 @@ fn energy_from_supply(run: &ScenarioRun) -> Result<f64, String> {
 }
 
 /// Why a run has no numbers of the machine; `None` if it has.
-fn without_result(run: &ScenarioRun) -> Option<String> {
+fn without_result(run: &ScenarioRun) -> Option<NoNumber> {
     if let Some(StoppedRun { time_s, word, .. }) = run.stopped() {
-        return Some(match word {
-            DIVERGED => format!("the run diverges from {time_s} s on"),
-            word => format!("the run ended at {time_s} s: {word}"),
-        });
+        return Some(NoNumber::Stopped { time_s, word });
     }
     match (run.status_word(), run.outside_model_s) {
-        (UNDETERMINED, _) => Some("no solver determines the result of the run".to_string()),
-        (_, Some(time_s)) => Some(format!("from {time_s} s on the equations of the simulation do not hold")),
+        (UNDETERMINED, _) => Some(NoNumber::Undetermined),
+        (_, Some(time_s)) => Some(NoNumber::OutsideModel { time_s }),
         _ => None,
     }
 }
 
 /// The greatest value over all events; none where the run has no result, or the force does not
 /// settle after one of them.
-fn greatest(run: &ScenarioRun, metric: fn(&Metrics) -> crate::simulate::Measured) -> Result<f64, String> {
+fn greatest(run: &ScenarioRun, metric: fn(&Metrics) -> crate::simulate::Measured) -> Result<f64, NoNumber> {
     if let Some(reason) = without_result(run) {
         return Err(reason);
     }
     let values = || run.windows.iter().map(|(_, metrics)| metric(metrics));
-    if values().any(|value| value == Err(NOT_SETTLED)) {
-        return Err(NOT_SETTLED.to_string());
+    if values().any(|value| value == Err(Unmeasured::NotSettled)) {
+        return Err(NoNumber::NoMetric(Unmeasured::NotSettled));
     }
-    let reason = values().find_map(Result::err).unwrap_or("no event begins in the scenario");
-    values().filter_map(Result::ok).reduce(f64::max).ok_or_else(|| reason.to_string())
+    let reason = || values().find_map(Result::err).map_or(NoNumber::NoEvent, NoNumber::NoMetric);
+    values().filter_map(Result::ok).reduce(f64::max).ok_or_else(reason)
 }

@@ -79,38 +79,17 @@ pub fn dominates(own: &[f64], others: &[f64], senses: &[ColumnSense]) -> bool {
     costs().all(|(own, other)| own <= other) && costs().any(|(own, other)| own < other)
 }
 
-/// The measures of dominance: the key of the column and its name for people.
-pub const MEASURES: [(&str, &str); 4] = [
-    ("disturbance_peak_n", "disturbance"),
-    ("control_rms_v", "control rms"),
-    ("order", "order"),
-    ("delay_margin_s", "delay tolerated"),
-];
+/// The measures of dominance, by the keys of their columns.
+pub const MEASURES: [&str; 4] = ["disturbance_peak_n", "control_rms_v", "order", "delay_margin_s"];
 
 /// Measures of dominance that count where all that are compared state them.
-pub const MEASURES_IF_STATED: [(&str, &str); 2] = [("parts_price", "price"), ("parts_mass_kg", "mass")];
-
-/// What a decision needs at a glance: the key of the column and its name for people. Of columns
-/// that exist for several scenarios, the worst value counts.
-pub const COMPARED_AT_A_GLANCE: [(&str, &str); 9] = [
-    ("order", "order of G"),
-    ("delay_margin_s", "delay tolerated"),
-    ("settling_time_s", "settling"),
-    ("disturbance_peak_n", "disturbance"),
-    ("control_rms_v", "control rms"),
-    ("control_peak_v", "control peak"),
-    ("actuator_length_m", "length"),
-    ("parts_price", "price"),
-    ("parts_mass_kg", "mass"),
-];
+pub const MEASURES_IF_STATED: [&str; 2] = ["parts_price", "parts_mass_kg"];
 
 /// A measure by which alternatives dominate each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ComparedMeasure {
     /// Key of the column.
     pub key: &'static str,
-    /// For people.
-    pub words: &'static str,
     /// For people.
     pub unit: DisplayUnit,
 }
@@ -119,13 +98,9 @@ impl ComparedMeasure {
     /// Those by which alternatives can be compared: the four, and what all of them state.
     pub fn of_all(all: &[AlternativeColumns]) -> Vec<ComparedMeasure> {
         let stated = |key: &str| !all.is_empty() && all.iter().all(|columns| columns.worst(key).is_some());
-        let if_stated = MEASURES_IF_STATED.into_iter().filter(|(key, _)| stated(key));
+        let if_stated = MEASURES_IF_STATED.into_iter().filter(|key| stated(key));
         let unit = |key: &str| all.iter().find_map(|columns| Some(columns.first(key)?.unit));
-        let measure = |(key, words): (&'static str, &'static str)| ComparedMeasure {
-            key,
-            words,
-            unit: unit(key).unwrap_or(DisplayUnit::ONE),
-        };
+        let measure = |key| ComparedMeasure { key, unit: unit(key).unwrap_or(DisplayUnit::ONE) };
         MEASURES.into_iter().chain(if_stated).map(measure).collect()
     }
 

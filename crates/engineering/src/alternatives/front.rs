@@ -2,10 +2,11 @@
 
 use phea_dynamics::watch::{Progress, Watch};
 
-use super::AlternativesError;
 use super::asked::ReadingAgain;
 use super::comparison::sense_of;
+use super::{AlternativesError, JudgeError, NoNumber};
 use super::{AskedAlternative, COLUMN_SENSES, ColumnSense, JudgedAlternative, Judging, dominates};
+use crate::design::ProjectDesign;
 use crate::linearize::{SweepRequest, points, range, values};
 use crate::option::OptionError;
 use crate::project::Motions;
@@ -26,7 +27,7 @@ pub struct FrontRequest {
 const POINTS: usize = 5;
 
 /// The swept number as a column.
-const SWEPT: &str = "swept";
+pub const SWEPT: &str = "swept";
 
 /// How far the specifications are from what can be had, 0 where all are satisfied; and the same by
 /// the name of the column that says yes or no.
@@ -43,7 +44,7 @@ pub struct FrontColumn {
 }
 
 /// Alternatives over a swept number.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Front {
     /// The swept key.
     pub path: String,
@@ -60,20 +61,20 @@ pub struct Front {
 }
 
 /// An alternative at one value of the swept number.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct FrontPoint {
     /// The name of the alternative.
     pub alternative: String,
     /// The swept number, SI.
     pub value: f64,
-    /// Whether every specification is satisfied there, or why this is not known.
-    pub feasible: Result<bool, String>,
+    /// True where every specification is satisfied.
+    pub feasible: Result<bool, FeasibilityUnknown>,
     /// Whether it satisfies them, is driven to its end, and is not contradicted by the machine:
     /// only such points dominate others, or are on a front. Where the relaxation is a column, those
     /// that miss the specifications are compared too.
     pub comparable: bool,
-    /// The columns, with their words and units, or why there are none.
-    pub values: Vec<Result<FrontValue, String>>,
+    /// The columns.
+    pub values: Vec<Result<FrontValue, NoFrontValue>>,
     /// The points that dominate it, by their place in the list.
     pub dominated_by: Vec<usize>,
 }
@@ -84,11 +85,33 @@ pub struct FrontValue {
     /// SI.
     pub value: f64,
     /// For people.
-    pub words: &'static str,
-    /// For people.
     pub unit: DisplayUnit,
     /// Significant digits for people; 0 for a whole number.
     pub digits: usize,
+}
+
+/// Why it is not known whether a point satisfies every specification.
+#[derive(Clone, Debug)]
+pub enum FeasibilityUnknown {
+    /// The alternative cannot be prepared with this value.
+    NotPrepared(AlternativesError),
+    /// It has no design.
+    NotDesigned(JudgeError),
+    /// Its design does not decide it.
+    Undecided(Box<ProjectDesign>),
+}
+
+/// Why a point has no value in a column.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoFrontValue {
+    /// The alternative cannot be prepared with the value that is swept.
+    NotPrepared(AlternativesError),
+    /// It has no such column.
+    NoColumn,
+    /// The column has no number.
+    NoNumber(NoNumber),
+    /// One of its scenarios has none.
+    NotInEveryScenario,
 }
 
 impl FrontPoint {
@@ -120,23 +143,40 @@ impl FrontPlan {
     }
 }
 
+/// Why the columns of a front are invalid.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+enum FrontColumnsError {
+    #[error("a front has two or three columns, such as disturbance_peak_n,swept")]
+    Count,
+    #[error("`{0}` is listed twice")]
+    Twice(&'static str),
+    #[error("`{0}` is neither `less` nor `more`")]
+    NoSense(String),
+    #[error("there is no column `{name}`; did you mean `{near}`?")]
+    Misspelt { name: String, near: String },
+    #[error("there is no column `{name}`; there are {}", names.join(", "))]
+    NoColumn { name: String, names: Vec<String> },
+}
+
 /// Reads the request.
 ///
 /// # Errors
 /// [`OptionError`] for columns or a sweep that do not exist.
 pub(super) fn plan(request: &FrontRequest, motions: Motions) -> Result<FrontPlan, OptionError> {
     let text = request.columns.join(",");
-    let refused = |message: String| OptionError { option: "front", text: text.clone(), message };
+    let refused = |error: FrontColumnsError| OptionError {
+        option: "front",
+        text: text.clone(),
+        message: error.to_string(),
+    };
     if !(2..=3).contains(&request.columns.len()) {
-        return Err(refused(
-            "a front has two or three columns, such as disturbance_peak_n,swept".to_string(),
-        ));
+        return Err(refused(FrontColumnsError::Count));
     }
     let columns = request.columns.iter().map(|column| column_of(column, motions.rig).map_err(refused));
     let columns = columns.collect::<Result<Vec<_>, _>>()?;
     let twice = |one: &FrontColumn| columns.iter().filter(|other| other.key == one.key).count() > 1;
     if let Some(column) = columns.iter().find(|column| twice(column)) {
-        return Err(refused(format!("`{}` is listed twice", column.key)));
+        return Err(refused(FrontColumnsError::Twice(column.key)));
     }
     let asked = range(&request.sweep.range, motions)?;
     let count = points(request.sweep.points.or(Some(POINTS)))?;
@@ -146,22 +186,25 @@ pub(super) fn plan(request: &FrontRequest, motions: Motions) -> Result<FrontPlan
 }
 
 /// A column by its name in a rig of this motion, or the nearest spelling.
-fn column_of(text: &str, motion: MotionKind) -> Result<FrontColumn, String> {
+fn column_of(text: &str, motion: MotionKind) -> Result<FrontColumn, FrontColumnsError> {
     let (name, wanted) = match text.trim().split_once(':') {
         None => (text.trim(), None),
         Some((name, "less")) => (name, Some(ColumnSense::Less)),
         Some((name, "more")) => (name, Some(ColumnSense::More)),
-        Some((_, other)) => return Err(format!("`{other}` is neither `less` nor `more`")),
+        Some((_, other)) => return Err(FrontColumnsError::NoSense(other.to_string())),
     };
     let name = if name == FEASIBLE { RELAXATION } else { name };
     let known = COLUMN_SENSES.iter().find(|(key, _)| motion.name(key) == name);
     let names: Vec<_> = COLUMN_SENSES.iter().map(|(key, _)| motion.name(key)).collect();
     let names = names.iter().map(|name| name.as_ref());
-    let help = || match nearest(name, names.clone()) {
-        Some(near) => format!("; did you mean `{near}`?"),
-        None => format!("; there are {}", names.collect::<Vec<_>>().join(", ")),
+    let unknown = || match nearest(name, names.clone()) {
+        Some(near) => FrontColumnsError::Misspelt { name: name.to_string(), near: near.to_string() },
+        None => {
+            let names = names.map(str::to_string).collect();
+            FrontColumnsError::NoColumn { name: name.to_string(), names }
+        }
     };
-    let (key, _) = known.ok_or_else(|| format!("there is no column `{name}`{}", help()))?;
+    let (key, _) = known.ok_or_else(unknown)?;
     Ok(FrontColumn { key, sense: wanted.or(sense_of(key)).unwrap_or(ColumnSense::Less) })
 }
 
@@ -210,29 +253,30 @@ fn point(
     value: f64,
     watch: Watch<'_>,
 ) -> Option<FrontPoint> {
-    let found = match at(again, one, &plan.path, value) {
-        Ok(there) => Ok(judging.judged(there, watch)?),
-        Err(error) => Err(error.to_string()),
-    };
     let alternative = one.name.clone();
-    Some(match found {
-        Ok(judged) => FrontPoint {
-            alternative,
-            value,
-            feasible: judged.feasible(),
-            comparable: plan.compares(&judged),
-            values: values_of(&judged, plan, value),
-            dominated_by: vec![],
-        },
-        Err(reason) => FrontPoint {
-            alternative,
-            value,
-            feasible: Err(reason.clone()),
-            comparable: false,
-            values: plan.columns.iter().map(|_| Err(reason.clone())).collect(),
-            dominated_by: vec![],
-        },
-    })
+    let there = match at(again, one, &plan.path, value) {
+        Ok(there) => there,
+        Err(error) => {
+            let values = plan.columns.iter().map(|_| Err(NoFrontValue::NotPrepared(error.clone()))).collect();
+            let feasible = Err(FeasibilityUnknown::NotPrepared(error));
+            let dominated_by = vec![];
+            return Some(FrontPoint {
+                alternative,
+                value,
+                feasible,
+                comparable: false,
+                values,
+                dominated_by,
+            });
+        }
+    };
+    let judged = judging.judged(there, watch)?;
+    let (comparable, values) = (plan.compares(&judged), values_of(&judged, plan, value));
+    let feasible = judged.feasible().ok_or_else(|| match judged.design {
+        Ok(view) => FeasibilityUnknown::Undecided(Box::new(view)),
+        Err(reason) => FeasibilityUnknown::NotDesigned(reason),
+    });
+    Some(FrontPoint { alternative, value, feasible, comparable, values, dominated_by: vec![] })
 }
 
 /// The alternative with the swept number, its ranges moved with it.
@@ -243,23 +287,30 @@ fn at(
     value: f64,
 ) -> Result<AskedAlternative, AlternativesError> {
     let loaded = again.with(&one.loaded, &[format!("{path}={value:e}")])?.with_lines_of(&one.loaded);
-    let there = AskedAlternative::new(&one.name, loaded, one.no_hose.clone());
+    let there = AskedAlternative::new(&one.name, loaded, one.no_hose);
     match there.loaded.project.actuator {
         Some(_) => there.recentred(again, one),
         None => Ok(there),
     }
 }
 
-fn values_of(judged: &JudgedAlternative, plan: &FrontPlan, value: f64) -> Vec<Result<FrontValue, String>> {
+fn values_of(
+    judged: &JudgedAlternative,
+    plan: &FrontPlan,
+    value: f64,
+) -> Vec<Result<FrontValue, NoFrontValue>> {
     let columns = judged.columns();
     let of = |column: &FrontColumn| {
         if column.key == SWEPT {
-            return Ok(FrontValue { value, words: SWEPT, unit: plan.unit, digits: 3 });
+            return Ok(FrontValue { value, unit: plan.unit, digits: 3 });
         }
-        let found = columns.first(column.key).ok_or("there is no such column here")?;
-        let reason = || found.value.clone().err().unwrap_or_else(|| "not in every scenario".to_string());
+        let found = columns.first(column.key).ok_or(NoFrontValue::NoColumn)?;
+        let reason = || {
+            let own = found.value.clone().err();
+            own.map_or(NoFrontValue::NotInEveryScenario, NoFrontValue::NoNumber)
+        };
         let value = columns.worst(column.key).ok_or_else(reason)?;
-        Ok(FrontValue { value, words: found.words, unit: found.unit, digits: found.digits })
+        Ok(FrontValue { value, unit: found.unit, digits: found.digits })
     };
     plan.columns.iter().map(of).collect()
 }

@@ -6,7 +6,7 @@ use phea_hydraulics::plant::LinearElement;
 use phea_hydraulics::series::{LEAST_ACTIVE_COILS, SeriesElement};
 
 use super::columns::{AlternativeColumn, column};
-use super::{JudgedAlternative, no_rig};
+use super::{JudgedAlternative, LengthUnknown, NoNumber, no_rig};
 use crate::parts::{self, parts, transmission};
 use crate::project::{DeclaredActuator, DeclaredSeries};
 use crate::quantity::{DisplayUnit, MASS, MotionKind, VOLUME, fitting};
@@ -14,18 +14,18 @@ use crate::rig::{Rig, power_at_rest, series_coil};
 
 impl JudgedAlternative {
     pub(super) fn rig_columns(&self) -> Vec<AlternativeColumn> {
-        let stiffness = |end: usize| {
+        let stiffness = |end: usize| -> Result<f64, NoNumber> {
             let found = self.linearization.as_ref().map_err(Clone::clone)?;
             Ok([found.stiffness[0].minimum, found.stiffness[0].maximum][end])
         };
-        let rig = self.rig.as_ref().map_err(Clone::clone);
+        let rig = self.rig.as_ref().map_err(|reason| NoNumber::from(reason.clone()));
         let equivalent = rig.map(|rig| rig.against_load().equivalent_stiffness());
         let motion = self.loaded.project.motion();
         let stiff = motion.unit(DisplayUnit::MEGANEWTON_PER_METRE);
         let mut columns = vec![
-            column("stiffness_minimum_n_per_m", "least K_H", stiff, 3, stiffness(0)),
-            column("stiffness_maximum_n_per_m", "greatest K_H", stiff, 3, stiffness(1)),
-            column("equivalent_stiffness_n_per_m", "K_eq at the point", stiff, 3, equivalent),
+            column("stiffness_minimum_n_per_m", stiff, 3, stiffness(0)),
+            column("stiffness_maximum_n_per_m", stiff, 3, stiffness(1)),
+            column("equivalent_stiffness_n_per_m", stiff, 3, equivalent),
         ];
         columns.extend(self.made_of(motion));
         columns.extend(self.parts());
@@ -35,11 +35,11 @@ impl JudgedAlternative {
 
     fn made_of(&self, motion: MotionKind) -> [AlternativeColumn; 8] {
         let declared = self.loaded.project.actuator.as_ref();
-        let of = |value: fn(&DeclaredActuator, &Rig) -> Result<f64, &'static str>| {
+        let of = |value: fn(&DeclaredActuator, &Rig) -> Result<f64, NoNumber>| {
             let rig = self.rig.as_ref().map_err(Clone::clone)?;
-            value(declared.ok_or("")?, rig).map_err(String::from)
+            value(declared.ok_or_else(no_rig)?, rig)
         };
-        let (metre, litre) = (DisplayUnit::METRE, |value: &Result<f64, String>| {
+        let (metre, litre) = (DisplayUnit::METRE, |value: &Result<f64, NoNumber>| {
             fitting(value.clone().unwrap_or_default(), &VOLUME)
         });
         let [in_lines, oil, gas] = [of(lines_volume), of(oil_volume), of(gas_volume)];
@@ -47,16 +47,17 @@ impl JudgedAlternative {
             of(|declared, rig| Ok(oil_volume(declared, rig)? * rig.actuator.components().fluid.density));
         let kilogram = fitting(1.0, &MASS);
         let inertia = fitting(1.0, motion.dimension(&MASS));
+        let length = of(|declared, rig| retracted_length(declared, rig).map_err(NoNumber::Length));
         let power = of(|declared, rig| Ok(power_at_rest(declared, rig)));
         [
-            column("actuator_length_m", "length, retracted", metre, 3, of(retracted_length)),
-            column("lines_length_m", "length of both lines", metre, 3, of(lines_length)),
-            column("moving_mass_kg", "moving mass", inertia, 3, of(moving_mass)),
-            column("lines_volume_m3", "oil in both lines", litre(&in_lines), 3, in_lines),
-            column("oil_volume_m3", "oil in all", litre(&oil), 3, oil),
-            column("oil_mass_kg", "mass of that oil", kilogram, 3, oil_mass),
-            column("gas_volume_m3", "gas", litre(&gas), 3, gas),
-            column("power_at_rest_w", "loss at rest", DisplayUnit::WATT, 3, power),
+            column("actuator_length_m", metre, 3, length),
+            column("lines_length_m", metre, 3, of(lines_length)),
+            column("moving_mass_kg", inertia, 3, of(moving_mass)),
+            column("lines_volume_m3", litre(&in_lines), 3, in_lines),
+            column("oil_volume_m3", litre(&oil), 3, oil),
+            column("oil_mass_kg", kilogram, 3, oil_mass),
+            column("gas_volume_m3", litre(&gas), 3, gas),
+            column("power_at_rest_w", DisplayUnit::WATT, 3, power),
         ]
     }
 
@@ -64,29 +65,26 @@ impl JudgedAlternative {
     fn parts(&self) -> [AlternativeColumn; 2] {
         let counted = self.counted;
         let declared = self.loaded.project.actuator.as_ref().ok_or_else(no_rig);
-        let all = self.rig.as_ref().map_err(Clone::clone).and_then(|rig| Ok((parts(declared?, rig), rig)));
-        let price = all.clone().and_then(|(all, _)| parts::price(&all, counted));
-        let mass = all.and_then(|(all, rig)| parts::mass(&all, rig, counted));
+        let rig = self.rig.as_ref().map_err(|reason| NoNumber::from(reason.clone()));
+        let all = rig.and_then(|rig| Ok((parts(declared?, rig), rig)));
+        let price = all.clone().and_then(|(all, _)| parts::price(&all, counted).map_err(NoNumber::Parts));
+        let mass = all.and_then(|(all, rig)| parts::mass(&all, rig, counted).map_err(NoNumber::Parts));
         let currency = counted
             .currency
             .map_or(DisplayUnit::ONE, |currency| DisplayUnit { symbol: currency.code(), in_si: 1.0 });
         let kilogram = fitting(1.0, &MASS);
-        [
-            column("parts_price", "price of its parts", currency, 4, price),
-            column("parts_mass_kg", "mass of its parts and of the oil in lines", kilogram, 3, mass),
-        ]
+        [column("parts_price", currency, 4, price), column("parts_mass_kg", kilogram, 3, mass)]
     }
 
     /// What `[sizing]` finds for it, whether it is asked to take that or not.
     fn sized_columns(&self) -> [AlternativeColumn; 2] {
-        let best = self.sizing.as_ref().map_err(Clone::clone).and_then(|sizing| {
-            sizing.best().ok_or_else(|| "no hose of the catalogue is accepted".to_string())
-        });
+        let sizing = self.sizing.as_ref().map_err(|reason| NoNumber::from(reason.clone()));
+        let best = sizing.and_then(|sizing| sizing.best().ok_or(NoNumber::NoHose));
         let length = best.clone().map(|best| best.length_m());
         let gain = best.map(|best| best.branch.gain_v_per_n);
         [
-            column("sized_length_m", "length by [sizing]", DisplayUnit::METRE, 3, length),
-            column("sized_gain_v_per_n", "gain by [sizing]", DisplayUnit::MILLIVOLT_PER_NEWTON, 3, gain),
+            column("sized_length_m", DisplayUnit::METRE, 3, length),
+            column("sized_gain_v_per_n", DisplayUnit::MILLIVOLT_PER_NEWTON, 3, gain),
         ]
     }
 }
@@ -99,24 +97,24 @@ impl JudgedAlternative {
 /// ```
 ///
 /// # Errors
-/// What is not stated, or why the spring has no length.
-pub fn retracted_length(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
+/// [`LengthUnknown`] if something is not stated, or the spring has no length.
+pub fn retracted_length(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, LengthUnknown> {
     if declared.motor.is_some() {
-        return Err("a motor has no retracted length");
+        return Err(LengthUnknown::Motor);
     }
     let cylinder = &declared.cylinder;
-    let dead = cylinder.dead_length.ok_or("not stated: cylinder.dead_length")?;
+    let dead = cylinder.dead_length.ok_or(LengthUnknown::NoDeadLength)?;
     let series = match &declared.series {
         None => 0.0,
         Some(DeclaredSeries::Spring(_)) => match series_coil(declared, rig) {
             Some(pair) if pair.active_coils < LEAST_ACTIVE_COILS => {
-                return Err("the coils of the series spring are too few to be wound");
+                return Err(LengthUnknown::TooFewCoils);
             }
             Some(pair) => pair.installed_length,
-            None => return Err("not stated: series.coil, which has a length"),
+            None => return Err(LengthUnknown::NoCoil),
         },
         Some(DeclaredSeries::Transmission(transmission)) => {
-            2.0 * transmission.cylinder_length.ok_or("not stated: series.cylinder_length")?
+            2.0 * transmission.cylinder_length.ok_or(LengthUnknown::NoSeriesCylinderLength)?
         }
     };
     Ok(cylinder.longest_stage_m() + dead + series)
@@ -124,7 +122,7 @@ pub fn retracted_length(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, &
 
 /// Of the rod, and of what moves between force sensor and load: the oil of a transmission as its
 /// pistons feel it.
-fn moving_mass(_: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
+fn moving_mass(_: &DeclaredActuator, rig: &Rig) -> Result<f64, NoNumber> {
     let on_rod = match (rig.plant.series.map(|series| series.element), rig.actuator.components().series) {
         (Some(LinearElement::Oil(column)), _) => column.mass * column.segments as f64,
         (_, Some(SeriesElement::Spring(spring))) => spring.mass.unwrap_or(0.0),
@@ -138,22 +136,22 @@ fn lines(rig: &Rig) -> [&Line; 2] {
     [&components.line_a, &components.line_b]
 }
 
-fn lines_length(_: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
+fn lines_length(_: &DeclaredActuator, rig: &Rig) -> Result<f64, NoNumber> {
     let length = |line: &Line| match line {
         Line::Hose { length, .. } | Line::Pipe { length, .. } => Ok(*length),
-        Line::Volume { .. } => Err("a line that is stated as a volume has no length"),
+        Line::Volume { .. } => Err(NoNumber::LineIsVolume),
     };
     let [a, b] = lines(rig);
     Ok(length(a)? + length(b)?)
 }
 
-fn lines_volume(_: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
+fn lines_volume(_: &DeclaredActuator, rig: &Rig) -> Result<f64, NoNumber> {
     Ok(lines(rig).into_iter().map(Line::volume).sum())
 }
 
 /// Lines, chambers at the operating point, dead volumes, what the accumulators hold there, and the
 /// oil of a transmission.
-fn oil_volume(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
+fn oil_volume(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, NoNumber> {
     let components = rig.actuator.components();
     let (cylinder, point) = (&components.cylinder, &rig.point);
     let [chamber_a, chamber_b] = chamber_volumes(cylinder, point.position);
@@ -165,10 +163,10 @@ fn oil_volume(declared: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static st
 }
 
 /// Of the accumulators at the chambers, at their precharge.
-fn gas_volume(_: &DeclaredActuator, rig: &Rig) -> Result<f64, &'static str> {
+fn gas_volume(_: &DeclaredActuator, rig: &Rig) -> Result<f64, NoNumber> {
     let gas = rig.actuator.components().accumulators;
     if gas.iter().all(Option::is_none) {
-        return Err("there is no accumulator at the chambers");
+        return Err(NoNumber::NoAccumulator);
     }
     Ok(gas.iter().flatten().map(|gas| gas.gas_volume).sum())
 }

@@ -3,8 +3,8 @@
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
-use super::JudgedAlternative;
 use super::columns::{AlternativeColumn, ColumnPart, column};
+use super::{JudgedAlternative, NoNumber};
 use crate::quantity::{DAMPING, fitting};
 
 /// Frequencies at which the impedance is stated where none are asked for, rad/s.
@@ -22,24 +22,24 @@ impl JudgedAlternative {
     }
 
     fn impedance(&self, frequency: f64) -> Vec<AlternativeColumn> {
-        let linearization = self.linearization.as_ref().map_err(Clone::clone);
+        let linearization = self.linearization.as_ref().map_err(|reason| NoNumber::from(reason.clone()));
         let open = linearization.clone().map(|found| &found.open_loop);
         let closed = linearization.clone().and_then(|found| {
-            let reason = || found.closed_loop_absent.clone().unwrap_or_default();
+            let reason = || NoNumber::NoClosedLoop(found.closed_loop_absent);
             found.closed_loop.as_ref().filter(|_| self.deployed.is_ok()).ok_or_else(reason)
         });
         let asked = linearization.as_ref().ok().and_then(|found| found.asked.as_ref());
         let asked = asked.map(|asked| {
             let s = Complex64::new(0.0, frequency);
             let asked = portable::magnitude(asked.unfiltered().response(s) / s);
-            column("impedance_asked_n_s_per_m", "asked", fitting(asked, &DAMPING), 3, Ok(asked))
+            column("impedance_asked_n_s_per_m", fitting(asked, &DAMPING), 3, Ok(asked))
         });
         let [open, closed] = [open, closed]
             .map(|view| view.map(|view| portable::magnitude(view.impedance.at_frequency(frequency))));
-        let unit = |value: &Result<f64, String>| fitting(value.clone().unwrap_or_default(), &DAMPING);
+        let unit = |value: &Result<f64, NoNumber>| fitting(value.clone().unwrap_or_default(), &DAMPING);
         let found = [
-            column("impedance_open_n_s_per_m", "open loop", unit(&open), 3, open),
-            column("impedance_closed_n_s_per_m", "closed loop", unit(&closed), 3, closed),
+            column("impedance_open_n_s_per_m", unit(&open), 3, open),
+            column("impedance_closed_n_s_per_m", unit(&closed), 3, closed),
         ];
         found.into_iter().chain(asked).collect()
     }

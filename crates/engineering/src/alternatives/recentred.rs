@@ -3,10 +3,10 @@
 
 use phea_hydraulics::line::StiffeningMember;
 
-use super::AskedAlternative;
+use super::{AskedAlternative, PrepareError};
 use crate::linearize::stroke_stiffness;
 use crate::project::Uncertain;
-use crate::rig::{Rig, RigError};
+use crate::rig::Rig;
 
 /// A range that was moved.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,9 +32,11 @@ const SAME: f64 = 1e-9;
 /// whose range is that over the stroke, the ends have the quotients of the least and of the
 /// greatest stiffness over the stroke. A range that the other project states differently is its own
 /// and is left alone, as is a parameter that `[linear]` states.
-pub(super) fn moved(base: &AskedAlternative, other: &AskedAlternative) -> Result<Vec<MovedRange>, String> {
-    let text = |error: &RigError| error.to_string();
-    let rigs = [base.rig.as_ref().map_err(text)?, other.rig.as_ref().map_err(text)?];
+pub(super) fn moved(
+    base: &AskedAlternative,
+    other: &AskedAlternative,
+) -> Result<Vec<MovedRange>, PrepareError> {
+    let rigs = [base.rig.as_ref().map_err(Clone::clone)?, other.rig.as_ref().map_err(Clone::clone)?];
     let [base, other] = [base, other].map(|one| &one.loaded.project);
     let inherited = |range: &&Uncertain| base.uncertainty.contains(range);
     let mut found = Vec::new();
@@ -44,10 +46,7 @@ pub(super) fn moved(base: &AskedAlternative, other: &AskedAlternative) -> Result
             continue;
         }
         if from.contains(&0.0) {
-            return Err(format!(
-                "`recentre` cannot move the range of {}, which is zero as it is declared: state it in `set`",
-                range.name
-            ));
+            return Err(PrepareError::ZeroRange { parameter: range.name.clone() });
         }
         let scaled = |stated: f64, end: usize| stated * to[end] / from[end];
         let [least, greatest] = [scaled(range.minimum, 1), scaled(range.maximum, 2)];

@@ -3,7 +3,6 @@
 use phea_dynamics::scalar::Interval;
 use phea_qft::family::Family;
 
-use crate::quantity::DisplayUnit;
 use crate::robust::RobustProblem;
 
 /// Dead time of the parts of a loop, s.
@@ -24,24 +23,6 @@ impl LoopDeadTime {
             sensor_s: problem.compensation.sensor().dead_time_s(),
             controller_s: problem.compensation.feedback().dead_time_s(),
         }
-    }
-
-    /// The dead times that are not zero; empty where all are.
-    pub(super) fn words(&self) -> String {
-        let text = |time_s: f64| DisplayUnit::MILLISECOND.text(time_s, 3);
-        let [least, most] = self.plant_s;
-        let plant = match least == most {
-            true => text(most),
-            false => format!("{} to {}", text(least), text(most)),
-        };
-        let parts = [
-            (most, format!("{plant} in the plant")),
-            (self.sensor_s, format!("{} in the sensor", text(self.sensor_s))),
-            (self.controller_s, format!("{} in the controller", text(self.controller_s))),
-        ];
-        let parts: Vec<String> =
-            parts.into_iter().filter(|(time_s, _)| *time_s != 0.0).map(|(_, words)| words).collect();
-        if parts.is_empty() { String::new() } else { format!("with a dead time of {}", parts.join(" and ")) }
     }
 }
 

@@ -35,20 +35,6 @@ pub struct Crossovers {
     pub again_rad_per_s: Option<[f64; 2]>,
 }
 
-impl NominalMargins {
-    /// How far the gain may fall, in a sentence: a loop around an unstable plant needs it; `None`
-    /// where it may vanish.
-    pub fn reduction_sentence(&self) -> Option<String> {
-        let db = self.gain_reduction_db;
-        db.is_finite().then(|| {
-            format!(
-                "the nominal loop needs its gain: it becomes unstable where that falls by {} dB",
-                significant(-db, 3)
-            )
-        })
-    }
-}
-
 impl Crossovers {
     /// From the frequencies at which |L| = 1, in rad/s, and from |L| between them.
     ///

@@ -4,7 +4,7 @@ use phea_dynamics::watch::{Stopped, Watch};
 use phea_qft::proof::{NotProven, Proof, ProofOptions, Standing, prove};
 use phea_qft::verification::{Evidence, Verdict};
 
-use super::{ProjectAudit, audit_request, rounded};
+use super::{ProjectAudit, audit_request};
 use crate::robust::RobustProblem;
 use crate::side_by_side::all_cores;
 
@@ -89,87 +89,5 @@ fn rest_on(view: &mut ProjectAudit, mut proof: Proof, unproven: Verdict) {
 fn contradicted(standing: &mut Standing, searched: Verdict) {
     if *standing == Standing::Proven && searched == Verdict::Violated {
         *standing = Standing::NotProven(NotProven::Contradicted);
-    }
-}
-
-/// The outcome of a claim, in a word.
-pub fn standing_word(standing: &Standing) -> &'static str {
-    match standing {
-        Standing::Proven => "proven",
-        Standing::Refuted => "refuted",
-        Standing::NotProven(_) => "not proven",
-    }
-}
-
-/// Why a claim is neither proven nor refuted, in a sentence without its full stop; `None` if it is
-/// either.
-pub fn why_not_proven(view: &ProjectAudit, proof: &Proof, standing: &Standing) -> Option<String> {
-    let Standing::NotProven(reason) = standing else { return None };
-    Some(match reason {
-        NotProven::Measured => {
-            "the plants were measured, and between two of them nothing can be claimed".into()
-        }
-        NotProven::Images => {
-            "the loop is sampled, and the response of the plant could not be bounded beyond the images".into()
-        }
-        NotProven::BeyondSampling => "its band lies beyond half the sampling frequency".into(),
-        NotProven::RateFedForward => {
-            "the load's velocity is fed forward, which the prover does not yet cover".into()
-        }
-        NotProven::InnerFeedback => {
-            "a sampled controller feeds the pressures back, which the prover does not yet cover".into()
-        }
-        NotProven::Waves => "waves travel in the lines, so that the plant has no polynomials".into(),
-        NotProven::NotPolynomial => {
-            format!(
-                "the coefficients of the plant could not be enclosed by polynomials of the uncertain numbers{}",
-                sought_point(view)
-            )
-        }
-        NotProven::TooManyVariables => "the box has too many uncertain numbers".into(),
-        NotProven::TableLimit => "its limit is a table without two points within its band".into(),
-        NotProven::Spread => "there is no prefilter, and a spread is not the ratio of one plant".into(),
-        NotProven::Unstable => "the loop is not proven to be stable".into(),
-        NotProven::Unbounded => "the ratio grows, and no maximum was found".into(),
-        NotProven::NoStableMember => "no plant could be shown to be stable or unstable".into(),
-        NotProven::Rounding => "the checker, which rounds outwards, could not confirm it".into(),
-        NotProven::Contradicted => {
-            "the search found a plant and a frequency that violate it, which is a defect of search or proof"
-                .into()
-        }
-        NotProven::Budget(region) => {
-            let [from, to] = region.band_rad_per_s.map(rounded);
-            format!(
-                "the boxes that one claim may take are used up: between {from} and {to} rad/s it remains open{}",
-                part_of(view, proof, region)
-            )
-        }
-    })
-}
-
-/// The part of the box that remains, if it is smaller than the box.
-fn part_of(view: &ProjectAudit, proof: &Proof, region: &phea_qft::proof::ProofRegion) -> String {
-    let Some(certificate) = &proof.certificate else { return String::new() };
-    let segments = certificate.plant.boxes.get(region.of_box).into_iter().flatten();
-    let sides = segments.zip(view.names.headings()).filter_map(|(one, name)| {
-        let [from, to] = *region.variables.get(one.variable?)?;
-        let [least, most] = [one.value(from), one.value(to)];
-        (from > 0.0 || to < 1.0).then(|| format!("{name} from {least:.4e} to {most:.4e}"))
-    });
-    let sides: Vec<String> = sides.collect();
-    if sides.is_empty() { String::new() } else { format!(", for {}", sides.join(", ")) }
-}
-
-/// Where the operating point of each plant is sought: a remark on why it is not enclosed.
-fn sought_point(view: &ProjectAudit) -> &'static str {
-    let headings = view.names.headings();
-    let sought = ["operating_point.load_force", "operating_point.load_pressure", "operating_point.velocity"];
-    match headings.iter().any(|name| sought.contains(name)) {
-        true => {
-            ": they do not follow the command that holds a load or a velocity through null of the spool, with a pump that is limited, or where \
-             more than three numbers move it; ranges of `flow_gain`, \
-             `flow_pressure_coefficient` and `hydraulic_stiffness` can be proven, and `check` prints those of this family"
-        }
-        false => "",
     }
 }

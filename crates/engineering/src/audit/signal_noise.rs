@@ -1,13 +1,13 @@
 //! The effect of the noise of what a controller reads in addition to the force on the valve's
 //! command and the force.
 
+use phea_dynamics::linear::LinearError;
 use phea_qft::design::quantization::{QuantizationError, RateNoise, inner_noise, rate_noise};
 use phea_qft::family::Family;
 use phea_qft::verification::{PlantPoint, Verdict};
 
-use crate::plant_names::PlantNames;
-use crate::quantity::{PRESSURE, Units, VELOCITY, display, significant};
-use crate::robust::RobustProblem;
+use crate::quantity::Units;
+use crate::robust::{NoPolynomials, RobustProblem};
 
 /// What a controller reads in addition to the force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +28,20 @@ pub struct SignalNoise {
     /// How the rig moves.
     pub units: Units,
     /// The largest effects in the family, or why they are not known.
-    pub effect: Result<SignalNoiseEffect, String>,
+    pub effect: Result<SignalNoiseEffect, UnknownNoiseEffect>,
+}
+
+/// The reason why the effects of a noise are not known.
+#[derive(Clone, Debug, PartialEq)]
+pub enum UnknownNoiseEffect {
+    /// Not every plant is stable.
+    Unstable,
+    /// The plants have no polynomials: only a simulation shows the effects.
+    NoPolynomials(NoPolynomials),
+    /// A plant cannot be sampled.
+    Member(LinearError),
+    /// The response to the noise cannot be summed.
+    Response(QuantizationError),
 }
 
 /// The largest effects among the plants of a family that are examined one by one.
@@ -60,53 +73,17 @@ impl SignalNoise {
             return None;
         }
         let effect = match problem.without_polynomials {
-            _ if stability == Verdict::Violated => Err("not every plant is stable".to_string()),
-            Some(why) => Err(format!("only a simulation shows it with {why}")),
-            None => problem.members().map_err(|error| error.to_string()).and_then(|members| {
+            _ if stability == Verdict::Violated => Err(UnknownNoiseEffect::Unstable),
+            Some(why) => Err(UnknownNoiseEffect::NoPolynomials(why)),
+            None => problem.members().map_err(UnknownNoiseEffect::Member).and_then(|members| {
                 let found = match signal {
                     NoisySignal::LoadVelocity => rate_noise(around, &members, rms),
                     NoisySignal::Pressures => inner_noise(around, &members, rms),
                 };
-                found.map(|found| named(&found, problem)).map_err(|error| words(&error))
+                found.map(|found| named(&found, problem)).map_err(UnknownNoiseEffect::Response)
             }),
         };
         Some(SignalNoise { signal, rms, units: problem.units, effect })
-    }
-
-    /// In a sentence.
-    pub fn sentence(&self, names: &PlantNames) -> String {
-        let (what, dimension) = match self.signal {
-            NoisySignal::LoadVelocity => ("measured load velocity", self.units.motion.dimension(&VELOCITY)),
-            NoisySignal::Pressures => ("pressures that are fed back", &PRESSURE),
-        };
-        let rms = display(self.rms, dimension, 3);
-        match &self.effect {
-            Ok(effect) => {
-                let of = |plant: &PlantPoint| match names.headings().is_empty() {
-                    true => String::new(),
-                    false => format!(" ({})", names.text(plant)),
-                };
-                format!(
-                    "the noise of the {what}, {rms} rms, moves the command at the valve by {} mV rms{} and the force by {} rms{}",
-                    significant(1e3 * effect.command_rms_v, 3),
-                    of(&effect.command_plant),
-                    self.units.force.text(effect.force_rms_n, 3),
-                    of(&effect.force_plant),
-                )
-            }
-            Err(reason) => {
-                format!("the effect of the noise of the {what}, {rms} rms, is not known: {reason}")
-            }
-        }
-    }
-}
-
-fn words(error: &QuantizationError) -> String {
-    match error {
-        QuantizationError::NotSettled { .. } => {
-            "with one plant at least it does not die away in the loop".to_string()
-        }
-        other => other.to_string(),
     }
 }
 

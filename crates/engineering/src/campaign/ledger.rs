@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::plan::Plan;
 use super::row::{NoRow, Row};
 use super::workers::{Asked, News, run};
-use super::{CampaignError, Effort};
+use super::{CampaignError, Effort, RowFault};
 use phea_dynamics::watch::{Progress, Watch};
 
 /// Rows that are held at once.
@@ -206,13 +206,13 @@ fn kept_row(plan: &Plan, run: u64, text: &str, line: usize) -> Result<Row, Campa
     let row = plan.columns.row(text).map_err(|fault| match fault {
         NoRow::Other => CampaignError::OtherCampaign { line },
         NoRow::LineEnd => CampaignError::LineEnds { line },
-        NoRow::Changed => CampaignError::Damaged { line, fault: "is not as it was written" },
+        NoRow::Changed => CampaignError::Damaged { line, fault: RowFault::Changed },
     })?;
     if row.run != run {
-        return Err(CampaignError::Damaged { line, fault: "belongs to another run" });
+        return Err(CampaignError::Damaged { line, fault: RowFault::OfAnotherRun });
     }
     if row.values != plan.draw(run).values {
-        return Err(CampaignError::Damaged { line, fault: "has other numbers than its run draws" });
+        return Err(CampaignError::Damaged { line, fault: RowFault::OtherNumbers });
     }
     Ok(row)
 }

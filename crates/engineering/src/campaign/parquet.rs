@@ -30,7 +30,18 @@ enum ParquetColumn {
     Single(Vec<Option<f32>>),
 }
 
-fn written(columns: &CampaignColumns, rows: &[Row]) -> Result<Vec<u8>, ParquetError> {
+/// Why the table cannot be written.
+#[derive(Debug, thiserror::Error)]
+enum TableError {
+    /// Error of the format's library.
+    #[error(transparent)]
+    Parquet(#[from] ParquetError),
+    /// A column of the rows is missing in the header.
+    #[error("Parquet error: more columns than names")]
+    ColumnWithoutName,
+}
+
+fn written(columns: &CampaignColumns, rows: &[Row]) -> Result<Vec<u8>, TableError> {
     let header = columns.header();
     let names = header.trim_end().split(',');
     let kinds = contents(columns, &[]);
@@ -50,7 +61,7 @@ fn written(columns: &CampaignColumns, rows: &[Row]) -> Result<Vec<u8>, ParquetEr
         }
         group.close()?;
     }
-    file.into_inner()
+    Ok(file.into_inner()?)
 }
 
 fn field(name: &str, column: &ParquetColumn) -> Result<TypePtr, ParquetError> {
@@ -67,14 +78,12 @@ fn field(name: &str, column: &ParquetColumn) -> Result<TypePtr, ParquetError> {
 fn write<T: DataType>(
     group: &mut SerializedRowGroupWriter<'_, Vec<u8>>,
     values: &[Option<T::T>],
-) -> Result<(), ParquetError> {
-    let Some(mut column) = group.next_column()? else {
-        return Err(ParquetError::General("more columns than names".to_string()));
-    };
+) -> Result<(), TableError> {
+    let mut column = group.next_column()?.ok_or(TableError::ColumnWithoutName)?;
     let present: Vec<T::T> = values.iter().flatten().cloned().collect();
     let levels: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
     column.typed::<T>().write_batch(&present, Some(&levels), None)?;
-    column.close()
+    Ok(column.close()?)
 }
 
 /// In the order of the header.

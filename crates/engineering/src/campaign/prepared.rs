@@ -11,6 +11,7 @@ use phea_hydraulics::machine::{Machine, MachineOptions};
 use phea_machine::{Control, ControllerSamples, Digital, Watcher};
 
 use super::plan::{Draw, Plan};
+use super::range::OutsideRange;
 use super::row::{Ran, Row, RowOutcome, numbers};
 use crate::rig::{RigError, actuator};
 use crate::setup::Setup;
@@ -32,20 +33,34 @@ pub(super) struct Prepared {
     log: RefCell<ControllerSamples>,
 }
 
+/// Why a run cannot start.
+#[derive(Debug, thiserror::Error)]
+enum DrawError {
+    /// A drawn number is none that the project accepts.
+    #[error(transparent)]
+    OutsideRange(#[from] OutsideRange),
+    /// The path of a drawn number is not in the project.
+    #[error("a path leads to no number")]
+    NoNumber,
+    /// There is no such machine, or it cannot start in this state.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+}
+
 /// Makes the machine of a draw.
 ///
 /// # Errors
 /// The row that states why the run cannot start.
 pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
-    let refused = |reason: String, lumps| {
+    let refused = |reason: DrawError, lumps| {
         let (run, values) = (draw.run, draw.values.clone());
-        Box::new(Row { run, values, lumps, outcome: RowOutcome::Refused(reason) })
+        Box::new(Row { run, values, lumps, outcome: RowOutcome::Refused(reason.to_string()) })
     };
     let outside = plan.ranges().iter().zip(&draw.values).find_map(|(range, value)| range.problem(*value));
-    if let Some(problem) = outside {
-        return Err(refused(problem, None));
+    if let Some(outside) = outside {
+        return Err(refused(outside.into(), None));
     }
-    let project = plan.drawn(&draw).ok_or_else(|| refused("a path leads to no number".to_string(), None))?;
+    let project = plan.drawn(&draw).ok_or_else(|| refused(DrawError::NoNumber, None))?;
     let rig = Setup::rig_of(&project).ok();
     let lumps = rig.as_ref().map(|rig| {
         let linear = rig.derived;
@@ -69,7 +84,7 @@ pub(super) fn prepared(plan: &Plan, draw: Draw) -> Result<Prepared, Box<Row>> {
         let course = course_of(&plan.driven, &bench, &plan.drawn_scenario(&draw))?;
         Ok((bench, course))
     };
-    let (bench, course) = made().map_err(|error| refused(error.to_string(), lumps))?;
+    let (bench, course) = made().map_err(|error| refused(error.into(), lumps))?;
     let driving = course.machine_inputs();
     let reference = Input::Value(course.reference.clone());
     let first = match &bench.control {

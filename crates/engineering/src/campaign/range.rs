@@ -2,8 +2,8 @@
 
 use phea_dynamics::{portable, random};
 
-use super::project::{DISTRIBUTIONS, Distribution, Key, word_of};
-use super::quantity::{self, DisplayUnit};
+use super::project::{AcceptedRange, DISTRIBUTIONS, Distribution, Key, word_of};
+use super::quantity::{self, Dimension, DisplayUnit};
 
 /// A varied number: between two ends, as distributed.
 ///
@@ -47,20 +47,10 @@ impl VariedRange {
     }
 
     /// Why the project would not accept this number.
-    pub(super) fn problem(&self, value: f64) -> Option<String> {
+    pub(super) fn problem(&self, value: f64) -> Option<OutsideRange> {
         let Key { range, dimension, .. } = self.key;
-        if range.contains(value) {
-            return None;
-        }
-        let show = |value: f64| quantity::display(value, dimension, 6);
-        let low = if range.above_minimum { "above" } else { "at least" };
-        let high = if range.below_maximum { "below" } else { "at most" };
-        let ends = [
-            (range.minimum > f64::MIN).then(|| format!("{low} {}", show(range.minimum))),
-            (range.maximum < f64::MAX).then(|| format!("{high} {}", show(range.maximum))),
-        ];
-        let ends: Vec<String> = ends.into_iter().flatten().collect();
-        Some(format!("{} = {} is outside its range ({})", self.path, show(value), ends.join(" and ")))
+        let outside = || OutsideRange { path: self.path.clone(), value, range, dimension };
+        (!range.contains(value)).then(outside)
     }
 
     /// The unit in which people expect numbers of this range.
@@ -74,10 +64,31 @@ impl VariedRange {
     }
 }
 
+/// A number that the project would not accept.
+#[derive(Debug, thiserror::Error)]
+#[error("{path} = {} is outside its range ({})", quantity::display(*value, dimension, 6), ends(range, dimension))]
+pub(super) struct OutsideRange {
+    path: String,
+    value: f64,
+    range: AcceptedRange,
+    dimension: &'static Dimension,
+}
+
+/// The ends of a range as they are stated.
+fn ends(range: &AcceptedRange, dimension: &Dimension) -> String {
+    let show = |value: f64| quantity::display(value, dimension, 6);
+    let low = if range.above_minimum { "above" } else { "at least" };
+    let high = if range.below_maximum { "below" } else { "at most" };
+    let ends = [
+        (range.minimum > f64::MIN).then(|| format!("{low} {}", show(range.minimum))),
+        (range.maximum < f64::MAX).then(|| format!("{high} {}", show(range.maximum))),
+    ];
+    ends.into_iter().flatten().collect::<Vec<_>>().join(" and ")
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::project::AcceptedRange;
-    use super::super::quantity::{Dimension, PRESSURE, RATIO, VOLUME};
+    use super::super::quantity::{PRESSURE, RATIO, VOLUME};
     use super::*;
 
     fn key(dimension: &'static Dimension, range: AcceptedRange) -> Key {
@@ -130,13 +141,14 @@ mod tests {
     fn what_the_project_would_not_accept_is_a_problem() {
         let positive = AcceptedRange { minimum: 0.0, above_minimum: true, ..AcceptedRange::ANY };
         let mass = VariedRange { key: key(&RATIO, positive), ..range(Distribution::Normal, -1.0, 3.0) };
-        assert_eq!(mass.problem(0.5), None);
-        assert_eq!(mass.problem(-0.5), Some("a = -0.5 is outside its range (above 0)".to_string()));
+        let told = |range: &VariedRange, value: f64| range.problem(value).map(|outside| outside.to_string());
+        assert_eq!(told(&mass, 0.5), None);
+        assert_eq!(told(&mass, -0.5), Some("a = -0.5 is outside its range (above 0)".to_string()));
         let between =
             AcceptedRange { minimum: -1e5, maximum: 1e8, below_maximum: true, ..AcceptedRange::ANY };
         let pressure = VariedRange { key: key(&PRESSURE, between), ..range(Distribution::Normal, -1e6, 3e6) };
         let expected = "a = -46.5 bar is outside its range (at least -1 bar and below 1000 bar)";
-        assert_eq!(pressure.problem(-4.65e6), Some(expected.to_string()));
+        assert_eq!(told(&pressure, -4.65e6), Some(expected.to_string()));
     }
 
     #[test]

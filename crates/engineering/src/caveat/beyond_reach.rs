@@ -1,6 +1,6 @@
 //! Required steps that the declared rig does not reach.
 
-use super::Caveat;
+use super::{Caveat, UncountedEffect};
 use crate::setup::Setup;
 use crate::simulate::{steps_beyond, time_requirements};
 
@@ -9,5 +9,5 @@ use crate::simulate::{steps_beyond, time_requirements};
 pub(super) fn beyond_reach(setup: &Setup<'_>) -> Vec<Caveat> {
     let required = time_requirements(setup.project).unwrap_or_default();
     let beyond = steps_beyond(setup, &required).into_iter();
-    beyond.map(|one| Caveat { sentence: format!("{}; {}", one.sentence, one.cure), unproven: true }).collect()
+    beyond.map(|one| Caveat { effect: UncountedEffect::BeyondReach(one), unproven: true }).collect()
 }

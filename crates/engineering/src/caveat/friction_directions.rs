@@ -1,8 +1,7 @@
 //! A viscous friction that differs by direction: the linear plant has one slope.
 
-use super::{Caveat, is_measured};
+use super::{Caveat, UncountedEffect, is_measured};
 use crate::project::Project;
-use crate::quantity::significant;
 use crate::setup::Setup;
 
 /// Paths of the numbers that the viscous friction of the plants follows from.
@@ -25,14 +24,7 @@ pub(super) fn friction_directions(setup: &Setup<'_>) -> Option<Caveat> {
     if high - low <= SAME * high || is_within {
         return None;
     }
-    let [extending, retracting, low, high] =
-        [extending, retracting, low, high].map(|number| significant(number, 4));
-    let sentence = format!(
-        "the viscous friction is {extending} N.s/m while the rod extends and {retracting} N.s/m while it retracts \
-         (cylinder.friction.retracting.viscous), and no plant of the family has one of them: state `viscous_friction` from {low} to {high} \
-         N.s/m in [uncertainty]"
-    );
-    Some(Caveat { sentence, unproven: true })
+    Some(Caveat { effect: UncountedEffect::FrictionDirections { extending, retracting }, unproven: true })
 }
 
 /// The interval of the viscous friction that the project states.

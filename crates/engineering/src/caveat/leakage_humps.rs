@@ -2,7 +2,7 @@
 
 use phea_hydraulics::servovalve::{Servovalve, Supply, blocked_ports};
 
-use crate::quantity::{FLOW, VOLTAGE, display};
+use super::UncountedEffect;
 use crate::setup::Setup;
 
 /// Openings on either side of null at which the leakage is found, and the greatest, in widths of
@@ -15,15 +15,10 @@ const DIP: f64 = 0.08;
 
 /// Edges that open faster than those in series with them shut leak most on either side of null,
 /// which no measured valve does.
-pub(super) fn leakage_humps(setup: &Setup<'_>) -> Option<String> {
+pub(super) fn leakage_humps(setup: &Setup<'_>) -> Option<UncountedEffect> {
     let components = setup.rig().ok()?.actuator.components();
-    let [opening, most, least] = humps(&components.valve, &components.supply)?;
-    let [most, least] = [most, least].map(|flow| display(flow, &FLOW, 3));
-    Some(format!(
-        "the valve leaks most beside null, {most} at {}, and {least} at null, where measured valves leak most: valve.leakage_shape, which \
-         sets over what command the leakage falls, is too small for these flow coefficients",
-        display(opening, &VOLTAGE, 3)
-    ))
+    let [command, greatest, least] = humps(&components.valve, &components.supply)?;
+    Some(UncountedEffect::LeakageHumps { command, greatest, least })
 }
 
 /// The command of the lower of two maxima of a valve's leakage, the leakage there, and the least

@@ -2,7 +2,7 @@
 
 use phea_hydraulics::servovalve::{OpeningLaw, Servovalve, SpoolDirection, Supply, chamber_coefficients};
 
-use crate::quantity::{VOLTAGE, display, significant};
+use super::UncountedEffect;
 use crate::setup::Setup;
 
 /// Travel beyond the lap at which an edge is open, in laps.
@@ -10,16 +10,10 @@ const BEYOND: f64 = 2.0;
 
 /// Within its overlap a valve passes leakage alone, and no linear plant has both this and what it
 /// passes beyond.
-pub(super) fn overlap(setup: &Setup<'_>) -> Option<String> {
+pub(super) fn overlap(setup: &Setup<'_>) -> Option<UncountedEffect> {
     let components = setup.rig().ok()?.actuator.components();
-    let [from, to, share] = dead_band(&components.valve, &components.supply)?;
-    let [from, to] = [from, to].map(|spool| display(spool, &VOLTAGE, 3));
-    Some(format!(
-        "the edges of the valve overlap from {from} to {to}: between them its flow gain without load is {} % of that beyond (valve.lap). Each plant is that \
-         of small motions about its operating point; only a simulation shows a loop that crosses the lap, and hunts there where it has an \
-         integrator",
-        significant(100.0 * share, 2)
-    ))
+    let [from, to, gain_ratio] = dead_band(&components.valve, &components.supply)?;
+    Some(UncountedEffect::Overlap { dead_band: [from, to], gain_ratio })
 }
 
 /// Spool positions between which no edge is open, and the magnitude of the flow gain in the middle

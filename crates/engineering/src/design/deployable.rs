@@ -18,13 +18,14 @@ use phea_qft::verification::{Audit, SpecificationFinding, Verdict};
 
 use super::ProjectDesign;
 use crate::audit::PrefilterGain;
-use crate::limit_kind::{DesignLimitKind, LimitOrigin, limit_words};
+use crate::limit_kind::{DesignLimitKind, LimitOrigin};
 use crate::project::{DeclaredDesign, UnstatedLimits};
 use crate::quantity::significant;
 use crate::rig::quarter_wave;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::simulate::stepped_references;
+use crate::specification::SpecificationName;
 
 /// Part of the nominal voltage that noise may take, rms.
 const NOISE_SHARE: f64 = 0.01;
@@ -159,7 +160,7 @@ pub(super) fn limited(given: &RobustProblem, limits: &[DesignLimit]) -> RobustPr
     for limit in limits {
         let Some(specification) = limit.specification.clone() else { continue };
         problem.specifications.push(specification);
-        problem.specification_names.push(limit_words(limit.kind).to_string());
+        problem.specification_names.push(SpecificationName::DesignLimit(limit.kind));
         problem.design_limits.push(limit.kind);
     }
     problem

@@ -3,8 +3,7 @@
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::watch::Stopped;
 
-use crate::impossible_steps::impossible_steps;
-use crate::project::LateError;
+use crate::impossible_steps::{ImpossibleSteps, impossible_steps};
 use crate::robust::{RobustError, RobustProblem};
 use crate::setup::{ControlError, Setup};
 use crate::trial::TrialError;
@@ -27,8 +26,8 @@ pub enum DesignError {
     #[error("the search ended without a controller{}", .0.iter().map(|one| format!("; {one}")).collect::<String>())]
     NoController(Vec<String>),
     /// Required steps that no controller makes on the rig.
-    #[error("{}", .0.iter().map(LateError::sentence).collect::<Vec<_>>().join("; "))]
-    ImpossibleSteps(Vec<LateError>),
+    #[error("no controller makes {} of the required steps on this rig", .0.steps.len())]
+    ImpossibleSteps(ImpossibleSteps),
     /// A part of the problem cannot be searched with.
     #[error(transparent)]
     Search(#[from] phea_qft::design::LoopDesignError),
@@ -67,6 +66,9 @@ impl From<TrialError> for DesignError {
 pub(super) fn refuse_impossible_steps(setup: &Setup<'_>, problem: &RobustProblem) -> Result<(), DesignError> {
     match impossible_steps(setup, problem) {
         none if none.is_empty() => Ok(()),
-        found => Err(DesignError::ImpossibleSteps(found)),
+        steps => {
+            let units = setup.project.units;
+            Err(DesignError::ImpossibleSteps(ImpossibleSteps { steps, units }))
+        }
     }
 }

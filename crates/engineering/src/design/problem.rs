@@ -12,7 +12,7 @@ use crate::limit_kind::DesignLimitKind;
 use crate::project::{DeclaredDesign, StructureChoice, StructurePart};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
-use crate::setup::{ControlError, element};
+use crate::setup::{ControlError, LawPlace, element};
 use crate::side_by_side::all_cores;
 
 /// How far corner frequencies may lie below and above the design frequencies.
@@ -144,6 +144,8 @@ fn part(declared: &StructurePart, wide: [f64; 2]) -> Result<StructureFactor, Con
             StructureFactor::PolePair { natural_frequency, damping_ratio }
         }
         // in s, as every factor is
-        StructurePart::Fixed { element: fixed } => StructureFactor::Fixed(element("[design]", fixed, None)?),
+        StructurePart::Fixed { element: fixed } => {
+            StructureFactor::Fixed(element(LawPlace::Design, fixed, None)?)
+        }
     })
 }

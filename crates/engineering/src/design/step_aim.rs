@@ -12,13 +12,13 @@ use phea_dynamics::portable;
 use phea_qft::specification::{Limit, Requirement, Specification};
 
 use super::deployable::limit_value;
-use super::{CommandOfSteps, DesignError, DesignLimitKind, ProjectDesign, design_limits, limit_words};
+use super::{CommandOfSteps, DesignError, DesignLimitKind, ProjectDesign, design_limits};
 use crate::audit::TimeFinding;
 use crate::project::{DeclaredLimit, DeclaredSpecification, Project, ResponseWish, SpecificationKind};
 use crate::robust::{RobustError, RobustProblem};
 use crate::setup::Setup;
 use crate::simulate::{ReachedStep, TimeRequirement, TrackingWish};
-use crate::specification::{specification, specifications};
+use crate::specification::{SpecificationName, specification, specifications};
 use phea_dynamics::closed_loop::ClosedLoop;
 
 /// How often a design is repeated with stricter limits.
@@ -154,13 +154,13 @@ impl StepAim {
         }
         if let Some(required) = required_step(given) {
             problem.specifications.push(self.towards(required)?);
-            problem.specification_names.push(limit_words(DesignLimitKind::RequiredStep).to_string());
+            problem.specification_names.push(SpecificationName::DesignLimit(DesignLimitKind::RequiredStep));
             problem.design_limits.push(DesignLimitKind::RequiredStep);
         }
         let led = self.prefilter_gain.and_then(|most| without_prefilter(&problem.specifications, most));
         if let Some(specification) = led {
             problem.specifications.push(specification);
-            problem.specification_names.push(limit_words(DesignLimitKind::PrefilterGain).to_string());
+            problem.specification_names.push(SpecificationName::DesignLimit(DesignLimitKind::PrefilterGain));
             problem.design_limits.push(DesignLimitKind::PrefilterGain);
         }
         Ok(problem)

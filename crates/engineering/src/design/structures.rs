@@ -127,7 +127,7 @@ fn reached_by(
     let own = run.aimed.specifications.len() - run.aimed.design_limits.len();
     let name_of = |margin: &SpecificationMargin| match margin.specification {
         index if index < own => Some(told.named(index)),
-        index => run.aimed.specification_names.get(index).cloned(),
+        index => run.aimed.specification_names.get(index).map(|name| name.words().to_string()),
     };
     let leaves_no_room = |margin: &&SpecificationMargin| match told.options.objective {
         Objective::BestWorstMargin => true,

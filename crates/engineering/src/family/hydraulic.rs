@@ -22,10 +22,10 @@ use phea_hydraulics::two_pressure::{
     TwoPressureLinearParameters, TwoPressureModel, two_pressure_linear_parameters,
 };
 
-use super::ProjectFamilyError;
 use super::moved::{self, MovedNumber};
 use super::start::BalanceStart;
 use super::visited::Visited;
+use super::{NoEffect, ProjectFamilyError};
 use crate::project::{DeclaredActuator, LINEAR_PARAMETERS, Project};
 use crate::rig::{
     self, Numbers, Rig, components, has_gas_states, linear, load_at, place, plant, settled_supply,
@@ -282,14 +282,12 @@ pub(super) fn is_linear(name: &str) -> bool {
 }
 
 /// Why a number does not affect the plant.
-fn reason(path: &str, project: &Project) -> String {
+fn reason(path: &str, project: &Project) -> NoEffect {
     if LINEAR_PARAMETERS.iter().any(|parameter| parameter.follows_from(path)) {
-        return "what the project states goes before what would follow from it".to_string();
+        return NoEffect::StatedInstead;
     }
     match path.starts_with("fluid.") && project.has_waves() {
-        true => format!(
-            "it does not enter the linear model but through the waves in the lines, which are those of the declared oil: verify other oils one by one, `--set {path}=...`"
-        ),
-        false => "it does not enter the linear model".to_string(),
+        true => NoEffect::OnlyInWaves { path: path.to_string() },
+        false => NoEffect::NotInModel,
     }
 }

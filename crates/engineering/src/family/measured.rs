@@ -9,6 +9,7 @@
 
 mod column;
 mod disc;
+mod problem;
 mod smooth;
 
 use num_complex::Complex64;
@@ -16,6 +17,7 @@ use phea_dynamics::portable;
 use phea_qft::family::{MeasuredFamily, MeasuredPlant};
 
 use self::column::{MeasurementColumns, ResponseForm};
+use self::problem::{ExpectedValue, MeasurementProblem};
 use self::smooth::{Discs, smoothed};
 use super::ProjectFamilyError;
 use crate::project::{DeclaredFamily, Findings, Project};
@@ -61,8 +63,8 @@ fn plant(name: &str, path: &str, bytes: Vec<u8>, findings: &mut Findings) -> Opt
     let radii = columns.radius.as_ref().zip(spread.first());
     if let Some((column, radii)) = radii {
         for row in (0..radii.len()).filter(|row| radii.get(*row).is_some_and(|radius| *radius < 0.0)) {
-            let found = table.error(row, column, "a radius is not negative", findings);
-            findings.push(found.expected("the radius of the disc that holds the response with 95 %"));
+            let wrong = (MeasurementProblem::NegativeRadius, ExpectedValue::Radius);
+            report(&table, (row, column), wrong, findings);
         }
     }
     let responses: Vec<Vec<Complex64>> = forms()
@@ -72,9 +74,8 @@ fn plant(name: &str, path: &str, bytes: Vec<u8>, findings: &mut Findings) -> Opt
     let mut responses = responses.into_iter();
     let command = responses.next()?;
     for row in (0..command.len()).filter(|row| command.get(*row) == Some(&Complex64::new(0.0, 0.0))) {
-        let message = "the response is zero: it has no logarithm to interpolate";
-        let found = table.error(row, columns.command.parts()[0], message, findings);
-        findings.push(found.expected("a response that is not zero, or no row for this frequency"));
+        let wrong = (MeasurementProblem::ZeroResponse, ExpectedValue::NonzeroResponse);
+        report(&table, (row, columns.command.parts()[0]), wrong, findings);
     }
     let (command, radii) = match radii {
         Some((_, radii)) if findings.error_count() == before => {
@@ -109,6 +110,17 @@ fn within_discs(
     smoothed(&discs).unwrap_or((response, radii))
 }
 
+/// Reports a problem of a value, with what is expected instead.
+fn report(
+    table: &MeasuredTable,
+    (row, column): (usize, &Column),
+    (problem, expected): (MeasurementProblem, ExpectedValue),
+    findings: &mut Findings,
+) {
+    let found = table.error(row, column, problem.to_string(), findings);
+    findings.push(found.expected(expected.to_string()));
+}
+
 /// Reports frequencies that are not above the greatest one before.
 fn rising(table: &MeasuredTable, column: &Column, frequencies: &[f64], findings: &mut Findings) {
     let mut greatest = 0.0;
@@ -117,13 +129,12 @@ fn rising(table: &MeasuredTable, column: &Column, frequencies: &[f64], findings:
             greatest = *frequency;
             continue;
         }
-        let message = if *frequency <= 0.0 {
-            "frequencies must be positive"
-        } else {
-            "frequencies must increase from row to row"
+        let problem = match *frequency <= 0.0 {
+            true => MeasurementProblem::FrequencyNotPositive,
+            false => MeasurementProblem::FrequencyNotRising,
         };
-        let found = table.error(row, column, message, findings);
-        findings.push(found.expected(format!("a higher frequency in {}", column.unit)));
+        let expected = ExpectedValue::HigherFrequency { unit: column.unit.clone() };
+        report(table, (row, column), (problem, expected), findings);
     }
 }
 
@@ -139,8 +150,8 @@ fn responses(
     for (row, (one, other)) in ones.iter().zip(others).enumerate() {
         let is_polar = matches!(form, ResponseForm::Polar(..));
         if is_polar && *one < 0.0 {
-            let found = table.error(row, form.parts()[0], "a magnitude is not negative", findings);
-            findings.push(found.expected("the sign in the phase, as 180 degrees"));
+            let wrong = (MeasurementProblem::NegativeMagnitude, ExpectedValue::SignInPhase);
+            report(table, (row, form.parts()[0]), wrong, findings);
         }
         values.push(match form {
             ResponseForm::Cartesian(..) => Complex64::new(*one, *other),

@@ -35,8 +35,7 @@ pub(super) fn within_reach(project: &Project) -> Result<Vec<Uncertain>, ProjectF
     if !within.contains(&velocity.nominal) {
         let [nominal, least, most] = [velocity.nominal, least, most]
             .map(|value| display(value, project.motion().dimension(&VELOCITY), 4));
-        let message = format!("the pump gives {least} to {most}, and the nominal velocity is {nominal}");
-        return Err(ProjectFamilyError::Region(message));
+        return Err(ProjectFamilyError::Region { least, most, nominal });
     }
     Ok(numbers)
 }

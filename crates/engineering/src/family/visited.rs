@@ -10,11 +10,10 @@ use phea_hydraulics::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use phea_hydraulics::operating_point::{Settled, operating_point};
 use phea_qft::family::{Coordinate, Extent, UncertainFamily};
 
-use super::ProjectFamilyError;
 use super::hydraulic::{Equal, Open};
 use super::moved::{self, MovedNumber};
+use super::{NoOperatingPoint, ProjectFamilyError};
 use crate::project::{DeclaredActuator, Project};
-use crate::quantity::significant;
 use crate::rig::{Numbers, Rig, RigError, are_equal, components, has_gas_states, sides, states_one_pressure};
 use crate::setup::Setup;
 
@@ -92,7 +91,7 @@ impl Visited {
     }
 
     /// The error at a plant; `None` if its recorded pressures are those of its operating point.
-    pub(super) fn problem(&self, open: &Open<'_>, values: &[f64]) -> Option<String> {
+    pub(super) fn problem(&self, open: &Open<'_>, values: &[f64]) -> Option<NoOperatingPoint> {
         let (position, steady, balance) = open.balance(values);
         let results = self.settled.evaluate(values);
         let &[command, pressure_a, pressure_b] = results.first_chunk()?;
@@ -108,10 +107,9 @@ impl Visited {
             return None;
         }
         let components = Components { supply: balance.supply, ..components };
-        let afresh = Actuator::new(components).map_err(|error| error.to_string()).and_then(|actuator| {
-            let point = operating_point(&actuator, position, steady.into());
-            point.map_err(|error| error.to_string())
-        });
+        let afresh = Actuator::new(components)
+            .map_err(NoOperatingPoint::Actuator)
+            .and_then(|actuator| Ok(operating_point(&actuator, position, steady.into())?));
         let point = match afresh {
             Err(reason) => return Some(reason),
             Ok(point) => point,
@@ -120,10 +118,7 @@ impl Visited {
         let error = (command - point.command).abs() / balance.valve.nominal_voltage
             + (pressure_a - point.pressure_a).abs() / drop
             + (pressure_b - point.pressure_b).abs() / drop;
-        (error.is_nan() || error > EXACT).then(|| {
-            let error = significant(100.0 * error, 2);
-            format!("the pressures recorded for it miss those that balance by {error} % of the supply's")
-        })
+        (error.is_nan() || error > EXACT).then_some(NoOperatingPoint::Missed { fraction: error })
     }
 
     /// Command of the operating point at a plant, V.

@@ -2,65 +2,57 @@
 
 use phea_hydraulics::line::{Conduit, StiffeningMember};
 
+use super::ImpossibleStep;
 use crate::audit::LoopDeadTime;
-use crate::project::LateError;
-use crate::quantity::DisplayUnit;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::simulate::TimeRequirement;
 
-/// The times that pass before the force moves, s, each with its name: the dead time between
-/// reference and force, and on the rig the run of a wave through the shorter line.
-fn still(setup: &Setup<'_>, problem: &RobustProblem) -> [(f64, &'static str); 4] {
-    let dead_time = LoopDeadTime::of(problem);
-    [
-        (problem.compensation.delay_s(), "the delay of the controller"),
-        (dead_time.controller_s, "the dead time of its transfer function"),
-        (dead_time.plant_s[1], "the dead time of the plant"),
-        (wave_s(setup).unwrap_or(0.0), "the time of a wave through the shorter line"),
-    ]
+/// Times that pass before the force moves, s: the dead time between reference and force, and on the
+/// rig the run of a wave through the shorter line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StillTimes {
+    /// Delay of the controller, s.
+    pub controller_delay: f64,
+    /// Dead time of the controller's transfer function, s.
+    pub controller_dead_time: f64,
+    /// Dead time of the plant, s.
+    pub plant_dead_time: f64,
+    /// Run of a wave through the shorter line, s.
+    pub wave: f64,
+}
+
+impl StillTimes {
+    fn of(setup: &Setup<'_>, problem: &RobustProblem) -> StillTimes {
+        let dead_time = LoopDeadTime::of(problem);
+        StillTimes {
+            controller_delay: problem.compensation.delay_s(),
+            controller_dead_time: dead_time.controller_s,
+            plant_dead_time: dead_time.plant_s[1],
+            wave: wave_s(setup).unwrap_or(0.0),
+        }
+    }
+
+    /// The sum, s.
+    pub fn total(&self) -> f64 {
+        [self.controller_delay, self.controller_dead_time, self.plant_dead_time, self.wave].iter().sum()
+    }
 }
 
 /// The sum of the times that pass before the force moves, s.
 pub(super) fn still_s(setup: &Setup<'_>, problem: &RobustProblem) -> f64 {
-    still(setup, problem).iter().map(|(time_s, _)| time_s).sum()
+    StillTimes::of(setup, problem).total()
 }
 
 /// No step settles before the force has moved.
-pub(super) fn findings(setup: &Setup<'_>, problem: &RobustProblem) -> Vec<LateError> {
-    let (parts, total_s) = (still(setup, problem), still_s(setup, problem));
-    let words = parts.iter().filter(|(time_s, _)| *time_s > 0.0);
-    let words: Vec<String> = words.map(|(time_s, name)| format!("{} {name}", text(*time_s))).collect();
+pub(super) fn findings(setup: &Setup<'_>, problem: &RobustProblem) -> Vec<ImpossibleStep> {
+    let still = StillTimes::of(setup, problem);
     let of = |requirement: &TimeRequirement| {
-        let settling_s = requirement.wish.settling_time_s.filter(|time_s| *time_s <= total_s)?;
+        let settling = requirement.wish.settling_time_s.filter(|time_s| *time_s <= still.total())?;
         let key = if requirement.limits.is_some() { "lower.settling_time" } else { "settling_time" };
-        Some(LateError {
-            path: format!("specification[{}].{key}", requirement.number - 1),
-            message: format!(
-                "[[specification]] {}, `{key}`: no step settles in {}, since the force does not move before {} ({})",
-                requirement.number,
-                text(settling_s),
-                text(total_s),
-                words.join(", ")
-            ),
-            help: format!("require more than {}, or shorten {}", text(total_s), shortened(&parts)),
-        })
+        Some(ImpossibleStep::BeforeForceMoves { number: requirement.number, key, settling, still })
     };
     problem.in_time.iter().filter_map(of).collect()
-}
-
-/// The times that can be shortened: `the line`, `the delay`.
-fn shortened(parts: &[(f64, &str); 4]) -> &'static str {
-    let [.., (wave_s, _)] = parts;
-    match (parts[..3].iter().any(|(time_s, _)| *time_s > 0.0), *wave_s > 0.0) {
-        (false, true) => "the line",
-        (true, true) => "the delay or the line",
-        (_, false) => "the delay",
-    }
-}
-
-fn text(time_s: f64) -> String {
-    DisplayUnit::MILLISECOND.text(time_s, 3)
 }
 
 /// The time of a wave through the shorter line, s; `None` without lines, and where the plant's dead

@@ -14,12 +14,12 @@ use phea_dynamics::uncertain_plant::UncertainPlant;
 use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::verification::PlantPoint;
 
+use super::ImpossibleStep;
 use super::in_time::still_s;
-use crate::project::{LateError, Project};
-use crate::quantity::{DisplayUnit, FORCE, display, significant};
-use crate::robust::{LINES_IN_MOTION, RobustProblem};
+use crate::plant_names::NamedPlant;
+use crate::robust::{NoPolynomials, RobustProblem};
 use crate::setup::Setup;
-use crate::simulate::{BeyondReach, ReferenceStep, TimeRequirement, stepped_references, steps_beyond};
+use crate::simulate::{ReferenceStep, TimeRequirement, stepped_references, steps_beyond};
 
 /// Points of a step response.
 const POINTS: usize = 1000;
@@ -32,16 +32,40 @@ const WAVES: f64 = 2.0;
 
 /// The steps of a project that its rig does not reach, of these plants of its family; without those
 /// that are required before the force can move at all.
-pub(super) fn findings(setup: &Setup<'_>, problem: &RobustProblem, few: &Family) -> Vec<LateError> {
-    let beyond = steps_beyond(setup, &problem.in_time).into_iter();
-    let beyond =
-        beyond.map(|BeyondReach { path, sentence, cure }| LateError { path, message: sentence, help: cure });
+pub(super) fn findings(setup: &Setup<'_>, problem: &RobustProblem, few: &Family) -> Vec<ImpossibleStep> {
+    let beyond = steps_beyond(setup, &problem.in_time).into_iter().map(ImpossibleStep::BeyondReach);
     let slow = problem.in_time.iter().filter_map(|required| too_slow(setup, problem, required, few));
-    beyond.chain(slow).collect()
+    beyond.chain(slow.map(ImpossibleStep::TooSlow)).collect()
 }
 
-fn force(project: &Project, value: f64) -> String {
-    display(value, project.motion().dimension(&FORCE), 4)
+/// A step that the valve's whole voltage does not bring into its band in time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SlowStep {
+    /// Number of the specification, from 1.
+    pub number: usize,
+    /// Greatest voltage at the valve, V.
+    pub voltage: f64,
+    /// The slowest plant.
+    pub plant: NamedPlant,
+    /// True where the plant has lumped lines and the rig has not.
+    pub lumped: bool,
+    /// Force by which the plant moves at most, N.
+    pub reached: f64,
+    /// Size of the step, N.
+    pub size: f64,
+    /// True where a scenario makes the step.
+    pub of_scenario: bool,
+    /// Required settling time, s.
+    pub settling: f64,
+    /// Flow that is missing: that of a valve which would do it over that of the valve.
+    pub flow_ratio: f64,
+}
+
+impl SlowStep {
+    /// True where a larger valve would make up for the time that is missing.
+    pub fn is_matter_of_valve(&self) -> bool {
+        self.flow_ratio <= LARGER_VALVE
+    }
 }
 
 /// A step that is required.
@@ -77,7 +101,7 @@ fn too_slow(
     problem: &RobustProblem,
     required: &TimeRequirement,
     few: &Family,
-) -> Option<LateError> {
+) -> Option<SlowStep> {
     let Family::Uncertain(few) = few else { return None };
     let settling_s = required.wish.settling_time_s?;
     if settling_s <= still_s(setup, problem) {
@@ -93,35 +117,19 @@ fn too_slow(
         Some((share * step.size_n / reached_n, step, reached_n, values))
     });
     let (ratio, step, reached_n, values) = each.max_by(|one, other| one.0.total_cmp(&other.0))?;
-    let plant = problem.names.text(&PlantPoint::Parameters(values.clone()));
-    let plant = if plant.is_empty() { String::new() } else { format!(" ({plant})") };
-    let (of, smaller) = match step.of_scenario {
-        true => ("of a step of a scenario", "smaller steps in the scenarios"),
-        false => ("of the step", "a smaller `amplitude`"),
-    };
-    let (lumped, most) = match problem.without_polynomials {
-        Some(LINES_IN_MOTION) => (" with lumped lines", WAVES),
-        _ => ("", 1.0),
-    };
-    (ratio > most).then(|| LateError {
-        path: format!("specification[{}].settling_time", required.number - 1),
-        message: format!(
-            "[[specification]] {}, `settling_time`: with at most {} V at the valve the slowest linear plant{lumped}{plant} moves by at most {} of the {} {of} in {}",
-            required.number,
-            significant(limit_v, 3),
-            force(setup.project, reached_n),
-            force(setup.project, step.size_n),
-            DisplayUnit::MILLISECOND.text(settling_s, 3),
-        ),
-        help: match ratio <= LARGER_VALVE {
-            true => format!(
-                "require {smaller} or more time, or take a valve with {} times the flow",
-                significant(ratio, 2)
-            ),
-            false => format!(
-                "require more time or {smaller}: no larger valve makes up for the time that is missing"
-            ),
-        },
+    let plant = problem.names.named(&PlantPoint::Parameters(values.clone()));
+    let lumped = problem.without_polynomials == Some(NoPolynomials::LinesInMotion);
+    let most = if lumped { WAVES } else { 1.0 };
+    (ratio > most).then_some(SlowStep {
+        number: required.number,
+        voltage: limit_v,
+        plant,
+        lumped,
+        reached: reached_n,
+        size: step.size_n,
+        of_scenario: step.of_scenario,
+        settling: settling_s,
+        flow_ratio: ratio,
     })
 }
 

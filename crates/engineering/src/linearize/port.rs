@@ -150,14 +150,6 @@ pub enum HidingMass {
 }
 
 impl HidingMass {
-    /// It in words.
-    pub fn words(self) -> &'static str {
-        match self {
-            HidingMass::Piston => "the piston's mass",
-            HidingMass::Oil => "the oil of the transmission",
-        }
-    }
-
     /// Its frequency, as the label of a figure.
     pub fn label(self) -> &'static str {
         match self {
@@ -172,7 +164,7 @@ impl HidingMass {
 /// ```text
 /// sqrt(K_H/M) of the piston,    sqrt(K_eq/m) of the oil, m = N m_j
 /// ```
-pub(crate) fn hidden_above(rig: &Rig) -> (HidingMass, f64) {
+pub fn hidden_above(rig: &Rig) -> (HidingMass, f64) {
     let piston = compliance_hidden_above(rig.linear.hydraulic_stiffness, rig.linear.moving_mass);
     let oil = rig.plant.series.and_then(|series| match series.element {
         LinearElement::Oil(column) => Some(column.segments as f64 * column.mass),

@@ -6,7 +6,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Controller;
-use phea_dynamics::linear::TransferFunction;
+use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 
@@ -15,8 +15,9 @@ use crate::caveat::{Caveat, caveats};
 use crate::linear_loop::{LinearLoop, LoopStability, linear_loop, linear_loop_of};
 use crate::option::OptionError;
 use crate::project::{self, Key, KeyEntry, Loaded, Motions, Refusal};
-use crate::quantity::{self, DisplayUnit, MotionKind, display};
-use crate::setup::Setup;
+use crate::quantity::{self, Dimension, DisplayUnit, Units, display};
+use crate::rig::RigError;
+use crate::setup::{ControlError, Setup};
 use crate::source::Source;
 use crate::spelling::nearest;
 
@@ -60,8 +61,8 @@ pub struct Sweep {
     pub unit: DisplayUnit,
     /// The unit of its values.
     pub si: &'static str,
-    /// How the rig moves.
-    pub motion: MotionKind,
+    /// Motion of the rig and units of display.
+    pub units: Units,
     /// Whether the values are evenly spaced by ratio.
     pub by_ratio: bool,
     /// Whether the plant of every verdict depends on the key. It may not where the project states
@@ -80,7 +81,7 @@ pub struct SweepPoint {
     /// SI.
     pub value: f64,
     /// The models there, or why there are none.
-    pub found: Result<Swept, String>,
+    pub found: Result<Swept, NoSweptModels>,
 }
 
 /// The models at one value.
@@ -95,7 +96,34 @@ pub struct Swept {
     pub resonance: Option<Complex64>,
     /// Frequency up to which force over reference stays within 3 dB of its value towards zero
     /// frequency, rad/s; or why there is none.
-    pub bandwidth_rad_per_s: Result<f64, &'static str>,
+    pub bandwidth_rad_per_s: Result<f64, NoBandwidth>,
+}
+
+/// Reason why there are no models at a value.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoSweptModels {
+    /// The controller or the sensor is not a transfer function.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+    /// The rig cannot be computed.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// A linear model cannot be computed.
+    #[error("the linear models: {0}")]
+    Linear(#[from] LinearError),
+}
+
+/// Reason why a loop has no bandwidth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoBandwidth {
+    /// The project gives no controller.
+    NoController,
+    /// The loop cannot be closed.
+    NotClosed,
+    /// The closed loop is unstable.
+    Unstable,
+    /// The force follows up to every frequency at which it was evaluated.
+    BeyondRange,
 }
 
 /// Sweeps a number of a project.
@@ -108,7 +136,7 @@ pub fn sweep(
     catalogues: &[String],
     request: &SweepRequest,
 ) -> Result<Sweep, SweepError> {
-    let motion = loaded.project.motion();
+    let units = loaded.project.units;
     let asked = range(&request.range, loaded.project.motions())?;
     let by_ratio = asked.by_ratio();
     let SweepRange { path, key, ends } = asked;
@@ -128,7 +156,7 @@ pub fn sweep(
         .collect();
     let unit = quantity::fitting(ends[0].abs().max(ends[1].abs()), key.dimension);
     let caveats = caveats(setup);
-    Ok(Sweep { path, unit, si: key.dimension.si, motion, by_ratio, plant_follows, caveats, points })
+    Ok(Sweep { path, unit, si: key.dimension.si, units, by_ratio, plant_follows, caveats, points })
 }
 
 /// A range, read.
@@ -148,14 +176,40 @@ impl SweepRange {
     }
 }
 
-fn refused(text: &str, message: String) -> OptionError {
-    OptionError { option: "sweep", text: text.to_string(), message }
+fn refused(text: &str, problem: &SweepProblem) -> OptionError {
+    OptionError { option: "sweep", text: text.to_string(), message: problem.to_string() }
+}
+
+/// What is invalid about a sweep.
+#[derive(Debug, thiserror::Error)]
+enum SweepProblem {
+    #[error("a sweep has the form KEY=FROM..TO, such as line.length=0.5 m..3 m")]
+    Form,
+    #[error("both ends are the same: there is nothing to sweep")]
+    NoRange,
+    #[error("`{path}` takes {takes}, and only a number can be swept")]
+    NoNumber { path: String, takes: String },
+    #[error("the project file has no number `{path}`{}", meant(near.as_deref()))]
+    UnknownKey { path: String, near: Option<String> },
+    #[error("{error}; write {}, such as {}{}", dimension.name, dimension.examples, further(error))]
+    Unreadable { error: quantity::QuantityError, dimension: &'static Dimension },
+    #[error("{shown} is outside of what `{key}` may be")]
+    OutOfRange { shown: String, key: &'static str },
+    #[error("a sweep has 2 to {MOST_POINTS} points")]
+    Points,
+}
+
+fn meant(near: Option<&str>) -> String {
+    near.map_or(String::new(), |near| format!("; did you mean `{near}`?"))
+}
+
+fn further(error: &quantity::QuantityError) -> String {
+    error.help.as_ref().map_or(String::new(), |help| format!("; {help}"))
 }
 
 /// The range that a text states, in the units of the motions of rig and load.
 pub(crate) fn range(text: &str, motions: Motions) -> Result<SweepRange, OptionError> {
-    let form =
-        || refused(text, "a sweep has the form KEY=FROM..TO, such as line.length=0.5 m..3 m".to_string());
+    let form = || refused(text, &SweepProblem::Form);
     let (path, ends) = text.split_once('=').ok_or_else(form)?;
     let (from, to) = ends.split_once("..").ok_or_else(form)?;
     let [path, from, to] = [path, from, to].map(str::trim);
@@ -171,7 +225,7 @@ pub(crate) fn range(text: &str, motions: Motions) -> Result<SweepRange, OptionEr
     };
     let ends = [number(text, &from, &key)?, number(text, to, &key)?];
     if ends[0] == ends[1] {
-        return Err(refused(text, "both ends are the same: there is nothing to sweep".to_string()));
+        return Err(refused(text, &SweepProblem::NoRange));
     }
     Ok(SweepRange { path: path.to_string(), key, ends })
 }
@@ -185,11 +239,12 @@ fn key(text: &str, path: &str) -> Result<Key, OptionError> {
         return Ok(entry.key);
     }
     if let Some(entry) = keys.iter().find(named) {
-        return Err(refused(text, format!("`{path}` takes {}, and only a number can be swept", entry.takes)));
+        let problem = SweepProblem::NoNumber { path: path.to_string(), takes: entry.takes.clone() };
+        return Err(refused(text, &problem));
     }
     let names = keys.iter().filter(is_number).map(|entry| entry.path.as_str());
-    let help = nearest(path, names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
-    Err(refused(text, format!("the project file has no number `{path}`{help}")))
+    let near = nearest(path, names).map(str::to_string);
+    Err(refused(text, &SweepProblem::UnknownKey { path: path.to_string(), near }))
 }
 
 fn bare(text: &str) -> Option<f64> {
@@ -206,17 +261,14 @@ fn unit_of(text: &str) -> &str {
 fn number(text: &str, part: &str, key: &Key) -> Result<f64, OptionError> {
     let value = match bare(part) {
         Some(value) => value,
-        None => quantity::parse(part, key.dimension).map_err(|error| {
-            let help = error.help.as_ref().map_or(String::new(), |help| format!("; {help}"));
-            let dimension = key.dimension;
-            refused(text, format!("{error}; write {}, such as {}{help}", dimension.name, dimension.examples))
-        })?,
+        None => quantity::parse(part, key.dimension)
+            .map_err(|error| refused(text, &SweepProblem::Unreadable { error, dimension: key.dimension }))?,
     };
     if key.range.contains(value) {
         return Ok(value);
     }
     let shown = display(value, key.dimension, 6);
-    Err(refused(text, format!("{shown} is outside of what `{}` may be", key.name)))
+    Err(refused(text, &SweepProblem::OutOfRange { shown, key: key.name }))
 }
 
 pub(crate) fn points(asked: Option<usize>) -> Result<usize, OptionError> {
@@ -225,7 +277,7 @@ pub(crate) fn points(asked: Option<usize>) -> Result<usize, OptionError> {
         count => Err(OptionError {
             option: "points",
             text: count.to_string(),
-            message: format!("a sweep has 2 to {MOST_POINTS} points"),
+            message: SweepProblem::Points.to_string(),
         }),
     }
 }
@@ -253,17 +305,16 @@ struct Models {
     sensor: TransferFunction,
 }
 
-fn linearized(loaded: &Loaded) -> Result<Models, String> {
-    let setup = Setup::new(&loaded.project).map_err(|error| error.to_string())?;
-    let rig = setup.rig().map_err(|error| error.to_string())?;
+fn linearized(loaded: &Loaded) -> Result<Models, NoSweptModels> {
+    let setup = Setup::new(&loaded.project)?;
+    let rig = setup.rig()?;
     let seen = rig.in_loop().plant.coefficients();
-    let linearization = linearize(rig, setup.controller.as_ref(), &setup.sensor);
-    let linearization = linearization.map_err(|error| format!("the linear models: {error}"))?;
+    let linearization = linearize(rig, setup.controller.as_ref(), &setup.sensor)?;
     Ok(Models { linearization, seen, given: setup.controller, sensor: setup.sensor })
 }
 
 /// Whether a pole of the plant changes with the value.
-fn moves(found: &[(f64, Result<Models, String>)]) -> bool {
+fn moves(found: &[(f64, Result<Models, NoSweptModels>)]) -> bool {
     let mut plants =
         found.iter().filter_map(|(_, found)| Some(found.as_ref().ok()?.linearization.plant.command.poles()));
     let Some(first) = plants.next() else { return true };
@@ -284,8 +335,8 @@ fn swept(models: Models, plant_follows: bool) -> Swept {
         false => linear_loop(derived, &given, &sensor, BAND_PERCENT),
     });
     let bandwidth_rad_per_s = match closed {
-        None => Err("the project gives no controller"),
-        Some(Err(_)) => Err("the loop cannot be closed"),
+        None => Err(NoBandwidth::NoController),
+        Some(Err(_)) => Err(NoBandwidth::NotClosed),
         Some(Ok(closed)) => bandwidth(&closed, &sensor),
     };
     Swept {
@@ -301,9 +352,9 @@ const LOOKED_AT: [f64; 2] = [1e-2, 1e5];
 const STEPS_PER_DECADE: f64 = 200.0;
 
 /// Where |F L/(1 + L)/H| first falls 3 dB below its value towards zero frequency.
-fn bandwidth(closed: &LinearLoop, sensor: &TransferFunction) -> Result<f64, &'static str> {
+fn bandwidth(closed: &LinearLoop, sensor: &TransferFunction) -> Result<f64, NoBandwidth> {
     if closed.stability == LoopStability::Unstable {
-        return Err("the closed loop is unstable");
+        return Err(NoBandwidth::Unstable);
     }
     let magnitude = |frequency: f64| {
         let open = closed.open_loop.at_frequency(frequency);
@@ -321,7 +372,7 @@ fn bandwidth(closed: &LinearLoop, sensor: &TransferFunction) -> Result<f64, &'st
         }
         low = high;
     }
-    Err("the force follows up to every frequency that was looked at")
+    Err(NoBandwidth::BeyondRange)
 }
 
 fn bisected(mut low: f64, mut high: f64, is_beyond: impl Fn(f64) -> bool) -> f64 {

@@ -48,7 +48,7 @@ impl EmptyAccumulator {
 /// The last operating points at standstill at which the gas is in use; `None` where it is up to the
 /// nominal voltage.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ChargedRange {
+pub struct ChargedRange {
     /// With less force the gas at chamber A is shut off.
     pub least: Option<OperatingPoint>,
     /// With more force the gas at chamber B is shut off.
@@ -116,7 +116,7 @@ fn shut(components: &Components, side: usize) -> bool {
 /// ```text
 /// P_A(U) = 1.01 P_0 of accumulator A,   P_B(U) = 1.01 P_0 of accumulator B             at q_A = q_B = 0, absolute
 /// ```
-pub(crate) fn charged_range(rig: &Rig) -> Option<ChargedRange> {
+pub fn charged_range(rig: &Rig) -> Option<ChargedRange> {
     let components = rig.actuator.components();
     let [gas_a, gas_b] = [0, 1].map(|side| components.accumulators[side].filter(|_| !shut(components, side)));
     if gas_a.or(gas_b).is_none() || rig.point.velocity != 0.0 {

@@ -101,7 +101,7 @@ pub(super) fn adjustment<S: Scalar>(
 
 /// A rig with the setting of every adjustment there, for slow motions: an open valve is the gas at
 /// its chamber, a shut one no gas.
-pub(crate) fn components_at_setting(components: &Components, setting: f64) -> Components {
+pub fn components_at_setting(components: &Components, setting: f64) -> Components {
     let accumulators = [0, 1].map(|side| {
         let gas = components.accumulators[side]?;
         let Some(of) = components.adjustments[side] else { return Some(gas) };

@@ -34,7 +34,7 @@ pub(crate) fn is_shut_at(valve: &Servovalve, point: &OperatingPoint) -> bool {
 }
 
 /// The linearised two-pressure model; of an ideal valve that is shut, its limit.
-pub(crate) fn two_pressures(
+pub fn two_pressures(
     model: &TwoPressureModel,
     point: &OperatingPoint,
     side: SpoolDirection,
@@ -81,7 +81,7 @@ pub(crate) fn stand_in_coefficient(components: &Components) -> Option<f64> {
 }
 
 /// The reduction to one load pressure, also of chambers from which nothing leaks.
-pub(crate) fn reduced(parameters: &TwoPressureLinearParameters) -> LinearParameters {
+pub fn reduced(parameters: &TwoPressureLinearParameters) -> LinearParameters {
     let chambers = parameters.chambers;
     if chambers.flow_pressure_a != 0.0 || chambers.flow_pressure_b != 0.0 {
         return reduce(parameters);

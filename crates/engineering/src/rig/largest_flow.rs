@@ -4,7 +4,6 @@ use phea_hydraulics::actuator::Components;
 use phea_hydraulics::servovalve::{SpoolDirection, velocity_gain};
 
 use crate::project::{DeclaredSupply, Pump, SupplyModel};
-use crate::quantity::DisplayUnit;
 
 /// The largest flows of a rig in m3/s: with the valve fully open and the piston unloaded, as far as
 /// the supply gives them.
@@ -90,28 +89,5 @@ impl LargestFlow {
     /// The largest of a line, m3/s.
     pub fn line(&self) -> f64 {
         self.lines[0].max(self.lines[1])
-    }
-
-    /// Where the largest of a line comes from, in words.
-    pub fn origin(&self) -> String {
-        let litres = |flow: f64| format!("{} L/min", DisplayUnit::LITRE_PER_MINUTE.number(flow, 4));
-        let valve = "the valve's, fully open at this supply without load";
-        match (self.limit, self.pump) {
-            (FlowLimit::Pump, Some((pump, _))) => {
-                let through = match self.line() > pump * (1.0 + 1e-9) {
-                    true => format!("the pump's {} times the ratio of the areas", litres(pump)),
-                    false => "the pump's".to_string(),
-                };
-                format!("{through}; the valve passes up to {} without load", litres(self.valve))
-            }
-            (_, Some((pump, true))) => {
-                format!(
-                    "{valve}; the pump gives {}, and the supply's accumulator more for a time",
-                    litres(pump)
-                )
-            }
-            (_, Some((pump, false))) => format!("{valve}; the pump gives {}", litres(pump)),
-            (_, None) => valve.to_string(),
-        }
     }
 }

@@ -69,7 +69,7 @@ impl<S: Scalar> YieldingLoad<S> {
 /// The load's end of the rod at an operating point, and the weight of the load there; `None`
 /// without a linkage. The force sensor, and what lies in series with it, is compressed by the force
 /// there.
-pub(crate) fn rod_end<S: Scalar>(
+pub fn rod_end<S: Scalar>(
     components: &Components<S>,
     point: &OperatingPoint<S>,
 ) -> Option<(RodEnd<S>, Option<WeightAt<S>>)> {

@@ -5,7 +5,7 @@ use super::Rig;
 use crate::project::{DeclaredActuator, SpringCoil};
 
 /// The greatest force in N that the supply pressure gives the piston, in either direction.
-pub(crate) fn stall_force(rig: &Rig) -> f64 {
+pub fn stall_force(rig: &Rig) -> f64 {
     let components = rig.actuator.components();
     let (cylinder, supply) = (&components.cylinder, &components.supply);
     let [retracting, extending] = cylinder.stall_forces(supply);
@@ -14,7 +14,7 @@ pub(crate) fn stall_force(rig: &Rig) -> f64 {
 
 /// The pair of coil springs that is the series spring and holds the stall force; `None` where none
 /// is declared.
-pub(crate) fn series_coil(declared: &DeclaredActuator, rig: &Rig) -> Option<CoilPair> {
+pub fn series_coil(declared: &DeclaredActuator, rig: &Rig) -> Option<CoilPair> {
     let SeriesElement::Spring(spring) = rig.actuator.components().series.as_ref()? else { return None };
     let coil = declared.series.as_ref()?.spring()?.coil?;
     let SpringCoil { index, allowed_shear_stress, shear_modulus, density } = coil;
@@ -28,7 +28,7 @@ pub(crate) fn series_coil(declared: &DeclaredActuator, rig: &Rig) -> Option<Coil
 /// ```text
 /// (2 N/T) sin(w T/2N) = 0.97 w         w = 0.85 N/T
 /// ```
-pub(crate) fn waves_right_to(rig: &Rig) -> Option<f64> {
+pub fn waves_right_to(rig: &Rig) -> Option<f64> {
     let components = rig.actuator.components();
     let SeriesElement::Transmission(transmission) = components.series.as_ref()? else { return None };
     let line = (&transmission.line, &components.fluid);

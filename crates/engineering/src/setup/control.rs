@@ -1,5 +1,7 @@
 //! The controller and prefilter of a project as values of `phea_dynamics`.
 
+use std::fmt;
+
 use num_complex::Complex64;
 use phea_dynamics::controller::{
     Compensator, Controller, Element, RateFilter, RateSensor, Stage, Timing, VirtualImpedance,
@@ -12,22 +14,62 @@ use crate::project::{
 };
 use crate::rig::inner_feedback;
 
+/// The place of a transfer function in a project.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LawPlace {
+    /// The controller.
+    Controller,
+    /// The virtual impedance of the controller.
+    VirtualImpedance,
+    /// The prefilter.
+    Prefilter,
+    /// The force sensor.
+    Sensor,
+    /// A fixed element of the structures of a design.
+    Design,
+    /// The elements of a controller or a prefilter that are not in the project yet.
+    Elements,
+}
+
+impl LawPlace {
+    /// The table of the project; `None` for elements that are not in it.
+    pub fn table(self) -> Option<&'static str> {
+        match self {
+            LawPlace::Controller => Some("controller"),
+            LawPlace::VirtualImpedance => Some("controller.impedance"),
+            LawPlace::Prefilter => Some("prefilter"),
+            LawPlace::Sensor => Some("sensor"),
+            LawPlace::Design => Some("design"),
+            LawPlace::Elements => None,
+        }
+    }
+}
+
+impl fmt::Display for LawPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.table() {
+            Some(table) => write!(f, "[{table}]"),
+            None => f.write_str("the elements"),
+        }
+    }
+}
+
 /// Why a declared controller or prefilter is not a transfer function.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ControlError {
     /// The text is not a ratio of polynomials.
     #[error("{place}: {error}", error = error.message)]
     Formula {
-        /// `[controller]`, `[prefilter]` or `[sensor]`.
-        place: &'static str,
+        /// The place of the transfer function.
+        place: LawPlace,
         /// What is wrong with it.
         error: FormulaError,
     },
     /// The factors or polynomials do not form a transfer function.
     #[error("{place}: {error}")]
     Linear {
-        /// `[controller]`, `[prefilter]` or `[sensor]`.
-        place: &'static str,
+        /// The place of the transfer function.
+        place: LawPlace,
         /// What is wrong with it.
         error: LinearError,
     },
@@ -37,14 +79,14 @@ pub enum ControlError {
     /// Zeros and poles without the factor before them.
     #[error("{place}: `zeros` and `poles` need `gain`, the leading coefficient")]
     Gain {
-        /// `[controller]`, `[prefilter]` or `[sensor]`.
-        place: &'static str,
+        /// The place of the transfer function.
+        place: LawPlace,
     },
     /// A text in z without a sample time.
     #[error("{place}: a transfer function in z needs `sample_time`")]
     SampleTime {
-        /// `[controller]`, `[prefilter]` or `[sensor]`.
-        place: &'static str,
+        /// The place of the transfer function.
+        place: LawPlace,
     },
 }
 
@@ -57,7 +99,7 @@ pub(super) fn controller(project: &Project, timing: Timing) -> Result<Option<Con
     let Some(declared) = project.controller.as_ref().filter(|controller| controller.has_law()) else {
         return Ok(None);
     };
-    let mut feedback = compensator("[controller]", &declared.transfer, declared.sample_time)?;
+    let mut feedback = compensator(LawPlace::Controller, &declared.transfer, declared.sample_time)?;
     feedback.stages.extend(admittance(declared)?);
     Ok(Some(Controller {
         feedback,
@@ -75,7 +117,7 @@ pub(super) fn controller(project: &Project, timing: Timing) -> Result<Option<Con
 pub(super) fn prefilter(project: &Project, timing: &Timing) -> Result<Option<Compensator>, ControlError> {
     let Some(declared) = &project.prefilter else { return Ok(None) };
     let sample_time = declared.sample_time.or(timing.sample_time_s);
-    compensator("[prefilter]", &declared.transfer, sample_time).map(Some)
+    compensator(LawPlace::Prefilter, &declared.transfer, sample_time).map(Some)
 }
 
 /// When the controller acts, whether it is given or to be designed; continuous and without delay
@@ -108,7 +150,7 @@ pub(crate) fn with_pressure_feedback(
 /// What makes the controller of a position one of the force: 1/(M_v s^2 + B_v s + K_v); none where
 /// the declared controller is that of the force.
 fn admittance(declared: &project::DeclaredController) -> Result<Option<Stage>, ControlError> {
-    let place = "[controller.impedance]";
+    let place = LawPlace::VirtualImpedance;
     let inner = declared.impedance.filter(|impedance| impedance.form == ImpedanceForm::Admittance);
     let Some(impedance) = inner else { return Ok(None) };
     let function = lowered(&impedance).admittance();
@@ -175,7 +217,7 @@ pub(super) fn quantization(project: &Project) -> Result<Quantization, ControlErr
 /// [`ControlError`] if it is not a transfer function.
 pub(super) fn sensor(project: &Project) -> Result<TransferFunction, ControlError> {
     let Some(declared) = &project.sensor else { return Ok(TransferFunction::gain_only(1.0)) };
-    let place = "[sensor]";
+    let place = LawPlace::Sensor;
     let Rational { numerator, denominator, .. } = &declared.transfer;
     let function =
         from_formulas(numerator, denominator).map_err(|error| ControlError::Formula { place, error })?;
@@ -185,7 +227,7 @@ pub(super) fn sensor(project: &Project) -> Result<TransferFunction, ControlError
 
 /// The elements in series, including disabled ones.
 fn compensator(
-    place: &'static str,
+    place: LawPlace,
     transfer: &Transfer,
     sample_time: Option<f64>,
 ) -> Result<Compensator, ControlError> {
@@ -209,7 +251,7 @@ pub(crate) fn from_formulas(
 
 /// An element as it acts in the loop.
 pub(crate) fn element(
-    place: &'static str,
+    place: LawPlace,
     declared: &project::DeclaredElement,
     sample_time: Option<f64>,
 ) -> Result<Element, ControlError> {
@@ -258,7 +300,7 @@ pub(crate) fn element(
 
 /// A ratio of polynomials, or factors.
 fn general(
-    place: &'static str,
+    place: LawPlace,
     declared: &RationalFunction,
     sample_time: Option<f64>,
 ) -> Result<TransferFunction, ControlError> {

@@ -6,7 +6,7 @@ use phea_dynamics::linear::{TimeDomain, TransferFunction};
 
 use super::Shaped;
 use crate::project::{self, ElementKind, Project, RationalFunction, Transfer};
-use crate::setup::{self, ControlError};
+use crate::setup::{self, ControlError, LawPlace};
 
 /// The elements of a project, and every element that was ever named, so that each keeps the form in
 /// which it was written.
@@ -65,8 +65,8 @@ impl<'a> Workpiece<'a> {
     /// Registers an element as it is declared, and returns it as it acts in the loop.
     pub(super) fn know(&mut self, declared: project::DeclaredElement) -> Result<Stage, ControlError> {
         let place = match self.shaped {
-            Shaped::Controller => "[controller]",
-            Shaped::Prefilter => "[prefilter]",
+            Shaped::Controller => LawPlace::Controller,
+            Shaped::Prefilter => LawPlace::Prefilter,
         };
         let element = setup::element(place, &declared, self.sample_time())?;
         let enabled = declared.enabled;
@@ -96,7 +96,7 @@ impl<'a> Workpiece<'a> {
         compensator: &Compensator,
         frequency: f64,
     ) -> Result<Complex64, ControlError> {
-        let place = "the elements";
+        let place = LawPlace::Elements;
         let explain = |error| ControlError::Linear { place, error };
         let function: TransferFunction = compensator.transfer_function().map_err(explain)?;
         let function = match (self.sample_time(), function.domain()) {

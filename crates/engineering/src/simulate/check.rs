@@ -3,7 +3,7 @@
 
 use phea_hydraulics::signal::Signal;
 
-use super::metrics::Measured;
+use super::metrics::{Measured, Unmeasured};
 use super::{
     Metric, Metrics, PassPlan, PerMetric, Record, RunOutput, Sample, ScenarioRun, SimulateError, StoppedRun,
     Window, prepared, simulate_into,
@@ -17,7 +17,6 @@ use phea_dynamics::watch::{Progress, Watch};
 pub(super) const FOLD: f64 = 10.0;
 /// Share of the peak above which a difference of the force is reported.
 pub(super) const LARGEST_PART: f64 = 1e-3;
-const NOT_COMPARED: &str = "one of the two runs has none";
 
 /// Difference between the reported run and a run at a tenth of the tolerance.
 ///
@@ -99,7 +98,7 @@ pub fn simulate_checked(
     for (run, prepared) in runs.iter_mut().zip(&prepared(source, setup)?) {
         let mut told = |time_s: f64| {
             let share = 0.5 + 0.5 * (before + time_s) / whole;
-            watch(Progress { stage: "checking at a tenth of the tolerance", share })
+            watch(Progress { stage: "tolerance check", share })
         };
         let plan = PassPlan { tolerance: run.tolerance / FOLD, moved: false };
         let other = prepared.pass(plan, (&output, ""), &mut told)?.run;
@@ -179,7 +178,7 @@ fn metric_differences(
     let difference = |metric: Metric| match (one.get(metric), other.get(metric)) {
         (Ok(here), Ok(there)) => Ok((here - there).abs()),
         (Err(reason), Err(_)) => Err(reason),
-        _ => Err(NOT_COMPARED),
+        _ => Err(Unmeasured::OneRunHasNone),
     };
     MetricDifferences { window: *window, differences: PerMetric::of(difference) }
 }

@@ -26,7 +26,7 @@ pub(super) fn rest(
     let reference_n = standing.reference_n;
     let named = |error| match error {
         EquilibriumError::NotFound { state, rate } => {
-            SimulateError::NoRest { name: name.to_string(), reference_n, what: what(state), rate }
+            SimulateError::NoRest { name: name.to_string(), reference_n, what: MovingState::of(state), rate }
         }
         error => SimulateError::Rest { name: name.to_string(), error },
     };
@@ -67,15 +67,36 @@ pub(super) fn rest(
 const AT_POSITION_M: f64 = 1e-9;
 const GROUNDS: usize = 60;
 
-/// A state in words, by its index: [`phea_hydraulics::machine::MachineState`].
-fn what(state: usize) -> &'static str {
-    let first = [
-        "the spool",
-        "the spool",
-        "the pressure of chamber A",
-        "the pressure of chamber B",
-        "the force",
-        "the piston",
-    ];
-    first.get(state).copied().unwrap_or("a state other than force, pressures and spool")
+/// A state that moves where none should, by its place in
+/// [`MachineState`](phea_hydraulics::machine::MachineState).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MovingState {
+    /// Position or velocity of the spool.
+    #[error("the spool")]
+    Spool,
+    /// Pressure of a chamber.
+    #[error("the pressure of chamber {0}")]
+    ChamberPressure(char),
+    /// Force of the load cell.
+    #[error("the force")]
+    Force,
+    /// Piston.
+    #[error("the piston")]
+    Piston,
+    /// Another state.
+    #[error("a state other than force, pressures and spool")]
+    Other,
+}
+
+impl MovingState {
+    fn of(place: usize) -> MovingState {
+        match place {
+            0 | 1 => MovingState::Spool,
+            2 => MovingState::ChamberPressure('A'),
+            3 => MovingState::ChamberPressure('B'),
+            4 => MovingState::Force,
+            5 => MovingState::Piston,
+            _ => MovingState::Other,
+        }
+    }
 }

@@ -5,13 +5,11 @@ use phea_hydraulics::servovalve::Supply;
 
 use super::TimeRequirement;
 use crate::project::{DeclaredActuator, Project};
-use crate::quantity::{FORCE, PRESSURE, display};
 use crate::rig::{Numbers, components};
 use crate::setup::Setup;
 
 /// Forces that a rig reaches, and those that its sensor withstands.
-pub(crate) struct ForceLimits<'a> {
-    pub(super) project: &'a Project,
+pub(crate) struct ForceLimits {
     /// Pa and N: the supply as declared and, where it is uncertain, the lowest of the family.
     pub(super) stall: Vec<(f64, [f64; 2])>,
     /// N, to either side.
@@ -20,13 +18,57 @@ pub(crate) struct ForceLimits<'a> {
 
 /// A step that is required and that a rig does not reach, or does not survive.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct BeyondReach {
-    /// The key that states it.
-    pub(crate) path: String,
-    /// The step and the reason.
-    pub(crate) sentence: String,
-    /// What would change that.
-    pub(crate) cure: String,
+pub struct BeyondReach {
+    /// Number of the specification, from 1.
+    pub number: usize,
+    /// The end of the step.
+    pub end: StepEnd,
+    /// The force there, N.
+    pub force: f64,
+    /// The limit that it exceeds.
+    pub exceeded: ExceededForce,
+}
+
+/// An end of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepEnd {
+    /// The force before it.
+    Begin,
+    /// The force after it.
+    End,
+}
+
+impl StepEnd {
+    /// The key of a specification that states it.
+    pub fn key(self) -> &'static str {
+        match self {
+            StepEnd::Begin => "initial_force",
+            StepEnd::End => "amplitude",
+        }
+    }
+}
+
+/// A limit on the force at rest that a force exceeds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExceededForce {
+    /// The limit.
+    pub limit: RestLimit,
+    /// The greatest force of its direction that the rig reaches and its sensor withstands, N.
+    pub greatest: f64,
+}
+
+/// A limit on the force at rest, with its number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RestLimit {
+    /// At this supply pressure, Pa, the piston stalls at this force, N.
+    Stall {
+        /// Supply pressure, Pa.
+        pressure: f64,
+        /// Force, N.
+        force: f64,
+    },
+    /// The capacity of the force sensor, N.
+    Capacity(f64),
 }
 
 /// The ends of required steps that are beyond the force at which the piston stalls, or beyond the
@@ -34,23 +76,14 @@ pub(crate) struct BeyondReach {
 pub(crate) fn steps_beyond(setup: &Setup<'_>, required: &[TimeRequirement]) -> Vec<BeyondReach> {
     let (Some(actuator), Ok(rig)) = (&setup.project.actuator, setup.rig()) else { return vec![] };
     let limits = ForceLimits::of(setup.project, actuator);
-    let text = |value: f64| display(value, setup.project.motion().dimension(&FORCE), 4);
     let mut found = Vec::new();
     for TimeRequirement { number, steps, .. } in required {
         let from_n = steps.initial_force_n.unwrap_or(rig.point.hydraulic_force);
         let to_n = steps.amplitude_n.map(|amplitude_n| from_n + amplitude_n);
-        let begins = steps.initial_force_n.map(|from_n| ("initial_force", "begins at", from_n));
-        for (key, verb, force_n) in begins.into_iter().chain(to_n.map(|to_n| ("amplitude", "goes to", to_n)))
-        {
-            let own = |(reason, cure): (String, String)| BeyondReach {
-                path: format!("specification[{}].{key}", number - 1),
-                sentence: format!(
-                    "[[specification]] {number}, `{key}`: the step {verb} {}, {reason}",
-                    text(force_n)
-                ),
-                cure,
-            };
-            found.extend(limits.beyond(force_n).into_iter().map(own));
+        let begins = steps.initial_force_n.map(|from_n| (StepEnd::Begin, from_n));
+        for (end, force) in begins.into_iter().chain(to_n.map(|to_n| (StepEnd::End, to_n))) {
+            let own = |exceeded| BeyondReach { number: *number, end, force, exceeded };
+            found.extend(limits.beyond(force).into_iter().map(own));
         }
     }
     found
@@ -65,8 +98,8 @@ pub enum ForceLimit {
     Sensor,
 }
 
-impl<'a> ForceLimits<'a> {
-    pub(crate) fn of(project: &'a Project, actuator: &'a DeclaredActuator) -> ForceLimits<'a> {
+impl ForceLimits {
+    pub(crate) fn of(project: &Project, actuator: &DeclaredActuator) -> ForceLimits {
         let Components { cylinder, supply, .. } = components(actuator, &Numbers::declared());
         let range = project.uncertainty.iter().find(|one| one.name == "supply.pressure");
         let lowest = range.map(|range| range.minimum).filter(|lowest| *lowest < supply.pressure);
@@ -76,36 +109,20 @@ impl<'a> ForceLimits<'a> {
             (pressure, cylinder.stall_forces(&supply))
         };
         let capacity = actuator.force_sensor.capacity;
-        ForceLimits { project, stall: pressures.map(stall).collect(), capacity }
+        ForceLimits { stall: pressures.map(stall).collect(), capacity }
     }
 
-    /// The reasons for which the rig does not reach a force in N, or does not survive it, each with
-    /// what would change that.
-    pub(crate) fn beyond(&self, force_n: f64) -> Vec<(String, String)> {
-        let text = |value: f64| display(value, self.project.motion().dimension(&FORCE), 4);
+    /// The limits that a force in N exceeds.
+    pub(crate) fn beyond(&self, force_n: f64) -> Vec<ExceededForce> {
         let (sign, side) = if force_n < 0.0 { (-1.0, 0) } else { (1.0, 1) };
-        let reached = text(self.greatest(force_n).0);
-        let mut found = Vec::new();
+        let greatest = self.greatest(force_n).0;
         let exceeds = |(_, stall): &&(f64, [f64; 2])| sign * force_n > sign * stall[side];
         // the declared supply comes first: the lowest of the family adds nothing to it
-        if let Some((pressure, stall)) = self.stall.iter().find(exceeds) {
-            let pressure = display(*pressure, &PRESSURE, 4);
-            let stalls = text(stall[side]);
-            found.push((
-                format!(
-                    "and at a supply of {pressure} the piston stalls at {stalls}: no controller reaches it"
-                ),
-                format!("stay within {reached}, raise the supply pressure, or take a larger actuator"),
-            ));
-        }
-        if let Some(capacity) = self.capacity.filter(|capacity| sign * force_n > *capacity) {
-            let capacity = text(capacity);
-            found.push((
-                format!("beyond the sensor's `capacity` of {capacity}"),
-                format!("stay within {reached}, or take a sensor of more capacity"),
-            ));
-        }
-        found
+        let stall = self.stall.iter().find(exceeds);
+        let stall =
+            stall.map(|(pressure, stall)| RestLimit::Stall { pressure: *pressure, force: stall[side] });
+        let capacity = self.capacity.filter(|capacity| sign * force_n > *capacity).map(RestLimit::Capacity);
+        stall.into_iter().chain(capacity).map(|limit| ExceededForce { limit, greatest }).collect()
     }
 
     /// The greatest force in a direction, N with its sign, at every supply pressure of the family,

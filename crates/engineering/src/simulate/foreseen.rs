@@ -5,12 +5,11 @@ use phea_dynamics::simulation::Profile;
 
 use super::bench::ControlledMachine;
 use super::course::driven_by;
-use super::force_limits::ForceLimits;
+use super::force_limits::{ExceededForce, ForceLimits};
 use super::{SimulateError, measured};
 use crate::project::{
     DeclaredActuator, Findings, InputSignal, LateError, Load, MotionShape, Project, Scenario,
 };
-use crate::quantity::{FORCE, LENGTH, TIME, display};
 use crate::setup::Setup;
 use crate::source::Source;
 
@@ -35,7 +34,7 @@ fn missing(source: &dyn Source, project: &Project, path: String, file: &str) -> 
     findings.bytes_of(source, &project.path_of(file));
     let refusal = findings.or_refused(()).err()?;
     let message = refusal.diagnostics.first().map(|found| found.message.clone())?;
-    Some(LateError { path, message, help: "paths are relative to the project file".to_string() })
+    Some(LateError::of_file(path, message))
 }
 
 /// The files of a scenario with their keys.
@@ -65,42 +64,88 @@ fn files_of(index: usize, scenario: &Scenario) -> Vec<(String, &str)> {
     files
 }
 
-/// What no controller can bring about, each at its key: references beyond the force at which the
-/// piston stalls or beyond the capacity of the force sensor, and prescribed motions beyond the
-/// stroke; and recordings that no command uses and that are not there.
+/// What no controller can bring about in a scenario, or a recording that is absent.
+#[derive(Clone, Debug)]
+pub enum Foreseen {
+    /// A recording that no command uses and that is not there.
+    AbsentRecording(LateError),
+    /// A signal of a scenario that the rig cannot follow.
+    InScenario {
+        /// Place of the scenario in the file, from 0.
+        index: usize,
+        /// Name of the scenario.
+        name: String,
+        /// What the rig cannot follow.
+        beyond: BeyondRig,
+    },
+}
+
+/// A reference or a motion that a rig cannot follow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BeyondRig {
+    /// A reference beyond a limit on the force.
+    Reference {
+        /// Time, s.
+        time: f64,
+        /// Force, N.
+        force: f64,
+        /// The limit that it exceeds.
+        exceeded: ExceededForce,
+    },
+    /// A prescribed motion of the load beyond the stroke.
+    Motion {
+        /// Time, s.
+        time: f64,
+        /// Displacement of the load, m.
+        moved_by: f64,
+        /// Position of the piston before, m.
+        from: f64,
+        /// Stroke, m.
+        stroke: f64,
+    },
+}
+
+impl BeyondRig {
+    /// The key of the scenario that states it.
+    pub fn key(&self) -> &'static str {
+        match self {
+            BeyondRig::Reference { .. } => "reference",
+            BeyondRig::Motion { .. } => "load_motion",
+        }
+    }
+}
+
+/// References beyond the force at which the piston stalls or beyond the capacity of the force
+/// sensor, and prescribed motions beyond the stroke; and recordings that no command uses and that
+/// are not there.
 ///
 /// # Errors
 /// [`SimulateError`] for a file that is malformed, and for signals that are no functions of time.
-pub fn foreseen(source: &dyn Source, setup: &Setup<'_>) -> Result<Vec<LateError>, SimulateError> {
+pub fn foreseen(source: &dyn Source, setup: &Setup<'_>) -> Result<Vec<Foreseen>, SimulateError> {
     let project = setup.project;
     let Some(actuator) = &project.actuator else { return Ok(vec![]) };
     let Ok(rig) = setup.rig() else { return Ok(vec![]) };
     let limits = ForceLimits::of(project, actuator);
-    let mut found = absent_recordings(source, project);
+    let absent = absent_recordings(source, project).into_iter();
+    let mut found: Vec<Foreseen> = absent.map(Foreseen::AbsentRecording).collect();
     for (index, scenario) in project.scenarios.iter().enumerate() {
         let bench = ControlledMachine::of_scenario(setup, scenario).ok();
         let driven = driven_by(source, project, bench.as_ref(), scenario)?;
         measured::measurements(source, project, scenario).map_err(SimulateError::Motion)?;
-        let path = |key: &str| format!("scenario[{index}].{key}");
+        let of = |beyond| Foreseen::InScenario { index, name: scenario.name.clone(), beyond };
         if !scenario.is_open_loop() {
             let ends = ends(&driven.reference, scenario.duration);
-            let messages = limits.exceeded_by(ends).into_iter();
-            found.extend(messages.map(|message| remark(path("reference"), scenario, &message)));
+            found.extend(limits.exceeded_by(ends).into_iter().map(of));
         }
         let starts = scenario.start.as_ref().and_then(|start| start.position);
         let position = starts.unwrap_or(rig.point.position);
         let begun_elsewhere = scenario.start.as_ref().is_some_and(|start| start.file.is_some());
         if actuator.load == Load::Prescribed && actuator.linkage.is_none() && !begun_elsewhere {
             let moved = ends(&driven.motion, scenario.duration);
-            let message = beyond_stroke(project, actuator, position, moved);
-            found.extend(message.map(|message| remark(path("load_motion"), scenario, &message)));
+            found.extend(beyond_stroke(actuator, position, moved).map(of));
         }
     }
     Ok(found)
-}
-
-fn remark(path: String, scenario: &Scenario, message: &str) -> LateError {
-    LateError { path, message: format!("scenario \"{}\": {message}", scenario.name), help: String::new() }
 }
 
 /// Instants at which a signal is evaluated in addition to its breaks.
@@ -123,39 +168,22 @@ fn ends(profile: &Profile, end_s: f64) -> [(f64, f64); 2] {
     found
 }
 
-impl ForceLimits<'_> {
-    /// What a reference between these ends exceeds, in words.
-    fn exceeded_by(&self, [least, most]: [(f64, f64); 2]) -> Vec<String> {
-        let force = |value: f64| display(value, self.project.motion().dimension(&FORCE), 4);
-        let reached = |(time_s, value): (f64, f64)| {
-            format!("the reference goes to {} at {}", force(value), display(time_s, &TIME, 4))
-        };
+impl ForceLimits {
+    /// The limits that a reference between these ends exceeds.
+    fn exceeded_by(&self, [least, most]: [(f64, f64); 2]) -> Vec<BeyondRig> {
         let mut found = Vec::new();
-        for end in [least, most] {
-            let beyond = self.beyond(end.1).into_iter();
-            found.extend(beyond.map(|(reason, _)| format!("{}, {reason}", reached(end))));
+        for (time, force) in [least, most] {
+            let beyond = self.beyond(force).into_iter();
+            found.extend(beyond.map(|exceeded| BeyondRig::Reference { time, force, exceeded }));
         }
         found
     }
 }
 
 /// A prescribed motion that takes the piston, which starts there in m, out of its stroke.
-fn beyond_stroke(
-    project: &Project,
-    actuator: &DeclaredActuator,
-    position: f64,
-    moved: [(f64, f64); 2],
-) -> Option<String> {
+fn beyond_stroke(actuator: &DeclaredActuator, position: f64, moved: [(f64, f64); 2]) -> Option<BeyondRig> {
     let stroke = actuator.stroke()?;
-    let length = |value: f64| display(value, project.motion().dimension(&LENGTH), 4);
     let outside = |(_, by): &&(f64, f64)| !(0.0..=stroke).contains(&(position + by)) && *by != 0.0;
-    let (time_s, by) = moved.iter().find(outside)?;
-    Some(format!(
-        "the load moves by {} until {} and takes the piston from {} to {}, beyond its stroke of {}",
-        length(*by),
-        display(*time_s, &TIME, 4),
-        length(position),
-        length(position + by),
-        length(stroke)
-    ))
+    let (time, moved_by) = *moved.iter().find(outside)?;
+    Some(BeyondRig::Motion { time, moved_by, from: position, stroke })
 }

@@ -7,6 +7,8 @@ mod point;
 
 pub use point::ResponsePoint;
 
+pub use closed_loop::NoClosedLoop;
+
 use num_complex::Complex64;
 use phea_dynamics::order::sorted_distinct;
 use phea_dynamics::simulation::SimulationSettings;
@@ -56,7 +58,7 @@ pub struct MachineResponses {
     /// From command to force, N/V.
     pub open_loop: MachineResponse,
     /// From reference to force; or why it is absent.
-    pub closed_loop: Result<MachineResponse, String>,
+    pub closed_loop: Result<MachineResponse, NoClosedLoop>,
     /// Whether the watch stopped it.
     pub stopped: bool,
 }
@@ -123,7 +125,7 @@ pub fn frequency_response(
         !stopped
     })?;
     let closed_loop = if stopped {
-        Err("it was stopped before".to_string())
+        Err(NoClosedLoop::Stopped)
     } else {
         let before = frequencies.len();
         closed_loop::measured(setup, &rested, &frequencies, request, &mut |index| {

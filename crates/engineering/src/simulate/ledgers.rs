@@ -46,9 +46,14 @@ pub struct RunLedger {
     pub energy: Vec<AccountSum>,
 }
 
-/// Why a run has no accounts.
-pub(super) const NOT_REQUESTED: &str = "the accounts of this run were not requested";
-const IN_TRANSIT: &str = "waves in transit along a line are in no account";
+/// Reason why a run has no accounts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoLedger {
+    /// They were not requested.
+    NotRequested,
+    /// Waves in transit along a line are in no account.
+    InTransit,
+}
 
 /// Sums the accounts over each step of the integration.
 pub(super) struct LedgerWatch {
@@ -115,12 +120,12 @@ impl LedgerWatch {
 
     /// The accounts of the parts that held or passed on anything, and of the rig; none where waves
     /// travel along a line, and without a step.
-    pub(super) fn finish(self) -> Result<RunLedger, &'static str> {
+    pub(super) fn finish(self) -> Result<RunLedger, NoLedger> {
         let is_used = |sum: &AccountSum| {
             sum.part == "rig" || sum.throughput != 0.0 || sum.stored.iter().any(|stored| *stored != 0.0)
         };
         let of = |sums: &[AccountSum]| sums.iter().filter(|sum| is_used(sum)).copied().collect();
-        let (oil, energy) = self.sums.split_at_checked(OIL_ACCOUNTS.len()).ok_or(IN_TRANSIT)?;
-        if self.begun { Ok(RunLedger { oil: of(oil), energy: of(energy) }) } else { Err(IN_TRANSIT) }
+        let (oil, energy) = self.sums.split_at_checked(OIL_ACCOUNTS.len()).ok_or(NoLedger::InTransit)?;
+        if self.begun { Ok(RunLedger { oil: of(oil), energy: of(energy) }) } else { Err(NoLedger::InTransit) }
     }
 }

@@ -15,7 +15,7 @@ use super::exceeded::{Exceeded, LimitWatch};
 use super::files::RunTable;
 use super::follower::Follower;
 use super::gas::{GasRange, GasWatch};
-use super::ledgers::{LedgerWatch, NOT_REQUESTED, RunLedger};
+use super::ledgers::{LedgerWatch, NoLedger, RunLedger};
 use super::line_limits::LineWatch;
 use super::measured::{Measurement, Overlay, Overlaying};
 use super::record::{ControlSignals, Record, Sample};
@@ -43,7 +43,7 @@ pub(super) struct Sighted<'t> {
     /// Ranges of the chambers with gas.
     pub(super) gas: Vec<GasRange>,
     /// The accounts of oil and energy, or why there are none.
-    pub(super) ledger: Result<RunLedger, &'static str>,
+    pub(super) ledger: Result<RunLedger, NoLedger>,
 }
 
 /// The controller at one time.
@@ -182,7 +182,7 @@ impl<'a, 't> Looking<'a, 't> {
             exceeded: self.limits.finish().into_iter().chain(self.lines.found()).collect(),
             adjustment: self.adjustment.map(AdjustmentWatch::finish),
             gas: self.gas.into_iter().filter_map(GasWatch::finish).collect(),
-            ledger: self.ledger.map_or(Err(NOT_REQUESTED), LedgerWatch::finish),
+            ledger: self.ledger.map_or(Err(NoLedger::NotRequested), LedgerWatch::finish),
         })
     }
 

@@ -13,7 +13,7 @@ use phea_hydraulics::signal::Signal;
 
 use super::Sample;
 use super::columns::SignalParts;
-use super::metrics::Measured;
+use super::metrics::{Measured, Unmeasured};
 use super::motion_file::rising;
 use super::plausible;
 use crate::project::{Findings, MeasuredFile, MeasuredSignal, Project, Refusal, Scenario};
@@ -69,10 +69,6 @@ impl Overlay {
         name.strip_suffix(&suffix).map_or(name, |stem| stem.trim_end_matches('_')).replace('_', " ")
     }
 }
-
-const NO_ROW: &str = "no row of the file lies within what was simulated";
-const NO_SIGNAL: &str = "the scenario has no such signal";
-const NO_RANGE: &str = "what was measured does not change: there is no range to divide by";
 
 /// Everything that was measured of a scenario.
 ///
@@ -168,13 +164,13 @@ impl<'a> Overlaying<'a> {
             measured: Vec::new(),
             simulated: Vec::new(),
             rows_outside: 0,
-            rmse: Err(NO_ROW),
-            nrmse: Err(NO_ROW),
+            rmse: Err(Unmeasured::NoRow),
+            nrmse: Err(Unmeasured::NoRow),
         };
         let parts = parts.have(measurement.signal).then_some(*parts);
         let overlay = match parts {
             Some(_) => overlay,
-            None => Overlay { rmse: Err(NO_SIGNAL), nrmse: Err(NO_SIGNAL), ..overlay },
+            None => Overlay { rmse: Err(Unmeasured::NoSignal), nrmse: Err(Unmeasured::NoSignal), ..overlay },
         };
         Overlaying { measurement, parts, before: None, next: 0, overlay }
     }
@@ -217,9 +213,10 @@ impl<'a> Overlaying<'a> {
             let rmse = (squares / overlay.measured.len() as f64).sqrt();
             let [least, most] = ends(overlay.measured.iter().copied());
             let range = most - least;
-            let found = if rmse.is_finite() { Ok(rmse) } else { Err(NO_SIGNAL) };
+            let found = if rmse.is_finite() { Ok(rmse) } else { Err(Unmeasured::NoSignal) };
             overlay.rmse = found;
-            overlay.nrmse = if range > 0.0 { found.map(|rmse| rmse / range) } else { Err(NO_RANGE) };
+            overlay.nrmse =
+                if range > 0.0 { found.map(|rmse| rmse / range) } else { Err(Unmeasured::NoRange) };
         }
         overlay
     }

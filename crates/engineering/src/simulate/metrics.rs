@@ -78,8 +78,43 @@ impl Cause {
     }
 }
 
-/// A number, or why it is absent.
-pub type Measured = Result<f64, &'static str>;
+/// A number, or the reason why it is absent.
+pub type Measured = Result<f64, Unmeasured>;
+
+/// Reason why a number of a run is absent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unmeasured {
+    /// The run ended before.
+    RunEnded,
+    /// The reference does not step.
+    NoStep,
+    /// The load does not begin to move.
+    NoMotion,
+    /// The force does not reach 90 % of the step.
+    NotReached,
+    /// The force is already beyond 10 % of the step when it begins.
+    BegunBeyond,
+    /// The force is outside the band in the last tenth of the window.
+    NotSettled,
+    /// The reference moves.
+    ReferenceMoves,
+    /// The loop is open and has no reference.
+    OpenLoop,
+    /// The reference states the force.
+    ReferenceGiven,
+    /// The reference stands still.
+    ReferenceStandsStill,
+    /// The reference is zero, so that a band around it has no width.
+    ZeroReference,
+    /// One of two runs that are compared has no such number.
+    OneRunHasNone,
+    /// No row of the file lies within what was simulated.
+    NoRow,
+    /// The scenario has no such signal.
+    NoSignal,
+    /// The measured values do not change, so that there is no range to divide by.
+    NoRange,
+}
 
 /// The metrics of a window: of the solution itself over each step of the integration, independent
 /// of the rows.
@@ -110,13 +145,6 @@ pub struct Metrics {
     pub control_rms_v: Measured,
 }
 
-pub(super) const UNREACHED: &str = "the run ended before";
-pub(super) const NO_STEP: &str = "the reference does not step";
-pub(super) const NO_MOTION: &str = "the load does not begin to move";
-pub(super) const NOT_REACHED: &str = "the force does not reach 90 % of the step";
-pub(super) const BEGUN_BEYOND: &str = "the force is already beyond 10 % of the step when it begins";
-/// Why there is no settling time for a step that was observed to its end.
-pub const NOT_SETTLED: &str = "outside the band in the last tenth of the window";
 /// Fraction of a window, at its end, in which a force that has settled stays within the band: one
 /// that oscillates is within it at the end of some windows too.
 const STAYS: f64 = 0.1;
@@ -126,11 +154,6 @@ const STAYS: f64 = 0.1;
 pub fn stays_settled(settling_time_s: f64, window_s: f64) -> bool {
     settling_time_s < (1.0 - STAYS) * window_s
 }
-pub(super) const MOVES: &str = "the reference moves";
-pub(super) const OPEN_LOOP: &str = "open loop: there is no reference";
-pub(super) const ASKED_FOR: &str = "the reference says which force there should be";
-pub(super) const STANDS_STILL: &str = "the reference stands still";
-pub(super) const NO_REFERENCE: &str = "the reference is zero: a band around it has no width";
 
 impl Metrics {
     /// The value of a metric.
@@ -148,7 +171,7 @@ impl Metrics {
         }
     }
 
-    pub(super) fn none(reason: &'static str, settling_band_percent: f64) -> Metrics {
+    pub(super) fn none(reason: Unmeasured, settling_band_percent: f64) -> Metrics {
         Metrics {
             overshoot_percent: Err(reason),
             rise_time_s: Err(reason),

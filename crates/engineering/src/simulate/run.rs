@@ -22,8 +22,8 @@ use super::measured::{Measurement, Overlay};
 use super::metrics::Metrics;
 use super::record::Record;
 use super::repetition::{self, PassPlan, PassResult, Repetition};
-use super::saved::{self, SavedState};
-use super::{RunLedger, RunOutput, RunTable, SimulateError, ToleranceCheck, Window};
+use super::saved::{self, NotSaved, SavedState};
+use super::{NoLedger, RunLedger, RunOutput, RunTable, SimulateError, ToleranceCheck, Window};
 use crate::project::Scenario;
 
 /// Longest time between two samples, from which figures are drawn: 1 ms would cut off the peaks of
@@ -86,9 +86,9 @@ pub struct ScenarioRun {
     /// The gas at each chamber that has some.
     pub gas: Vec<GasRange>,
     /// The accounts of oil and energy, or why there are none.
-    pub ledger: Result<RunLedger, &'static str>,
+    pub ledger: Result<RunLedger, NoLedger>,
     /// Its final state, from which another run can continue, or why it is not saved.
-    pub end: Result<SavedState, &'static str>,
+    pub end: Result<SavedState, NotSaved>,
 }
 
 /// A chamber above the pressure up to which the expansion of its hose was measured.

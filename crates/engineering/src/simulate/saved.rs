@@ -46,6 +46,23 @@ pub struct SavedState {
     pub(crate) memory: Option<DigitalMemory>,
 }
 
+/// Reason why the end of a run is not saved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotSaved {
+    /// The run was not completed.
+    NotCompleted,
+    /// The states of a motor are not saved.
+    Motor,
+    /// The states of a rig with a linkage are not saved.
+    Linkage,
+    /// What is in transit in a delay or along a line is not a state.
+    InTransit,
+    /// The run ends between two samples of the controller.
+    BetweenSamples,
+    /// A command is under way in the delay of the controller.
+    CommandDelayed,
+}
+
 /// Names of the continuous states, in the order of the vector.
 fn state_names(bench: &ControlledMachine) -> Vec<String> {
     let states = |count: usize, of: &'static str| (1..=count).map(move |number| format!("{of}_{number}"));
@@ -86,27 +103,27 @@ pub(super) fn of_end(
     course: &PreparedScenario,
     (status, end, end_s): (Status, &[f64], f64),
     memory: Option<&DigitalMemory>,
-) -> Result<SavedState, &'static str> {
+) -> Result<SavedState, NotSaved> {
     if status != Status::Completed {
-        return Err("it was not completed");
+        return Err(NotSaved::NotCompleted);
     }
     if bench.units.motion.is_rotary() {
-        return Err("the states of a motor are not saved yet");
+        return Err(NotSaved::Motor);
     }
     if bench.machine.has_linkage() {
-        return Err("the states of a rig with a linkage are not saved yet");
+        return Err(NotSaved::Linkage);
     }
     if !bench.control.delays().is_empty() {
-        return Err("what is in transit in a delay or along a line is not a state");
+        return Err(NotSaved::InTransit);
     }
     if let (Control::Sampled(sampled), Some(_)) = (&bench.control, memory) {
         let sample_time_s = sampled.controller.sample_time_s();
         let samples = end_s / sample_time_s;
         if (samples - samples.round()).abs() > AT_A_SAMPLE {
-            return Err("it ends between two samples of the controller");
+            return Err(NotSaved::BetweenSamples);
         }
         if sampled.delay_s > sample_time_s * (1.0 - AT_A_SAMPLE) {
-            return Err("a command is under way in the delay of the controller");
+            return Err(NotSaved::CommandDelayed);
         }
     }
     Ok(SavedState {

@@ -3,10 +3,7 @@
 use phea_dynamics::simulation::Quartic;
 
 use super::follower::LAST_PLACES;
-use super::metrics::{
-    ASKED_FOR, BEGUN_BEYOND, MOVES, Measured, NO_MOTION, NO_REFERENCE, NO_STEP, NOT_REACHED, NOT_SETTLED,
-    OPEN_LOOP, STANDS_STILL, UNREACHED, stays_settled,
-};
+use super::metrics::{Measured, Unmeasured, stays_settled};
 use super::{Cause, Metrics, Window};
 
 /// Share of a window, at its end, over which the steady-state error is averaged.
@@ -222,7 +219,7 @@ impl Tally {
     pub(super) fn metrics(&self) -> Metrics {
         let Window { start_s, end_s, cause } = self.window;
         if self.followed_until_s <= start_s {
-            return Metrics::none(UNREACHED, self.band_percent);
+            return Metrics::none(Unmeasured::RunEnded, self.band_percent);
         }
         let [lowest, highest] = self.extremes;
         let largest = highest.max(-lowest);
@@ -233,17 +230,25 @@ impl Tally {
             ..Metrics::none(reason, self.band_percent)
         };
         if self.open_loop {
-            return Metrics { force_peak_n: Ok(largest), ..commanded(OPEN_LOOP) };
+            return Metrics { force_peak_n: Ok(largest), ..commanded(Unmeasured::OpenLoop) };
         }
         let whole = self.followed_until_s >= end_s * (1.0 - 2.0 * LAST_PLACES * f64::EPSILON);
-        let at_end = |measured: Measured| if whole { measured } else { Err(UNREACHED) };
+        let at_end = |measured: Measured| if whole { measured } else { Err(Unmeasured::RunEnded) };
         let steady = self.late_error / (STEADY_SHARE * (end_s - start_s));
         let common = Metrics {
-            force_peak_n: Err(ASKED_FOR),
-            tracking_error_peak_n: if self.moves { Ok(self.tracking_error) } else { Err(STANDS_STILL) },
-            steady_state_error_n: at_end(if self.moves_late { Err(MOVES) } else { Ok(steady) }),
-            disturbance_peak_n: Err(NO_MOTION),
-            ..commanded(if self.moves { MOVES } else { UNREACHED })
+            force_peak_n: Err(Unmeasured::ReferenceGiven),
+            tracking_error_peak_n: if self.moves {
+                Ok(self.tracking_error)
+            } else {
+                Err(Unmeasured::ReferenceStandsStill)
+            },
+            steady_state_error_n: at_end(if self.moves_late {
+                Err(Unmeasured::ReferenceMoves)
+            } else {
+                Ok(steady)
+            }),
+            disturbance_peak_n: Err(Unmeasured::NoMotion),
+            ..commanded(if self.moves { Unmeasured::ReferenceMoves } else { Unmeasured::RunEnded })
         };
         let settling_time_s = at_end(self.settling_time());
         match cause {
@@ -256,8 +261,8 @@ impl Tally {
             },
             Cause::ReferenceMotion { .. } | Cause::CommandStep { .. } | Cause::CommandMotion { .. } => common,
             Cause::LoadMotion | Cause::ExternalForce { .. } | Cause::SettingChange => Metrics {
-                overshoot_percent: Err(NO_STEP),
-                rise_time_s: Err(NO_STEP),
+                overshoot_percent: Err(Unmeasured::NoStep),
+                rise_time_s: Err(Unmeasured::NoStep),
                 settling_time_s,
                 disturbance_peak_n: Ok(largest),
                 ..common
@@ -267,27 +272,27 @@ impl Tally {
 
     fn rise_time(&self, height: f64, whole: bool) -> Measured {
         if self.first > (RISE[0] - 1.0) * height {
-            return Err(BEGUN_BEYOND);
+            return Err(Unmeasured::BegunBeyond);
         }
         match self.reached_s {
             [Some(from_s), Some(until_s)] => Ok(until_s - from_s),
-            _ => Err(if whole { NOT_REACHED } else { UNREACHED }),
+            _ => Err(if whole { Unmeasured::NotReached } else { Unmeasured::RunEnded }),
         }
     }
 
     fn settling_time(&self) -> Measured {
         match (self.window.cause, self.outside_s) {
-            _ if self.moves => Err(MOVES),
+            _ if self.moves => Err(Unmeasured::ReferenceMoves),
             (Cause::LoadMotion | Cause::ExternalForce { .. } | Cause::SettingChange, _)
                 if self.width == 0.0 =>
             {
-                Err(NO_REFERENCE)
+                Err(Unmeasured::ZeroReference)
             }
-            _ if self.ends_outside => Err(NOT_SETTLED),
+            _ if self.ends_outside => Err(Unmeasured::NotSettled),
             (_, outside_s) => {
                 let settled_s = outside_s.map_or(0.0, |outside_s| outside_s - self.window.start_s);
                 let window_s = self.window.end_s - self.window.start_s;
-                if stays_settled(settled_s, window_s) { Ok(settled_s) } else { Err(NOT_SETTLED) }
+                if stays_settled(settled_s, window_s) { Ok(settled_s) } else { Err(Unmeasured::NotSettled) }
             }
         }
     }

@@ -1,15 +1,13 @@
 //! The required step response of the force, and whether a step of the machine satisfies it.
 
-use super::metrics::NOT_SETTLED;
-use super::{Cause, Metrics, Window};
+use super::{Cause, Metrics, Unmeasured, Window};
 use crate::project::{RequiredStep, SETTLING_BAND_PERCENT};
-use crate::quantity::significant;
 use crate::specification::CheckedWish;
 
 /// Tolerance in percent of the required value: printed numbers have three digits.
 const ROUNDED: f64 = 1e-6;
 /// Percent of a step: a simulated overshoot below it counts as none.
-const NO_OVERSHOOT_PERCENT: f64 = 0.01;
+pub const NO_OVERSHOOT_PERCENT: f64 = 0.01;
 /// How long a step is looked at first: in rise times, or without one in s.
 const RISES: f64 = 3.0;
 const HORIZON_S: f64 = 0.1;
@@ -40,15 +38,6 @@ pub struct ReachedStep {
     pub settling_time_s: f64,
     /// From 10 to 90 percent, s, infinite where it does not rise so far.
     pub rise_time_s: f64,
-}
-
-/// A wish compared with a step.
-#[derive(Clone, Debug, PartialEq)]
-pub struct HeldWish {
-    /// What the step does.
-    pub words: String,
-    /// Whether the wish is met; `None` if the two bands differ, or the run ended before.
-    pub kept: Option<bool>,
 }
 
 /// A number to twelve digits: 1.65 where 1.1 times 1.5 is 1.6500000000000001.
@@ -114,28 +103,6 @@ impl TrackingWish {
         }
     }
 
-    /// The wish for the overshoot, in words.
-    pub fn overshoot_words(&self) -> Option<String> {
-        let most = self.overshoot_percent?;
-        Some(if most == 0.0 { "no overshoot".to_string() } else { format!("at most {most} % overshoot") })
-    }
-
-    /// The wish for the settling time, in words.
-    pub fn settling_words(&self) -> Option<String> {
-        self.settling_time_s.map(|time_s| format!("settled within {} % in {time_s} s", self.band_percent))
-    }
-
-    /// The wish for the rise time, in words.
-    pub fn rise_words(&self) -> Option<String> {
-        self.rise_time_s.map(|time_s| format!("risen from 10 to 90 % in {time_s} s"))
-    }
-
-    /// All of it, in words.
-    pub fn words(&self) -> String {
-        let all = [self.overshoot_words(), self.settling_words(), self.rise_words()];
-        all.into_iter().flatten().collect::<Vec<_>>().join(", ")
-    }
-
     /// Whether a step satisfies it, up to the rounding of printed numbers. An overshoot below
     /// a hundredth of a percent counts as none.
     pub fn is_satisfied(&self, reached: &ReachedStep) -> bool {
@@ -162,50 +129,22 @@ impl TrackingWish {
         ratios
     }
 
-    /// What a step does of what is required, in words.
-    pub fn reached_words(&self, reached: &ReachedStep) -> String {
-        if reached.overshoot_percent == f64::INFINITY {
-            return "stopped before the end of the run".to_string();
-        }
-        let in_time = |time_s: f64, did: &str, never: &str| match time_s {
-            f64::INFINITY => never.to_string(),
-            time_s => format!("{did} in {} s", significant(time_s, 3)),
-        };
-        let overshoot = match reached.overshoot_percent {
-            percent if percent < NO_OVERSHOOT_PERCENT => "no overshoot".to_string(),
-            percent => format!("{} % overshoot", significant(percent, 3)),
-        };
-        let each = [
-            self.overshoot_percent.map(|_| overshoot),
-            self.settling_time_s.map(|_| in_time(reached.settling_time_s, "settled", "not settled")),
-            self.rise_time_s.map(|_| in_time(reached.rise_time_s, "risen", "not risen to 90 %")),
-        ];
-        each.into_iter().flatten().collect::<Vec<_>>().join(", ")
-    }
-
-    /// The overshoot of a step and the required value; `None` where none is required or the window
+    /// True where the overshoot of a step satisfies it; `None` where none is required or the window
     /// contains no step.
-    pub fn overshoot(&self, metrics: &Metrics) -> Option<HeldWish> {
+    pub fn overshoot_satisfied(&self, metrics: &Metrics) -> Option<bool> {
         let most = self.overshoot_percent?;
         let reached = metrics.overshoot_percent.ok()?;
-        let kept = reached <= most + ROUNDED * most.max(1.0);
-        Some(HeldWish { words: format!("{} %", significant(reached, 3)), kept: Some(kept) })
+        Some(reached <= most + ROUNDED * most.max(1.0))
     }
 
-    /// The settling time of a step and the required value, likewise.
-    pub fn settling(&self, metrics: &Metrics) -> Option<HeldWish> {
+    /// The same of the settling time; `None` also where the two bands differ.
+    pub fn settling_satisfied(&self, metrics: &Metrics) -> Option<bool> {
         let most = self.settling_time_s?;
         metrics.overshoot_percent.ok()?;
         let same_band = metrics.settling_band_percent == self.band_percent;
         match metrics.settling_time_s {
-            Ok(reached) => {
-                let words = match same_band {
-                    true => format!("{} s", significant(reached, 3)),
-                    false => format!("{} s to {} %", significant(reached, 3), metrics.settling_band_percent),
-                };
-                Some(HeldWish { words, kept: same_band.then_some(reached <= most * (1.0 + ROUNDED)) })
-            }
-            Err(NOT_SETTLED) => Some(HeldWish { words: "not settled".to_string(), kept: Some(false) }),
+            Ok(reached) => same_band.then_some(reached <= most * (1.0 + ROUNDED)),
+            Err(Unmeasured::NotSettled) => Some(false),
             Err(_) => None,
         }
     }

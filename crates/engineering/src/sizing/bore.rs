@@ -1,7 +1,6 @@
 use std::f64::consts::PI;
 
-use super::{SizingProblem, SizingStep};
-use crate::quantity::DisplayUnit;
+use super::{HoseName, SizingProblem, SizingStep};
 use phea_dynamics::order::sort_by_number;
 
 /// What the oil velocity says about a bore.
@@ -19,7 +18,7 @@ pub enum BoreVerdict {
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommercialBore {
     /// Dash size or product.
-    pub name: String,
+    pub name: HoseName,
     /// m.
     pub bore_m: f64,
     /// Mean oil velocity at the largest flow, m/s.
@@ -67,29 +66,20 @@ const LOW_PRESSURE_VELOCITY: [f64; 2] = [0.6, 1.2];
 /// more than the valve takes where the areas differ.
 fn low_pressure_lines(problem: &SizingProblem) -> SizingStep {
     let [slowest, fastest] = LOW_PRESSURE_VELOCITY;
-    let bores = |flow: f64| {
-        let [small, large] = [fastest, slowest].map(|velocity| (4.0 * flow / (PI * velocity)).sqrt());
-        let [small, large] = [small, large].map(|bore| DisplayUnit::MILLIMETRE.number(bore, 3));
-        format!("{small} to {large} mm")
-    };
-    SizingStep {
-        step: "c.2",
-        text: format!(
-            "Return and suction lines carry oil at {slowest} to {fastest} m/s: bores of {} for the return line of {} L/min, of {} for suction.",
-            bores(problem.maximum_flow()),
-            DisplayUnit::LITRE_PER_MINUTE.number(problem.maximum_flow(), 4),
-            bores(problem.flow.taken)
-        ),
+    let bores = |flow: f64| [fastest, slowest].map(|velocity| (4.0 * flow / (PI * velocity)).sqrt());
+    SizingStep::LowPressureLines {
+        velocity: LOW_PRESSURE_VELOCITY,
+        return_flow: problem.maximum_flow(),
+        return_bores: bores(problem.maximum_flow()),
+        suction_bores: bores(problem.flow.taken),
     }
 }
 
 /// Every bore of market and catalogue, smallest first, and the record of steps c.2 to c.4.
 pub(super) fn assess(problem: &SizingProblem, decisions: &mut Vec<SizingStep>) -> Vec<CommercialBore> {
     let offered = problem.hoses.iter().map(|option| (option.name.clone(), option.bore()));
-    let mut bores: Vec<CommercialBore> = problem
-        .market_bores
-        .iter()
-        .cloned()
+    let on_market = problem.market_bores.iter().map(|(name, bore)| (HoseName::named(name), *bore));
+    let mut bores: Vec<CommercialBore> = on_market
         .chain(offered)
         .map(|(name, bore_m)| CommercialBore {
             name,
@@ -99,26 +89,10 @@ pub(super) fn assess(problem: &SizingProblem, decisions: &mut Vec<SizingStep>) -
         })
         .collect();
     sort_by_number(&mut bores, |bore| bore.bore_m);
-    let [smallest, largest] = range(problem).map(|bore| DisplayUnit::MILLIMETRE.number(bore, 3));
-    let feasible: Vec<&str> = bores
-        .iter()
-        .filter(|bore| bore.verdict == BoreVerdict::Recommended)
-        .map(|bore| bore.name.as_str())
-        .collect();
-    let [slowest, fastest] = problem.oil_velocity;
-    decisions.push(SizingStep {
-        step: "c.2",
-        text: format!("Oil velocity {slowest} to {fastest} m/s: a bore with faster oil is rejected, one with slower oil only warned of."),
-    });
+    let feasible = bores.iter().filter(|bore| bore.verdict == BoreVerdict::Recommended);
+    let feasible = feasible.map(|bore| bore.name.clone()).collect();
+    decisions.push(SizingStep::OilVelocity(problem.oil_velocity));
     decisions.push(low_pressure_lines(problem));
-    decisions.push(SizingStep {
-        step: "c.3",
-        text: format!(
-            "Largest flow {} L/min ({}): bores from {smallest} to {largest} mm; on the market there are {}.",
-            DisplayUnit::LITRE_PER_MINUTE.number(problem.maximum_flow(), 4),
-            problem.flow.origin(),
-            if feasible.is_empty() { "none".to_string() } else { feasible.join(", ") }
-        ),
-    });
+    decisions.push(SizingStep::Bores { flow: problem.flow.clone(), range: range(problem), feasible });
     bores
 }

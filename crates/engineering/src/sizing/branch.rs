@@ -1,8 +1,7 @@
 use phea_hydraulics::line::StiffeningMember;
 use phea_hydraulics::stiffness::{StiffnessModel, StrokeStiffness, line_share_for_stiffness};
 
-use super::{HoseOption, Question, SizingProblem, SizingStep};
-use crate::quantity::significant;
+use super::{HoseOption, Question, SizingProblem};
 
 /// One trial of the iteration over the gain, steps f to j.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,83 +149,9 @@ fn gain_step(problem: &SizingProblem, option: &HoseOption, model: StiffnessModel
     GainStep { gain_v_per_n: gain, stiffness_n_per_m, length_m: length.metres() }
 }
 
-/// The model's name in the project file.
-pub fn model_name(model: StiffnessModel) -> &'static str {
-    match model {
-        StiffnessModel::Uniform => "uniform",
-        StiffnessModel::ByVolume => "by_volume",
-    }
-}
-
 impl Branch {
     /// Whether both lines have the same length.
     pub fn is_alike(&self) -> bool {
         self.lengths_m[0] == self.lengths_m[1]
-    }
-
-    /// The length of each line with these significant digits.
-    pub fn length_words(&self, digits: usize) -> String {
-        let [length_a, length_b] = self.lengths_m.map(|length| significant(length, digits));
-        match self.is_alike() {
-            true => format!("{length_a} m a line"),
-            false => format!("{length_a} m in line A and {length_b} m in line B"),
-        }
-    }
-
-    /// The decisions of steps f to l; the single trials stay in `steps`.
-    pub(super) fn record(&self, option: &HoseOption, decisions: &mut Vec<SizingStep>) {
-        let name = format!("{}, {}", option.name, model_name(self.model));
-        let number = |value| significant(value, 4);
-        let mut decide =
-            |step, text: String| decisions.push(SizingStep { step, text: format!("{name}: {text}") });
-        if !self.by_gain {
-            let (length, stiffness) = (self.length_words(4), number(self.stiffness.minimum));
-            let gain = number(self.gain_v_per_n);
-            let text = format!(
-                "{length} gives K_H = {stiffness} N/m at its least (6.26), which needs K_p = {gain} V/N (6.27)."
-            );
-            return decide("k, l", text);
-        }
-        let Some((end, trials)) = self.steps.split_last() else { return };
-        if let (Some(first), Some(last)) = (trials.first(), trials.last()) {
-            let text = format!(
-                "K_p = {} V/N asks for {} m of hose {} (6.16, 6.25), too long{}.",
-                number(first.gain_v_per_n),
-                number(first.length_m),
-                if self.is_alike() { "per line" } else { "in line A" },
-                if trials.len() > 1 {
-                    format!(
-                        "; so does every successive halving down to {} V/N with {} m, {} trials",
-                        number(last.gain_v_per_n),
-                        number(last.length_m),
-                        trials.len()
-                    )
-                } else {
-                    String::new()
-                }
-            );
-            decide("g, h", text);
-        }
-        let (gain, stiffness) = (number(end.gain_v_per_n), number(end.stiffness_n_per_m));
-        if end.stiffness_n_per_m == f64::INFINITY {
-            return decide(
-                "i, j",
-                format!("at K_p = {gain} V/N even a rigid transmission is too slow (6.16)."),
-            );
-        }
-        let length = match end.length_m {
-            0.0 => "for which no hose is needed".to_string(),
-            length if self.is_alike() => format!("which {} m of hose per line gives (6.25)", number(length)),
-            _ => format!("which {} gives, both lines of the same compliance", self.length_words(4)),
-        };
-        decide("i, j", format!("K_p = {gain} V/N requires K_H = {stiffness} N/m (6.16), {length}."));
-        // Lengths that differ by the search's rounding are one length.
-        if (self.lengths_m[0] - end.length_m).abs() > 1e-6 {
-            let (length, gain) = (self.length_words(4), number(self.gain_v_per_n));
-            let stiffness = number(self.stiffness.minimum);
-            let text =
-                format!("cut to {length}, which gives K_H = {stiffness} N/m and needs K_p = {gain} V/N.");
-            decide("i", text);
-        }
     }
 }

@@ -3,11 +3,13 @@ use phea_hydraulics::actuator::Components;
 use phea_hydraulics::force_sensor::in_series;
 use phea_hydraulics::linear::LinearParameters;
 
-use super::{HoseOption, OtherMeansProblem, SizedLoad, SizingProblem};
+use super::{
+    HoseName, HoseOption, OtherMeansProblem, SizedLoad, SizingProblem, SoonerRequirement, TimeConstantOrigin,
+    UnlikeLines,
+};
 use crate::catalogue::{Catalogue, CatalogueKind, DASH_SIZES};
 use crate::caveat::overlap;
 use crate::project::{self, HoseProperties, Load, Project, SettlingTime, Speed};
-use crate::quantity::significant;
 use crate::rig::{
     ExpansionPressures, Numbers, Rig, RigError, VolumetricExpansion, hose, largest_flow, stiffening,
 };
@@ -68,10 +70,6 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
     let components = rig.actuator.components();
     refuse_what_no_hose_is_sized_for(components)?;
     let (time_constant, time_constant_origin) = time_constant(wish.speed);
-    let time_constant_origin = match sooner(project, time_constant) {
-        Some(required) => format!("{time_constant_origin}; {required}"),
-        None => time_constant_origin,
-    };
     let hoses = hoses(actuator, catalogue);
     if hoses.is_empty() {
         return Err(SizingError::NoHose);
@@ -107,6 +105,7 @@ pub fn sizing_problem(setup: &Setup<'_>, catalogue: &Catalogue) -> Result<Sizing
         internal_leakage: rig.internal_leakage,
         time_constant,
         time_constant_origin,
+        sooner: sooner(project, time_constant),
         flow: largest_flow(components, &actuator.supply),
         oil_velocity: wish.oil_velocity.unwrap_or(OIL_VELOCITY),
         minimum_gain: wish.minimum_gain.unwrap_or(MINIMUM_GAIN),
@@ -178,16 +177,12 @@ fn other_means(
 
 /// s, and where it comes from: a first-order response enters a band of b percent after ln(100/b)
 /// time constants.
-fn time_constant(speed: Speed) -> (f64, String) {
+fn time_constant(speed: Speed) -> (f64, TimeConstantOrigin) {
     match speed {
-        Speed::TimeConstant(time) => (time, "stated".to_string()),
+        Speed::TimeConstant(time) => (time, TimeConstantOrigin::Stated),
         Speed::Settling(SettlingTime { time, band_percent }) => {
             let constants = ln(100.0 / band_percent);
-            let origin = format!(
-                "{} s to {band_percent} % is {} time constants of a first-order response (the thesis takes four whatever the band: for its numbers state `time_constant`)",
-                significant(time, 4),
-                significant(constants, 3)
-            );
+            let origin = TimeConstantOrigin::Settling { settling_time: time, band_percent, constants };
             (time / constants, origin)
         }
     }
@@ -204,7 +199,7 @@ fn hoses(actuator: &project::DeclaredActuator, catalogue: &Catalogue) -> Vec<Hos
         _ => lines[side].dynamic_stiffening,
     });
     let pressures = ExpansionPressures::of(actuator.supply.pressure, actuator.supply.tank_pressure);
-    let option = |name: &str, properties: [&HoseProperties; 2]| {
+    let option = |name: HoseName, properties: [&HoseProperties; 2]| {
         let hoses = [0, 1].map(|side: usize| {
             let expansion = VolumetricExpansion::of(&properties[side].expansion, &Numbers::declared());
             let stiffening = stiffening(stiffenings[side], &Numbers::declared());
@@ -214,7 +209,7 @@ fn hoses(actuator: &project::DeclaredActuator, catalogue: &Catalogue) -> Vec<Hos
         let stated = properties.map(|hose| hose.expansion.pressure());
         let [radius_a, radius_b] = properties.map(|hose| hose.minimum_bend_radius);
         HoseOption {
-            name: name.to_string(),
+            name,
             hoses,
             working_pressure: working_a.zip(working_b).map(|(one, other)| one.min(other)),
             expansion_stated_at: stated.into_iter().flatten().reduce(f64::min),
@@ -226,75 +221,60 @@ fn hoses(actuator: &project::DeclaredActuator, catalogue: &Catalogue) -> Vec<Hos
         [Some(a), Some(b)] => Some([a, b]),
         [Some(only), None] | [None, Some(only)] => Some([only; 2]),
     };
-    let name = own_hoses(actuator);
-    let mut declared = declared.zip(name.as_deref());
+    let mut declared = declared.zip(own_hoses(actuator));
     let mut hoses: Vec<HoseOption> = Vec::new();
     for entry in catalogue.entries(CatalogueKind::Hose) {
-        match declared.filter(|(_, name)| *name == entry.name) {
-            Some((own, name)) => {
-                hoses.push(option(name, own));
-                declared = None;
-            }
-            None => hoses.extend(entry.hose.as_ref().map(|hose| option(&entry.name, [hose; 2]))),
+        let name = HoseName::named(&entry.name);
+        match declared.take_if(|(_, own)| *own == name) {
+            Some((own, _)) => hoses.push(option(name, own)),
+            None => hoses.extend(entry.hose.as_ref().map(|hose| option(name, [hose; 2]))),
         }
     }
     // a name of the catalogue is none of the project's own
-    let of_catalogue = |name: &str| lines.iter().any(|line| line.hose_name() == Some(name));
-    hoses.extend(declared.filter(|(_, name)| !of_catalogue(name)).map(|(own, name)| option(name, own)));
+    let own = declared.filter(|(_, name)| !matches!(name, HoseName::Both(Some(_))));
+    hoses.extend(own.map(|(own, name)| option(name, own)));
     hoses
 }
 
-/// What the hoses of a project are called among those to choose from; `None` where it has none.
-pub(crate) fn own_hoses(actuator: &project::DeclaredActuator) -> Option<String> {
+/// The name of the hoses of a project among those to choose from; `None` where it has none.
+pub(crate) fn own_hoses(actuator: &project::DeclaredActuator) -> Option<HoseName> {
     let lines = [&actuator.line.a, &actuator.line.b];
-    let named = |line: &project::DeclaredLine| line.hose_name().unwrap_or("the project's hose").to_string();
+    let [name_a, name_b] = lines.map(|line| line.hose_name().map(str::to_string));
     match lines.map(|line| line.hose()) {
         [None, None] => None,
-        [Some(_), None] => Some(named(lines[0])),
-        [None, Some(_)] => Some(named(lines[1])),
-        [Some(a), Some(b)] if a == b && lines[0].hose_name() == lines[1].hose_name() => Some(named(lines[0])),
-        [Some(_), Some(_)] => Some(format!("{} in line A, {} in line B", named(lines[0]), named(lines[1]))),
+        [Some(_), None] => Some(HoseName::Both(name_a)),
+        [None, Some(_)] => Some(HoseName::Both(name_b)),
+        [Some(a), Some(b)] if a == b && name_a == name_b => Some(HoseName::Both(name_a)),
+        [Some(_), Some(_)] => Some(HoseName::Each([name_a, name_b])),
     }
 }
 
-/// What differs between the declared lines, and what is made of it.
-fn unlike(actuator: &project::DeclaredActuator) -> Option<String> {
+/// Difference between the declared lines.
+fn unlike(actuator: &project::DeclaredActuator) -> Option<UnlikeLines> {
     let [line_a, line_b] = [&actuator.line.a, &actuator.line.b];
     match (line_a.hose(), line_b.hose()) {
         (Some(a), Some(b)) if a == b && line_a.dynamic_stiffening == line_b.dynamic_stiffening => None,
-        (Some(_), Some(_)) => {
-            Some("the lines differ: each is sized so that both have the same compliance".to_string())
-        }
+        (Some(_), Some(_)) => Some(UnlikeLines::HosesDiffer),
         (None, None) => None,
-        (Some(_), None) => {
-            Some("line B is not declared as a hose: hoses are sized for both lines".to_string())
-        }
-        (None, Some(_)) => {
-            Some("line A is not declared as a hose: hoses are sized for both lines".to_string())
-        }
+        (Some(_), None) => Some(UnlikeLines::LineBIsNoHose),
+        (None, Some(_)) => Some(UnlikeLines::LineAIsNoHose),
     }
 }
 
-/// The requirement in time that asks for more than this time constant reaches, in words.
+/// The requirement in time that asks for most beyond what this time constant reaches.
 ///
 /// ```text
 /// t_s = tau_d ln(100/band)                    of a first-order response, the band in percent
 /// ```
-fn sooner(project: &Project, time_constant_s: f64) -> Option<String> {
-    let required = time_requirements(project).ok()?;
-    let each = required.iter().filter_map(|one| {
-        let settles_s = time_constant_s * ln(100.0 / one.wish.band_percent);
-        let required_s = one.wish.settling_time_s.filter(|time_s| settles_s > ROUNDED * time_s)?;
-        Some((settles_s / required_s, one, settles_s))
+fn sooner(project: &Project, time_constant_s: f64) -> Option<SoonerRequirement> {
+    let each = time_requirements(project).ok()?.into_iter().filter_map(|one| {
+        let band_percent = one.wish.band_percent;
+        let settles = time_constant_s * ln(100.0 / band_percent);
+        let required = one.wish.settling_time_s.filter(|time_s| settles > ROUNDED * time_s)?;
+        Some(SoonerRequirement { specification: one.number, band_percent, settles, required })
     });
-    let (_, one, settles_s) = each.max_by(|one, other| one.0.total_cmp(&other.0))?;
-    Some(format!(
-        "that settles within {} % in {} s, and specification {} requires it in {} s",
-        one.wish.band_percent,
-        significant(settles_s, 4),
-        one.number,
-        one.wish.settling_time_s?
-    ))
+    let beyond = |one: &SoonerRequirement| one.settles / one.required;
+    each.max_by(|one, other| beyond(one).total_cmp(&beyond(other)))
 }
 
 /// K_qU at null over that beyond the lap of a valve whose edges overlap, where no K_qU is stated.

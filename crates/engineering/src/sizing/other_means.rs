@@ -37,14 +37,49 @@ pub struct OtherMeans {
     /// m, of the actuator from mount to mount, retracted, with the hose and all means but the
     /// spring; `None` where `cylinder.dead_length` is not stated.
     pub actuator_length: Option<f64>,
-    /// Each, or why it cannot be.
-    pub pipe: Result<SizedPipe, String>,
+    /// A pipe to each chamber.
+    pub pipe: Result<SizedPipe, OtherMeansError>,
     /// Gas at both chambers.
-    pub gas: Result<SizedGas, String>,
+    pub gas: Result<SizedGas, OtherMeansError>,
     /// A spring on the rod.
-    pub spring: Result<SizedSpring, String>,
+    pub spring: Result<SizedSpring, OtherMeansError>,
     /// A valve between the chambers: of the rig as declared, and of its chambers without any line.
-    pub valves: Result<[SizedValve; 2], String>,
+    pub valves: Result<[SizedValve; 2], OtherMeansError>,
+}
+
+/// Reason for which one of the other means is not sized.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum OtherMeansError {
+    /// Nothing has to be softer than the chambers are.
+    #[error("the chambers without any line are as soft")]
+    ChambersAreAsSoft,
+    /// No pipe is as soft.
+    #[error("no length of it is as soft")]
+    NoPipe,
+    /// No gas is as soft.
+    #[error("no volume is as soft")]
+    NoGas,
+    /// The forces of the gas are not stated.
+    #[error("not stated: sizing.other_means.force_range")]
+    NoForceRange,
+    /// A force of the range is beyond what the rig holds.
+    #[error("the rig does not hold every force of sizing.other_means.force_range")]
+    ForceNotHeld,
+    /// The lowest chamber pressure leaves no precharge above that of the tank.
+    #[error("a chamber comes so near to the tank in this range that no precharge lies below it")]
+    NoPrecharge,
+    /// The damping ratio of the valve is not stated.
+    #[error("not stated: sizing.other_means.damping_ratio")]
+    NoDampingRatio,
+}
+
+/// Reason for which the coils of a spring are not known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CoilUnknown {
+    /// The wire is not stated.
+    NotStated,
+    /// There are fewer than two active coils, whose ends would decide the stiffness.
+    TooFewCoils,
 }
 
 /// A pipe to each chamber.
@@ -79,7 +114,7 @@ pub struct SizedSpring {
     /// m, to either side, under the stall force.
     pub travel: f64,
     /// How it is wound, or why this is not known.
-    pub coil: Result<CoilPair, &'static str>,
+    pub coil: Result<CoilPair, CoilUnknown>,
     /// m, of the actuator with it from mount to mount, retracted.
     pub actuator_length: Option<f64>,
 }
@@ -98,9 +133,6 @@ pub struct SizedValve {
     /// W, what the valve loses at the greatest force of the range; `None` without a range.
     pub loss: Option<f64>,
 }
-
-/// Why a spring is not wound.
-pub(crate) const TOO_FEW_COILS: &str = "fewer than two active coils, whose ends would decide the stiffness: take a smaller index, a lower stress, or disc springs";
 
 /// Halvings of every search: the interval is rounding then.
 const HALVINGS: usize = 80;
@@ -141,19 +173,19 @@ impl OtherMeansProblem {
         components.chamber_compliance(pressures, StiffeningMember::Nominal).over_stroke().minimum
     }
 
-    fn pipe(&self, stiffness: f64, chambers: f64, bore: f64) -> Result<SizedPipe, String> {
+    fn pipe(&self, stiffness: f64, chambers: f64, bore: f64) -> Result<SizedPipe, OtherMeansError> {
         softer(stiffness, chambers)?;
         let pressures = [self.actuator.mean_pressure(); 2];
         let length = falls_to(stiffness, |length| self.least(&rigid_pipe(bore, length), None, pressures))
-            .ok_or("no length of it is as soft")?;
+            .ok_or(OtherMeansError::NoPipe)?;
         Ok(SizedPipe { bore, length, oil: 2.0 * rigid_pipe(bore, length).volume() })
     }
 
     /// ```text
     /// P_0 = share P_min,    max over F of K_H(V_0, p_A(F), p_B(F)) = K_H        P_min the lowest chamber pressure over F
     /// ```
-    fn gas(&self, stiffness: f64, chambers: f64, bore: f64) -> Result<SizedGas, String> {
-        let [low, high] = self.wish.force_range.ok_or("not stated: sizing.other_means.force_range")?;
+    fn gas(&self, stiffness: f64, chambers: f64, bore: f64) -> Result<SizedGas, OtherMeansError> {
+        let [low, high] = self.wish.force_range.ok_or(OtherMeansError::NoForceRange)?;
         softer(stiffness, chambers)?;
         let held = |index: usize| {
             let force = low + (high - low) * index as f64 / (FORCES - 1) as f64;
@@ -162,15 +194,12 @@ impl OtherMeansProblem {
             point.map(|point| [point.pressure_a, point.pressure_b])
         };
         let pressures: Result<Vec<[f64; 2]>, _> = (0..FORCES).map(held).collect();
-        let pressures =
-            pressures.map_err(|_| "the rig does not hold every force of sizing.other_means.force_range")?;
+        let pressures = pressures.map_err(|_| OtherMeansError::ForceNotHeld)?;
         let lowest = pressures.iter().flatten().fold(f64::INFINITY, |least, one| least.min(*one));
         let absolute = lowest + ATMOSPHERIC_PRESSURE_ABSOLUTE;
         let precharge = self.wish.precharge_share * absolute - ATMOSPHERIC_PRESSURE_ABSOLUTE;
         if precharge <= 0.0 {
-            return Err(
-                "a chamber comes so near to the tank in this range that no precharge lies below it".into()
-            );
+            return Err(OtherMeansError::NoPrecharge);
         }
         let none = rigid_pipe(bore, 0.0);
         let over_range = |volume: f64| {
@@ -186,7 +215,7 @@ impl OtherMeansProblem {
                 .fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], one| [least.min(one), most.max(one)])
         };
         let volume =
-            falls_to(stiffness, |volume| over_range(1e-6 * volume)[1]).ok_or("no volume is as soft")? * 1e-6;
+            falls_to(stiffness, |volume| over_range(1e-6 * volume)[1]).ok_or(OtherMeansError::NoGas)? * 1e-6;
         let supply = self.actuator.components().supply.pressure + ATMOSPHERIC_PRESSURE_ABSOLUTE;
         Ok(SizedGas {
             volume,
@@ -199,7 +228,7 @@ impl OtherMeansProblem {
     /// ```text
     /// 1/k = 1/K_H - 1/K_chambers,    travel F_stall/k
     /// ```
-    fn spring(&self, stiffness: f64, chambers: f64) -> Result<SizedSpring, String> {
+    fn spring(&self, stiffness: f64, chambers: f64) -> Result<SizedSpring, OtherMeansError> {
         softer(stiffness, chambers)?;
         let spring = 1.0 / (1.0 / stiffness - 1.0 / chambers);
         let Components { cylinder, supply, .. } = self.actuator.components();
@@ -215,16 +244,16 @@ impl OtherMeansProblem {
             coil_pair(spring, stall, &wire)
         });
         let coil = match coil {
-            None => Err("not stated: sizing.other_means.coil"),
-            Some(pair) if pair.active_coils < LEAST_ACTIVE_COILS => Err(TOO_FEW_COILS),
+            None => Err(CoilUnknown::NotStated),
+            Some(pair) if pair.active_coils < LEAST_ACTIVE_COILS => Err(CoilUnknown::TooFewCoils),
             Some(pair) => Ok(pair),
         };
         let actuator_length = coil.ok().zip(self.length).map(|(pair, length)| length + pair.installed_length);
         Ok(SizedSpring { stiffness: spring, travel: stall / spring, coil, actuator_length })
     }
 
-    fn valves(&self, chambers: f64) -> Result<[SizedValve; 2], String> {
-        let wanted = self.wish.damping_ratio.ok_or("not stated: sizing.other_means.damping_ratio")?;
+    fn valves(&self, chambers: f64) -> Result<[SizedValve; 2], OtherMeansError> {
+        let wanted = self.wish.damping_ratio.ok_or(OtherMeansError::NoDampingRatio)?;
         Ok([self.linear.hydraulic_stiffness, chambers].map(|stiffness| self.valve(stiffness, wanted)))
     }
 
@@ -284,10 +313,10 @@ fn rigid_pipe(bore: f64, length: f64) -> Line {
 }
 
 /// Nothing has to be softer than the chambers are.
-fn softer(stiffness: f64, chambers: f64) -> Result<(), String> {
+fn softer(stiffness: f64, chambers: f64) -> Result<(), OtherMeansError> {
     match stiffness < chambers {
         true => Ok(()),
-        false => Err("the chambers without any line are as soft".to_string()),
+        false => Err(OtherMeansError::ChambersAreAsSoft),
     }
 }
 

@@ -5,9 +5,8 @@ use phea_hydraulics::linear::{
 };
 use phea_hydraulics::stiffness::{StiffnessModel, StrokeStiffness, chamber_compliance};
 
-use super::SizingStep;
 use super::other_means::OtherMeansProblem;
-use crate::quantity::{DisplayUnit, significant};
+use super::{SizedSystem, SizingStep};
 use crate::rig::LargestFlow;
 
 /// The input of the procedure, with every value resolved. SI units.
@@ -40,8 +39,10 @@ pub struct SizingProblem {
     pub flow_pressure_coefficient_maximum: Option<f64>,
     /// Desired closed-loop time constant tau_d, s.
     pub time_constant: f64,
-    /// Where tau_d comes from, in words.
-    pub time_constant_origin: String,
+    /// Origin of tau_d.
+    pub time_constant_origin: TimeConstantOrigin,
+    /// The requirement in time that needs a shorter one most; `None` where none does.
+    pub sooner: Option<SoonerRequirement>,
     /// The largest flows of the lines, and what limits them.
     pub flow: LargestFlow,
     /// Recommended oil velocities, lowest and highest, m/s.
@@ -60,9 +61,8 @@ pub struct SizingProblem {
     pub supply_pressure: f64,
     /// The stiffness model the project declares.
     pub model: StiffnessModel,
-    /// What differs between the lines as they are declared, in words, and what is made of it;
-    /// `None` where they are hoses alike.
-    pub unlike: Option<String>,
+    /// Difference between the declared lines; `None` where they are hoses alike.
+    pub unlike: Option<UnlikeLines>,
     /// The hoses to choose from.
     pub hoses: Vec<HoseOption>,
     /// Bores on the market other than those of the hoses, with their names, m.
@@ -93,11 +93,67 @@ impl SizedLoad {
     }
 }
 
+/// Origin of the desired time constant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TimeConstantOrigin {
+    /// Stated as such.
+    Stated,
+    /// Time constant of a first-order response with this settling time.
+    Settling {
+        /// Settling time, s.
+        settling_time: f64,
+        /// Its band, percent of the step.
+        band_percent: f64,
+        /// Time constants until the response enters the band.
+        constants: f64,
+    },
+}
+
+/// A requirement in time that a first-order response with the desired time constant misses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SoonerRequirement {
+    /// Number of its specification in the file, from 1.
+    pub specification: usize,
+    /// Band of the settling time, percent of the step.
+    pub band_percent: f64,
+    /// Settling time of the response, s.
+    pub settles: f64,
+    /// Required settling time, s.
+    pub required: f64,
+}
+
+/// Difference between the lines as they are declared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnlikeLines {
+    /// The hoses differ: each is sized for the same compliance.
+    HosesDiffer,
+    /// Line B is no hose: hoses are sized for both lines.
+    LineBIsNoHose,
+    /// Line A is no hose: hoses are sized for both lines.
+    LineAIsNoHose,
+}
+
+/// Name of a hose, or of a dash size.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum HoseName {
+    /// Name of the hose of both lines; `None` for the project's own hose without a name.
+    Both(Option<String>),
+    /// Names of the hose of line A and of that of line B, which differ.
+    Each([Option<String>; 2]),
+}
+
+impl HoseName {
+    /// The name of a product or a dash size.
+    pub fn named(name: &str) -> HoseName {
+        HoseName::Both(Some(name.to_string()))
+    }
+}
+
 /// A hose of the catalogue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HoseOption {
     /// Name in the catalogue.
-    pub name: String,
+    pub name: HoseName,
     /// Bore, expansion and stiffening of that of line A and that of line B.
     pub hoses: [Hose; 2],
     /// Working pressure, Pa, where known: of two the lower.
@@ -197,69 +253,35 @@ impl SizingProblem {
         self.stock_length.map_or(longest, |stock| longest.min(stock / (own + other)))
     }
 
-    /// K_S, and what the load in series with it makes of it.
-    fn sensor_words(&self) -> String {
-        let unit = DisplayUnit::MEGANEWTON_PER_METRE;
-        let sensor = format!("K_S = {}", unit.text(self.sensor_alone, 4));
-        match self.load {
-            SizedLoad::Prescribed => sensor,
-            SizedLoad::Yielding { stiffness } => format!(
-                "{sensor} in series with the load's {}: {}",
-                unit.text(stiffness, 4),
-                unit.text(self.linear.sensor_stiffness, 4)
-            ),
-            SizedLoad::HeldStill => format!("{sensor}, the load held still, as no stiffness holds it"),
-        }
-    }
-
-    /// What the words of the procedure say about the lines.
-    fn lines_words(&self) -> String {
-        match &self.unlike {
-            None => "both lines alike".to_string(),
-            Some(words) => words.clone(),
-        }
-    }
-
+    /// Steps a and b.
     pub(super) fn decisions(&self) -> Vec<SizingStep> {
-        let number = |value| significant(value, 4);
-        vec![
-            SizingStep {
-                step: "a",
-                text: format!(
-                    "System data: A_u = {} cm2, stroke {} mm, β_0 = {} GPa, {}, K_qU = {} m3/(s.V), K_c0 = {} m3/(s.Pa){}; {}.",
-                    DisplayUnit::SQUARE_CENTIMETRE.number(self.linear.useful_area, 4),
-                    DisplayUnit::MILLIMETRE.number(2.0 * self.cylinder.stroke.middle(), 4),
-                    DisplayUnit::GIGAPASCAL.number(self.fluid_modulus, 4),
-                    self.sensor_words(),
-                    number(self.linear.flow_gain),
-                    number(self.linear.flow_pressure_coefficient),
-                    match self.internal_leakage {
-                        0.0 => String::new(),
-                        leakage => format!(" with {} m3/(s.Pa) from chamber to chamber", number(leakage)),
-                    },
-                    self.lines_words()
-                ),
-            },
-            SizingStep {
-                step: "b",
-                text: format!(
-                    "Time constant τ_d = {} ms: {}.",
-                    DisplayUnit::MILLISECOND.number(self.time_constant, 4),
-                    self.time_constant_origin
-                ),
-            },
-        ]
+        let system = SizedSystem {
+            useful_area: self.linear.useful_area,
+            stroke: 2.0 * self.cylinder.stroke.middle(),
+            fluid_modulus: self.fluid_modulus,
+            sensor_alone: self.sensor_alone,
+            load: self.load,
+            sensor_stiffness: self.linear.sensor_stiffness,
+            flow_gain: self.linear.flow_gain,
+            flow_pressure_coefficient: self.linear.flow_pressure_coefficient,
+            internal_leakage: self.internal_leakage,
+            unlike: self.unlike,
+        };
+        let time_constant = SizingStep::TimeConstant {
+            time_constant: self.time_constant,
+            origin: self.time_constant_origin,
+            sooner: self.sooner,
+        };
+        vec![SizingStep::SystemData(system), time_constant]
     }
 
     /// Step f: where the search over the gain begins, and what limits it.
     pub(super) fn search_decision(&self) -> SizingStep {
-        let text = format!(
-            "K_p starts at {} V/N and is halved while the hose is longer than {} m, but not below {} V/N; at {} V/N even a rigid transmission would be too slow (K_H infinite).",
-            significant(self.maximum_gain, 3),
-            significant(self.available_length([1.0; 2]), 4),
-            significant(self.minimum_gain, 3),
-            significant(self.pole_gain(), 3)
-        );
-        SizingStep { step: "f", text }
+        SizingStep::Search {
+            maximum_gain: self.maximum_gain,
+            available_length: self.available_length([1.0; 2]),
+            minimum_gain: self.minimum_gain,
+            pole_gain: self.pole_gain(),
+        }
     }
 }

@@ -8,8 +8,8 @@ use crate::quantity::DisplayUnit;
 /// everything else being nominal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Influence {
-    /// What is varied, in words.
-    pub quantity: &'static str,
+    /// The number that is varied.
+    pub quantity: UncertainHoseNumber,
     /// The unit in which people read its values.
     pub unit: DisplayUnit,
     /// Its low, nominal and high value in SI.
@@ -21,11 +21,15 @@ pub struct Influence {
     pub length_m: [f64; 3],
 }
 
-impl Influence {
-    /// Low, nominal and high, with their unit.
-    pub fn setting_words(&self) -> String {
-        self.unit.with_symbol(self.values.map(|value| self.unit.number(value, 4)).join(" · "))
-    }
+/// An uncertain number that stiffness and length depend on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UncertainHoseNumber {
+    /// r_beta of the wall.
+    DynamicStiffening,
+    /// beta_0.
+    FluidBulkModulus,
+    /// E.
+    VolumetricExpansion,
 }
 
 /// Relative variation of numbers for which no interval is stated.
@@ -39,7 +43,7 @@ pub fn sensitivity(problem: &SizingProblem, candidate: &Candidate) -> Vec<Influe
     let Stiffening { nominal, minimum, maximum } = hose.dynamic_stiffening;
     let shares = [1.0 - ASSUMED_SPREAD, 1.0, 1.0 + ASSUMED_SPREAD];
     let with = |vary: &dyn Fn(Hose) -> Hose| HoseOption { hoses: option.hoses.map(vary), ..option.clone() };
-    let influence = |quantity: &'static str,
+    let influence = |quantity: UncertainHoseNumber,
                      unit: DisplayUnit,
                      values: [f64; 3],
                      vary: &dyn Fn(usize) -> (SizingProblem, HoseOption)| {
@@ -56,16 +60,21 @@ pub fn sensitivity(problem: &SizingProblem, candidate: &Candidate) -> Vec<Influe
         }
     };
     vec![
-        influence("dynamic stiffening r_β", DisplayUnit::ONE, [minimum, nominal, maximum], &|index| {
-            let vary = |hose: Hose| {
-                let Stiffening { nominal, minimum, maximum } = hose.dynamic_stiffening;
-                let value = [minimum, nominal, maximum][index];
-                Hose { dynamic_stiffening: Stiffening::certain(value), ..hose }
-            };
-            (problem.clone(), with(&vary))
-        }),
         influence(
-            "fluid bulk modulus β_0",
+            UncertainHoseNumber::DynamicStiffening,
+            DisplayUnit::ONE,
+            [minimum, nominal, maximum],
+            &|index| {
+                let vary = |hose: Hose| {
+                    let Stiffening { nominal, minimum, maximum } = hose.dynamic_stiffening;
+                    let value = [minimum, nominal, maximum][index];
+                    Hose { dynamic_stiffening: Stiffening::certain(value), ..hose }
+                };
+                (problem.clone(), with(&vary))
+            },
+        ),
+        influence(
+            UncertainHoseNumber::FluidBulkModulus,
             DisplayUnit::GIGAPASCAL,
             shares.map(|share| problem.fluid_modulus * share),
             &|index| {
@@ -75,7 +84,7 @@ pub fn sensitivity(problem: &SizingProblem, candidate: &Candidate) -> Vec<Influe
         ),
         // The slope goes with the expansion: a hose that expands more does so at every pressure.
         influence(
-            "volumetric expansion E",
+            UncertainHoseNumber::VolumetricExpansion,
             DisplayUnit::CUBIC_CENTIMETRE_PER_METRE,
             shares.map(|share| hose.volumetric_expansion * share),
             &|index| (problem.clone(), with(&|hose| expanding(hose, shares[index]))),

@@ -14,7 +14,14 @@ pub fn closed_loop_key(closed_loop: ClosedLoop) -> &'static str {
     word_of(&SPECIFICATION_KINDS, &SpecificationKind::ClosedLoop(closed_loop))
 }
 
-/// The kind for people.
-pub fn kind_words(requirement: &Requirement) -> String {
-    kind_key(requirement).replace('_', " ")
+/// The kind that limits a closed loop, for people.
+pub fn closed_loop_words(closed_loop: ClosedLoop) -> &'static str {
+    match closed_loop {
+        ClosedLoop::RobustStability => "robust stability",
+        ClosedLoop::Sensitivity => "sensitivity",
+        ClosedLoop::PlantInputDisturbance => "plant input disturbance",
+        ClosedLoop::ControlEffort => "control effort",
+        ClosedLoop::LoadMotion => "load motion",
+        ClosedLoop::Tracking => "tracking",
+    }
 }

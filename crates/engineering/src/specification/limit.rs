@@ -51,8 +51,8 @@ pub(super) fn over_frequency(
         (project::DeclaredLimit::Response(wish), Takes::Wish(side)) => {
             Limit::Rational(of_wish(wish, side)?.0)
         }
-        (project::DeclaredLimit::Margins(_), _) => return Err(SpecificationProblem::Form("margins")),
-        (project::DeclaredLimit::Response(_), _) => return Err(SpecificationProblem::Form("a wish in time")),
+        (project::DeclaredLimit::Margins(_), _) => return Err(SpecificationProblem::TakesNoMargins),
+        (project::DeclaredLimit::Response(_), _) => return Err(SpecificationProblem::TakesNoWish),
     })
 }
 
@@ -80,7 +80,7 @@ fn of_margins(wish: &MarginWish, closed_loop: ClosedLoop) -> Result<Limit, Speci
             sensitivity_limit_for_phase_margin,
             sensitivity_limit_for_modulus_margin,
         ],
-        _ => return Err(SpecificationProblem::Form("margins")),
+        _ => return Err(SpecificationProblem::TakesNoMargins),
     };
     let wishes = [wish.gain_margin, wish.gain_reduction, wish.phase_margin, wish.modulus_margin];
     let mut strictest = None::<f64>;

@@ -3,10 +3,11 @@
 
 use phea_qft::specification::Specification;
 
+use super::SpecificationName;
 use crate::setup::Setup;
 
 /// A specification and its name.
-pub(super) type NamedSpecification = (Specification, &'static str);
+pub(super) type NamedSpecification = (Specification, SpecificationName);
 
 /// The specifications of `allowed_force_error` and `allowed_command_error`, with bounds at these
 /// frequencies, rad/s.
@@ -17,14 +18,12 @@ pub(crate) fn of_rounding(setup: &Setup<'_>, frequencies_rad_per_s: &[f64]) -> V
     let quantization = setup.quantization;
     let frequencies = || frequencies_rad_per_s.to_vec();
     let force = declared.allowed_force_error.and_then(|allowed| {
-        Some((
-            quantization.force_specification(allowed, frequencies())?,
-            "force error of the rounded command",
-        ))
+        let found = quantization.force_specification(allowed, frequencies())?;
+        Some((found, SpecificationName::RoundedCommand))
     });
     let command = declared.allowed_command_error.and_then(|allowed| {
         let found = quantization.command_specification(allowed, frequencies())?;
-        Some((found, "command error of the rounded measurement"))
+        Some((found, SpecificationName::RoundedMeasurement))
     });
     force.into_iter().chain(command).collect()
 }

@@ -3,11 +3,12 @@
 use super::document::told_first;
 use super::findings::{findings, of_case};
 use super::front;
+use super::words::{no_number_words, undecided_words};
 use super::{AlternativeColumn, Alternatives, ColumnPart, JudgedAlternative, JudgedCase, MovedRange};
 use crate::answer::{Json, Object};
 use crate::audit::verdict_key;
 use crate::design;
-use crate::linearize::passivity_body;
+use crate::linearize::{no_closed_impedance_words, passivity_body};
 use crate::trial;
 
 /// What `alternatives` says to programs.
@@ -32,19 +33,19 @@ fn case(one: &JudgedCase) -> Object {
 }
 
 fn row(one: &JudgedAlternative) -> Object {
-    let failed = one.design.as_ref().err().map_or("", String::as_str);
+    let failed = one.design.as_ref().err().map_or(String::new(), |reason| reason.to_string());
     let view = one.design.as_ref().ok();
     let verdict = view.map(|view| verdict_key(view.designed.view.verdict()));
     // the laws of a design that was audited are transfer functions
     let design = view.and_then(|view| design::body(view).ok());
     let machine = view.and_then(|view| view.trial.as_ref()).map(trial::body);
-    let no_machine = if view.is_some() { "the project describes a plant and no machine" } else { failed };
+    let no_machine = if view.is_some() { "the project describes a plant and no machine" } else { &failed };
     Object::new()
         .with("name", one.name.as_str())
         .with("settings", one.loaded.settings.as_slice())
         .each("moved_ranges", &one.moved, moved)
-        .known("verdict", verdict, failed)
-        .known("design", design, failed)
+        .known("verdict", verdict, &failed)
+        .known("design", design, &failed)
         .known("machine", machine, no_machine)
         .with("columns", columns(one))
 }
@@ -73,13 +74,13 @@ fn columns(one: &JudgedAlternative) -> Object {
         objects.collect::<Vec<_>>()
     };
     let feasible = one.feasible();
-    let reason = feasible.as_ref().err().map_or("", String::as_str).to_string();
+    let reason = if feasible.is_some() { String::new() } else { undecided_words(one) };
     let stability = one.design.as_ref().map(|view| verdict_key(view.designed.view.audit.stability.verdict));
-    let failed = one.design.as_ref().err().map_or("", String::as_str);
-    let own = Object::new().known("feasible", feasible.ok(), &reason).known(
+    let failed = one.design.as_ref().err().map_or(String::new(), |reason| reason.to_string());
+    let own = Object::new().known("feasible", feasible, &reason).known(
         "stable_with_its_load",
         stability.ok(),
-        failed,
+        &failed,
     );
     let own = told(own, of(&all, &ColumnPart::Loop).chain(of(&all, &ColumnPart::Rig)));
     let currency = one.counted.currency.map(|currency| currency.code());
@@ -87,14 +88,14 @@ fn columns(one: &JudgedAlternative) -> Object {
     own.with(
         "specifications",
         named(|part| match part {
-            ColumnPart::Specification(_, name) => Some(name),
+            ColumnPart::Specification(_, name) => Some(name.words()),
             _ => None,
         }),
     )
     .with(
         "scenarios",
         named(|part| match part {
-            ColumnPart::Scenario(name) => Some(name),
+            ColumnPart::Scenario(name) => Some(name.as_str()),
             _ => None,
         }),
     )
@@ -135,11 +136,11 @@ fn of<'c>(
 
 fn told<'c>(object: Object, columns: impl Iterator<Item = &'c AlternativeColumn>) -> Object {
     columns.fold(object, |object, column| {
-        let reason = column.value.as_ref().err().map_or("", String::as_str);
+        let reason = column.value.as_ref().err().map_or(String::new(), no_number_words);
         object.known(
             column.key,
             column.value.as_ref().ok().map(|value| number(*value, column.digits)),
-            reason,
+            &reason,
         )
     })
 }
@@ -147,15 +148,15 @@ fn told<'c>(object: Object, columns: impl Iterator<Item = &'c AlternativeColumn>
 /// Of the impedance at the load, as `linearize` says it.
 fn passivity(one: &JudgedAlternative) -> Object {
     let linearization = one.linearization.as_ref();
-    let failed = linearization.err().map_or("", String::as_str);
+    let failed = linearization.err().map_or(String::new(), |reason| reason.to_string());
     let open = linearization.ok().map(|found| passivity_body(&found.open_loop.passivity));
     let closed = linearization.ok().and_then(|found| found.closed_loop.as_ref());
     let closed = closed.filter(|_| one.deployed.is_ok());
-    let absent = linearization.ok().and_then(|found| found.closed_loop_absent.as_deref());
-    let absent = one.deployed.as_ref().err().map(String::as_str).or(absent);
-    Object::new().known("open_loop", open, failed).known(
+    let absent = linearization.ok().and_then(|found| found.closed_loop_absent).map(no_closed_impedance_words);
+    let absent = one.deployed.as_ref().err().map(|reason| reason.to_string()).or(absent.map(str::to_string));
+    Object::new().known("open_loop", open, &failed).known(
         "closed_loop",
         closed.map(|view| passivity_body(&view.passivity)),
-        absent.unwrap_or(failed),
+        absent.as_deref().unwrap_or(&failed),
     )
 }

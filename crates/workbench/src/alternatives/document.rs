@@ -3,10 +3,13 @@
 use super::findings::findings;
 use super::front;
 use super::summary::{self, machine};
-use super::{AlternativeColumn, AlternativeColumns, Alternatives, ColumnPart, JudgedAlternative};
+use super::words::{NOT_STATED, column_name, is_unstated, no_number_words};
+use super::{AlternativeColumn, AlternativeColumns, Alternatives, ColumnPart, JudgedAlternative, NoNumber};
+use crate::caveat::outside_parameters;
 use crate::document::{Cell, Document, Table};
 use crate::linearize::PortView;
 use crate::quantity::{DisplayUnit, significant};
+use crate::rig::OutsideParameter;
 use crate::simulate::ScenarioRun;
 use phea_qft::verification::Verdict;
 
@@ -53,14 +56,17 @@ pub(crate) fn told_first(found: &Alternatives) -> Vec<String> {
 
 /// A sentence on ranges that do not contain the rig of an alternative, whether they were moved or
 /// not.
-pub(crate) fn outside_words(name: &str, outside: &str, moved: bool) -> String {
+pub(crate) fn outside_words(name: &str, outside: &[OutsideParameter], moved: bool) -> String {
     let cure = match moved {
         false => "state them in `set`, or let them follow by `recentre = true`",
         true => {
             "`recentre` moved them by what the rigs differ, and the declared rig lies outside of its own: state them in `set`"
         }
     };
-    format!("{name}: the ranges of [uncertainty] do not contain its rig ({outside}): {cure}")
+    format!(
+        "{name}: the ranges of [uncertainty] do not contain its rig ({}): {cure}",
+        outside_parameters(outside)
+    )
 }
 
 /// A row for each column, and a column for each alternative.
@@ -82,8 +88,8 @@ fn table(found: &Alternatives) -> Table {
             rows.row(words("nonlinear simulation", found, machine));
         }
         let settling = summary::settling(found.judged.iter(), |run| is_of(run, &part));
-        for (key, name) in keys {
-            let name = if key == "settling_time_s" { settling.as_str() } else { name };
+        for key in keys {
+            let name = if key == "settling_time_s" { settling.as_str() } else { column_name(key) };
             let cells = all.iter().map(|columns| cell(columns, &part, key));
             rows.row(std::iter::once(Cell::from(name)).chain(cells));
         }
@@ -105,9 +111,9 @@ fn words(name: &str, found: &Alternatives, of: fn(&JudgedAlternative) -> Cell) -
 
 fn feasible(one: &JudgedAlternative) -> Cell {
     match one.feasible() {
-        Ok(true) => Cell::from("yes").marked(true),
-        Ok(false) => Cell::from("no").marked(false),
-        Err(_) => "not known".into(),
+        Some(true) => Cell::from("yes").marked(true),
+        Some(false) => Cell::from("no").marked(false),
+        None => "not known".into(),
     }
 }
 
@@ -151,25 +157,21 @@ pub(super) fn parts(all: &[AlternativeColumns]) -> Vec<ColumnPart> {
     parts
 }
 
-/// The keys of a part that some alternative has a value for, or should state one for, with their
-/// words.
-fn keys(all: &[AlternativeColumns], part: &ColumnPart) -> Vec<(&'static str, &'static str)> {
+/// The keys of a part that some alternative has a value for, or should state one for.
+fn keys(all: &[AlternativeColumns], part: &ColumnPart) -> Vec<&'static str> {
     let mut keys = Vec::new();
     let columns = all.iter().flat_map(|columns| &columns.0).filter(|(own, _)| own == part);
-    for (_, AlternativeColumn { key, words, .. }) in columns.filter(|(_, column)| is_shown(column)) {
-        if !keys.contains(&(*key, *words)) {
-            keys.push((*key, *words));
+    for (_, AlternativeColumn { key, .. }) in columns.filter(|(_, column)| is_shown(column)) {
+        if !keys.contains(key) {
+            keys.push(*key);
         }
     }
     keys
 }
 
 fn is_shown(column: &AlternativeColumn) -> bool {
-    column.value.as_ref().map_or_else(|reason| reason.starts_with(NOT_STATED), |_| true)
+    column.value.as_ref().map_or_else(is_unstated, |_| true)
 }
-
-/// What the reason for a number that nobody states begins with.
-const NOT_STATED: &str = "not stated";
 
 /// A column of an alternative.
 pub(super) fn at<'c>(
@@ -187,8 +189,8 @@ fn cell(columns: &AlternativeColumns, part: &ColumnPart, key: &str) -> Cell {
         Ok(value) if column.digits == 0 => value.to_string().into(),
         Ok(value) => Cell::quantity(*value, column.digits, column.unit),
         // what of it is missing is found in the table of its part
-        Err(reason) if key.starts_with("parts_") && reason.starts_with(NOT_STATED) => reason.clone().into(),
-        Err(reason) if reason.starts_with(NOT_STATED) => NOT_STATED.into(),
+        Err(reason @ NoNumber::Parts(_)) if is_unstated(reason) => no_number_words(reason).into(),
+        Err(reason) if is_unstated(reason) => NOT_STATED.into(),
         Err(_) => Cell::Missing,
     }
 }
@@ -198,7 +200,7 @@ fn group(part: &ColumnPart) -> String {
         ColumnPart::Loop => "loop".to_string(),
         ColumnPart::Rig => "rig".to_string(),
         ColumnPart::Impedance(frequency) => format!("|Z| at {} rad/s", significant(*frequency, 4)),
-        ColumnPart::Specification(index, name) => format!("{} {name}", index + 1),
+        ColumnPart::Specification(index, name) => format!("{} {}", index + 1, name.words()),
         ColumnPart::Scenario(name) => name.clone(),
     }
 }

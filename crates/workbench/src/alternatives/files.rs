@@ -128,7 +128,7 @@ fn heading(part: &ColumnPart, key: &str) -> String {
     match part {
         ColumnPart::Loop | ColumnPart::Rig => key.to_string(),
         ColumnPart::Impedance(frequency) => quoted(&format!("{frequency} rad/s: {key}")),
-        ColumnPart::Specification(index, name) => quoted(&format!("{} {name}: {key}", index + 1)),
+        ColumnPart::Specification(index, name) => quoted(&format!("{} {}: {key}", index + 1, name.words())),
         ColumnPart::Scenario(name) => quoted(&format!("{name}: {key}")),
     }
 }

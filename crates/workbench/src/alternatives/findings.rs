@@ -4,10 +4,12 @@
 use phea_qft::design::ControllerChoice;
 use phea_qft::design::DesignStatus;
 
+use super::words::measure_name;
 use super::{
     AlternativeColumns, Alternatives, ComparedMeasure, ComparedMeasures, JudgedAlternative, JudgedCase,
     MovedRange,
 };
+use crate::caveat;
 use crate::design::status_sentence;
 use crate::grouped::grouped;
 use crate::project::{AS_DECLARED, ImpedanceForm, LINEAR_PARAMETERS};
@@ -64,7 +66,7 @@ impl MeasuredAlternatives {
 
     /// The measures in words.
     fn words(&self) -> String {
-        let further = self.measures.iter().skip(FOUR.len()).map(|measure| measure.words);
+        let further = self.measures.iter().skip(FOUR.len()).map(|measure| measure_name(measure.key));
         let all: Vec<&str> = FOUR.into_iter().chain(further).collect();
         match all.split_last() {
             Some((last, others)) => format!("{} and {last}", others.join(", ")),
@@ -92,7 +94,7 @@ fn specifications(judged: &[JudgedAlternative], not_reached: usize) -> Vec<Strin
     let named = |which: &dyn Fn(&JudgedAlternative) -> Option<String>| {
         judged.iter().filter_map(which).collect::<Vec<_>>()
     };
-    let met = named(&|one| (one.feasible() == Ok(true)).then(|| one.name.clone()));
+    let met = named(&|one| (one.feasible() == Some(true)).then(|| one.name.clone()));
     let missed = named(&|one| {
         let status = &one.design.as_ref().ok()?.design.status;
         let DesignStatus::Infeasible(relaxation) = status else { return None };
@@ -117,7 +119,7 @@ fn specifications(judged: &[JudgedAlternative], not_reached: usize) -> Vec<Strin
     let otherwise = named(&|one| match &one.design {
         Err(reason) => Some(format!("{}: not judged: {reason}", one.name)),
         Ok(view) if matches!(view.design.status, DesignStatus::Infeasible(_)) => None,
-        Ok(_) if one.feasible() == Ok(true) => None,
+        Ok(_) if one.feasible() == Some(true) => None,
         Ok(view) => Some(format!("{}: {}", one.name, status_sentence(view))),
     });
     sentences.extend(otherwise);
@@ -172,10 +174,10 @@ fn lacking(one: &JudgedAlternative) -> Vec<(&str, String)> {
         };
         format!("the nonlinear simulation contradicts the verdict: {}: {reason}{further}", first.what)
     });
-    let caveats = view.map(|view| view.designed.view.caveats.as_slice()).unwrap_or_default();
-    let caveats = caveats.iter().map(|caveat| caveat.sentence.clone());
+    let caveats = view.map(|view| &view.designed.view);
+    let caveats = caveats.into_iter().flat_map(|view| caveat::sentences(&view.caveats, &view.units));
     let impedance = impedance(one).into_iter().flatten();
-    let not_driven = one.runs.as_ref().err().filter(|_| view.is_some()).cloned();
+    let not_driven = one.runs.as_ref().err().filter(|_| view.is_some()).map(|reason| reason.to_string());
     contradicts
         .into_iter()
         .chain(caveats)
@@ -233,7 +235,8 @@ fn best(comparable: &MeasuredAlternatives) -> Option<String> {
         let names = all.iter().filter(|(_, measures)| measures.0[index] == best);
         let names: Vec<&str> = names.map(|(name, _)| name.as_str()).collect();
         let most = if measure.is_more() { "most" } else { "least" };
-        format!("{most} {} {} ({})", measure.words, words_of(measure, best), names.join(", "))
+        let name = measure_name(measure.key);
+        format!("{most} {name} {} ({})", words_of(measure, best), names.join(", "))
     });
     let each: Vec<String> = each.collect();
     Some(format!(
@@ -283,7 +286,7 @@ fn cost(
             continue;
         }
         let side = if (own > given) == measure.is_more() { &mut better } else { &mut worse };
-        side.push(format!("{} {shown} instead of {instead}", measure.words));
+        side.push(format!("{} {shown} instead of {instead}", measure_name(measure.key)));
     }
     let side =
         |word: &str, parts: &[String]| (!parts.is_empty()).then(|| format!("{word} in {}", parts.join(", ")));

@@ -1,6 +1,7 @@
 //! Fronts of alternatives over a swept number: table, findings, JSON, CSV and figure.
 
-use super::{ColumnSense, Front, FrontPoint, FrontValue};
+use super::words::{column_name, no_front_value_words, unknown_words};
+use super::{ColumnSense, Front, FrontPoint, FrontValue, NoFrontValue, SWEPT};
 use crate::answer::{Csv, Json, Object, OutputFile, quoted};
 use crate::document::{Cell, Table};
 use crate::figure::{Figure, FrontPlace, ParetoCurve, ParetoFront, ParetoPoint, Words};
@@ -21,7 +22,7 @@ pub(super) fn table(front: &Front) -> Table {
             (Ok(feasible), _) => Cell::from(if *feasible { "yes" } else { "no" }).marked(*feasible),
             (Err(_), _) => "not known".into(),
         };
-        let value = |value: &Result<FrontValue, String>| match value {
+        let value = |value: &Result<FrontValue, NoFrontValue>| match value {
             Ok(found) if found.digits == 0 => found.value.to_string().into(),
             Ok(found) => Cell::quantity(found.value, found.digits, found.unit),
             Err(_) => Cell::Missing,
@@ -39,11 +40,12 @@ pub(super) fn table(front: &Front) -> Table {
 
 /// What a column is called, as far as a point has it.
 fn column_words(front: &Front, index: usize) -> &str {
-    let known = front.points.iter().find_map(|point| point.values.get(index)?.as_ref().ok());
-    match known {
-        Some(found) if found.words == "swept" => &front.path,
-        Some(found) => found.words,
-        None => front.columns.get(index).map_or("", |column| column.key),
+    let is_known = front.points.iter().any(|point| matches!(point.values.get(index), Some(Ok(_))));
+    match front.columns.get(index) {
+        Some(column) if is_known && column.key == SWEPT => &front.path,
+        Some(column) if is_known => column_name(column.key),
+        Some(column) => column.key,
+        None => "",
     }
 }
 
@@ -83,7 +85,7 @@ pub(super) fn findings(front: &Front) -> Vec<String> {
     };
     for point in &front.points {
         if let Some(reason) = point.values.iter().find_map(|value| value.as_ref().err()) {
-            sentences.push(format!("{}: {reason}", name_of(front, point)));
+            sentences.push(format!("{}: {}", name_of(front, point), no_front_value_words(reason)));
         }
     }
     if front.not_reached > 0 {
@@ -126,19 +128,19 @@ pub(super) fn json(front: &Front) -> Object {
 }
 
 fn row(front: &Front, point: &FrontPoint) -> Object {
-    let reason = point.feasible.as_ref().err().map_or("", String::as_str);
+    let reason = point.feasible.as_ref().err().map_or(String::new(), unknown_words);
     let mut object = Object::new()
         .with("alternative", point.alternative.as_str())
         .with("value", point.value)
-        .known("feasible", point.feasible.as_ref().ok().copied(), reason)
+        .known("feasible", point.feasible.as_ref().ok().copied(), &reason)
         .with("comparable", point.comparable);
     for (column, value) in front.columns.iter().zip(&point.values) {
-        let reason = value.as_ref().err().map_or("", String::as_str);
+        let reason = value.as_ref().err().map_or(String::new(), no_front_value_words);
         let number = value.as_ref().ok().map(|found| match found.digits {
             0 => Json::Integer(found.value as i64),
             _ => Json::Number(found.value),
         });
-        object = object.known(column.key, number, reason);
+        object = object.known(column.key, number, &reason);
     }
     object.with("on_front", point.is_on_front()).each("dominated_by", &point.dominated_by, |place| *place)
 }
@@ -149,7 +151,7 @@ pub(super) fn csv(front: &Front) -> OutputFile {
     let mut csv = Csv::new(&format!("name,value,feasible,comparable,{},on_front", keys.join(",")));
     for point in &front.points {
         let feasible = point.feasible.as_ref().map_or(String::new(), |feasible| feasible.to_string());
-        let value = |value: &Result<FrontValue, String>| {
+        let value = |value: &Result<FrontValue, NoFrontValue>| {
             value.as_ref().map_or(String::new(), |found| found.value.to_string())
         };
         csv.cells(&[&quoted(&point.alternative), &point.value, &feasible, &point.comparable]);

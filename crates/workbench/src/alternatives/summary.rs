@@ -1,7 +1,7 @@
 //! A row for each alternative, under the declared load and under each load case: what a decision
 //! needs, before the table of all numbers.
 
-use super::{AlternativeColumns, Alternatives, COMPARED_AT_A_GLANCE, JudgedAlternative};
+use super::{AlternativeColumns, Alternatives, JudgedAlternative};
 use crate::document::{Cell, Table};
 use crate::quantity::significant;
 use crate::simulate::{ScenarioRun, settling_within};
@@ -9,6 +9,20 @@ use crate::trial::agreement_word;
 
 /// What the group of the project's own load is called, where there are load cases too.
 pub(super) const DECLARED_LOAD: &str = "declared load";
+
+/// Columns for a decision at a glance, by key, with their names for people. The worst value counts
+/// where a column exists for several scenarios.
+const COMPARED_AT_A_GLANCE: [(&str, &str); 9] = [
+    ("order", "order of G"),
+    ("delay_margin_s", "delay tolerated"),
+    ("settling_time_s", "settling"),
+    ("disturbance_peak_n", "disturbance"),
+    ("control_rms_v", "control rms"),
+    ("control_peak_v", "control peak"),
+    ("actuator_length_m", "length"),
+    ("parts_price", "price"),
+    ("parts_mass_kg", "mass"),
+];
 
 /// The table.
 pub(super) fn table(found: &Alternatives) -> Table {
@@ -77,12 +91,12 @@ fn specifications(one: &JudgedAlternative) -> Cell {
     let columns = one.columns();
     let relaxation = columns.first("relaxation_db").and_then(|column| column.value.clone().ok());
     match (one.feasible(), relaxation) {
-        (Ok(true), _) => Cell::from("met").marked(true),
-        (Ok(false), Some(relaxation)) => {
+        (Some(true), _) => Cell::from("met").marked(true),
+        (Some(false), Some(relaxation)) => {
             Cell::from(format!("missed by {} dB", significant(relaxation, 2))).marked(false)
         }
-        (Ok(false), None) => Cell::from("missed").marked(false),
-        (Err(_), _) => "not known".into(),
+        (Some(false), None) => Cell::from("missed").marked(false),
+        (None, _) => "not known".into(),
     }
 }
 

@@ -3,7 +3,7 @@
 use phea_engineering::line_choice::LUMPED_FROM;
 
 use super::Object;
-use crate::project::{ChosenLines, ReachedBy};
+use crate::project::{ChosenLines, ReachedBy, WavesHindrance};
 
 /// The model, and what it follows from.
 pub(crate) fn body_of_lines(lines: &ChosenLines) -> Object {
@@ -26,5 +26,13 @@ pub(crate) fn body_of_lines(lines: &ChosenLines) -> Object {
         .maybe("reached_by", lines.reach.as_ref().map(by))
         .maybe("specification", lines.reach.as_ref().and_then(specification))
         .with("lumped_from", LUMPED_FROM)
-        .maybe("hindrance", lines.hindrance.as_deref())
+        .maybe("hindrance", lines.hindrance.as_ref().map(hindrance_words))
+}
+
+/// Why no model with waves is computed.
+pub(crate) fn hindrance_words(hindrance: &WavesHindrance) -> &str {
+    match hindrance {
+        WavesHindrance::FreeLoad => "the load is a mass without stiffness",
+        WavesHindrance::Rig(error) => error,
+    }
 }

@@ -3,17 +3,21 @@ use phea_qft::verification::{
     Evidence, SearchedInfinity, SpecificationFinding, SpecificationMargin, StabilityFinding, Verdict,
 };
 
-use super::below_design;
 use super::in_time::unexamined_words;
-use super::margins;
+use super::proven::why_not_proven;
+use super::remark::remark_sentences;
+use super::signal_noise::unknown_words;
+use super::words::evidence_key;
 use super::{
     NoisySignal, PrefilterGain, ProjectAudit, ReachedLimit, SignalNoise, TimeFinding, TimeOutcome, WorstStep,
 };
-use super::{evidence_key, remark_sentences, stability_reason, verdict_key, why_not_proven};
+use super::{below_design, margins};
+use super::{stability_reason, verdict_key};
 use crate::answer::{Csv, Object, OutputFile, envelope};
+use crate::caveat;
 use crate::plant_names::PlantNames;
 use crate::project::Loaded;
-use crate::specification::{kind_key, kind_words};
+use crate::specification::{SpecificationName, kind_key};
 use phea_engineering::limit_kind::limit_key;
 
 /// The JSON object of `verify`, as a file.
@@ -74,7 +78,7 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
         .maybe("pressure_noise", view.pressure_noise.as_ref().map(|noise| signal_noise(noise, names)))
         .maybe("amplifying_prefilter", view.amplifying_prefilter.map(amplifying))
         .each("specifications", in_file_order(view), |one| one)
-        .each("warnings", &view.caveats, |caveat| caveat.sentence.as_str());
+        .with("warnings", caveat::sentences(&view.caveats, &view.units));
     match &view.below_design {
         Some(limits) => own.each("below_design", &limits.exceeded, below_design::object).each(
             "kept_of_design",
@@ -119,16 +123,16 @@ fn amplifying(gain: PrefilterGain) -> Object {
 /// The noise of a velocity that is fed forward or of pressures that are fed back, with its effects.
 fn signal_noise(noise: &SignalNoise, names: &PlantNames) -> Object {
     let effect = noise.effect.as_ref();
-    let (of, reason) = (effect.ok(), effect.err().map_or("", String::as_str));
+    let (of, reason) = (effect.ok(), effect.err().map_or(String::new(), unknown_words));
     let rms = match noise.signal {
         NoisySignal::LoadVelocity => "rms_m_per_s",
         NoisySignal::Pressures => "rms_pa",
     };
     Object::new()
         .with(rms, noise.rms)
-        .known("command_rms_v", of.map(|effect| effect.command_rms_v), reason)
+        .known("command_rms_v", of.map(|effect| effect.command_rms_v), &reason)
         .maybe("command_plant", of.map(|effect| names.named(&effect.command_plant)))
-        .known("force_rms_n", of.map(|effect| effect.force_rms_n), reason)
+        .known("force_rms_n", of.map(|effect| effect.force_rms_n), &reason)
         .maybe("force_plant", of.map(|effect| names.named(&effect.force_plant)))
 }
 
@@ -146,11 +150,12 @@ fn specification(view: &ProjectAudit, index: usize, finding: &SpecificationFindi
     let names = &view.names;
     let worst = finding.worst.as_ref();
     let other = worst.and_then(|worst| worst.other.as_ref());
-    let name = view.specification_names.get(index).map(String::as_str);
+    let is_other = |name: &&SpecificationName| !matches!(name, SpecificationName::ClosedLoop(_));
+    let name = view.specification_names.get(index).filter(is_other);
     let reached = view.reached.get(index).copied().flatten();
     Object::new()
         .with("kind", kind_key(&finding.requirement))
-        .maybe("name", name.filter(|name| *name != kind_words(&finding.requirement)))
+        .maybe("name", name.map(|name| name.words()))
         .with("verdict", verdict_key(finding.verdict))
         .with("evidence", evidence_key(finding.evidence))
         .with("worst_margin_db", worst.map(|worst| worst.margin_db))

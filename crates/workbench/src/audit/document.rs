@@ -4,11 +4,13 @@ use phea_dynamics::portable;
 use phea_qft::proof::{Proof, Standing};
 use phea_qft::verification::{SpecificationFinding, SpecificationMargin, Verdict};
 
-use super::{DelayedPaths, NominalMargins, ProjectAudit, below_design, in_time, margins};
-use super::{
-    closed_loop_symbol, evidence_sentence, finding_sentence, infinity_sentence, place_words,
-    remark_sentences, stability_sentence, standing_word, verdict_words, why_not_proven, worst_at_design,
-};
+use super::family_and_loop::{family_sentence, loop_sentence, position_sentence};
+use super::proven::{standing_word, why_not_proven};
+use super::remark::remark_sentences;
+use super::words::{closed_loop_symbol, evidence_sentence, finding_sentence, place_words, worst_at_design};
+use super::{DelayedPaths, ProjectAudit, below_design, in_time, margins, noise_sentence};
+use super::{infinity_sentence, stability_sentence, verdict_words};
+use crate::caveat;
 use crate::document::{Cell, Document, Table};
 use crate::figure::Figure;
 use crate::grouped::grouped;
@@ -46,12 +48,12 @@ pub(crate) fn document(view: &ProjectAudit, figures: Vec<Figure>) -> Document {
 /// Stability, delay margin and each specification, a sentence each, preceded by the effects that
 /// none of them includes.
 pub(crate) fn summary(view: &ProjectAudit) -> Vec<String> {
-    let mut sentences: Vec<String> = view.caveats.iter().map(|caveat| caveat.sentence.clone()).collect();
+    let mut sentences: Vec<String> = caveat::sentences(&view.caveats, &view.units);
     sentences.push(stability_sentence(&view.audit.stability, &view.names));
     sentences.extend(delay_sentence(view));
-    sentences.extend(view.nominal.as_ref().and_then(NominalMargins::reduction_sentence));
+    sentences.extend(view.nominal.as_ref().and_then(margins::reduction_sentence));
     let noise = view.velocity_noise.iter().chain(&view.pressure_noise);
-    sentences.extend(noise.map(|noise| noise.sentence(&view.names)));
+    sentences.extend(noise.map(|noise| noise_sentence(noise, &view.names)));
     let stable = view.audit.stability.verdict != Verdict::Violated;
     let findings = view.audit.specifications.iter().enumerate();
     sentences.extend(findings.map(|(index, finding)| {
@@ -230,9 +232,9 @@ fn violations(view: &ProjectAudit) -> Table {
 pub(crate) fn basis(view: &ProjectAudit) -> Vec<String> {
     let audit = &view.audit;
     let mut sentences =
-        vec![view.family_sentence(), view.loop_sentence(), evidence_sentence(view), tolerance(view)];
+        vec![family_sentence(view), loop_sentence(view), evidence_sentence(view), tolerance(view)];
     if let Some(position) = &view.position {
-        sentences.insert(1, position.sentence());
+        sentences.insert(1, position_sentence(position));
     }
     sentences.extend(infinity_sentence(&audit.stability, &view.names));
     sentences.extend(audit.stability.folding.and_then(folding));

@@ -7,6 +7,7 @@ use super::{
     margin_words,
 };
 use crate::answer::significant;
+use crate::simulate::required_words;
 
 /// `2 tracking in time: at most 5 % overshoot and settled within 2 % in 0.8 s are required and not
 /// met; ...`
@@ -15,7 +16,7 @@ pub(crate) fn sentence(view: &ProjectAudit, finding: &TimeFinding) -> String {
         Some(index) => format!("{} in time", view.numbered(index)),
         None => format!("{} step", finding.requirement.number),
     };
-    let required = finding.requirement.wish.words();
+    let required = required_words(&finding.requirement.wish);
     let (plants, worst) = match &finding.outcome {
         TimeOutcome::NotExamined(why) => {
             return format!("{name} is not examined: {}; required is {required}", unexamined_words(why));

@@ -2,11 +2,11 @@
 
 use phea_qft::verification::Remark;
 
-use super::{LoopMargin, MarginSet, ProjectAudit};
+use super::{LoopMargin, MarginSet, NominalMargins, ProjectAudit};
 use crate::answer::Object;
 use crate::document::{Cell, Table};
 use crate::plant_names::PlantNames;
-use crate::quantity::DisplayUnit;
+use crate::quantity::{DisplayUnit, significant};
 
 /// Why there are none of the nominal loop.
 pub(super) const NO_NOMINAL: &str = "no margin: the nominal loop is not known to be stable";
@@ -134,4 +134,16 @@ fn is_measured(view: &ProjectAudit) -> bool {
 fn has_discs(view: &ProjectAudit) -> bool {
     let mut remarks = view.audit.specifications.iter().flat_map(|finding| &finding.remarks);
     remarks.any(|remark| matches!(remark, Remark::WorstWithinDiscs | Remark::OpenWithinDiscs { .. }))
+}
+
+/// The decrease of the gain that the nominal loop tolerates, which a loop around an unstable plant
+/// needs; `None` where the gain may vanish.
+pub(super) fn reduction_sentence(margins: &NominalMargins) -> Option<String> {
+    let db = margins.gain_reduction_db;
+    db.is_finite().then(|| {
+        format!(
+            "the nominal loop needs its gain: it becomes unstable where that falls by {} dB",
+            significant(-db, 3)
+        )
+    })
 }

@@ -7,8 +7,8 @@ use super::{QUANTILES, Spread};
 use super::{Summary, WorstRun};
 use crate::answer::Object;
 use crate::project::Loaded;
-use crate::simulate::not_judged_words;
 use crate::simulate::{self, ScenarioRun};
+use crate::simulate::{not_judged_words, required_words};
 
 /// What a campaign says to programs. Runs are counted from 0; `until` is beyond the last.
 pub(crate) fn body(plan: &Plan, wanted: RequestedRuns, rows: usize, summary: &Summary) -> Object {
@@ -110,7 +110,7 @@ fn requirement(one: &CampaignRequirement) -> Object {
     let wish = &one.wish;
     let object = Object::new()
         .with("specification", one.number)
-        .with("requirement", wish.words())
+        .with("requirement", required_words(&wish))
         .maybe("overshoot_percent", wish.overshoot_percent)
         .maybe("settling_time_s", wish.settling_time_s)
         .maybe("rise_time_s", wish.rise_time_s)

@@ -9,8 +9,8 @@ use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::Loaded;
 use crate::quantity::DisplayUnit;
-use crate::simulate::not_judged_words;
 use crate::simulate::{self, Metric, ScenarioRun, cause_words, shown_in};
+use crate::simulate::{not_judged_words, reached_words, required_words};
 
 /// Largest number of rejected and ended runs that are listed.
 const TOLD: usize = 6;
@@ -109,7 +109,7 @@ pub(crate) fn document(
 
 /// `291 of 300 runs (97.0 %; 94.4 to 98.4 % with 95 % confidence) satisfy: at most 2 % overshoot`
 pub(crate) fn requirement(one: &CampaignRequirement) -> String {
-    let required = one.wish.words();
+    let required = required_words(&one.wish);
     let judged = match one.judged {
         Ok(judged) => judged,
         Err(why) => return format!("not judged: {required}; {}", not_judged_words(why)),
@@ -119,7 +119,7 @@ pub(crate) fn requirement(one: &CampaignRequirement) -> String {
     let part = percent(judged.satisfied as f64 / judged.runs.max(1) as f64);
     let worst = match judged.worst {
         Some((run, reached)) if judged.satisfied < judged.runs => {
-            format!("; the worst is run {run}: {}", one.wish.reached_words(&reached))
+            format!("; the worst is run {run}: {}", reached_words(&one.wish, &reached))
         }
         _ => String::new(),
     };

@@ -77,7 +77,7 @@ fn rigs(all: &[AskedAlternative], case: &str) -> Result<Vec<String>, CommandErro
     for one in all.iter().filter(own).filter(|one| one.loaded.project.actuator.is_some()) {
         if let Err(error) = &one.rig {
             let name = format!("{}{case}", one.name);
-            return Err(AlternativesError::Alternative { name, reason: error.to_string() }.into());
+            return Err(AlternativesError::Alternative { name, reason: error.clone().into() }.into());
         }
     }
     Ok(all

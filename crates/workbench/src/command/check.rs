@@ -6,14 +6,14 @@ use super::CommandError;
 use super::alternatives::read_alternatives;
 use super::impossible::Impossible;
 use super::unprinted::Unprinted;
-use crate::caveat::caveats;
+use crate::caveat::{self, caveats};
 use crate::derived::{self, derive};
 use crate::document::Document;
 use crate::family::{family, visited_box};
 use crate::project::{LateError, Loaded, Severity, WrittenUnits, refused};
 use crate::rig::RigError;
 use crate::setup::Setup;
-use crate::simulate::{foreseen, unreadable};
+use crate::simulate::{foreseen, foreseen_late, unreadable};
 use crate::source::Source;
 use crate::specification::{self, wishes};
 
@@ -82,19 +82,18 @@ fn scenarios(source: &dyn Source, loaded: &Loaded, setup: &Setup<'_>) -> Result<
         let found = refused(source, loaded, at).diagnostics;
         found.iter().find(|found| found.message == at.message).map_or(0, |found| found.line)
     };
-    let told = foreseen(source, setup)?;
-    Ok(told.iter().map(|at| format!("{} (line {})", at.message, line(at))).collect())
+    let units = &setup.project.units;
+    let late = foreseen(source, setup)?.into_iter().map(|one| foreseen_late(one, units));
+    Ok(late.map(|at| format!("{} (line {})", at.message, line(&at))).collect())
 }
 
 /// Effects that no verdict on the linear loop includes, and parameters of the rig outside its own
 /// family.
 fn told_first(setup: &Setup<'_>, impossible: &[Impossible]) -> Vec<String> {
-    let outside = setup
-        .outside()
-        .map(|(_, words)| format!("the family does not contain the rig as it is derived ({words})"));
+    let outside = setup.outside().map(|(_, parameters)| caveat::outside(&parameters));
     // a required step beyond the rig is among the impossible requirements, with its line
     let is_new = |sentence: &String| !impossible.iter().any(|one| one.is_stated_by(sentence));
-    let of_loop = caveats(setup).into_iter().map(|caveat| caveat.sentence).filter(is_new);
+    let of_loop = caveat::sentences(&caveats(setup), &setup.project.units).into_iter().filter(is_new);
     outside.into_iter().chain(of_loop).collect()
 }
 

@@ -1,6 +1,9 @@
 //! What no loop can satisfy, with its line, in words and in JSON.
 
+use phea_engineering::impossible::impossibilities;
+
 use crate::answer::Object;
+use crate::impossible::late_of_all;
 use crate::project::{LateError, Loaded, refused};
 use crate::setup::Setup;
 use crate::source::Source;
@@ -22,12 +25,12 @@ impl Impossible {
         loaded: &Loaded,
         setup: &Setup<'_>,
     ) -> Result<Vec<Impossible>, SpecificationError> {
-        let found = phea_engineering::impossible::impossibilities(source, setup)?;
+        let found = impossibilities(source, setup)?;
         let of = |at: LateError| {
             let line = refused(source, loaded, &at).diagnostics.first().map_or(0, |found| found.line);
             Impossible { at, line }
         };
-        Ok(found.into_iter().map(of).collect())
+        Ok(late_of_all(&found, &setup.project.units).into_iter().map(of).collect())
     }
 
     /// The sentence with its line and cure.

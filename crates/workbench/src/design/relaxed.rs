@@ -10,6 +10,7 @@ use super::ProjectDesign;
 use crate::answer::{Object, significant};
 use crate::document::Document;
 use crate::quantity::DisplayUnit;
+use crate::simulate::required_words;
 
 /// A gain below this is within the accuracy of the search, dB.
 const ACCURACY_DB: f64 = 0.01;
@@ -98,7 +99,7 @@ fn relaxed(view: &ProjectDesign, limit: RelaxedLimit) -> String {
         RelaxedLimit::Steps(index) => {
             let finding = view.designed.view.in_time.get(index);
             return finding.map_or(by, |found| {
-                format!("to {}", found.requirement.wish.wider(1.0 + RELAXED_BY).words())
+                format!("to {}", required_words(&found.requirement.wish.wider(1.0 + RELAXED_BY)))
             });
         }
         RelaxedLimit::Design(kind) => {

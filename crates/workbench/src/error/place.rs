@@ -1,7 +1,6 @@
 //! Where the key is that an error names: what is wrong with a valid project is sometimes known only
 //! where its rig is computed.
 
-use phea_engineering::alternatives::AlternativesError;
 use phea_engineering::bench::BenchError;
 use phea_engineering::campaign::CampaignError;
 use phea_engineering::design::DesignError;
@@ -11,42 +10,30 @@ use phea_engineering::simulate::SimulateError;
 use phea_engineering::sizing::SizingError;
 
 use super::CommandError;
+use super::tables::tables;
+use crate::impossible::late_of_steps;
 use crate::project::{LateError, Project};
+use crate::specification;
 
-/// The error at each key or table that it names, in the order of its sentence; empty for an error
+/// The error at each key or table that it names, in the order of its message; empty for an error
 /// that is not of the project, or that has places of its own.
 pub(super) fn late(error: &CommandError, project: &Project) -> Vec<LateError> {
     if error.refusal().is_some() || error.is_of_files() {
         return vec![];
     }
     match error {
-        CommandError::Specification(error) => vec![error.at()],
-        CommandError::Design(DesignError::ImpossibleSteps(found)) => found.clone(),
-        CommandError::Rig(error)
-        | CommandError::Family(ProjectFamilyError::Rig(error))
-        | CommandError::Sizing(SizingError::Rig(error))
-        | CommandError::Simulate(SimulateError::Rig(error))
-        | CommandError::Campaign(CampaignError::Simulate(SimulateError::Rig(error)))
-        | CommandError::Bench(BenchError::Rig(error)) => match error {
-            RigError::Accumulator(empty) => vec![empty.at()],
-            error => named(&error.to_string(), project),
-        },
+        CommandError::Specification(error) => vec![specification::late(error)],
+        CommandError::Design(DesignError::ImpossibleSteps(found)) => late_of_steps(found),
+        CommandError::Rig(RigError::Accumulator(empty))
+        | CommandError::Family(ProjectFamilyError::Rig(RigError::Accumulator(empty)))
+        | CommandError::Sizing(SizingError::Rig(RigError::Accumulator(empty)))
+        | CommandError::Simulate(SimulateError::Rig(RigError::Accumulator(empty)))
+        | CommandError::Campaign(CampaignError::Simulate(SimulateError::Rig(RigError::Accumulator(empty))))
+        | CommandError::Bench(BenchError::Rig(RigError::Accumulator(empty))) => vec![empty.at()],
         CommandError::Family(error @ ProjectFamilyError::OperatingPoint { numbers, .. }) => {
             vec![unbalanced(error, numbers, project)]
         }
-        CommandError::Control(_)
-        | CommandError::Family(_)
-        | CommandError::Sizing(_)
-        | CommandError::Simulate(_)
-        | CommandError::Bench(_)
-        | CommandError::Campaign(_)
-        | CommandError::Audit(_)
-        | CommandError::Design(DesignError::NoSpecification)
-        | CommandError::Alternatives(AlternativesError::NoAlternative)
-        | CommandError::NothingToReport
-        | CommandError::OfCylinders { .. }
-        | CommandError::Loop(_) => named(&error.to_string(), project),
-        _ => vec![],
+        error => named(error, project),
     }
 }
 
@@ -89,27 +76,33 @@ fn range_of(name: &str, project: &Project) -> String {
 const OF_POINT: &str = "operating_point.";
 const REGION: &str = "family.operating_region";
 
-/// An error at the scenario or the tables that its sentence names.
-fn named(message: &str, project: &Project) -> Vec<LateError> {
-    let paths = scenario(message, project).map_or_else(|| tables(message), |path| vec![path]);
-    let at = |path| LateError { path, message: message.to_string(), help: String::new() };
+/// An error at the scenario or the tables that it names.
+fn named(error: &CommandError, project: &Project) -> Vec<LateError> {
+    let scenario = scenario_of(error).and_then(|name| {
+        let index = project.scenarios.iter().position(|scenario| scenario.name == name)?;
+        Some(format!("scenario[{index}]"))
+    });
+    let paths = scenario.map_or_else(|| tables(error), |path| vec![path]);
+    let at = |path| LateError { path, message: error.to_string(), help: String::new() };
     paths.into_iter().map(at).collect()
 }
 
-fn scenario(message: &str, project: &Project) -> Option<String> {
-    let named = |name: &str| message.starts_with(&format!("scenario \"{name}\""));
-    let index = project.scenarios.iter().position(|scenario| named(&scenario.name))?;
-    Some(format!("scenario[{index}]"))
-}
-
-/// The path of each `[table]` and of the key in backticks that may follow it.
-fn tables(message: &str) -> Vec<String> {
-    let one = |from: &str| {
-        let (table, rest) = from.split_once(']')?;
-        let key =
-            rest.trim_start_matches(']').trim_start().strip_prefix('`').and_then(|rest| rest.split_once('`'));
-        let path = key.map_or_else(|| table.to_string(), |(key, _)| format!("{table}.{key}"));
-        Some(path).filter(|path| !path.is_empty())
+/// The scenario that cannot be simulated.
+fn scenario_of(error: &CommandError) -> Option<&str> {
+    let (CommandError::Simulate(error) | CommandError::Campaign(CampaignError::Simulate(error))) = error
+    else {
+        return None;
     };
-    message.split('[').skip(1).filter_map(one).collect()
+    match error {
+        SimulateError::Start { name, .. }
+        | SimulateError::Equilibrium { name, .. }
+        | SimulateError::NoRest { name, .. }
+        | SimulateError::NoRestThere { name, .. }
+        | SimulateError::RestBeyondLimit { name, .. }
+        | SimulateError::Rest { name, .. }
+        | SimulateError::Profile { name, .. }
+        | SimulateError::Setting { name, .. }
+        | SimulateError::Simulation { name, .. } => Some(name),
+        _ => None,
+    }
 }

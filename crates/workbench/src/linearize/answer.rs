@@ -5,10 +5,10 @@ use phea_hydraulics::impedance::{Asymptote, AsymptoteKind};
 use super::sweep_answer::{head, rows};
 use super::{
     AgreementBand, AskedImpedance, Linearization, LinkagePlace, PortView, ReductionDifference, Sweep,
-    WITHIN_PERCENT, models, stiffness_sentence,
+    WITHIN_PERCENT, models, no_closed_impedance_words, stiffness_sentence,
 };
 use crate::answer::{Csv, Json, Object, OutputFile, quoted};
-use crate::caveat::of_models;
+use crate::caveat;
 use crate::setup::Setup;
 
 /// The same with the results of a sweep.
@@ -59,7 +59,7 @@ pub(crate) fn body(setup: &Setup<'_>, linearization: &Linearization) -> Object {
         .with("compliance_hidden_above_rad_per_s", linearization.compliance_hidden_above_rad_per_s)
         .with("load_step_final_force_n", final_force(linearization))
         .with("load_step_moves", if linearization.open_loop.moves_ground { "ground" } else { "load" })
-        .with("warnings", of_models(setup))
+        .with("warnings", caveat::of_models_in_words(setup))
 }
 
 fn stiffness(linearization: &Linearization) -> Object {
@@ -124,7 +124,7 @@ fn ports(linearization: &Linearization, of: impl Fn(&PortView) -> Object) -> Obj
     Object::new()
         .with("open_loop", of(&linearization.open_loop))
         .with("closed_loop", linearization.closed_loop.as_ref().map(&of))
-        .maybe("closed_loop_reason", linearization.closed_loop_absent.as_deref())
+        .maybe("closed_loop_reason", linearization.closed_loop_absent.map(no_closed_impedance_words))
 }
 
 /// A virtual impedance, and what the port shows of it.
@@ -150,7 +150,7 @@ fn asked(asked: &AskedImpedance) -> Object {
 fn final_force(linearization: &Linearization) -> Object {
     let unstable = "unstable: the force has no final value";
     let closed_loop = linearization.closed_loop.as_ref().and_then(|view| view.final_force_n);
-    let reason = linearization.closed_loop_absent.as_deref().unwrap_or(unstable);
+    let reason = linearization.closed_loop_absent.map_or(unstable, no_closed_impedance_words);
     Object::new().known("open_loop", linearization.open_loop.final_force_n, unstable).known(
         "closed_loop",
         closed_loop,

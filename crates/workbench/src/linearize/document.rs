@@ -8,10 +8,11 @@ use phea_hydraulics::linear::{ModeShare, ResponseDifference};
 
 use super::{
     AgreementBand, AskedAt, AskedImpedance, FIRST_ORDER, LUMPED, Linearization, LinkagePlace,
-    LinkagePosition, ReductionDifference, WITHIN_DB, WITHIN_DEG, WITHIN_PERCENT, stiffness_sentence,
+    LinkagePosition, ReductionDifference, WITHIN_DB, WITHIN_DEG, WITHIN_PERCENT, hiding_mass_words,
+    no_closed_impedance_words, stiffness_sentence,
 };
 use crate::answer::significant;
-use crate::caveat::of_models;
+use crate::caveat;
 use crate::document::{Cell, Document, Table};
 use crate::figure::Figure;
 use crate::setup::Setup;
@@ -19,7 +20,7 @@ use crate::setup::Setup;
 /// The tables and sentences of `linearize` for people.
 pub(crate) fn output(setup: &Setup<'_>, linearization: &Linearization) -> Document {
     let mut out = Document::default();
-    out.warnings(of_models(setup));
+    out.warnings(caveat::of_models_in_words(setup));
     out.heading("Stiffness");
     out.sentences([stiffness_sentence(linearization)]);
     if !linearization.linkage.is_empty() {
@@ -30,14 +31,14 @@ pub(crate) fn output(setup: &Setup<'_>, linearization: &Linearization) -> Docume
     out.heading(format!("Driving-point impedance{without} Z = -F_e/(s X_L)"));
     let closed = match (&linearization.closed_loop, &linearization.closed_loop_absent) {
         (Some(view), _) => passivity_sentence(&view.passivity),
-        (None, Some(reason)) => format!("not computed, because {reason}"),
+        (None, Some(reason)) => format!("not computed, because {}", no_closed_impedance_words(*reason)),
         (None, None) => "not computed".to_string(),
     };
     let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
     out.sentences([
         format!("open loop:   {}", passivity_sentence(&linearization.open_loop.passivity)),
         format!("closed loop: {closed}"),
-        format!("above {hidden} rad/s {} hides the compliance", linearization.hidden_by.words()),
+        format!("above {hidden} rad/s {} hides the compliance", hiding_mass_words(linearization.hidden_by)),
     ]);
     out.sentences(impedance_at_joint(linearization));
     if let Some(asked) = &linearization.asked {

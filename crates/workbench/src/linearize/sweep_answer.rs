@@ -1,8 +1,10 @@
 //! A sweep for people and for programs, and its figure.
 
 use super::root_list;
+use super::words::no_bandwidth_words;
 use super::{Sweep, SweepPoint, Swept};
 use crate::answer::{Csv, Object, OutputFile, significant};
+use crate::caveat;
 use crate::document::{Document, Table};
 use crate::figure::{Figure, PoleSweep, PoleSweepPoint, Words};
 use crate::quantity::DisplayUnit;
@@ -48,9 +50,12 @@ fn row(point: &SweepPoint) -> Object {
         .with("poles", poles)
         .with("resonance", resonance)
         .with("bandwidth_rad_per_s", found.and_then(|found| found.bandwidth_rad_per_s.ok()))
-        .maybe("bandwidth_rad_per_s_reason", found.and_then(|found| found.bandwidth_rad_per_s.err()))
+        .maybe(
+            "bandwidth_rad_per_s_reason",
+            found.and_then(|found| found.bandwidth_rad_per_s.err()).map(no_bandwidth_words),
+        )
         .with("passive", passive)
-        .maybe("reason", point.found.as_ref().err().map(String::as_str))
+        .maybe("reason", point.found.as_ref().err().map(ToString::to_string))
 }
 
 /// Frequency and damping ratio of the resonance.
@@ -63,7 +68,7 @@ fn resonance(found: &Swept) -> Option<[f64; 2]> {
 /// The table of a sweep for people.
 pub(crate) fn sweep_document(sweep: &Sweep) -> Document {
     let mut out = Document::default();
-    out.warnings(sweep.caveats.iter().map(|caveat| caveat.sentence.clone()));
+    out.warnings(caveat::sentences(&sweep.caveats, &sweep.units));
     if let Some(sentence) = unmoved(sweep) {
         out.line(format!("note: {sentence}"));
     }
@@ -105,7 +110,7 @@ fn unmoved(sweep: &Sweep) -> Option<String> {
 }
 
 fn stiffness_unit(sweep: &Sweep) -> DisplayUnit {
-    sweep.motion.unit(DisplayUnit::MEGANEWTON_PER_METRE)
+    sweep.units.motion.unit(DisplayUnit::MEGANEWTON_PER_METRE)
 }
 
 fn cells(sweep: &Sweep, point: &SweepPoint) -> [String; 7] {
@@ -129,7 +134,9 @@ fn cells(sweep: &Sweep, point: &SweepPoint) -> [String; 7] {
         root_list(&found.poles),
         frequency,
         damping,
-        found.bandwidth_rad_per_s.map_or_else(str::to_string, |bandwidth| significant(bandwidth, 4)),
+        found
+            .bandwidth_rad_per_s
+            .map_or_else(|why| no_bandwidth_words(why).to_string(), |bandwidth| significant(bandwidth, 4)),
         closed.map_or(open.to_string(), |closed| format!("{open}, closed loop {closed}")),
     ]
 }

@@ -1,4 +1,4 @@
-use crate::caveat::of_models;
+use crate::caveat::of_models_in_words;
 use crate::document::{Document, StatusMark};
 use crate::setup::Setup;
 
@@ -22,7 +22,7 @@ impl Chapter {
 impl Document {
     /// The effects that a chapter on the linear loop does not include, if any.
     pub(super) fn left_out(&mut self, setup: &Setup<'_>) {
-        for sentence in of_models(setup) {
+        for sentence in of_models_in_words(setup) {
             self.verdict(StatusMark::Note, sentence, vec![]);
         }
     }

@@ -21,6 +21,7 @@ use crate::design::{
 use crate::document::{Document, StatusMark};
 use crate::error::CommandError;
 use crate::figure::Figure;
+use crate::impossible::late_of_steps;
 use crate::project::{LateError, Loaded, Project};
 use crate::robust::DesignFrequency;
 use crate::setup::Setup;
@@ -66,7 +67,7 @@ pub(super) fn designed(
             return Ok(Designed::Nothing(sentences));
         }
         Err(CommandError::Design(DesignError::ImpossibleSteps(found))) => {
-            return Ok(Designed::Impossible(found.iter().map(LateError::sentence).collect()));
+            return Ok(Designed::Impossible(late_of_steps(&found).iter().map(LateError::sentence).collect()));
         }
         Err(CommandError::Design(error)) => return Ok(Designed::Nothing(vec![error.to_string()])),
         Err(error) => return Err(error),

@@ -11,8 +11,8 @@ use crate::answer::significant;
 use crate::document::{Document, Table};
 use crate::figure::{AsymptoteLine, Figure, FrequencyMark, FrequencySeries, ImpedanceDiagram, Words};
 use crate::linearize::{
-    Linearization, PortView, asked_sentence, asked_table, frequency_grid, impedance_at_joint,
-    passivity_sentence,
+    Linearization, PortView, asked_sentence, asked_table, frequency_grid, hiding_mass_words,
+    impedance_at_joint, no_closed_impedance_words, passivity_sentence,
 };
 use crate::project::DeclaredSeries;
 use crate::quantity::DisplayUnit;
@@ -37,7 +37,7 @@ pub(super) fn chapter(
             "sensor and series spring alone, whose stiffnesses in series stand for K_S in the straight lines"
         }
     };
-    let hiding = linearization.hidden_by.words();
+    let hiding = hiding_mass_words(linearization.hidden_by);
     out.explanation(format!("The driving-point impedance Z is the resistance to a load that moves the rod: a damper, spring or mass, depending on frequency. Above {hidden} rad/s {hiding} hides the hydraulic compliance, and the load meets {met}."));
     out.explanations(impedance_at_joint(linearization).map(|sentence| format!("{sentence}.")));
     out.left_out(setup);
@@ -48,7 +48,11 @@ pub(super) fn chapter(
         let sentence = format!("{name}: {}", passivity_sentence(&view.passivity));
         (Some(view.passivity.passive.into()), sentence)
     }));
-    out.sentences(linearization.closed_loop_absent.iter().map(|reason| format!("closed loop: {reason}")));
+    out.sentences(
+        linearization
+            .closed_loop_absent
+            .map(|reason| format!("closed loop: {}", no_closed_impedance_words(reason))),
+    );
     if let Some(asked) = &linearization.asked {
         out.heading("The virtual impedance");
         out.equations(vec![

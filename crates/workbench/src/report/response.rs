@@ -1,12 +1,13 @@
 //! The chapter on the linear loop with the given controller: step response, metrics, margins.
 
 use phea_dynamics::frequency::Margins;
+use phea_dynamics::time_response::{Settling, StepMetrics};
 
 use super::chapter::Chapter;
 use crate::answer::significant;
 use crate::document::{Document, StatusMark, Table};
 use crate::figure::{DisplayUnit, Figure, SettlingBand, Words};
-use crate::linear_loop::{LinearLoop, LoopStability, StepView, settling_words};
+use crate::linear_loop::{LinearLoop, LoopStability, StepView};
 use crate::over_time::ForceStep;
 use crate::setup::Setup;
 
@@ -64,6 +65,15 @@ fn figure(view: &StepView, reference: f64, unit: DisplayUnit) -> Figure {
     };
     let caption = format!("A step of {}: force, prefiltered reference and command.", unit.text(reference, 3));
     shown.chart().draw(&Words::new("step", "Step response", caption))
+}
+
+/// A settling time in words, with its band.
+pub(super) fn settling_words(metrics: &StepMetrics) -> String {
+    let band = significant(metrics.settling_band_percent, 2);
+    match metrics.settling {
+        Settling::Settled { time_s, .. } => format!("{} s (band {band} %)", significant(time_s, 3)),
+        _ => format!("not settled within the time shown (band {band} %)"),
+    }
 }
 
 fn metrics(view: &StepView) -> Table {

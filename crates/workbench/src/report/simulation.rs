@@ -11,7 +11,8 @@ use crate::quantity::Units;
 use crate::simulate::{
     Metric, Metrics, NamedRun, TimeRequirement, TrackingWish, Window, adjustment_sentence, cause_words,
     cells_of, close_ups, coarse_sentence, gas_sentence, headline, label_within, measured, measured_together,
-    metrics_row, occurrence_sentences, pictures, published, published_row, together, turns, windows, wish_of,
+    metrics_row, occurrence_sentences, pictures, published, published_row, required_overshoot,
+    required_settling, together, turns, windows, wish_of,
 };
 
 /// The chapter.
@@ -163,7 +164,8 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, required: Option<&TimeReq
 
 /// What was wished, in words.
 fn wished(wish: &TrackingWish) -> Option<String> {
-    let words: Vec<String> = [wish.overshoot_words(), wish.settling_words()].into_iter().flatten().collect();
+    let words: Vec<String> =
+        [required_overshoot(wish), required_settling(wish)].into_iter().flatten().collect();
     (!words.is_empty()).then(|| words.join(", "))
 }
 

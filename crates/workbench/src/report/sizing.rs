@@ -6,7 +6,10 @@ use crate::figure::{
     CandidateVerdict, DisplayUnit, Figure, Nomograph, NomographBore, SizingCandidate, SizingChart,
     SizingCurve, Tornado, TornadoBar, Words,
 };
-use crate::sizing::{BoreVerdict, Candidate, Sizing, SizingError, SizingProblem, document, model_name};
+use crate::sizing::{
+    BoreVerdict, Candidate, Sizing, SizingError, SizingProblem, document, hose_name, model_name,
+    uncertain_name,
+};
 use phea_hydraulics::stiffness::StiffnessModel;
 
 pub(super) fn chapter(problem: &SizingProblem, sizing: &Sizing) -> Chapter {
@@ -32,7 +35,7 @@ pub(super) fn refused(error: &SizingError) -> Chapter {
 fn bores(problem: &SizingProblem, sizing: &Sizing) -> Figure {
     let bore = |bore: &crate::sizing::CommercialBore| NomographBore {
         bore_m: bore.bore_m,
-        label: bore.name.clone(),
+        label: hose_name(&bore.name),
         verdict: match bore.verdict {
             BoreVerdict::Recommended => CandidateVerdict::Accepted,
             BoreVerdict::Slow => CandidateVerdict::Warned,
@@ -73,7 +76,7 @@ fn lengths(problem: &SizingProblem, sizing: &Sizing) -> Figure {
                 })
                 .collect();
             curves.push(SizingCurve {
-                name: format!("{}, {}", option.name, model_name(model)),
+                name: format!("{}, {}", hose_name(&option.name), model_name(model)),
                 lengths_m: lengths.clone(),
                 gain_v_per_n: stiffness.iter().map(|value| problem.gain_for_stiffness(*value)).collect(),
                 stiffness_n_per_m: stiffness,
@@ -112,7 +115,7 @@ fn lengths(problem: &SizingProblem, sizing: &Sizing) -> Figure {
 fn uncertain(sizing: &Sizing) -> Option<Figure> {
     let nominal = sizing.influences.first()?.stiffness_n_per_m[1];
     let bars = sizing.influences.iter().map(|influence| TornadoBar {
-        parameter: influence.quantity.to_string(),
+        parameter: uncertain_name(influence.quantity).to_string(),
         low_setting: influence.unit.text(influence.values[0], 3),
         high_setting: influence.unit.text(influence.values[2], 3),
         low_value: influence.stiffness_n_per_m[0],

@@ -16,8 +16,8 @@ use crate::error::CommandError;
 use crate::project::Project;
 use crate::quantity::{DisplayUnit, RATIO, display};
 use crate::robust::RobustProblem;
-use crate::simulate::{RequiredSteps, TimeRequirement};
-use crate::specification::{SpecificationError, wishes};
+use crate::simulate::{RequiredSteps, TimeRequirement, required_words};
+use crate::specification::{SpecificationError, wish_sentence, wishes};
 
 pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chapter, CommandError> {
     let specifications = &problem.specifications;
@@ -36,7 +36,7 @@ pub(super) fn chapter(project: &Project, problem: &RobustProblem) -> Result<Chap
     }
     if !wishes.is_empty() {
         out.heading("Tracking limits in time");
-        out.marked(wishes.iter().map(|wish| (Some(wish.is_met().into()), wish.sentence())));
+        out.marked(wishes.iter().map(|wish| (Some(wish.is_met().into()), wish_sentence(wish))));
     }
     if !margins.is_empty() {
         out.heading("Margins that the limits guarantee");
@@ -74,7 +74,7 @@ fn step_row(required: &TimeRequirement, unit: DisplayUnit) -> [Cell; 5] {
     [
         Cell::count(required.number),
         "step: the response to a step of the reference".into(),
-        required.wish.words().into(),
+        required_words(&required.wish).into(),
         format!("every plant{on_rig}").into(),
         Cell::Missing,
     ]

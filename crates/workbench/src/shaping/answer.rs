@@ -5,6 +5,7 @@ use super::ProjectShaping;
 use super::document::polar;
 use crate::answer::{Csv, Object, OutputFile};
 use crate::audit::{self, stability_reason, stable, verdict_key};
+use crate::caveat;
 use crate::specification::kind_key;
 
 /// What `shape` says to programs.
@@ -43,7 +44,7 @@ pub(crate) fn body(view: &ProjectShaping) -> Object {
                 .and(placement(&point.placement))
         })
         .with("unreached_rad_per_s", view.unreached_rad_per_s.as_slice())
-        .each("warnings", &view.problem.caveats, |caveat| caveat.sentence.as_str())
+        .with("warnings", caveat::sentences(&view.problem.caveats, &view.problem.units))
 }
 
 fn placement(placement: &Placement) -> Object {

@@ -7,6 +7,7 @@ use phea_qft::manual_shaping::DesignMargin;
 use super::{ProjectShaping, Shaped};
 use crate::answer::significant;
 use crate::audit::{frequency_number, stability_sentence};
+use crate::caveat;
 use crate::document::{Cell, Document, Table};
 use phea_qft::verification::Verdict;
 
@@ -22,7 +23,7 @@ pub(crate) fn document(view: &ProjectShaping) -> Document {
         count => format!("{count} elements"),
     };
     let mut out = Document::default();
-    out.warnings(view.problem.caveats.iter().map(|caveat| caveat.sentence.clone()));
+    out.warnings(caveat::sentences(&view.problem.caveats, &view.problem.units));
     out.line(format!("{what}: {count}"));
     let elements = view.elements.iter().enumerate();
     out.sentences(elements.map(|(index, element)| format!("{}  {}", index + 1, element.print())));

@@ -4,6 +4,7 @@ use super::MachineResponses;
 use super::check;
 use super::frequency;
 use super::metrics::metrics_row;
+use super::reasons::{no_ledger_words, not_saved_words, unmeasured_words};
 use super::state_names;
 use super::{
     AccountSum, Cause, Exceeded, Metrics, Overlay, RunLedger, ScenarioComparison, ScenarioRun, StoppedRun,
@@ -101,7 +102,7 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
         .with("tolerance", run.tolerance)
         .with("look_s", run.look_s)
         .with("open_loop", run.open_loop)
-        .told("state_file", run.end.as_ref().map(|_| state_file).map_err(|reason| *reason))
+        .told("state_file", run.end.as_ref().map(|_| state_file).map_err(|why| not_saved_words(*why)))
         .each("events", &run.windows, event)
         .each("occurrences", &run.occurrences, |occurrence| {
             Object::new()
@@ -122,7 +123,7 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
                 .with("stated_pressure_pa", beyond.stated_pa)
         })
         .and(adjustment(run))
-        .told("ledgers", run.ledger.as_ref().map(ledger).map_err(|reason| *reason))
+        .told("ledgers", run.ledger.as_ref().map(ledger).map_err(|why| no_ledger_words(*why)))
         .each("exceeded", &run.exceeded, exceeded)
 }
 
@@ -139,8 +140,8 @@ fn overlay(overlay: &Overlay) -> Object {
         .with("signal", overlay.signal.name())
         .with("rows", overlay.times_s.len())
         .with("rows_outside", overlay.rows_outside)
-        .told("rmse", overlay.rmse)
-        .told("nrmse", overlay.nrmse)
+        .told("rmse", overlay.rmse.map_err(unmeasured_words))
+        .told("nrmse", overlay.nrmse.map_err(unmeasured_words))
 }
 
 /// A limit of the rig that a run exceeds.

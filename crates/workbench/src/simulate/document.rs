@@ -127,11 +127,11 @@ pub(crate) fn metrics_row(
 ) -> Vec<Cell> {
     let mut cells = cells_of(metrics, units);
     for (metric, held) in [
-        (Metric::Overshoot, wish.and_then(|wish| wish.overshoot(metrics))),
-        (Metric::SettlingTime, wish.and_then(|wish| wish.settling(metrics))),
+        (Metric::Overshoot, wish.and_then(|wish| wish.overshoot_satisfied(metrics))),
+        (Metric::SettlingTime, wish.and_then(|wish| wish.settling_satisfied(metrics))),
     ] {
-        if let Some(kept) = held.and_then(|held| held.kept) {
-            cells[metric] = std::mem::take(&mut cells[metric]).marked(kept);
+        if let Some(is_satisfied) = held {
+            cells[metric] = std::mem::take(&mut cells[metric]).marked(is_satisfied);
         }
     }
     std::iter::once(name.into())

@@ -1,6 +1,6 @@
 //! The metrics of an event in tables and answers.
 
-use super::{Metric, Metrics, NOT_SETTLED, PerMetric};
+use super::{Metric, Metrics, PerMetric, Unmeasured, unmeasured_words};
 use crate::answer::Object;
 use crate::document::Cell;
 use crate::quantity::{DisplayUnit, Units};
@@ -42,7 +42,7 @@ pub(crate) fn settling_within(bands_percent: impl IntoIterator<Item = f64>) -> S
 pub(crate) fn cells_of(metrics: &Metrics, units: Units) -> PerMetric<Cell> {
     PerMetric::of(|metric| match metrics.get(metric) {
         Ok(value) => metric_cell(metric, value, units),
-        Err(NOT_SETTLED) if metric == Metric::SettlingTime => "not settled".into(),
+        Err(Unmeasured::NotSettled) if metric == Metric::SettlingTime => "not settled".into(),
         Err(_) => Cell::Missing,
     })
 }
@@ -56,6 +56,7 @@ fn small_as_zero(error_n: f64) -> f64 {
 pub(crate) fn metrics_row(metrics: &Metrics) -> Object {
     Metric::ALL.into_iter().fold(Object::new(), |row, metric| {
         let band = (metric == Metric::SettlingTime).then_some(metrics.settling_band_percent);
-        row.told(metric.name(), metrics.get(metric)).maybe("settling_band_percent", band)
+        row.told(metric.name(), metrics.get(metric).map_err(unmeasured_words))
+            .maybe("settling_band_percent", band)
     })
 }

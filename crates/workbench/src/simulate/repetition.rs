@@ -1,6 +1,9 @@
 //! Runs that were repeated, and runs that diverge, in an answer and for people.
 
-use super::{Divergence, Pass, PassAgreement, PassSpread, Repetition, ScenarioRun, shown_in};
+use super::{
+    Divergence, Measured, Pass, PassAgreement, PassSpread, Repetition, ScenarioRun, shown_in,
+    unmeasured_words,
+};
 use crate::answer::{Object, significant};
 use crate::quantity::{DisplayUnit, Units, VOLTAGE, display};
 use phea_dynamics::simulation::{GrowthCause, UnfollowedCause, UnfollowedKinks};
@@ -34,7 +37,7 @@ fn pass(pass: &Pass) -> Object {
 }
 
 fn spread(spread: &PassSpread) -> Object {
-    let [before, after] = spread.values;
+    let [before, after] = spread.values.map(|value| value.map_err(unmeasured_words));
     Object::new()
         .told("event", spread.of.map(|(window, _)| window + 1).ok_or("no event has a metric"))
         .with("metric", spread.of.map_or(Signal::Force.name(), |(_, metric)| metric.name()))
@@ -170,7 +173,7 @@ fn apart(spread: &PassSpread, units: Units) -> String {
     let name = spread.of.map_or("force", |(_, metric)| metric.label());
     let unit = spread.of.map_or(units.force, |(_, metric)| shown_in(metric, units));
     let event = spread.of.map_or(String::new(), |(window, _)| format!(" of event {}", window + 1));
-    let number = |value: Result<f64, &'static str>| match value {
+    let number = |value: Measured| match value {
         Ok(value) => unit.text(value, 5),
         Err(_) => "none".to_string(),
     };

@@ -1,6 +1,6 @@
 //! What is required in time, held against the runs of scenarios, in words and for programs.
 
-use super::{NotJudged, ScenarioRequirement, ScenarioRun, required_of_run};
+use super::{NotJudged, ScenarioRequirement, ScenarioRun, reached_words, required_of_run, required_words};
 use crate::answer::Object;
 use crate::project::Project;
 
@@ -27,10 +27,10 @@ pub(crate) fn requirement_sentences(project: &Project, run: &ScenarioRun) -> Vec
 
 /// A requirement in a run, in words that continue the name of the run.
 pub(crate) fn requirement_sentence(one: &ScenarioRequirement) -> String {
-    let required = format!("what specification {} requires, {}", one.number, one.wish.words());
+    let required = format!("what specification {} requires, {}", one.number, required_words(&one.wish));
     match (one.reached, one.is_satisfied()) {
         (Ok(reached), Some(is_satisfied)) => {
-            format!("{} {required}: {}", satisfied_word(is_satisfied), one.wish.reached_words(&reached))
+            format!("{} {required}: {}", satisfied_word(is_satisfied), reached_words(&one.wish, &reached))
         }
         (Err(why), _) => format!("does not judge {required}: {}", not_judged_words(why)),
         (Ok(_), None) => required,

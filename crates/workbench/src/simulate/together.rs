@@ -6,7 +6,9 @@ use super::figures::{
     tracking_error,
 };
 use super::span::{are_alike, span_of, span_of_events};
-use super::{Cause, Record, ScenarioRun, TrackingWish, Window, cause_words};
+use super::{
+    Cause, Record, ScenarioRun, TrackingWish, Window, cause_words, required_overshoot, required_settling,
+};
 use crate::figure::{CurveChart, CurvePanel, CurveRange, CurveStyle, DisplayUnit, Figure, Words};
 use crate::over_time::{Trace, behind, chart, has, panel, trace};
 use crate::quantity::Units;
@@ -137,7 +139,7 @@ fn whose(runs: &[NamedRun<'_>]) -> String {
 }
 
 fn of_wish(wish: Option<&TrackingWish>) -> String {
-    let wished = wish.map(|wish| [wish.overshoot_words(), wish.settling_words()]);
+    let wished = wish.map(|wish| [required_overshoot(wish), required_settling(wish)]);
     let words: Vec<String> = wished.into_iter().flatten().flatten().collect();
     if words.is_empty() { String::new() } else { format!("; required: {}", words.join(", ")) }
 }

@@ -1,5 +1,5 @@
-use super::model_name;
-use super::{BoreVerdict, Candidate, Consequence, OtherMeans, SizedLoad, Sizing};
+use super::words::{decisions, hose_name, model_name, reason_words, uncertain_name};
+use super::{BoreVerdict, Candidate, Consequence, OtherMeans, OtherMeansError, SizedLoad, Sizing};
 use phea_engineering::rig::FlowLimit;
 
 use crate::answer::{Csv, Object, OutputFile, quoted};
@@ -21,18 +21,18 @@ pub(crate) fn body(sizing: &Sizing) -> Object {
         .maybe("load_stiffness_n_per_m", sizing.load.stiffness())
         .each("bores", &sizing.bores, |bore| {
             Object::new()
-                .with("name", bore.name.as_str())
+                .with("name", hose_name(&bore.name))
                 .with("bore_m", bore.bore_m)
                 .with("oil_velocity_m_per_s", bore.oil_velocity_m_per_s)
                 .with("verdict", verdict_name(bore.verdict))
         })
         .each("candidates", &sizing.candidates, candidate)
-        .each("decisions", &sizing.decisions, |decision| {
-            Object::new().with("step", decision.step).with("text", decision.text.as_str())
+        .each("decisions", &decisions(&sizing.decisions), |(step, text)| {
+            Object::new().with("step", *step).with("text", text.as_str())
         })
         .each("influences", &sizing.influences, |influence| {
             Object::new()
-                .with("quantity", influence.quantity)
+                .with("quantity", uncertain_name(influence.quantity))
                 .with("values", influence.values)
                 .with("stiffness_n_per_m", influence.stiffness_n_per_m)
                 .with("length_m", influence.length_m)
@@ -51,7 +51,7 @@ fn load_name(load: SizedLoad) -> &'static str {
 
 /// What cannot be has its reason in place of its numbers.
 fn other_means(found: &OtherMeans) -> Object {
-    let absent = |reason: &String| Object::new().with("reason", reason.as_str());
+    let absent = |reason: &OtherMeansError| Object::new().with("reason", reason.to_string());
     let pipe = found.pipe.as_ref().map_or_else(absent, |pipe| {
         Object::new().with("bore_m", pipe.bore).with("length_m", pipe.length).with("oil_m3", pipe.oil)
     });
@@ -79,7 +79,7 @@ fn other_means(found: &OtherMeans) -> Object {
         .with("gas", gas)
         .with("spring", spring);
     match &found.valves {
-        Err(reason) => out.with("valves_reason", reason.as_str()),
+        Err(reason) => out.with("valves_reason", reason.to_string()),
         Ok(valves) => out.each("valves", valves, |valve| {
             Object::new()
                 .with("stiffness_n_per_m", valve.stiffness)
@@ -95,12 +95,12 @@ fn other_means(found: &OtherMeans) -> Object {
 /// Of its reasons those that reject it come first.
 fn candidate(candidate: &Candidate) -> Object {
     let branch = &candidate.branch;
-    let of = |severity| {
-        let same = candidate.findings.iter().filter(move |finding| finding.severity == severity);
-        same.map(|finding| finding.text.as_str()).collect::<Vec<_>>()
+    let of = |consequence| {
+        let same = candidate.findings.iter().filter(move |finding| finding.consequence() == consequence);
+        same.map(reason_words).collect::<Vec<_>>()
     };
     Object::new()
-        .with("hose", candidate.option.name.as_str())
+        .with("hose", hose_name(&candidate.option.name))
         .with("compliance", model_name(branch.model))
         .with("branch", branch_name(branch.by_gain))
         .with("bore_m", candidate.option.hoses[0].bore)
@@ -115,7 +115,7 @@ fn candidate(candidate: &Candidate) -> Object {
         .with("time_constant_s", candidate.time_constant_s)
         .with("steady_state_gain", candidate.steady_state_gain)
         .with("accepted", candidate.accepted())
-        .each("reasons", &candidate.findings, |finding| finding.text.as_str())
+        .each("reasons", &candidate.findings, reason_words)
         .with("rejections", of(Consequence::Rejects))
         .with("not_known", of(Consequence::LeavesOpen))
         .with("warnings", of(Consequence::Warns))
@@ -146,10 +146,10 @@ pub fn files(sizing: &Sizing) -> Vec<OutputFile> {
     );
     for candidate in &sizing.candidates {
         let branch = &candidate.branch;
-        let reasons: Vec<&str> = candidate.findings.iter().map(|finding| finding.text.as_str()).collect();
+        let reasons: Vec<String> = candidate.findings.iter().map(reason_words).collect();
         csv.row(&[
             &candidate.accepted(),
-            &quoted(&candidate.option.name),
+            &quoted(&hose_name(&candidate.option.name)),
             &model_name(branch.model),
             &branch_name(branch.by_gain),
             &candidate.option.hoses[0].bore,

@@ -1,7 +1,11 @@
 //! A sizing for people.
 
 use super::answer::branch_name;
-use super::{Candidate, Consequence, Influence, OtherMeans, SizedLoad, SizedValve, Sizing, model_name};
+use super::words::{
+    coil_unknown_words, decisions, hose_name, length_words, model_name, reason_words, setting_words,
+    uncertain_name,
+};
+use super::{Candidate, Consequence, Influence, OtherMeans, OtherMeansError, SizedLoad, SizedValve, Sizing};
 use crate::answer::significant;
 use crate::document::{Cell, Document, StatusMark, Table};
 use crate::figure::Figure;
@@ -13,7 +17,7 @@ use crate::quantity::{DisplayUnit, LENGTH, MASS, PRESSURE, VOLUME, display};
 pub(crate) fn document(sizing: &Sizing, figures: Vec<Figure>) -> Document {
     let mut out = Document::default();
     out.heading("Procedure (letters as in the flowchart of Ledezma 2019, section 6.3.2)");
-    out.sentences(sizing.decisions.iter().map(|decision| format!("({}) {}", decision.step, decision.text)));
+    out.sentences(decisions(&sizing.decisions).into_iter().map(|(step, text)| format!("({step}) {text}")));
     let headings = ["", "hose", "compliance", "branch", "length", "K_H over the stroke", "K_p", "tau"];
     out.section("Candidates", Table::new(headings).with(distinct(&sizing.candidates)));
     for group in alike(&sizing.candidates) {
@@ -63,7 +67,7 @@ fn other_means(out: &mut Document, found: &OtherMeans) {
     });
     let spring = found.spring.as_ref().map(|spring| {
         let wound = spring.coil.as_ref().map_or_else(
-            |reason| format!("how it is wound is not known ({reason})"),
+            |reason| format!("how it is wound is not known ({})", coil_unknown_words(*reason)),
             |coil| {
                 let [wire, coils] = [length(coil.wire_diameter), significant(coil.active_coils, 3)];
                 let [long, heavy] = [length(coil.installed_length), display(coil.mass, &MASS, 3)];
@@ -77,7 +81,8 @@ fn other_means(out: &mut Document, found: &OtherMeans) {
         format!("{stiffness}, ±{travel} under the stall force; {wound}{}", actuator.unwrap_or_default())
     });
     out.heading(format!("The {} of the hose by other means", mega(found.stiffness)));
-    let cell = |found: Result<String, &String>| found.unwrap_or_else(|reason| format!("- ({reason})"));
+    let cell =
+        |found: Result<String, &OtherMeansError>| found.unwrap_or_else(|reason| format!("- ({reason})"));
     let mut rows = Table::new(["means", "size"]);
     rows.row(["chambers without any line".to_string(), mega(found.chambers)]);
     rows.row(["pipe".to_string(), cell(pipe)]);
@@ -133,8 +138,8 @@ fn answer_sentence(best: Option<&Candidate>) -> String {
         Some(candidate) => format!(
             "{}{} with {}: K_H from {} to {} MN/m over the stroke, K_p = {} V/N.",
             if candidate.accepted() { "" } else { "not accepted before its working pressure is known: " },
-            candidate.option.name,
-            candidate.branch.length_words(3),
+            hose_name(&candidate.option.name),
+            length_words(&candidate.branch, 3),
             DisplayUnit::MEGANEWTON_PER_METRE.number(candidate.branch.stiffness.minimum, 3),
             DisplayUnit::MEGANEWTON_PER_METRE.number(candidate.branch.stiffness.maximum, 3),
             significant(candidate.branch.gain_v_per_n, 3)
@@ -142,11 +147,24 @@ fn answer_sentence(best: Option<&Candidate>) -> String {
     }
 }
 
-/// Candidates of one hose with the same findings, so that these are stated once; in the order of
-/// the first of each.
+/// Candidates of one hose with the same findings as they are printed, so that these are stated
+/// once; in the order of the first of each.
 fn alike(candidates: &[Candidate]) -> Vec<Vec<&Candidate>> {
-    let all = candidates.iter().map(|one| ((&one.option.name, &one.findings), one));
+    let all = candidates.iter().map(|one| ((&one.option.name, marked_reasons(one)), one));
     grouped(all).into_iter().map(|(_, group)| group).collect()
+}
+
+/// The findings on a candidate, each behind its consequence.
+fn marked_reasons(candidate: &Candidate) -> Vec<(Option<StatusMark>, String)> {
+    let marked = candidate.findings.iter().map(|finding| {
+        let text = reason_words(finding);
+        match finding.consequence() {
+            Consequence::Rejects => (Some(StatusMark::Bad), format!("rejects: {text}")),
+            Consequence::LeavesOpen => (Some(StatusMark::Bad), format!("not known: {text}")),
+            Consequence::Warns => (Some(StatusMark::Note), format!("warns: {text}")),
+        }
+    });
+    marked.collect()
 }
 
 /// The common objections to these candidates.
@@ -161,12 +179,8 @@ fn findings(out: &mut Document, group: &[&Candidate]) {
     let by_model = grouped(group.iter().map(of));
     let names: Vec<String> =
         by_model.into_iter().map(|(model, branches)| format!("{model} {}", branches.join(" and "))).collect();
-    out.heading(format!("{} ({}): {verdict}", first.option.name, names.join(", ")));
-    out.marked(first.findings.iter().map(|finding| match finding.severity {
-        Consequence::Rejects => (Some(StatusMark::Bad), format!("rejects: {}", finding.text)),
-        Consequence::LeavesOpen => (Some(StatusMark::Bad), format!("not known: {}", finding.text)),
-        Consequence::Warns => (Some(StatusMark::Note), format!("warns: {}", finding.text)),
-    }));
+    out.heading(format!("{} ({}): {verdict}", hose_name(&first.option.name), names.join(", ")));
+    out.marked(marked_reasons(first));
 }
 
 /// A row for each candidate; branches that lead to the same numbers share one.
@@ -204,7 +218,7 @@ fn candidate_cells(candidate: &Candidate) -> [Cell; 7] {
             (false, false) => "no",
         })
         .marked(accepted),
-        Cell::Code(candidate.option.name.clone()),
+        Cell::Code(hose_name(&candidate.option.name)),
         Cell::Code(model_name(branch.model).to_string()),
         match branch.is_alike() {
             true => format!("{} m", significant(candidate.length_m(), 4)).into(),
@@ -220,8 +234,8 @@ fn influence_cells(influence: &Influence) -> [String; 4] {
     let three = |values: [f64; 3]| values.map(|value| significant(value, 4)).join(" · ");
     let mega = DisplayUnit::MEGANEWTON_PER_METRE;
     [
-        influence.quantity.to_string(),
-        influence.setting_words(),
+        uncertain_name(influence.quantity).to_string(),
+        setting_words(influence),
         three(influence.stiffness_n_per_m.map(|stiffness| mega.of(stiffness))),
         three(influence.length_m),
     ]

@@ -1,6 +1,6 @@
 use phea_dynamics::time_response::Settling;
 
-use super::CheckedWish;
+use super::{CheckedWish, wish_sentence};
 use crate::answer::{Object, significant};
 use crate::document::Document;
 
@@ -35,7 +35,7 @@ pub(crate) fn document(wishes: &[CheckedWish]) -> Document {
         return out;
     }
     out.heading("Tracking limits in time");
-    out.sentences(wishes.iter().map(CheckedWish::sentence));
+    out.sentences(wishes.iter().map(wish_sentence));
     out.gap();
     out
 }

@@ -7,7 +7,7 @@ use super::{
 use crate::document::{Cell, Document, Table};
 use crate::figure::{FamilySteps, Figure, TimeSeries, Words};
 use crate::quantity::DisplayUnit;
-use crate::simulate::satisfied_word;
+use crate::simulate::{reached_words, required_words, satisfied_word};
 use phea_qft::verification::Verdict;
 
 /// The agreement in words; where it lacks nothing but the settling time, those that are furthest
@@ -163,9 +163,9 @@ fn required(trial: &Trial) -> Document {
         let verdict = if held.is_satisfied { Verdict::Met } else { Verdict::Violated };
         rows.row([
             run.what.as_str().into(),
-            held.wish.words().into(),
+            required_words(&held.wish).into(),
             Cell::from(satisfied_word(held.is_satisfied)).marked(verdict),
-            held.wish.reached_words(&held.reached).into(),
+            reached_words(&held.wish, &held.reached).into(),
         ]);
     }
     let verdict = if satisfies { Verdict::Met } else { Verdict::Violated };

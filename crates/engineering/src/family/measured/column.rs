@@ -1,5 +1,6 @@
 //! What the columns of a measurement hold, by their names.
 
+use super::problem::MeasurementProblem;
 use crate::project::{Findings, RawFinding};
 use crate::quantity::{ANGLE, ANGULAR_FREQUENCY, GAIN, RATIO};
 use crate::table::{Column, Measurand, MeasuredTable, Sought};
@@ -82,23 +83,16 @@ impl MeasurementColumns {
         let load = [one, two, three, four];
         let has_load = load.iter().any(Option::is_some);
         let [command, load_motion] = [[magnitude, phase, real, imaginary], load].map(ResponseForm::of);
-        let forms = "a magnitude and a phase (`magnitude_db` or `magnitude`, `phase_deg` or `phase_rad`), or `real` and `imaginary`";
-        let mut missing = |what: String| {
-            let place = table.headings.first().map(|heading| heading.place).unwrap_or_default();
-            findings.push(RawFinding::error(place, format!("the columns lack {what}")));
-        };
-        match (frequency, command) {
-            (None, _) => missing("a frequency: `frequency_hz` or `frequency_rad_per_s`".to_string()),
-            (_, None) => missing(format!("{forms}, one pair of them")),
-            _ if has_load && load_motion.is_none() => {
-                missing(format!(
-                    "half of the load motion's pair: {forms}, each with `load_motion_` before it"
-                ));
-            }
+        let missing = match (frequency, command) {
+            (None, _) => MeasurementProblem::NoFrequency,
+            (_, None) => MeasurementProblem::NoResponse,
+            _ if has_load && load_motion.is_none() => MeasurementProblem::HalfOfLoadMotion,
             (Some(frequency), Some(command)) => {
                 return Some(MeasurementColumns { frequency, command, load_motion, radius, deviation });
             }
-        }
+        };
+        let place = table.headings.first().map(|heading| heading.place).unwrap_or_default();
+        findings.push(RawFinding::error(place, missing.to_string()));
         None
     }
 }

@@ -27,6 +27,19 @@ const FEWEST_SAMPLES: f64 = 4.0;
 /// The scale for errors of the force, as a share of the force that the supply can produce.
 const TYPICAL_PUSH: f64 = 0.1;
 
+/// Reason why a machine has no closed loop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoClosedLoop {
+    /// The measurement was stopped before.
+    Stopped,
+    /// The project gives no controller.
+    NoController,
+    /// No reference holds the force of the operating point.
+    NoReference,
+    /// The loop is open.
+    Open,
+}
+
 /// Measures the response at these frequencies; ends before the first for which `goes_on` is false.
 /// The reason where there is no loop.
 pub(super) fn measured(
@@ -35,9 +48,9 @@ pub(super) fn measured(
     frequencies: &[f64],
     request: &FrequencyRequest,
     goes_on: &mut dyn FnMut(usize) -> bool,
-) -> Result<Result<MachineResponse, String>, SimulateError> {
+) -> Result<Result<MachineResponse, NoClosedLoop>, SimulateError> {
     let Some(given) = &setup.controller else {
-        return Ok(Err("the project gives no controller".to_string()));
+        return Ok(Err(NoClosedLoop::NoController));
     };
     let bench = ControlledMachine::new(setup)?;
     let amplitude = request.reference_amplitude_n.unwrap_or(USUAL_AMPLITUDE * rested.push_n);
@@ -45,7 +58,7 @@ pub(super) fn measured(
     let measured_n = setup.sensor.dc_gain() * rested.force_n;
     let reference_n = held_reference(rested, given, measured_n)?;
     if !reference_n.is_finite() {
-        return Ok(Err("no reference holds the force of the operating point".to_string()));
+        return Ok(Err(NoClosedLoop::NoReference));
     }
     let shared = LoopParts { rested, model: &model, reference_n, measured_n, amplitude };
     match &bench.control {
@@ -53,7 +66,7 @@ pub(super) fn measured(
             shared.continuous((&bench.control, closed), frequencies, goes_on).map(Ok)
         }
         Control::Sampled(sampled) => shared.sampled(sampled, frequencies, goes_on).map(Ok),
-        Control::Open(_) => Ok(Err("the loop is open".to_string())),
+        Control::Open(_) => Ok(Err(NoClosedLoop::Open)),
     }
 }
 

@@ -12,7 +12,7 @@ use super::side::Side;
 use super::steps::{NEVER_RISEN, NEVER_SETTLED, StepProperty, steps};
 use crate::answer::significant;
 use crate::audit::{ProjectAudit, frequency_words, in_time};
-use crate::caveat::caveats;
+use crate::caveat::{caveats, outside_parameters, sentence};
 use crate::design::{DESIGNED_PROJECT, ProjectDesign};
 use crate::project::{DeclaredSpecification, Project, SpecificationKind};
 use crate::quantity::DisplayUnit;
@@ -300,14 +300,17 @@ fn wishes(contents: &Contents<'_>, side: &Side<'_>) -> Option<String> {
 /// Effects that no verdict includes, and a rig outside its own family.
 fn uncounted(setup: &Setup<'_>) -> Vec<String> {
     let mut steps = Vec::new();
-    if let Some((_, words)) = setup.outside().filter(|_| !setup.project.specifications.is_empty()) {
-        steps.push(format!("Widen `[uncertainty]` until it contains the rig as it is derived: {words}."));
+    if let Some((_, outside)) = setup.outside().filter(|_| !setup.project.specifications.is_empty()) {
+        steps.push(format!(
+            "Widen `[uncertainty]` until it contains the rig as it is derived: {}.",
+            outside_parameters(&outside)
+        ));
     }
     let open = caveats(setup).into_iter().filter(|caveat| caveat.unproven);
     steps.extend(open.map(|caveat| {
         format!(
             "Judge this by simulation, since no verdict on the linear loop includes it: {}.",
-            caveat.sentence
+            sentence(&caveat.effect, &setup.project.units)
         )
     }));
     steps

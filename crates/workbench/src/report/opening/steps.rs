@@ -10,7 +10,7 @@ use super::side::Side;
 use crate::answer::significant;
 use crate::audit::{TimeOutcome, WorstStep};
 use crate::simulate::{
-    Metrics, NOT_SETTLED, ReachedStep, TimeRequirement, TrackingWish, cause_words, concerns,
+    Metrics, ReachedStep, TimeRequirement, TrackingWish, Unmeasured, cause_words, concerns,
 };
 use crate::trial::{Trial, TrialRun};
 
@@ -142,7 +142,7 @@ fn of_window(metrics: &Metrics, wish: &TrackingWish, property: StepProperty) -> 
         StepProperty::Settling if metrics.settling_band_percent != wish.band_percent => None,
         StepProperty::Settling => match metrics.settling_time_s {
             Ok(time_s) => Some(time_s),
-            Err(NOT_SETTLED) => Some(f64::INFINITY),
+            Err(Unmeasured::NotSettled) => Some(f64::INFINITY),
             Err(_) => None,
         },
     }

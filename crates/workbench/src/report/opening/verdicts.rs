@@ -7,11 +7,11 @@ use super::Contents;
 use super::side::Side;
 use super::steps::{AllSteps, StepProperty, steps};
 use crate::answer::significant;
-use crate::audit::frequency_words;
+use crate::audit::{frequency_words, position_words};
 use crate::document::{Cell, StatusMark, Table};
 use crate::quantity::DisplayUnit;
 use crate::report::specifications::demand;
-use crate::simulate::{ScenarioRun, UNDETERMINED};
+use crate::simulate::{ScenarioRun, UNDETERMINED, required_overshoot, required_rise, required_settling};
 use crate::trial;
 
 type Rows = Vec<Vec<Cell>>;
@@ -53,7 +53,7 @@ fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
         Some(verdict.then(proven(side.is_proven().unwrap_or(false))).strong())
     }));
     rows.extend(row("position of every plant", sides, |side| {
-        Some(Cell::from(side.view?.position.as_ref()?.words()))
+        Some(Cell::from(position_words(side.view?.position.as_ref()?)))
     }));
     rows.extend(row("every plant stable", sides, |side| {
         let verdict = side.view?.audit.stability.verdict;
@@ -121,9 +121,9 @@ fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
     };
     let wish = &all_required.wish;
     let required = [
-        (StepProperty::Overshoot, wish.overshoot_words()),
-        (StepProperty::Settling, wish.settling_words()),
-        (StepProperty::Rise, wish.rise_words()),
+        (StepProperty::Overshoot, required_overshoot(wish)),
+        (StepProperty::Settling, required_settling(wish)),
+        (StepProperty::Rise, required_rise(wish)),
     ];
     for (property, words) in required {
         let Some(words) = words else { continue };

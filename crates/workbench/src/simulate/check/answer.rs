@@ -3,6 +3,7 @@
 use super::{Difference, Metric, ToleranceCheck};
 use crate::answer::{Object, significant};
 use crate::quantity::Units;
+use crate::simulate::unmeasured_words;
 
 /// The object `check` of a scenario.
 pub(crate) fn row(check: &ToleranceCheck) -> Object {
@@ -26,7 +27,9 @@ pub(crate) fn row(check: &ToleranceCheck) -> Object {
                 "metrics",
                 Metric::ALL,
                 |metric| {
-                    Object::new().with("name", metric.name()).told("difference", found.differences[metric])
+                    Object::new()
+                        .with("name", metric.name())
+                        .told("difference", found.differences[metric].map_err(unmeasured_words))
                 },
             )
         })

@@ -7,6 +7,7 @@ use phea_dynamics::portable;
 
 use super::{MachineResponse, MachineResponses, ResponsePoint};
 use crate::answer::{NumberTable, Object, OutputFile, TableFormat};
+use crate::simulate::reasons::no_closed_loop_words;
 
 const NO_WINDOW: &str = "the simulation ended before a window did";
 const NO_SYSTEM: &str =
@@ -24,7 +25,7 @@ pub(crate) fn body(found: &MachineResponses) -> Object {
         .with("command_v", found.command_v)
         .with("stopped", found.stopped)
         .with("open_loop", points(&found.open_loop, "amplitude_v"))
-        .told("closed_loop", closed_loop.map_err(String::as_str))
+        .told("closed_loop", closed_loop.map_err(|why| no_closed_loop_words(*why)))
 }
 
 /// `reason` is that of the five numbers above it, where one is missing.

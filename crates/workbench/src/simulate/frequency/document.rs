@@ -6,6 +6,7 @@ use super::{MachineResponse, MachineResponses, ResponsePoint};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::quantity::{DisplayUnit, VOLTAGE, display};
+use crate::simulate::reasons::no_closed_loop_words;
 
 /// The tables and sentences of a frequency response.
 pub(crate) fn document(found: &MachineResponses) -> Document {
@@ -23,7 +24,7 @@ pub(crate) fn document(found: &MachineResponses) -> Document {
     section("Open loop, from command to force, dB re 1 N/V", &found.open_loop, DisplayUnit::VOLT);
     match &found.closed_loop {
         Ok(closed) => section("Closed loop, from reference to force", closed, units.force),
-        Err(reason) => out.heading(format!("No closed loop: {reason}.")),
+        Err(reason) => out.heading(format!("No closed loop: {}.", no_closed_loop_words(*reason))),
     }
     if found.stopped {
         out.line("Stopped before its end.");

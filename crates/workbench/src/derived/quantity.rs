@@ -1,20 +1,4 @@
-//! Every quantity that follows from what a project declares, with its equation, and any
-//! contradiction with a declared one.
-
-mod accumulator;
-mod cross_port;
-mod dynamics;
-mod impedance;
-mod linkage;
-mod list;
-mod parts;
-mod rig;
-mod series;
-mod valve;
-
 use std::borrow::Cow;
-
-pub use rig::derive;
 
 /// A quantity that follows from the project.
 #[derive(Clone, Debug, PartialEq)]

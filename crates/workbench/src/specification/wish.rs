@@ -1,13 +1,21 @@
-//! A wish in time and what its limit reaches, in words.
+//! A requirement in time and what its limit reaches, in a sentence.
 
 use phea_dynamics::time_response::Settling;
 use phea_qft::specification::{WishCheck, WishOutcome, Wished};
 
+use super::CheckedWish;
 use crate::quantity::{RATIO, display};
+
+/// The requirement, whether its limit satisfies it, and what the limit itself reaches.
+pub fn wish_sentence(wish: &CheckedWish) -> String {
+    let met = if wish.is_met() { "met" } else { "not met" };
+    let words = words(&wish.check);
+    format!("Specification {}, {} limit, {met}; {words}.", wish.number, wish.key)
+}
 
 /// `wished: at most 1 % overshoot, settled within 1 % in 0.1 s; the limit itself reaches 2.19 %
 /// overshoot and settles in 0.126 s`
-pub(super) fn words(check: &WishCheck) -> String {
+fn words(check: &WishCheck) -> String {
     let Wished { overshoot_percent, settling_time_s, settling_band_percent } = check.wished;
     let wished = match overshoot_percent {
         0.0 => "no overshoot".to_string(),

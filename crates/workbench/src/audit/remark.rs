@@ -2,10 +2,11 @@
 
 use phea_qft::verification::{PlantPoint, Remark, SpecificationFinding};
 
-use super::{PlantNames, rounded};
+use super::words::rounded;
+use crate::plant_names::PlantNames;
 
 /// The remarks of a finding, each a sentence.
-pub fn remark_sentences(finding: &SpecificationFinding, names: &PlantNames) -> Vec<String> {
+pub(super) fn remark_sentences(finding: &SpecificationFinding, names: &PlantNames) -> Vec<String> {
     finding.remarks.iter().map(|remark| sentence(remark, finding, names)).collect()
 }
 

@@ -1,5 +1,6 @@
+use phea_engineering::parts::{self, CostedPart, PartKind, PartsCounted, parts};
+
 use super::list::List;
-use crate::parts::{self, CostedPart, PartKind, PartsCounted, parts};
 use crate::project::Project;
 use crate::rig::Rig;
 
@@ -34,10 +35,24 @@ fn one_by_one(
     list: &mut List,
 ) {
     for part in all.iter().filter(|part| part.kind != PartKind::Servovalve || servovalve) {
-        let name = format!("parts.{}.{quantity}", part.name());
+        let name = format!("parts.{}.{quantity}", part_name(part));
         let equation = equation(part.kind, quantity == "price");
         add(name, (symbol, unit, equation), of(part).ok_or(NOT_STATED), list);
     }
+}
+
+/// The name of a part in the list, such as `hose.a`.
+fn part_name(part: &CostedPart) -> String {
+    let name = match part.kind {
+        PartKind::Hose => "hose",
+        PartKind::Pipe => "pipe",
+        PartKind::Accumulator => "accumulator",
+        PartKind::CrossPort => "cross_port",
+        PartKind::SeriesSpring | PartKind::TransmissionCylinders => "series",
+        PartKind::TransmissionLine => "series.line",
+        PartKind::Servovalve => "valve",
+    };
+    part.side.map_or(name.to_string(), |side| format!("{name}.{}", side.to_lowercase()))
 }
 
 fn equation(kind: PartKind, is_price: bool) -> &'static str {

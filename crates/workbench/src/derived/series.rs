@@ -5,7 +5,7 @@ use phea_hydraulics::series::{CoilPair, LEAST_ACTIVE_COILS, SeriesElement, Serie
 use super::list::List;
 use crate::project::Project;
 use crate::rig::{Rig, series_coil, stall_force, waves_right_to};
-use crate::sizing::TOO_FEW_COILS;
+use crate::sizing::{CoilUnknown, coil_unknown_words};
 
 /// What lies between force sensor and load.
 pub(super) fn series(project: &Project, rig: &Rig, list: &mut List) {
@@ -68,7 +68,8 @@ fn wound(pair: &CoilPair, list: &mut List) {
     list.add("series.coil.coil_diameter", "D", pair.coil_diameter, "m", "D = C d");
     let coils = "n = G d/(4 C^3 k), either of two opposed springs";
     if pair.active_coils < LEAST_ACTIVE_COILS {
-        return list.absent("series.coil.active_coils", "n", "1", coils, TOO_FEW_COILS);
+        let reason = coil_unknown_words(CoilUnknown::TooFewCoils);
+        return list.absent("series.coil.active_coils", "n", "1", coils, reason);
     }
     list.add("series.coil.active_coils", "n", pair.active_coils, "1", coils);
     list.add("series.coil.solid_length", "L_s", pair.solid_length, "m", "L_s = (n + 2) d");

@@ -1,0 +1,31 @@
+//! The names of limits on closed loops.
+
+use phea_qft::specification::ClosedLoop;
+
+use super::kind::closed_loop_words;
+use crate::limit_kind::{DesignLimitKind, limit_words};
+
+/// The subject of a limit on a closed loop, by which the limit is named.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpecificationName {
+    /// The closed loop that a specification of the project limits.
+    ClosedLoop(ClosedLoop),
+    /// The effect on the force of rounding the command.
+    RoundedCommand,
+    /// The effect on the command of rounding the measurement.
+    RoundedMeasurement,
+    /// A limit of a design.
+    DesignLimit(DesignLimitKind),
+}
+
+impl SpecificationName {
+    /// The name for people.
+    pub fn words(self) -> &'static str {
+        match self {
+            SpecificationName::ClosedLoop(closed_loop) => closed_loop_words(closed_loop),
+            SpecificationName::RoundedCommand => "force error of the rounded command",
+            SpecificationName::RoundedMeasurement => "command error of the rounded measurement",
+            SpecificationName::DesignLimit(kind) => limit_words(kind),
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! The names of the columns of alternatives, and why there are no numbers in them.
+
+use super::{FeasibilityUnknown, JudgedAlternative, LengthUnknown, NoFrontValue, NoNumber};
+use crate::design::status_sentence;
+use crate::linearize::no_closed_impedance_words;
+use crate::simulate::{DIVERGED, unmeasured_words};
+use phea_engineering::parts::{PartKind, PartsUnknown, UnstatedPart};
+
+/// The columns by their keys, with their names for people.
+const COLUMN_NAMES: [(&str, &str); 32] = [
+    ("relaxation_db", "relaxation needed"),
+    ("order", "order of G"),
+    ("prefilter_order", "order of F"),
+    ("relative_degree", "relative degree of G"),
+    ("high_frequency_gain_db", "high-frequency gain"),
+    ("modulus_margin", "modulus margin"),
+    ("delay_margin_s", "delay tolerated"),
+    ("worst_margin_db", "least margin"),
+    ("stiffness_minimum_n_per_m", "least K_H"),
+    ("stiffness_maximum_n_per_m", "greatest K_H"),
+    ("equivalent_stiffness_n_per_m", "K_eq at the point"),
+    ("actuator_length_m", "length, retracted"),
+    ("lines_length_m", "length of both lines"),
+    ("moving_mass_kg", "moving mass"),
+    ("lines_volume_m3", "oil in both lines"),
+    ("oil_volume_m3", "oil in all"),
+    ("oil_mass_kg", "mass of that oil"),
+    ("gas_volume_m3", "gas"),
+    ("power_at_rest_w", "loss at rest"),
+    ("parts_price", "price of its parts"),
+    ("parts_mass_kg", "mass of its parts and of the oil in lines"),
+    ("sized_length_m", "length by [sizing]"),
+    ("sized_gain_v_per_n", "gain by [sizing]"),
+    ("impedance_open_n_s_per_m", "open loop"),
+    ("impedance_closed_n_s_per_m", "closed loop"),
+    ("impedance_asked_n_s_per_m", "asked"),
+    ("overshoot_percent", "overshoot"),
+    ("settling_time_s", "settling"),
+    ("disturbance_peak_n", "disturbance"),
+    ("control_peak_v", "control peak"),
+    ("control_rms_v", "control rms"),
+    ("energy_from_supply_j", "energy from supply"),
+];
+
+/// The name of a column for people.
+pub(super) fn column_name(key: &'static str) -> &'static str {
+    COLUMN_NAMES.iter().find(|(known, _)| *known == key).map_or(key, |(_, name)| name)
+}
+
+/// The name of a measure of dominance for people.
+pub(super) fn measure_name(key: &'static str) -> &'static str {
+    match key {
+        "parts_price" => "price",
+        "parts_mass_kg" => "mass",
+        "order" => "order",
+        key => column_name(key),
+    }
+}
+
+/// Entry of a table for a number that the project should state.
+pub(super) const NOT_STATED: &str = "not stated";
+
+/// Why a column has no number.
+pub(super) fn no_number_words(reason: &NoNumber) -> String {
+    let fixed = match reason {
+        NoNumber::NotJudged(error) => return error.to_string(),
+        NoNumber::Stopped { time_s, word: DIVERGED } => {
+            return format!("the run diverges from {time_s} s on");
+        }
+        NoNumber::Stopped { time_s, word } => return format!("the run ended at {time_s} s: {word}"),
+        NoNumber::OutsideModel { time_s } => {
+            return format!("from {time_s} s on the equations of the simulation do not hold");
+        }
+        NoNumber::Parts(reason) => return parts_unknown_words(reason),
+        NoNumber::NotFoundInfeasible => "the specifications were not found infeasible",
+        NoNumber::NotKnownStable => "not known of a family that is not known to be stable",
+        NoNumber::NothingToJudgeBy => "there is nothing by which to judge it",
+        NoNumber::Undetermined => "no solver determines the result of the run",
+        NoNumber::NoMetric(reason) => unmeasured_words(*reason),
+        NoNumber::NoEvent => "no event begins in the scenario",
+        NoNumber::NoHose => "no hose of the catalogue is accepted",
+        NoNumber::Length(reason) => length_unknown_words(*reason),
+        NoNumber::LineIsVolume => "a line that is stated as a volume has no length",
+        NoNumber::NoAccumulator => "there is no accumulator at the chambers",
+        NoNumber::NoClosedLoop(reason) => reason.map_or("", no_closed_impedance_words),
+    };
+    fixed.to_string()
+}
+
+/// True where the project should state a number.
+pub(super) fn is_unstated(reason: &NoNumber) -> bool {
+    match reason {
+        NoNumber::Parts(PartsUnknown::NotStated(_)) => true,
+        NoNumber::Length(reason) => match reason {
+            LengthUnknown::NoDeadLength | LengthUnknown::NoCoil | LengthUnknown::NoSeriesCylinderLength => {
+                true
+            }
+            LengthUnknown::Motor | LengthUnknown::TooFewCoils => false,
+        },
+        _ => false,
+    }
+}
+
+/// Why the retracted length of an actuator is not known.
+fn length_unknown_words(reason: LengthUnknown) -> &'static str {
+    match reason {
+        LengthUnknown::Motor => "a motor has no retracted length",
+        LengthUnknown::NoDeadLength => "not stated: cylinder.dead_length",
+        LengthUnknown::NoCoil => "not stated: series.coil, which has a length",
+        LengthUnknown::TooFewCoils => "the coils of the series spring are too few to be wound",
+        LengthUnknown::NoSeriesCylinderLength => "not stated: series.cylinder_length",
+    }
+}
+
+/// Why the parts of a rig have no known sum.
+pub(super) fn parts_unknown_words(reason: &PartsUnknown) -> String {
+    match reason {
+        PartsUnknown::NoPrice => "no part states a price".to_string(),
+        PartsUnknown::NoMass => "no part states a mass".to_string(),
+        PartsUnknown::NotStated(parts) => {
+            let names: Vec<String> = parts.iter().map(part_name).collect();
+            format!("{NOT_STATED}: {}", names.join(", "))
+        }
+    }
+}
+
+fn part_name(part: &UnstatedPart) -> String {
+    let [one, several] = match part.kind {
+        PartKind::Hose => ["hose", "hoses"],
+        PartKind::Pipe => ["pipe", "pipes"],
+        PartKind::Accumulator => ["accumulator", "accumulators"],
+        PartKind::CrossPort => ["cross-port valve", "cross-port valves"],
+        PartKind::SeriesSpring => ["series spring", "series springs"],
+        PartKind::TransmissionCylinders => ["cylinders of the transmission", "cylinders of transmissions"],
+        PartKind::TransmissionLine => ["line of the transmission", "lines of transmissions"],
+        PartKind::Servovalve => ["servovalve", "servovalves"],
+    };
+    match (part.both, part.side) {
+        (true, _) => several.to_string(),
+        (false, Some(side)) => format!("{one} {side}"),
+        (false, None) => one.to_string(),
+    }
+}
+
+/// Why it is not known whether an alternative satisfies every specification.
+pub(super) fn undecided_words(one: &JudgedAlternative) -> String {
+    match &one.design {
+        Ok(view) => status_sentence(view),
+        Err(reason) => reason.to_string(),
+    }
+}
+
+/// The same of a point of a front.
+pub(super) fn unknown_words(reason: &FeasibilityUnknown) -> String {
+    match reason {
+        FeasibilityUnknown::NotPrepared(error) => error.to_string(),
+        FeasibilityUnknown::NotDesigned(error) => error.to_string(),
+        FeasibilityUnknown::Undecided(view) => status_sentence(view),
+    }
+}
+
+/// Why a point of a front has no value in a column.
+pub(super) fn no_front_value_words(reason: &NoFrontValue) -> String {
+    match reason {
+        NoFrontValue::NotPrepared(error) => error.to_string(),
+        NoFrontValue::NoColumn => "there is no such column here".to_string(),
+        NoFrontValue::NoNumber(reason) => no_number_words(reason),
+        NoFrontValue::NotInEveryScenario => "not in every scenario".to_string(),
+    }
+}

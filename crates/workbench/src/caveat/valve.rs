@@ -1,0 +1,59 @@
+//! Effects of the servovalve and of what connects the chambers.
+
+use crate::quantity::{FLOW, PRESSURE, VOLTAGE, display, significant};
+
+pub(super) const DYNAMIC_PRESSURE_FEEDBACK: &str = "cross_port.kind = \"dynamic_pressure_feedback\" is counted in the plant and the impedance at the load: the other models and the \
+     asymptotes of the impedance are without it";
+
+pub(super) fn leakage_humps(command: f64, greatest: f64, least: f64) -> String {
+    let [most, least] = [greatest, least].map(|flow| display(flow, &FLOW, 3));
+    format!(
+        "the valve leaks most beside null, {most} at {}, and {least} at null, where measured valves leak most: valve.leakage_shape, which \
+         sets over what command the leakage falls, is too small for these flow coefficients",
+        display(command, &VOLTAGE, 3)
+    )
+}
+
+pub(super) fn overlap(dead_band: [f64; 2], gain_ratio: f64) -> String {
+    let [from, to] = dead_band.map(|spool| display(spool, &VOLTAGE, 3));
+    format!(
+        "the edges of the valve overlap from {from} to {to}: between them its flow gain without load is {} % of that beyond (valve.lap). Each plant is that \
+         of small motions about its operating point; only a simulation shows a loop that crosses the lap, and hunts there where it has an \
+         integrator",
+        significant(100.0 * gain_ratio, 2)
+    )
+}
+
+pub(super) fn null_sides(flow_gains: [f64; 2], mean: f64) -> String {
+    let [below, above] = flow_gains.map(|gain| significant(gain, 3));
+    let mean = significant(mean, 3);
+    format!(
+        "at null K_qU is {below} m3/(s.V) where the piston retracts and {above} where it extends: these models have the mean, {mean}, \
+         unless it is stated; verify and design have both sides, and operating_point.spool_side = -1 or 1 takes one"
+    )
+}
+
+pub(super) fn cross_port_orifice(
+    drop: Option<f64>,
+    transition_pressure: f64,
+    conductance: f64,
+    has_range: bool,
+) -> String {
+    let conductance = significant(conductance, 3);
+    let transition = display(transition_pressure, &PRESSURE, 3);
+    let at = match drop {
+        None => "no drop at rest".to_string(),
+        Some(drop) => format!("a drop of {} at rest", display(drop, &PRESSURE, 3)),
+    };
+    let path = "cross_port.transition_pressure";
+    let cure = match has_range {
+        true => format!("the range of {path} says up to which oscillation"),
+        false => format!(
+            "state a range of {path} in [uncertainty], up to 0.81 times the amplitude of the drop, or judge by a simulation"
+        ),
+    };
+    format!(
+        "cross_port is counted for small motions: its orifice has {at}, and there the slope of its transition_pressure of {transition}, \
+         {conductance} m3/(s.Pa); an oscillation beyond that is damped less: {cure}"
+    )
+}

@@ -1,0 +1,40 @@
+//! What a rig cannot follow of its scenarios, in sentences.
+
+use super::{BeyondRig, Foreseen};
+use crate::caveat::{exceeded_force, force};
+use crate::project::LateError;
+use crate::quantity::{LENGTH, TIME, Units, display};
+
+/// What is foreseen, at its key.
+pub(crate) fn foreseen_late(foreseen: Foreseen, units: &Units) -> LateError {
+    match foreseen {
+        Foreseen::AbsentRecording(error) => error,
+        Foreseen::InScenario { index, name, beyond } => LateError {
+            path: format!("scenario[{index}].{}", beyond.key()),
+            message: format!("scenario \"{name}\": {}", beyond_rig(&beyond, units)),
+            help: String::new(),
+        },
+    }
+}
+
+fn beyond_rig(beyond: &BeyondRig, units: &Units) -> String {
+    match beyond {
+        BeyondRig::Reference { time, force: goes_to, exceeded } => format!(
+            "the reference goes to {} at {}, {}",
+            force(*goes_to, units),
+            display(*time, &TIME, 4),
+            exceeded_force(exceeded, units).0
+        ),
+        BeyondRig::Motion { time, moved_by, from, stroke } => {
+            let length = |value: f64| display(value, units.motion.dimension(&LENGTH), 4);
+            format!(
+                "the load moves by {} until {} and takes the piston from {} to {}, beyond its stroke of {}",
+                length(*moved_by),
+                display(*time, &TIME, 4),
+                length(*from),
+                length(from + moved_by),
+                length(*stroke)
+            )
+        }
+    }
+}

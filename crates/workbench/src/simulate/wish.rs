@@ -1,0 +1,47 @@
+//! Required steps and what a step reaches of them, in words.
+
+use super::{NO_OVERSHOOT_PERCENT, ReachedStep, TrackingWish};
+use crate::quantity::significant;
+
+/// The required overshoot.
+pub(crate) fn required_overshoot(wish: &TrackingWish) -> Option<String> {
+    let most = wish.overshoot_percent?;
+    Some(if most == 0.0 { "no overshoot".to_string() } else { format!("at most {most} % overshoot") })
+}
+
+/// The required settling time.
+pub(crate) fn required_settling(wish: &TrackingWish) -> Option<String> {
+    wish.settling_time_s.map(|time_s| format!("settled within {} % in {time_s} s", wish.band_percent))
+}
+
+/// The required rise time.
+pub(crate) fn required_rise(wish: &TrackingWish) -> Option<String> {
+    wish.rise_time_s.map(|time_s| format!("risen from 10 to 90 % in {time_s} s"))
+}
+
+/// All that is required of a step.
+pub(crate) fn required_words(wish: &TrackingWish) -> String {
+    let all = [required_overshoot(wish), required_settling(wish), required_rise(wish)];
+    all.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+/// What a step reaches of what is required.
+pub(crate) fn reached_words(wish: &TrackingWish, reached: &ReachedStep) -> String {
+    if reached.overshoot_percent == f64::INFINITY {
+        return "stopped before the end of the run".to_string();
+    }
+    let in_time = |time_s: f64, did: &str, never: &str| match time_s {
+        f64::INFINITY => never.to_string(),
+        time_s => format!("{did} in {} s", significant(time_s, 3)),
+    };
+    let overshoot = match reached.overshoot_percent {
+        percent if percent < NO_OVERSHOOT_PERCENT => "no overshoot".to_string(),
+        percent => format!("{} % overshoot", significant(percent, 3)),
+    };
+    let each = [
+        wish.overshoot_percent.map(|_| overshoot),
+        wish.settling_time_s.map(|_| in_time(reached.settling_time_s, "settled", "not settled")),
+        wish.rise_time_s.map(|_| in_time(reached.rise_time_s, "risen", "not risen to 90 %")),
+    ];
+    each.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
