@@ -122,7 +122,7 @@ pub(super) enum RowError {
 
 /// Error of a table as a whole.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum TableError {
+pub(super) enum MeasuredTableError {
     /// Nothing but empty rows.
     #[error("the file is empty")]
     Empty,

@@ -2,7 +2,7 @@
 //! charts export plots, not records.
 
 use super::cell::{Cells, Separator};
-use super::error::{TableError, TableHint};
+use super::error::{MeasuredTableError, TableHint};
 use super::layout::{TextLayout, lines};
 use crate::project::{Place, RawFinding};
 
@@ -37,7 +37,8 @@ fn read(text: usize, content: &str) -> Result<LabviewHeader, RawFinding> {
                 return Ok(LabviewHeader { layout: TextLayout { separator, header: start }, units });
             }
             (Some("X_Columns"), Some(kind)) if kind != "One" => {
-                let found = RawFinding::error(place, TableError::LabviewTimes(kind.to_string()).to_string());
+                let found =
+                    RawFinding::error(place, MeasuredTableError::LabviewTimes(kind.to_string()).to_string());
                 return Err(found.help(TableHint::OneTimeColumn.to_string()));
             }
             (Some("Y_Unit_Label"), first) => {
@@ -48,7 +49,7 @@ fn read(text: usize, content: &str) -> Result<LabviewHeader, RawFinding> {
         }
     }
     let place = Place { text, start: 0, end: MEASUREMENT.len() };
-    Err(RawFinding::error(place, TableError::LabviewNames.to_string()))
+    Err(RawFinding::error(place, MeasuredTableError::LabviewNames.to_string()))
 }
 
 /// What LabVIEW writes behind the name of a plot.
@@ -62,7 +63,7 @@ pub(super) fn refuse_chart(text: usize, content: &str) -> Result<(), RawFinding>
     let is_chart = |(line, _): &(&str, usize)| line.matches(PLOT).count() > 1;
     let Some((line, start)) = lines(content, 0).take(MOST_ABOVE).find(is_chart) else { return Ok(()) };
     let place = Place { text, start, end: start + line.trim_end().len() };
-    let found = RawFinding::error(place, TableError::LabviewChart.to_string());
+    let found = RawFinding::error(place, MeasuredTableError::LabviewChart.to_string());
     let found = found.expected(TableHint::RecordWithTimes.to_string());
     Err(found.help(TableHint::MeasurementFile.to_string()))
 }

@@ -11,7 +11,7 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
 use super::column::Column;
-use super::error::{ParquetColumnError, RowError, TableError, TableHint};
+use super::error::{MeasuredTableError, ParquetColumnError, RowError, TableHint};
 use super::faults::Faults;
 use super::{ColumnNumbers, Heading};
 use crate::project::{Findings, Place, RawFinding};
@@ -39,8 +39,9 @@ pub(super) fn open(
     findings: &mut Findings,
 ) -> Option<(Vec<Heading>, ParquetRows)> {
     let opened = SerializedFileReader::new(Bytes::from(bytes));
-    let opened =
-        opened.map_err(|error| findings.unreadable(file, &TableError::NoParquet(error).to_string())).ok()?;
+    let opened = opened
+        .map_err(|error| findings.unreadable(file, &MeasuredTableError::NoParquet(error).to_string()))
+        .ok()?;
     let text = findings.add_text(file, "", 0);
     let metadata = opened.metadata().file_metadata();
     let count = usize::try_from(metadata.num_rows()).unwrap_or(0);
@@ -55,13 +56,13 @@ pub(super) fn open(
     if let Some(codec) = packed.into_iter().find(|codec| !is_readable(*codec)) {
         let (codec, place) = (codec.to_string(), Place { text, start: 0, end: 0 });
         let name = codec.split('(').next().unwrap_or_default();
-        let found = RawFinding::error(place, TableError::Codec(name.to_string()).to_string());
+        let found = RawFinding::error(place, MeasuredTableError::Codec(name.to_string()).to_string());
         findings.push(found.help(TableHint::SnappyOrNone.to_string()));
         return None;
     }
     if count == 0 {
         let place = Place { text, start: 0, end: 0 };
-        findings.push(RawFinding::error(place, TableError::NoRows.to_string()));
+        findings.push(RawFinding::error(place, MeasuredTableError::NoRows.to_string()));
         return None;
     }
     Some((headings, ParquetRows { text, file: opened, count }))

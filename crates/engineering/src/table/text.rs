@@ -3,7 +3,7 @@
 use super::cell::{Cells, Separator};
 use super::clock::ClockReading;
 use super::column::{Column, Sought};
-use super::error::{RowError, TableError, TableHint};
+use super::error::{MeasuredTableError, RowError, TableHint};
 use super::faults::Faults;
 use super::heading::{bare, unit_meant};
 use super::labview;
@@ -74,7 +74,7 @@ pub(super) fn open(
     }
     if starts.is_empty() {
         let place = Place { text, start: 0, end: 0 };
-        return Err(RawFinding::error(place, TableError::NothingBelowNames.to_string()));
+        return Err(RawFinding::error(place, MeasuredTableError::NothingBelowNames.to_string()));
     }
     Ok((headings, TextRows { text, separator, starts }, left_out))
 }
@@ -84,7 +84,8 @@ fn unnamed(text: usize, content: &str, sought: &[Sought<'_>]) -> RawFinding {
     let names: Vec<String> = sought.iter().flat_map(Sought::usual_names).collect();
     let mut rows = lines(content, 0).filter(|(line, _)| is_row(line, Separator::Spaces));
     let Some((first, start)) = rows.next() else {
-        let found = RawFinding::error(Place { text, start: 0, end: 0 }, TableError::Empty.to_string());
+        let found =
+            RawFinding::error(Place { text, start: 0, end: 0 }, MeasuredTableError::Empty.to_string());
         return found.expected(TableHint::RowOfNames.to_string());
     };
     let words = first.split([',', ';', '\t', '|']).map(|word| word.trim().trim_matches('"'));
@@ -93,7 +94,7 @@ fn unnamed(text: usize, content: &str, sought: &[Sought<'_>]) -> RawFinding {
         .find_map(|word| Some((word, nearest(word, names.iter().map(String::as_str))?)));
     let place = Place { text, start, end: start + first.trim_end().len() };
     let example: Vec<&str> = sought.iter().filter_map(|one| names_first(one, &names)).take(3).collect();
-    let found = RawFinding::error(place, TableError::NoNames.to_string())
+    let found = RawFinding::error(place, MeasuredTableError::NoNames.to_string())
         .expected(TableHint::NamesSuchAs(example.join(", ")).to_string());
     let near =
         near.map(|(word, near)| TableHint::NearWord { word: word.to_string(), near: near.to_string() });
