@@ -13,7 +13,6 @@ mod stability;
 mod whole_loop;
 mod words;
 pub use signal_noise::{NoisySignal, SignalNoise, SignalNoiseEffect, UnknownNoiseEffect};
-pub(crate) use words::rounded;
 
 pub use crate::common_position::CommonPosition;
 pub use dead_time::LoopDeadTime;

@@ -1,5 +1,5 @@
 //! The design of a controller and its prefilter: from the project to a controller that satisfies
-//! every specification, its comparison with the given one, and the wording of both.
+//! every specification, with the given one for comparison.
 
 mod added_by_rig;
 mod asked;
@@ -7,7 +7,6 @@ mod below;
 mod binding;
 mod by_steps;
 mod command_of_steps;
-mod comparison;
 mod damping;
 mod deployable;
 mod driven;
@@ -25,33 +24,28 @@ mod side;
 mod step_aim;
 mod structures;
 mod unfinished;
-mod words;
+mod verdict;
 pub use crate::limit_kind::{
-    DesignLimitKind, ExceededLimit, LimitOrigin, RELAXED_BY, limit_key, limit_unit_key, limit_words,
-    origin_key, origin_words,
+    DesignLimitKind, ExceededLimit, LimitOrigin, RELAXED_BY, limit_key, limit_unit_key, origin_key,
 };
 pub use below::below_design;
-pub use binding::LedBy;
+pub use binding::{LedBy, SearchedLimit};
 pub use command_of_steps::{CommandOfSteps, StepLimit};
-pub use comparison::{compared, gain_at_high_frequency};
 pub use damping::{MissingPlants, PressureFeedbackDesign, with_free_pressure_feedback};
 pub(crate) use deployable::highest_bandwidth;
-pub use deployable::{DesignLimit, LimitFinding, design_limits};
+pub use deployable::{DesignLimit, LimitFinding, UnusableController, design_limits};
 pub use error::DesignError;
-pub use explanation::Explanation;
-pub use factors::factored;
+pub use explanation::{ExplainedFact, ExplainedLimit, Explanation};
 pub use manual::{ManualGap, ManualLaw, ManualPart};
 pub use problem::{design_options, design_problem};
 pub use relaxed::{Gained, Relaxations, RelaxedGain, RelaxedLimit};
-pub use repair::{Repair, RepairStatus};
-pub use rounding::Rounding;
+pub use repair::{Repair, RepairRemedy, RepairStatus};
+pub use rounding::{RoundedSignal, Rounding};
 pub use side::{AuditedController, LoopFigures, NominalMargins};
 pub use structures::{ReachedStructure, structure_key};
 pub use unfinished::DesignPart;
 use unfinished::unless_stopped;
-pub use words::{
-    objective_key, part_key, repair_key, repair_words, status_key, status_sentence, structure_words,
-};
+pub use verdict::{DesignVerdict, RigMiss, TriedControllers};
 
 use phea_dynamics::controller::{Controller, RateSensor, Timing};
 use phea_qft::audit::audit_by;
@@ -66,7 +60,7 @@ use self::deployable::{limited, split};
 use self::driven::found_and_tried;
 use crate::audit::{ProjectAudit, audit_problem, audit_request, caveat_of_rig, try_to_prove, unexamined_rig};
 use crate::project::{self, Project};
-use crate::quantity::{self, DisplayUnit};
+use crate::quantity::DisplayUnit;
 use crate::robust::{RobustProblem, robust_problem};
 use crate::setup::{Setup, is_of_position};
 use crate::side_by_side::{all_cores, both};
@@ -249,14 +243,12 @@ impl ProjectDesign {
         self
     }
 
-    /// What a specification of the search is called: one of the project's by its number, a limit of
-    /// the design by its name.
-    pub fn named(&self, specification: usize) -> String {
+    /// The limit with this number among the specifications of the search: one of the project's, or
+    /// a limit of the design.
+    pub fn searched_limit(&self, specification: usize) -> SearchedLimit {
         let own = self.designed.problem.specifications.len();
-        match specification.checked_sub(own).and_then(|limit| self.limit_findings.get(limit)) {
-            Some((kind, _)) => limit_words(*kind).to_string(),
-            None => self.designed.view.numbered(specification),
-        }
+        let limit = specification.checked_sub(own).and_then(|limit| self.limit_findings.get(limit));
+        limit.map_or(SearchedLimit::Specification(specification), |(kind, _)| SearchedLimit::Design(*kind))
     }
 
     /// The project with the designed laws in place of its own.
@@ -289,21 +281,20 @@ impl ProjectDesign {
         self.trial.as_ref().map_or(0.0, Trial::worst_run_with_room)
     }
 
+    /// The failure of the nonlinear rig to do what is required in time; `None` where it does that
+    /// with room for the plants between those that were driven, or nothing is required.
+    pub fn rig_miss(&self) -> Option<RigMiss> {
+        let trial = self.trial.as_ref()?;
+        match trial.lacks_room() {
+            true => Some(RigMiss::WithoutRoom),
+            false => (trial.satisfies() == Some(false)).then_some(RigMiss::Missed),
+        }
+    }
+
     /// True where a run on the nonlinear rig misses what is required in time, or all satisfy it
     /// with no room for the plants between those that were driven.
     pub fn misses_on_rig(&self) -> bool {
-        let misses = |trial: &Trial| trial.satisfies() == Some(false) || trial.lacks_room();
-        self.trial.as_ref().is_some_and(misses)
-    }
-
-    /// The failure of the nonlinear rig to do what is required in time, in words.
-    pub fn missed_on_rig_words(&self) -> &'static str {
-        match self.trial.as_ref().is_some_and(Trial::lacks_room) {
-            true => {
-                "the nonlinear rig satisfies what is required in time without room: a run comes back to the edge of its band so late that plants between those that were driven may leave it"
-            }
-            false => "the nonlinear rig misses what is required in time",
-        }
+        self.rig_miss().is_some()
     }
 
     /// Whether the designed controller satisfies every specification and keeps every limit.

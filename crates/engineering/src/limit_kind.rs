@@ -1,4 +1,4 @@
-//! The limits of what may be built: their names, where their values come from, and those that a
+//! The limits of what may be built: their keys, where their values come from, and those that a
 //! loop does not keep.
 
 /// What a limit is about.
@@ -60,21 +60,6 @@ pub fn limit_unit_key(kind: DesignLimitKind) -> &'static str {
     }
 }
 
-/// The name of a limit for people.
-pub fn limit_words(kind: DesignLimitKind) -> &'static str {
-    match kind {
-        DesignLimitKind::NoiseToCommand => "noise to command",
-        DesignLimitKind::ModulusMargin => "modulus margin",
-        DesignLimitKind::HighestBandwidth => "bandwidth",
-        DesignLimitKind::MinimumDelayMargin => "delay margin",
-        DesignLimitKind::PoleDampingRatio => "damping of poles",
-        DesignLimitKind::FastestPole => "fastest pole",
-        DesignLimitKind::PrefilterGain => "gain of the prefilter",
-        DesignLimitKind::CommandOfSteps => "command of steps",
-        DesignLimitKind::RequiredStep => "way to the required step",
-    }
-}
-
 /// Fraction by which a limit is relaxed to find what that would buy.
 pub const RELAXED_BY: f64 = 0.1;
 
@@ -127,18 +112,6 @@ pub fn origin_key(origin: LimitOrigin) -> &'static str {
         LimitOrigin::Servovalve => "servovalve",
         LimitOrigin::Sampling => "sampling",
         LimitOrigin::Bandwidth => "highest_bandwidth",
-    }
-}
-
-/// The name of an origin for people.
-pub fn origin_words(origin: LimitOrigin) -> &'static str {
-    match origin {
-        LimitOrigin::Stated => "stated",
-        LimitOrigin::Default => "default",
-        LimitOrigin::QuarterWave => "quarter wave of the lines",
-        LimitOrigin::Servovalve => "natural frequency of the valve",
-        LimitOrigin::Sampling => "sample time",
-        LimitOrigin::Bandwidth => "ten times the bandwidth",
     }
 }
 

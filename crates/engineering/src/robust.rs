@@ -17,7 +17,7 @@ use phea_qft::verification::PlantPoint;
 use crate::caveat::{Caveat, caveats};
 use crate::common_position::CommonPosition;
 use crate::family::{ProjectFamilyError, family};
-use crate::limit_kind::{DesignLimitKind, limit_key};
+use crate::limit_kind::DesignLimitKind;
 use crate::plant_names::PlantNames;
 use crate::quantity::Units;
 use crate::rig::OutsideParameter;
@@ -48,7 +48,7 @@ pub struct RobustProblem {
     pub has_prefilter: bool,
     /// The specifications in file order, then those for the rounding of converters.
     pub specifications: Vec<Specification>,
-    /// The name of each: its kind, or the signal that is rounded.
+    /// The name of each but the limits of a design: its kind, or the signal that is rounded.
     pub specification_names: Vec<SpecificationName>,
     /// The number in the file, from 1, of each that is declared there; the others come after them.
     pub specification_numbers: Vec<usize>,
@@ -268,15 +268,12 @@ impl RobustProblem {
         numbered(self.number_of(index), self.name_of(index))
     }
 
-    /// A specification as a sentence names it: that of the file by its table and number, a limit of
-    /// the design by its key.
+    /// A specification of the project as a sentence names it: that of the file by its table and
+    /// number.
     pub fn stated(&self, index: usize) -> String {
-        let own = self.specifications.len() - self.design_limits.len();
-        let limit = index.checked_sub(own).and_then(|limit| self.design_limits.get(limit));
-        match (self.number_of(index), limit) {
-            (Some(number), _) => format!("[[specification]] {number} ({})", self.name_of(index)),
-            (None, Some(kind)) if kind.has_key() => format!("the limit `design.{}`", limit_key(*kind)),
-            (None, _) => format!("the limit on the {}", self.name_of(index)),
+        match self.number_of(index) {
+            Some(number) => format!("[[specification]] {number} ({})", self.name_of(index)),
+            None => format!("the limit on the {}", self.name_of(index)),
         }
     }
 

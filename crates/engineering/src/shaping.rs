@@ -3,13 +3,14 @@
 
 mod change;
 mod piece;
+mod refused;
 mod save;
 mod wish;
-mod words;
 mod workpiece;
 
 pub use change::{Change, RequestedChange};
-pub use words::pass_words;
+pub use refused::{ChangeProblem, RefusedChange};
+pub use wish::solved_kinds;
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Compensator;
@@ -19,7 +20,7 @@ use phea_qft::template::{TemplateError, TemplateOptions, Templates};
 use phea_qft::verification::{StabilityFinding, TrackingJudgement};
 
 use crate::plant_names::PlantNames;
-use crate::project::{self, DeclaredElement, Findings, Loaded, Refusal, RewriteError};
+use crate::project::{self, DeclaredElement, Loaded, Refusal, RewriteError};
 use crate::robust::{BoundsError, RobustError, RobustProblem, robust_problem};
 use crate::setup::{ControlError, Setup, is_of_position};
 use crate::source::Source;
@@ -50,7 +51,10 @@ impl Shaped {
 /// Why a controller cannot be shaped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ShapingError {
-    /// Changes that cannot be made, each with its place.
+    /// A change that cannot be made.
+    #[error(transparent)]
+    Change(#[from] Box<RefusedChange>),
+    /// Elements that the reader of projects refuses, each with its place.
     #[error("{0}")]
     Refused(Refusal),
     /// A prefilter without a loop.
@@ -66,11 +70,8 @@ pub enum ShapingError {
     #[error(transparent)]
     Rewrite(RewriteError),
     /// A file that would not read back as the intended elements.
-    #[error("the project file cannot be rewritten: {reason}")]
-    NotWritten {
-        /// Why.
-        reason: String,
-    },
+    #[error("the project file cannot be rewritten: it would not read back as these elements")]
+    NotWritten,
     /// The controller, prefilter or sensor is not a transfer function.
     #[error(transparent)]
     Control(#[from] ControlError),
@@ -156,11 +157,8 @@ pub fn shape(
     let bare = robust_problem(source, &bare)?;
     let mut shaping = workpiece.given().clone();
     for requested in changes {
-        let mut findings = Findings::default();
-        let edit = change::edit(requested, &mut workpiece, &shaping, &bare, &mut findings);
-        let edit = edit?.ok_or_else(|| ShapingError::Refused(findings.clone().report()))?;
-        let refused = |error| ShapingError::Refused(change::refused(requested, &error));
-        shaping = apply(&shaping, &edit).map_err(refused)?;
+        let edit = change::edit(requested, &mut workpiece, &shaping, &bare)?;
+        shaping = apply(&shaping, &edit).map_err(|error| change::refused(requested, error))?;
     }
     let elements = workpiece.declared(&shaping);
     let saved = save::saved(source, loaded, shaped, &elements)?;

@@ -259,7 +259,7 @@ fn answer_as_read(
         Request::Linearize { sweep: Some(asked) } => swept_answer(source, loaded, catalogues, asked),
         Request::Verify { proof, on_machine } => verify_answer(source, loaded, *proof, *on_machine, watch),
         Request::Shape { shaped, changes } => {
-            let shaping = shape(source, loaded, *shaped, changes, watch)?;
+            let shaping = shape(source, loaded, *shaped, changes, watch).map_err(shaping::with_text)?;
             let (document, body) = (shaping::document(&shaping), shaping::body(&shaping));
             Ok(Unprinted { document, body, files: shaping::files(&shaping), affirmative: true })
         }

@@ -2,6 +2,9 @@
 
 mod place;
 mod tables;
+mod words;
+
+pub(crate) use words::design_error_words;
 
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::time_response::TimeResponseError;
@@ -64,7 +67,7 @@ pub enum CommandError {
     #[error(transparent)]
     Audit(AuditError),
     /// There is nothing to design for, or nothing was found.
-    #[error(transparent)]
+    #[error("{}", design_error_words(.0))]
     Design(DesignError),
     /// There is no family of plants.
     #[error(transparent)]

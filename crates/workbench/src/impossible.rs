@@ -1,12 +1,13 @@
 //! Requirements that no loop can satisfy, in sentences, each with what would satisfy it.
 
+use phea_engineering::design::Explanation;
 use phea_engineering::impossible::{
     Impossibilities, Impossibility, ImpossibleStep, ImpossibleSteps, SlowStep, StillTimes,
 };
 use phea_qft::design::Finding;
 
 use crate::caveat::{beyond_reach, force};
-use crate::design::Explanation;
+use crate::explanation::explanation_sentence;
 use crate::project::LateError;
 use crate::quantity::{DisplayUnit, Units, significant};
 use crate::robust::RobustProblem;
@@ -103,10 +104,10 @@ fn too_slow(slow: &SlowStep, units: &Units) -> (String, String) {
 
 /// What a few plants forbid, with the first of them.
 fn of_plants(path: &str, finding: &Finding, problem: &RobustProblem) -> LateError {
-    let explanation = Explanation::of(finding, &|index| problem.stated(index));
+    let explanation = Explanation::of(finding, problem);
     let plant = explanation.plants.first().map(|plant| problem.names.text(plant));
     let plant = plant.filter(|text| !text.is_empty()).map_or(String::new(), |text| format!(" ({text})"));
-    let message = format!("{}{plant}", explanation.sentence);
+    let message = format!("{}{plant}", explanation_sentence(&explanation));
     LateError { path: path.to_string(), message, help: cure(problem, finding) }
 }
 

@@ -2,9 +2,13 @@
 
 mod answer;
 mod document;
+mod refused;
+mod words;
 
 pub use phea_engineering::shaping::*;
 
 pub(crate) use answer::body;
 pub use answer::{SHAPED_PROJECT, files};
 pub(crate) use document::document;
+pub(crate) use refused::with_text;
+pub use words::pass_words;

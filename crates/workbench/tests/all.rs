@@ -16,6 +16,7 @@ mod cross_port;
 mod derived_statements;
 mod design_contract;
 mod design_explanation;
+mod design_factors;
 mod design_printing;
 mod design_truth;
 mod entrained_air;

@@ -7,7 +7,22 @@ use num_complex::Complex64;
 use phea_qft::design::{Constraint, ConstraintPlace, Finding, SharedLimit};
 use phea_qft::verification::PlantPoint;
 use phea_workbench::command::Request;
-use phea_workbench::design::Explanation;
+use phea_workbench::design::{ExplainedFact, ExplainedLimit, Explanation, explanation_sentence};
+
+/// The sentence of a finding, its specifications numbered from 3.
+fn sentence(finding: Finding) -> String {
+    let name = |index: &usize| ExplainedLimit::Specification(format!("[[specification]] {}", index + 3));
+    let specifications = finding.specifications();
+    explanation_sentence(&Explanation {
+        limits: specifications.iter().map(|index| (*index, name(index))).collect(),
+        fact: ExplainedFact::Finding(finding),
+        is_impossible: true,
+        frequency_rad_per_s: None,
+        plants: vec![],
+        specifications,
+        relaxation_db: None,
+    })
+}
 
 /// The sentences name frequencies, the specifications, and what it would take.
 #[test]
@@ -20,8 +35,7 @@ fn findings_read_as_sentences() {
         complementary: SharedLimit { specification: 1, limit: 0.5 },
         relaxation_db: 1.9382, // 20 lg 1.25
     };
-    let name_of = |index: usize| format!("[[specification]] {}", index + 3);
-    let text = Explanation::of(&sum, &name_of).sentence;
+    let text = sentence(sum);
     assert!(
         text.contains("[[specification]] 3 and [[specification]] 4") && text.contains("1.938 dB"),
         "{text}"
@@ -35,8 +49,7 @@ fn findings_read_as_sentences() {
         crossover_rad_per_s: Some(2.236),
         specifications: vec![1],
     };
-    let text =
-        Explanation::of(&Finding::RightHalfPlane { constraint, relaxation_db: 6.0 }, &name_of).sentence;
+    let text = sentence(Finding::RightHalfPlane { constraint, relaxation_db: 6.0 });
     for part in ["unstable pole at 2 rad/s", "|T| = 1", "above 2.236 rad/s", "[[specification]] 4"] {
         assert!(text.contains(part), "{text}");
     }

@@ -377,7 +377,7 @@ fn a_structure_whose_steps_alone_miss_is_missed_in_time() {
     let structure =
         |ending: StructureEnding, [overshoot_percent, settling_time_s]: [f64; 2]| ReachedStructure {
             name: Some(NamedStructure::ProportionalIntegral),
-            other_words: None,
+            no_pid: None,
             structure: view.design.structure.clone(),
             order: 1,
             ending,

@@ -140,7 +140,8 @@ fn plants_with_waves_that_are_missing_are_stated() {
     let found = with_free_pressure_feedback(&Memory::default(), &setup, &mut |_| true).unwrap().unwrap().1;
     let missing = found.missing_with_waves.clone().unwrap();
     assert_eq!([missing.count, missing.of], [found.plants; 2]);
-    assert!(missing.reason.contains("dissipation number"), "{}", missing.reason);
+    let reason = missing.reason.to_string();
+    assert!(reason.contains("dissipation number"), "{reason}");
     let sentence = format!("it was found without {0} of {0} plants with waves in their lines", found.plants);
     for is_used in [true, false] {
         let text = pressure_feedback_document(&PressureFeedbackDesign { is_used, ..found.clone() }).text();

@@ -6,7 +6,7 @@ use super::asked::ReadingAgain;
 use super::comparison::sense_of;
 use super::{AlternativesError, JudgeError, NoNumber};
 use super::{AskedAlternative, COLUMN_SENSES, ColumnSense, JudgedAlternative, Judging, dominates};
-use crate::design::ProjectDesign;
+use crate::design::DesignVerdict;
 use crate::linearize::{SweepRequest, points, range, values};
 use crate::option::OptionError;
 use crate::project::Motions;
@@ -98,7 +98,7 @@ pub enum FeasibilityUnknown {
     /// It has no design.
     NotDesigned(JudgeError),
     /// Its design does not decide it.
-    Undecided(Box<ProjectDesign>),
+    Undecided(DesignVerdict),
 }
 
 /// Why a point has no value in a column.
@@ -273,7 +273,7 @@ fn point(
     let judged = judging.judged(there, watch)?;
     let (comparable, values) = (plan.compares(&judged), values_of(&judged, plan, value));
     let feasible = judged.feasible().ok_or_else(|| match judged.design {
-        Ok(view) => FeasibilityUnknown::Undecided(Box::new(view)),
+        Ok(view) => FeasibilityUnknown::Undecided(view.verdict()),
         Err(reason) => FeasibilityUnknown::NotDesigned(reason),
     });
     Some(FrontPoint { alternative, value, feasible, comparable, values, dominated_by: vec![] })

@@ -9,11 +9,11 @@ use phea_dynamics::portable;
 use phea_qft::family::Family;
 use phea_qft::specification::Specification;
 
-use super::Explanation;
+use super::{ExplainedFact, Explanation};
 use crate::robust::RobustProblem;
 
-/// A sentence where the specifications are limits on tracking that the plants keep without a loop,
-/// and nothing limits a disturbance; `None` where something asks for feedback.
+/// An explanation where the specifications are limits on tracking that the plants keep without a
+/// loop, and nothing limits a disturbance; `None` where something asks for feedback.
 pub(super) fn nothing_asks(given: &RobustProblem) -> Option<Explanation> {
     let own = given.specifications.len() - given.design_limits.len();
     let own = given.specifications.get(..own)?;
@@ -48,7 +48,8 @@ pub(super) fn nothing_asks(given: &RobustProblem) -> Option<Explanation> {
         })
     };
     tracking.iter().all(|&index| keeps(&own[index])).then(|| Explanation {
-        sentence: SENTENCE.to_string(),
+        fact: ExplainedFact::NothingAsksForFeedback,
+        limits: vec![],
         is_impossible: false,
         frequency_rad_per_s: None,
         plants: vec![],
@@ -56,5 +57,3 @@ pub(super) fn nothing_asks(given: &RobustProblem) -> Option<Explanation> {
         relaxation_db: None,
     })
 }
-
-const SENTENCE: &str = "nothing asks for feedback: the plants of the family differ by less than the limits on tracking allow, so that a prefilter alone could keep them; add a `sensitivity` or a `load_motion`, which say how much of a disturbance may remain";

@@ -22,6 +22,15 @@ pub enum LedBy {
     NonlinearRuns,
 }
 
+/// A limit that a search keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SearchedLimit {
+    /// A specification of the project, by its index.
+    Specification(usize),
+    /// A limit of what may be built.
+    Design(DesignLimitKind),
+}
+
 impl ProjectDesign {
     /// The finding of the audit for a limit that is a specification.
     pub fn limit_finding(&self, kind: DesignLimitKind) -> Option<&SpecificationFinding> {

@@ -25,7 +25,7 @@ use crate::setup::Setup;
 use crate::simulate::{ForceLimit, ForceLimits, ReferenceStep};
 
 /// Name of the stage.
-const STAGE: &str = "command of the steps";
+const STAGE: &str = "command of steps";
 /// Points of a continuous response, over the whole of it and over its first part.
 const POINTS: usize = 1000;
 /// The first part of a continuous response, which has as many points by itself.

@@ -68,14 +68,14 @@ pub struct PressureFeedbackDesign {
 }
 
 /// Plants that have no responses.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct MissingPlants {
     /// How many.
     pub count: usize,
     /// Of how many.
     pub of: usize,
     /// Why the first of them has none.
-    pub reason: String,
+    pub reason: DesignError,
 }
 
 /// The project with the feedback that was found; `None` where it is not free.

@@ -20,12 +20,10 @@ use super::ProjectDesign;
 use crate::audit::PrefilterGain;
 use crate::limit_kind::{DesignLimitKind, LimitOrigin};
 use crate::project::{DeclaredDesign, UnstatedLimits};
-use crate::quantity::significant;
 use crate::rig::quarter_wave;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::simulate::stepped_references;
-use crate::specification::SpecificationName;
 
 /// Part of the nominal voltage that noise may take, rms.
 const NOISE_SHARE: f64 = 0.01;
@@ -124,19 +122,25 @@ impl ProjectDesign {
         (largest > most).then_some([most, largest])
     }
 
-    /// Why the designed controller must not be used; `None` where it may be.
-    pub fn unusable(&self) -> Option<String> {
-        let view = &self.designed.view;
-        let is_unstable = view.audit.stability.verdict == Verdict::Violated;
-        let stability = is_unstable.then(|| "it does not make every plant of the family stable".to_string());
+    /// Reasons not to use the designed controller; none where it may be used.
+    pub fn unusable(&self) -> Vec<UnusableController> {
+        let is_unstable = self.designed.view.audit.stability.verdict == Verdict::Violated;
+        let stability = is_unstable.then_some(UnusableController::UnstablePlant);
         let PrefilterGain { largest, .. } = PrefilterGain::of_loop(&self.designed.problem.compensation);
         let is_designed = self.declared_prefilter.is_some() && !self.is_met();
         let amplifies = is_designed && largest > UNUSABLE_PREFILTER_GAIN;
-        let prefilter = amplifies
-            .then(|| format!("its prefilter multiplies the reference by up to {}", significant(largest, 3)));
-        let reasons: Vec<String> = stability.into_iter().chain(prefilter).collect();
-        (!reasons.is_empty()).then(|| reasons.join(", and "))
+        let prefilter = amplifies.then_some(UnusableController::PrefilterGain(largest));
+        stability.into_iter().chain(prefilter).collect()
     }
+}
+
+/// Reason not to use a designed controller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum UnusableController {
+    /// It makes a plant of the family unstable.
+    UnstablePlant,
+    /// Largest factor by which its prefilter multiplies the reference.
+    PrefilterGain(f64),
 }
 
 /// Gain of a prefilter from which a loop that does not satisfy its specifications is not to be
@@ -154,13 +158,12 @@ pub(super) fn pole_range(limits: &[DesignLimit]) -> PoleRange {
     }
 }
 
-/// The problem with the limits that are specifications as further ones, each named by its key.
+/// The problem with the limits that are specifications as further ones, without names.
 pub(super) fn limited(given: &RobustProblem, limits: &[DesignLimit]) -> RobustProblem {
     let mut problem = given.clone();
     for limit in limits {
         let Some(specification) = limit.specification.clone() else { continue };
         problem.specifications.push(specification);
-        problem.specification_names.push(SpecificationName::DesignLimit(limit.kind));
         problem.design_limits.push(limit.kind);
     }
     problem
@@ -173,7 +176,6 @@ pub(super) fn split(given: &RobustProblem, audit: &Audit) -> (RobustProblem, Aud
     let (audit, others) = audit.split_off(own);
     let mut problem = given.clone();
     problem.specifications.truncate(own);
-    problem.specification_names.truncate(own);
     let kinds = std::mem::take(&mut problem.design_limits);
     (problem, audit, kinds.into_iter().zip(others).collect())
 }

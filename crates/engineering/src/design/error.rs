@@ -3,6 +3,7 @@
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::watch::Stopped;
 
+use super::Explanation;
 use crate::impossible_steps::{ImpossibleSteps, impossible_steps};
 use crate::robust::{RobustError, RobustProblem};
 use crate::setup::{ControlError, Setup};
@@ -23,8 +24,8 @@ pub enum DesignError {
     )]
     Admittance,
     /// The search found no controller; with what was known of the problem.
-    #[error("the search ended without a controller{}", .0.iter().map(|one| format!("; {one}")).collect::<String>())]
-    NoController(Vec<String>),
+    #[error("the search ended without a controller")]
+    NoController(Vec<Explanation>),
     /// Required steps that no controller makes on the rig.
     #[error("no controller makes {} of the required steps on this rig", .0.steps.len())]
     ImpossibleSteps(ImpossibleSteps),

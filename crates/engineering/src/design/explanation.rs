@@ -1,15 +1,18 @@
 //! What is known about a problem whatever a search finds: impossibilities, and what will be hard.
 
-mod words;
-
 use phea_qft::design::{Finding, FindingSeverity};
 use phea_qft::verification::{PlantPoint, SpecificationMargin};
 
-/// One sentence on what is impossible or hard for a controller.
+use crate::limit_kind::DesignLimitKind;
+use crate::robust::RobustProblem;
+
+/// One fact that is impossible or hard for a controller.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Explanation {
-    /// For an engineer.
-    pub sentence: String,
+    /// The fact.
+    pub fact: ExplainedFact,
+    /// The specifications that it concerns, each by the index that the fact names it by.
+    pub limits: Vec<(usize, ExplainedLimit)>,
     /// Whether it means that no controller satisfies the specifications.
     pub is_impossible: bool,
     /// rad/s, where it happens.
@@ -22,17 +25,46 @@ pub struct Explanation {
     pub relaxation_db: Option<f64>,
 }
 
+/// A fact about a problem whatever a search finds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ExplainedFact {
+    /// A finding of the diagnosis.
+    Finding(Finding),
+    /// Limits on tracking alone, wider than the plants of the family differ: a prefilter without
+    /// feedback could keep them.
+    NothingAsksForFeedback,
+}
+
+/// A specification that an explanation concerns.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ExplainedLimit {
+    /// A specification of the project, by its name.
+    Specification(String),
+    /// A limit of what may be built.
+    Design(DesignLimitKind),
+}
+
 impl Explanation {
-    /// A finding of the diagnosis in words, which name each specification by its index.
-    pub fn of(finding: &Finding, name_of: &dyn Fn(usize) -> String) -> Explanation {
+    /// A finding of the diagnosis of a problem.
+    pub fn of(finding: &Finding, problem: &RobustProblem) -> Explanation {
+        let specifications = finding.specifications();
         Explanation {
-            sentence: words::FindingWords { finding, name_of }.to_string(),
+            limits: specifications.iter().map(|index| (*index, limit(problem, *index))).collect(),
+            fact: ExplainedFact::Finding(finding.clone()),
             is_impossible: finding.severity() == FindingSeverity::Impossible,
             frequency_rad_per_s: frequency(finding),
             plants: plants(finding),
-            specifications: finding.specifications(),
+            specifications,
             relaxation_db: finding.relaxation_db(),
         }
+    }
+}
+
+fn limit(problem: &RobustProblem, index: usize) -> ExplainedLimit {
+    let own = problem.specifications.len() - problem.design_limits.len();
+    match index.checked_sub(own).and_then(|limit| problem.design_limits.get(limit)) {
+        Some(kind) => ExplainedLimit::Design(*kind),
+        None => ExplainedLimit::Specification(problem.stated(index)),
     }
 }
 

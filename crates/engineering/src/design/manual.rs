@@ -167,21 +167,6 @@ impl ManualLaw {
 }
 
 impl ManualPart {
-    /// As manuals call it.
-    pub fn name(&self) -> &'static str {
-        match self {
-            ManualPart::Proportional { .. } => "P",
-            ManualPart::Integral { .. } => "I",
-            ManualPart::ProportionalIntegral { .. } => "PI",
-            ManualPart::ProportionalIntegralDerivative { .. } => "PID with filter",
-            ManualPart::LowPass { .. } => "low pass",
-            ManualPart::SecondOrderLowPass { .. } => "low pass of second order",
-            ManualPart::Lead { .. } => "lead",
-            ManualPart::Lag { .. } => "lag",
-            ManualPart::Notch { .. } => "notch",
-        }
-    }
-
     fn elements(&self) -> Vec<Element> {
         match *self {
             ManualPart::Proportional { gain } => vec![Element::Gain(gain)],

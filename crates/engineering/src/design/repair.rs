@@ -7,10 +7,8 @@
 //!   met      -> no linear plant does what the machine does: what the run met
 //! ```
 
-mod words;
-
 use phea_dynamics::uncertain_plant::UncertainPlant;
-use phea_qft::design::DesignStatus;
+use phea_qft::design::{ControllerChoice, DesignStatus};
 use phea_qft::family::{Family, UncertainFamily};
 use phea_qft::verification::Verdict;
 
@@ -18,7 +16,8 @@ use super::by_steps::SteppedPlants;
 use super::command_of_steps::with_command_of_steps;
 use super::{DesignError, DesignPart, DesignRun, ProjectDesign, tried_design, unless_stopped};
 use crate::audit::{ProjectAudit, audit_problem, try_to_prove};
-use crate::family::family;
+use crate::family::{ProjectFamilyError, family};
+use crate::project::{DeclaredLine, Project};
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::source::Source;
@@ -65,8 +64,34 @@ pub struct Repair {
     /// Where it is met, the first design; otherwise the controller that comes nearest, where there
     /// is one.
     pub other: Option<Box<ProjectDesign>>,
-    /// What was done and what cannot be achieved, for an engineer.
-    pub sentences: Vec<String>,
+    /// Error of the family with waves in its lines, whose plant was to be added; `None` where that
+    /// family exists, or was not needed.
+    pub no_family: Option<ProjectFamilyError>,
+    /// Changes of the project that may let a controller satisfy every specification with waves;
+    /// empty where one does, or none was found.
+    pub remedies: Vec<RepairRemedy>,
+}
+
+/// A change of the project that may let a controller satisfy every specification with waves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RepairRemedy {
+    /// A line whose quarter wave is beyond the last frequency at which |L| = 1.
+    ShorterLine {
+        /// Its greatest length, m.
+        below_m: f64,
+    },
+    /// Known damping of the waves by the wall of a hose.
+    WallDamping,
+    /// A controller of higher order.
+    HigherOrder {
+        /// Largest number of poles of the search.
+        maximum_order: usize,
+    },
+    /// Specifications that require less bandwidth.
+    LessBandwidth {
+        /// Relaxation of all limits that suffices, where one is known, dB.
+        relaxation_db: Option<f64>,
+    },
 }
 
 impl Repair {
@@ -79,7 +104,8 @@ impl Repair {
             after: None,
             whole: None,
             other: None,
-            sentences: vec![],
+            no_family: None,
+            remedies: vec![],
         }
     }
 
@@ -90,7 +116,7 @@ impl Repair {
 }
 
 /// The current stage, for the watch.
-const STAGE: &str = "designing again, with waves in the lines";
+const STAGE: &str = "designing again";
 
 /// The design after the correction by the machine; unchanged if the machine does not contradict it.
 pub(super) fn repaired(
@@ -118,9 +144,6 @@ pub(super) fn repaired(
             told
         }
     };
-    if let (RepairStatus::Met, Some(run)) = (repair.status, contradicting_waves(&design)) {
-        repair.sentences.push(words::stable_with_waves(run));
-    }
     if repair.status == RepairStatus::Stopped {
         design.leave(DesignPart::Repair);
     }
@@ -132,8 +155,6 @@ pub(super) fn repaired(
         })?;
         design.unfinished = unfinished;
     }
-    let runs = design.trial.iter().flat_map(|trial| &trial.runs);
-    repair.sentences.extend(words::left(runs));
     Ok(ProjectDesign { repair: Some(repair), ..design })
 }
 
@@ -145,16 +166,13 @@ fn with_waves(
     watch: Watch<'_>,
 ) -> Result<Repair, DesignError> {
     let nothing = Repair::without(RepairStatus::NothingToTakeIn);
-    let (Some(contradicting), Some(alone)) = (contradicting_waves(told), waves_alone(setup)) else {
+    let (Some(contradicting), Some(alone)) = (told.contradicting_waves(), waves_alone(setup)) else {
         return Ok(nothing);
     };
     let plant = match family(&Setup::new(&alone)?, source) {
         Ok(Family::Uncertain(family)) => family.plant().clone(),
         Ok(Family::Measured(_)) => return Ok(nothing),
-        Err(error) => {
-            let sentences = vec![format!("the plant with waves in its lines cannot be added: {error}")];
-            return Ok(Repair { sentences, ..nothing });
-        }
+        Err(error) => return Ok(Repair { no_family: Some(error), ..nothing }),
     };
     let before = audit_problem(&alone_in_loop(&plant, told), watch)?;
     let known = Repair {
@@ -164,27 +182,63 @@ fn with_waves(
         ..nothing
     };
     if before.audit.verdict == Verdict::Met {
-        let sentences = vec![words::stable_with_waves(contradicting)];
-        return Ok(Repair { taken_in: None, sentences, ..known });
+        return Ok(Repair { taken_in: None, ..known });
     }
     let Some((status, found)) = designed_again((source, setup), run, (&plant, told), watch)? else {
-        let sentences = vec![words::nothing_found()];
-        return Ok(Repair { status: RepairStatus::NotStabilised, sentences, ..known });
+        return Ok(Repair { status: RepairStatus::NotStabilised, ..known });
     };
     let after = Some(audit_problem(&alone_in_loop(&plant, &found), watch)?);
     let whole = match status {
         RepairStatus::Met => family_with_waves((source, setup), &found, watch)?,
         _ => None,
     };
-    let repair = Repair { status, after, whole, ..known };
-    let sentences = words::sentences(setup.project, &repair, told, &found);
-    Ok(Repair { sentences, other: Some(Box::new(found)), ..repair })
+    let remedies = match status {
+        RepairStatus::Met => vec![],
+        _ => remedies(setup.project, status, known.quarter_wave_rad_per_s, told),
+    };
+    Ok(Repair { status, after, whole, remedies, other: Some(Box::new(found)), ..known })
 }
 
-/// The run with waves, if it contradicts the design.
-fn contradicting_waves(told: &ProjectDesign) -> Option<&TrialRun> {
-    let mut runs = told.trial.iter().flat_map(|trial| &trial.runs);
-    runs.find(|run| run.agreement == Agreement::Contradicts && run.quarter_wave_rad_per_s.is_some())
+/// Changes that may help: a line so short that its quarter wave is beyond the last frequency at
+/// which |L| = 1, a wall that damps, a longer controller, less bandwidth.
+fn remedies(
+    project: &Project,
+    status: RepairStatus,
+    quarter_wave_rad_per_s: Option<f64>,
+    told: &ProjectDesign,
+) -> Vec<RepairRemedy> {
+    let mut ways = Vec::new();
+    let lines = project.actuator.as_ref().map(|actuator| [&actuator.line.a, &actuator.line.b]);
+    let longest = lines.iter().flatten().filter_map(|line| DeclaredLine::length(line)).fold(0.0, f64::max);
+    let crossing = told.designed.figures.last_crossing_rad_per_s();
+    if let (Some(own), Some(quarter)) = (crossing, quarter_wave_rad_per_s)
+        && own > quarter
+        && longest > 0.0
+    {
+        ways.push(RepairRemedy::ShorterLine { below_m: longest * quarter / own });
+    }
+    if lines.iter().flatten().any(|line| line.hose().is_some()) {
+        ways.push(RepairRemedy::WallDamping);
+    }
+    if let ControllerChoice::Grow { maximum_order } | ControllerChoice::Any { maximum_order, .. } =
+        told.options.controller
+    {
+        ways.push(RepairRemedy::HigherOrder { maximum_order });
+    }
+    let relaxation_db = match status {
+        RepairStatus::Infeasible { relaxation_db } => Some(relaxation_db),
+        _ => None,
+    };
+    ways.push(RepairRemedy::LessBandwidth { relaxation_db });
+    ways
+}
+
+impl ProjectDesign {
+    /// The run with waves in its lines, where that contradicts the design.
+    pub fn contradicting_waves(&self) -> Option<&TrialRun> {
+        let mut runs = self.trial.iter().flat_map(|trial| &trial.runs);
+        runs.find(|run| run.agreement == Agreement::Contradicts && run.quarter_wave_rad_per_s.is_some())
+    }
 }
 
 /// One plant in the loop of a design.

@@ -133,14 +133,13 @@ fn searched(
     let run = DesignRun { aimed: aimed.clone(), problem, outcome, led: None };
     let (run, proven) = proven::proven((setup, aimed), run, &options, watch)?;
     let DesignRun { problem, outcome, .. } = &run;
-    let explained = |finding: &Finding| Explanation::of(finding, &|index| aimed.stated(index));
+    let explained = |finding: &Finding| Explanation::of(finding, aimed);
     let explanations = outcome.findings.iter().map(explained).collect::<Vec<_>>();
     let Some(design) = outcome.design.clone() else {
         if outcome.stopped {
             return Err(Stopped.into());
         }
-        let sentences = explanations.into_iter().map(|explanation| explanation.sentence).collect();
-        return Err(DesignError::NoController(sentences));
+        return Err(DesignError::NoController(explanations));
     };
     let mut told = match proven {
         Some(told) => told,

@@ -43,6 +43,16 @@ pub struct LoopFigures {
     pub delay_margin_s: Option<f64>,
 }
 
+impl LoopFigures {
+    /// Highest frequency at which |L| of the nominal loop is 1, where a resonance may bring it far
+    /// beyond the crossover, rad/s; `None` where |L| does not cross 1, or the loop is not known to
+    /// be stable.
+    pub fn last_crossing_rad_per_s(&self) -> Option<f64> {
+        let nominal = self.nominal.as_ref()?;
+        Some(nominal.crossover_rad_per_s).filter(|crossing| *crossing > 0.0)
+    }
+}
+
 impl AuditedController {
     /// A controller with the audit of its loop.
     ///

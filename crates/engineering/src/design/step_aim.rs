@@ -18,7 +18,7 @@ use crate::project::{DeclaredLimit, DeclaredSpecification, Project, ResponseWish
 use crate::robust::{RobustError, RobustProblem};
 use crate::setup::Setup;
 use crate::simulate::{ReachedStep, TimeRequirement, TrackingWish};
-use crate::specification::{SpecificationName, specification, specifications};
+use crate::specification::{specification, specifications};
 use phea_dynamics::closed_loop::ClosedLoop;
 
 /// How often a design is repeated with stricter limits.
@@ -154,13 +154,11 @@ impl StepAim {
         }
         if let Some(required) = required_step(given) {
             problem.specifications.push(self.towards(required)?);
-            problem.specification_names.push(SpecificationName::DesignLimit(DesignLimitKind::RequiredStep));
             problem.design_limits.push(DesignLimitKind::RequiredStep);
         }
         let led = self.prefilter_gain.and_then(|most| without_prefilter(&problem.specifications, most));
         if let Some(specification) = led {
             problem.specifications.push(specification);
-            problem.specification_names.push(SpecificationName::DesignLimit(DesignLimitKind::PrefilterGain));
             problem.design_limits.push(DesignLimitKind::PrefilterGain);
         }
         Ok(problem)

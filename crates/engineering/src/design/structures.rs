@@ -11,7 +11,7 @@ use phea_qft::design::{
 use phea_qft::loop_shaping::Structure;
 use phea_qft::verification::SpecificationMargin;
 
-use super::{DesignError, DesignRun, ManualLaw, ManualPart, NominalMargins, ProjectDesign};
+use super::{DesignError, DesignRun, ManualLaw, ManualPart, NominalMargins, ProjectDesign, SearchedLimit};
 use crate::audit::{nominal_margins, steps_of_members};
 use crate::project::{STRUCTURES, StructureChoice, word_of};
 use crate::robust::RobustProblem;
@@ -22,8 +22,8 @@ use crate::simulate::ReachedStep;
 pub struct ReachedStructure {
     /// Its name; `None` for one of growing order or a given one.
     pub name: Option<NamedStructure>,
-    /// What a manual calls a law that was found for a PID, where its T_d would not be positive.
-    pub other_words: Option<String>,
+    /// The parts of a law that was found for a PID, where its T_d would not be positive.
+    pub no_pid: Option<ManualLaw>,
     /// Its factors.
     pub structure: Structure,
     /// Number of poles.
@@ -35,8 +35,8 @@ pub struct ReachedStructure {
     /// The least margin, to the limits that were searched with, of the plants and frequencies that
     /// were searched with; absent where no controller makes them stable.
     pub least: Option<SpecificationMargin>,
-    /// What that limit is called, where it leaves the loop no room.
-    pub binding: Option<String>,
+    /// The limit of that margin, where it leaves the loop no room.
+    pub binding: Option<SearchedLimit>,
     /// The lowest frequency that a zero was looked for at, where one ended there, rad/s.
     pub slowest_zero_rad_per_s: Option<f64>,
     /// Margins of the nominal loop.
@@ -125,9 +125,10 @@ fn reached_by(
     let audited = if is_chosen { audited_least(told) } else { None };
     let least = tried.least.clone().map(|sampled| audited.unwrap_or(sampled));
     let own = run.aimed.specifications.len() - run.aimed.design_limits.len();
-    let name_of = |margin: &SpecificationMargin| match margin.specification {
-        index if index < own => Some(told.named(index)),
-        index => run.aimed.specification_names.get(index).map(|name| name.words().to_string()),
+    let limit_of = |margin: &SpecificationMargin| {
+        let limit =
+            margin.specification.checked_sub(own).and_then(|limit| run.aimed.design_limits.get(limit));
+        limit.map_or(SearchedLimit::Specification(margin.specification), |kind| SearchedLimit::Design(*kind))
     };
     let leaves_no_room = |margin: &&SpecificationMargin| match told.options.objective {
         Objective::BestWorstMargin => true,
@@ -146,14 +147,14 @@ fn reached_by(
         steps,
         misses_on_rig: false,
         name: tried.name,
-        other_words: law.filter(|_| tried.name == Some(NamedStructure::Pid)).and_then(words_of_no_pid),
+        no_pid: law.filter(|_| tried.name == Some(NamedStructure::Pid)).and_then(no_pid),
         order: tried.structure.order()?,
         relative_degree: tried.structure.relative_degree()?,
         is_chosen,
         slowest_zero_rad_per_s: tried.structure.slowest_zero_touched(&tried.free_numbers),
         structure: tried.structure.clone(),
         ending: tried.ending,
-        binding: least.as_ref().filter(leaves_no_room).and_then(name_of),
+        binding: least.as_ref().filter(leaves_no_room).map(limit_of),
         least,
         nominal,
         high_frequency_gain_db,
@@ -161,12 +162,12 @@ fn reached_by(
     })
 }
 
-/// `PI with lag`, for a law that is no PID of positive terms; `None` for one that is.
-fn words_of_no_pid(law: &Controller) -> Option<String> {
-    let words = ManualLaw::new(&law.feedback, Some(NamedStructure::Pid)).ok()?;
+/// The parts of a law that is no PID of positive terms, such as a PI with a lag; `None` for one
+/// that is.
+fn no_pid(law: &Controller) -> Option<ManualLaw> {
+    let law = ManualLaw::new(&law.feedback, Some(NamedStructure::Pid)).ok()?;
     let is_pid = |part: &ManualPart| matches!(part, ManualPart::ProportionalIntegralDerivative { .. });
-    let names: Vec<&str> = words.parts.iter().map(ManualPart::name).collect();
-    (!words.parts.iter().any(is_pid)).then(|| names.join(" with "))
+    (!law.parts.iter().any(is_pid)).then_some(law)
 }
 
 /// The least margin that the audit of a design found to anything that it is judged by.

@@ -40,27 +40,6 @@ impl DesignPart {
             DesignPart::TemplatesAndBounds => "templates_and_bounds",
         }
     }
-
-    /// The sentence on a stopped design without it.
-    fn sentence(self) -> &'static str {
-        match self {
-            DesignPart::Search => "the search for a controller was not finished: another may be better",
-            DesignPart::CommandOfSteps => {
-                "the largest command that the steps of the scenarios take was not searched for"
-            }
-            DesignPart::Trial => {
-                "no trial on the nonlinear rig was finished: what it does under this controller is not known"
-            }
-            DesignPart::Proof => "nothing is proven of the designed controller",
-            DesignPart::Relaxations => "what relaxing a limit would buy was not computed",
-            DesignPart::WithoutSamples => "the design without samples was not made for comparison",
-            DesignPart::GivenController => "the audit of the given controller was not finished",
-            DesignPart::Repair => {
-                "the repair was not finished: the nonlinear simulation contradicts this controller"
-            }
-            DesignPart::TemplatesAndBounds => "templates and bounds are not among the files",
-        }
-    }
 }
 
 impl ProjectDesign {
@@ -73,11 +52,6 @@ impl ProjectDesign {
     /// Notes a part that the watch left unfinished.
     pub fn leave(&mut self, part: DesignPart) {
         leave(&mut self.unfinished, part);
-    }
-
-    /// What a stopped design lacks, a sentence each; empty where it was not stopped.
-    pub fn unfinished_sentences(&self) -> Vec<String> {
-        self.unfinished.iter().map(|part| part.sentence().to_string()).collect()
     }
 }
 

@@ -1,35 +1,25 @@
-//! A part of a text that knows its position.
+//! A part of the text of a change that knows its position.
 
-use crate::project::{Findings, Place, RawFinding};
+use std::ops::Range;
+
+use super::change::RequestedChange;
+use super::refused::{ChangeProblem, RefusedChange};
 
 /// A part of a text, without the space around it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TextPiece<'a> {
     pub(super) words: &'a str,
-    text: usize,
+    requested: &'a RequestedChange,
     start: usize,
 }
 
 impl<'a> TextPiece<'a> {
-    /// The whole of a text.
-    pub(super) fn whole(words: &'a str, text: usize) -> TextPiece<'a> {
-        TextPiece { words, text, start: 0 }.trimmed()
+    /// The whole text of a change.
+    pub(super) fn whole(requested: &'a RequestedChange) -> TextPiece<'a> {
+        TextPiece { words: &requested.text, requested, start: 0 }.trimmed()
     }
 
-    pub(super) fn place(&self) -> Place {
-        Place { text: self.text, start: self.start, end: self.start + self.words.len() }
-    }
-
-    /// The position of a part of it.
-    pub(super) fn place_of(&self, range: &std::ops::Range<usize>) -> Place {
-        Place { text: self.text, start: self.start + range.start, end: self.start + range.end }
-    }
-
-    pub(super) fn text(&self) -> usize {
-        self.text
-    }
-
-    pub(super) fn range(&self) -> std::ops::Range<usize> {
+    pub(super) fn range(&self) -> Range<usize> {
         self.start..self.start + self.words.len()
     }
 
@@ -55,21 +45,21 @@ impl<'a> TextPiece<'a> {
         self.cut(end, end)
     }
 
-    /// Refuses it.
-    pub(super) fn refuse<T>(
-        &self,
-        findings: &mut Findings,
-        message: impl Into<String>,
-        help: &str,
-    ) -> Option<T> {
-        findings.push(RawFinding::error(self.place(), message).help(help));
-        None
+    /// Refuses the change for this part of it.
+    pub(super) fn refused(&self, reason: ChangeProblem) -> Box<RefusedChange> {
+        self.refused_at(&(0..self.words.len()), reason)
+    }
+
+    /// Refuses the change for a range of this part.
+    pub(super) fn refused_at(&self, range: &Range<usize>, reason: ChangeProblem) -> Box<RefusedChange> {
+        let part = self.start + range.start..self.start + range.end;
+        Box::new(RefusedChange { requested: self.requested.clone(), part, reason })
     }
 
     fn cut(&self, end: usize, start: usize) -> [TextPiece<'a>; 2] {
         let part = |from: usize, to: usize| {
             let words = self.words.get(from..to).unwrap_or_default();
-            TextPiece { words, text: self.text, start: self.start + from }.trimmed()
+            TextPiece { words, start: self.start + from, ..*self }.trimmed()
         };
         [part(0, end), part(start, self.words.len())]
     }

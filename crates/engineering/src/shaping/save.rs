@@ -38,11 +38,8 @@ fn read_back(
         Shaped::Controller => again.project.controller.map(|controller| controller.transfer),
         Shaped::Prefilter => again.project.prefilter.map(|prefilter| prefilter.transfer),
     };
-    if transfer.map(|transfer| transfer.as_elements()).unwrap_or_default() == elements {
-        Ok(())
-    } else {
-        Err(ShapingError::NotWritten { reason: "it would not read back as these elements".to_string() })
-    }
+    let is_same = transfer.map(|transfer| transfer.as_elements()).unwrap_or_default() == elements;
+    if is_same { Ok(()) } else { Err(ShapingError::NotWritten) }
 }
 
 /// A source in which one file has other bytes.

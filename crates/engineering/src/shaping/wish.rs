@@ -7,10 +7,8 @@
 use phea_qft::manual_shaping::{ElementPattern, WantedPoint};
 
 use super::piece::TextPiece;
-use super::words::element_words;
-use crate::project::{Findings, RawFinding};
+use super::refused::{ChangeProblem, RefusedChange};
 use crate::quantity::{self, ANGULAR_FREQUENCY};
-use crate::spelling::nearest;
 
 /// An element that is to be solved for.
 pub(super) struct ElementWish<'a> {
@@ -20,7 +18,6 @@ pub(super) struct ElementWish<'a> {
     pub(super) point: WantedPoint,
 }
 
-const EXAMPLE: &str = "for instance: lead through -6 dB, -130 deg at 20 rad/s";
 /// Damping of a notch's poles where none is given.
 const NOTCH_DAMPING: f64 = 0.5;
 /// Damping of a roll-off where none is given.
@@ -39,58 +36,47 @@ const SOLVED: [(&str, ElementPattern); 10] = [
     ("notch", ElementPattern::NotchHere { pole_damping_ratio: NOTCH_DAMPING }),
 ];
 
-/// Reads a request; `None` where it is invalid, with the reason in the findings.
-pub(super) fn read<'a>(whole: &TextPiece<'a>, findings: &mut Findings) -> Option<ElementWish<'a>> {
-    let Some([head, place]) = whole.split("through") else {
-        return whole.refuse(findings, "it does not say `through` which point", EXAMPLE);
-    };
-    let Some([point, at]) = place.split_last(" at ") else {
-        return place.refuse(findings, "it does not say `at` which frequency", EXAMPLE);
-    };
+/// Kinds of elements that are solved for.
+pub fn solved_kinds() -> [&'static str; 10] {
+    SOLVED.map(|(name, _)| name)
+}
+
+/// Reads a request.
+pub(super) fn read<'a>(whole: &TextPiece<'a>) -> Result<ElementWish<'a>, Box<RefusedChange>> {
+    let [head, place] = whole.split("through").ok_or_else(|| whole.refused(ChangeProblem::NoPoint))?;
+    let [point, at] = place.split_last(" at ").ok_or_else(|| place.refused(ChangeProblem::NoFrequency))?;
     let numbered =
         head.words.split_whitespace().next().is_some_and(|word| word.starts_with(char::is_numeric));
     let (replaced, head) = match head.split("=").filter(|_| numbered) {
         Some([number, rest]) => (Some(number), rest),
         None => (None, head),
     };
-    let pattern = pattern(&head, findings)?;
-    let [magnitude_db, phase_deg] = coordinates(&point, findings)?;
-    let frequency_rad_per_s = frequency(&at, findings)?;
-    Some(ElementWish {
-        replaced,
-        pattern,
-        point: WantedPoint { frequency_rad_per_s, magnitude_db, phase_deg },
-    })
+    let pattern = pattern(&head)?;
+    let [magnitude_db, phase_deg] = coordinates(&point)?;
+    let frequency_rad_per_s = frequency(&at)?;
+    Ok(ElementWish { replaced, pattern, point: WantedPoint { frequency_rad_per_s, magnitude_db, phase_deg } })
 }
 
 /// The element, and its number that is given.
-fn pattern(head: &TextPiece<'_>, findings: &mut Findings) -> Option<ElementPattern> {
+fn pattern(head: &TextPiece<'_>) -> Result<ElementPattern, Box<RefusedChange>> {
     let [kind, given] = head.first_word();
     let Some((_, pattern)) = SOLVED.iter().find(|(name, _)| *name == kind.words) else {
-        let names = SOLVED.map(|(name, _)| name);
-        let expected = format!("one of {}", names.join(", "));
         let fixed = ["integrator", "differentiator"].contains(&kind.words);
-        let message = if fixed {
-            format!("`{}` has no number that could be solved for", kind.words)
-        } else {
-            format!("`{}` cannot be solved for", kind.words)
-        };
-        let near = nearest(kind.words, names).map(|name| format!("did you mean `{name}`?"));
-        findings.push(RawFinding::error(kind.place(), message).expected(expected).maybe_help(near));
-        return None;
+        let reason = if fixed { ChangeProblem::WithoutNumber } else { ChangeProblem::NotSolved };
+        return Err(kind.refused(reason(kind.words.to_string())));
     };
     if given.words.is_empty() {
-        return Some(*pattern);
+        return Ok(*pattern);
     }
     let [with, setting] = given.first_word();
     if with.words != "with" {
-        return given.refuse(findings, format!("`{}` is not understood", given.words), EXAMPLE);
+        return Err(given.refused(ChangeProblem::NotUnderstood(given.words.to_string())));
     }
     let [key, value] = match setting.split("=") {
         Some(parts) => parts,
         None => setting.first_word(),
     };
-    numbered(*pattern, &key, &value, findings)
+    numbered(*pattern, &key, &value)
 }
 
 /// The pattern with a number that is given.
@@ -98,67 +84,53 @@ fn numbered(
     pattern: ElementPattern,
     key: &TextPiece<'_>,
     value: &TextPiece<'_>,
-    findings: &mut Findings,
-) -> Option<ElementPattern> {
+) -> Result<ElementPattern, Box<RefusedChange>> {
     match (pattern, key.words) {
         (ElementPattern::RollOff { .. }, "damping_ratio") => {
-            Some(ElementPattern::RollOff { damping_ratio: plain(value, findings)? })
+            Ok(ElementPattern::RollOff { damping_ratio: plain(value)? })
         }
         (ElementPattern::NotchHere { .. }, "damping_ratio") => {
-            Some(ElementPattern::NotchHere { pole_damping_ratio: plain(value, findings)? })
+            Ok(ElementPattern::NotchHere { pole_damping_ratio: plain(value)? })
         }
         (ElementPattern::NotchHere { .. }, "frequency") => {
-            Some(ElementPattern::NotchBeside { natural_frequency: frequency(value, findings)? })
+            Ok(ElementPattern::NotchBeside { natural_frequency: frequency(value)? })
         }
-        _ => {
-            let message = format!("`{}` cannot be given for {}", key.words, element_words(pattern));
-            let help = "a notch takes `frequency` or `damping_ratio`, a roll_off `damping_ratio`";
-            key.refuse(findings, message, help)
-        }
+        _ => Err(key.refused(ChangeProblem::NotGiven { key: key.words.to_string(), pattern })),
     }
 }
 
 /// Magnitude in dB and phase in degrees, whichever are given.
-fn coordinates(point: &TextPiece<'_>, findings: &mut Findings) -> Option<[Option<f64>; 2]> {
+fn coordinates(point: &TextPiece<'_>) -> Result<[Option<f64>; 2], Box<RefusedChange>> {
     let parts = point.split(",").map_or_else(|| vec![*point], |parts| parts.to_vec());
     let mut found = [None, None];
     for part in parts {
         let (index, value) = match (part.before("dB"), part.before("deg").or(part.before("°"))) {
-            (Some(number), _) => (0, plain(&number, findings)?),
-            (None, Some(number)) => (1, plain(&number, findings)?),
+            (Some(number), _) => (0, plain(&number)?),
+            (None, Some(number)) => (1, plain(&number)?),
             (None, None) => {
-                let message = format!("`{}` is not a coordinate of the chart", part.words);
-                return part.refuse(findings, message, "write a magnitude in dB, a phase in deg, or both");
+                return Err(part.refused(ChangeProblem::NotACoordinate(part.words.to_string())));
             }
         };
         match found.get_mut(index) {
             Some(slot @ None) => *slot = Some(value),
-            _ => return part.refuse(findings, "this coordinate is given twice", EXAMPLE),
+            _ => return Err(part.refused(ChangeProblem::CoordinateGivenTwice)),
         }
     }
-    Some(found)
+    Ok(found)
 }
 
-fn plain(piece: &TextPiece<'_>, findings: &mut Findings) -> Option<f64> {
+fn plain(piece: &TextPiece<'_>) -> Result<f64, Box<RefusedChange>> {
     match piece.words.parse::<f64>() {
-        Ok(value) if value.is_finite() => Some(value),
-        _ => piece.refuse(findings, format!("`{}` is not a number", piece.words), EXAMPLE),
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err(piece.refused(ChangeProblem::NotANumber(piece.words.to_string()))),
     }
 }
 
 /// rad/s where no unit is given.
-fn frequency(piece: &TextPiece<'_>, findings: &mut Findings) -> Option<f64> {
+fn frequency(piece: &TextPiece<'_>) -> Result<f64, Box<RefusedChange>> {
     if let Some(value) = piece.words.parse::<f64>().ok().filter(|value| value.is_finite()) {
-        return Some(value);
+        return Ok(value);
     }
-    match quantity::parse(piece.words, &ANGULAR_FREQUENCY) {
-        Ok(value) => Some(value),
-        Err(error) => {
-            let place = piece.place_of(&error.range);
-            let found = RawFinding::error(place, error.fault.to_string());
-            let found = found.maybe_expected(error.expected.map(|expected| expected.to_string()));
-            findings.push(found.maybe_help(error.help.map(|help| help.to_string())));
-            None
-        }
-    }
+    quantity::parse(piece.words, &ANGULAR_FREQUENCY)
+        .map_err(|error| piece.refused_at(&error.range.clone(), ChangeProblem::Frequency(error)))
 }

@@ -3,7 +3,6 @@
 use phea_qft::specification::ClosedLoop;
 
 use super::kind::closed_loop_words;
-use crate::limit_kind::{DesignLimitKind, limit_words};
 
 /// The subject of a limit on a closed loop, by which the limit is named.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,8 +13,6 @@ pub enum SpecificationName {
     RoundedCommand,
     /// The effect on the command of rounding the measurement.
     RoundedMeasurement,
-    /// A limit of a design.
-    DesignLimit(DesignLimitKind),
 }
 
 impl SpecificationName {
@@ -25,7 +22,6 @@ impl SpecificationName {
             SpecificationName::ClosedLoop(closed_loop) => closed_loop_words(closed_loop),
             SpecificationName::RoundedCommand => "force error of the rounded command",
             SpecificationName::RoundedMeasurement => "command error of the rounded measurement",
-            SpecificationName::DesignLimit(kind) => limit_words(kind),
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::document::told_first;
 use super::findings::{findings, of_case};
 use super::front;
-use super::words::{no_number_words, undecided_words};
+use super::words::{judge_error_words, no_number_words, undecided_words};
 use super::{AlternativeColumn, Alternatives, ColumnPart, JudgedAlternative, JudgedCase, MovedRange};
 use crate::answer::{Json, Object};
 use crate::audit::verdict_key;
@@ -33,7 +33,7 @@ fn case(one: &JudgedCase) -> Object {
 }
 
 fn row(one: &JudgedAlternative) -> Object {
-    let failed = one.design.as_ref().err().map_or(String::new(), |reason| reason.to_string());
+    let failed = one.design.as_ref().err().map_or(String::new(), judge_error_words);
     let view = one.design.as_ref().ok();
     let verdict = view.map(|view| verdict_key(view.designed.view.verdict()));
     // the laws of a design that was audited are transfer functions
@@ -76,7 +76,7 @@ fn columns(one: &JudgedAlternative) -> Object {
     let feasible = one.feasible();
     let reason = if feasible.is_some() { String::new() } else { undecided_words(one) };
     let stability = one.design.as_ref().map(|view| verdict_key(view.designed.view.audit.stability.verdict));
-    let failed = one.design.as_ref().err().map_or(String::new(), |reason| reason.to_string());
+    let failed = one.design.as_ref().err().map_or(String::new(), judge_error_words);
     let own = Object::new().known("feasible", feasible, &reason).known(
         "stable_with_its_load",
         stability.ok(),

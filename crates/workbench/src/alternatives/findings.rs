@@ -4,13 +4,13 @@
 use phea_qft::design::ControllerChoice;
 use phea_qft::design::DesignStatus;
 
-use super::words::measure_name;
+use super::words::{judge_error_words, measure_name};
 use super::{
     AlternativeColumns, Alternatives, ComparedMeasure, ComparedMeasures, JudgedAlternative, JudgedCase,
     MovedRange,
 };
 use crate::caveat;
-use crate::design::status_sentence;
+use crate::design::verdict_sentence;
 use crate::grouped::grouped;
 use crate::project::{AS_DECLARED, ImpedanceForm, LINEAR_PARAMETERS};
 use crate::quantity::{DisplayUnit, MotionKind, fitting, significant};
@@ -117,10 +117,10 @@ fn specifications(judged: &[JudgedAlternative], not_reached: usize) -> Vec<Strin
         ));
     }
     let otherwise = named(&|one| match &one.design {
-        Err(reason) => Some(format!("{}: not judged: {reason}", one.name)),
+        Err(reason) => Some(format!("{}: not judged: {}", one.name, judge_error_words(reason))),
         Ok(view) if matches!(view.design.status, DesignStatus::Infeasible(_)) => None,
         Ok(_) if one.feasible() == Some(true) => None,
-        Ok(view) => Some(format!("{}: {}", one.name, status_sentence(view))),
+        Ok(view) => Some(format!("{}: {}", one.name, verdict_sentence(&view.verdict()))),
     });
     sentences.extend(otherwise);
     sentences

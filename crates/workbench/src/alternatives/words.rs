@@ -1,7 +1,8 @@
 //! The names of the columns of alternatives, and why there are no numbers in them.
 
-use super::{FeasibilityUnknown, JudgedAlternative, LengthUnknown, NoFrontValue, NoNumber};
-use crate::design::status_sentence;
+use super::{FeasibilityUnknown, JudgeError, JudgedAlternative, LengthUnknown, NoFrontValue, NoNumber};
+use crate::design::verdict_sentence;
+use crate::error::design_error_words;
 use crate::linearize::no_closed_impedance_words;
 use crate::simulate::{DIVERGED, unmeasured_words};
 use phea_engineering::parts::{PartKind, PartsUnknown, UnstatedPart};
@@ -60,10 +61,18 @@ pub(super) fn measure_name(key: &'static str) -> &'static str {
 /// Entry of a table for a number that the project should state.
 pub(super) const NOT_STATED: &str = "not stated";
 
+/// The error of a part of what is found about an alternative.
+pub(super) fn judge_error_words(error: &JudgeError) -> String {
+    match error {
+        JudgeError::Design(error) => design_error_words(error),
+        error => error.to_string(),
+    }
+}
+
 /// Why a column has no number.
 pub(super) fn no_number_words(reason: &NoNumber) -> String {
     let fixed = match reason {
-        NoNumber::NotJudged(error) => return error.to_string(),
+        NoNumber::NotJudged(error) => return judge_error_words(error),
         NoNumber::Stopped { time_s, word: DIVERGED } => {
             return format!("the run diverges from {time_s} s on");
         }
@@ -145,8 +154,8 @@ fn part_name(part: &UnstatedPart) -> String {
 /// Why it is not known whether an alternative satisfies every specification.
 pub(super) fn undecided_words(one: &JudgedAlternative) -> String {
     match &one.design {
-        Ok(view) => status_sentence(view),
-        Err(reason) => reason.to_string(),
+        Ok(view) => verdict_sentence(&view.verdict()),
+        Err(reason) => judge_error_words(reason),
     }
 }
 
@@ -154,8 +163,8 @@ pub(super) fn undecided_words(one: &JudgedAlternative) -> String {
 pub(super) fn unknown_words(reason: &FeasibilityUnknown) -> String {
     match reason {
         FeasibilityUnknown::NotPrepared(error) => error.to_string(),
-        FeasibilityUnknown::NotDesigned(error) => error.to_string(),
-        FeasibilityUnknown::Undecided(view) => status_sentence(view),
+        FeasibilityUnknown::NotDesigned(error) => judge_error_words(error),
+        FeasibilityUnknown::Undecided(verdict) => verdict_sentence(verdict),
     }
 }
 

@@ -1,14 +1,14 @@
 //! The limits of a design that a given loop keeps or not, in words and in JSON.
 
 use phea_engineering::limit_kind::{
-    DesignLimitKind, ExceededLimit, JudgedLimits, limit_key, limit_unit_key, limit_words, origin_key,
-    origin_words,
+    DesignLimitKind, ExceededLimit, JudgedLimits, limit_key, limit_unit_key, origin_key,
 };
 use phea_qft::verification::Verdict;
 
 use super::ProjectAudit;
 use crate::answer::Object;
 use crate::document::{Cell, Document, Table};
+use crate::limit_kind::{limit_words, origin_words};
 use crate::quantity::{DisplayUnit, significant};
 
 /// A table of those that the loop does not keep, and what it means, or that it keeps all of them;

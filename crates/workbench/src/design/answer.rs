@@ -8,11 +8,13 @@ use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::verification::SpecificationMargin;
 
 use super::AuditedController;
+use super::structure_key;
+use super::words::{objective_key, part_key, searched_limit_name, unusable_words, verdict_key};
 use super::{DesignPart, Explanation, ProjectDesign};
 use super::{limits, manual, pressure_feedback_object, relaxed, structures};
-use super::{objective_key, part_key, status_key, structure_key};
 use crate::answer::{Json, Object};
 use crate::audit;
+use crate::explanation::explanation_sentence;
 use crate::trial::{self, Agreement};
 
 /// A design in JSON, without the keys of every object.
@@ -41,8 +43,8 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
         false => "no machine contradicts the design",
     };
     Ok(Object::new()
-        .with("status", status_key(view))
-        .maybe("unusable", view.unusable())
+        .with("status", verdict_key(&view.verdict()))
+        .maybe("unusable", unusable_words(view))
         .with("unfinished", view.unfinished.iter().map(|part| part.key()).collect::<Vec<_>>())
         .with("objective", objective)
         .with("seed", view.options.seed)
@@ -72,7 +74,7 @@ pub fn body(view: &ProjectDesign) -> Result<Object, LinearError> {
         .each("explanations", &view.explanations, |one| explanation(view, one))
         .maybe("rounding", view.rounding.as_ref().map(|rounding| rounding::row(rounding, &side.view.names)))
         .known("machine", view.trial.as_ref().map(trial::body), why_not_tried(view))
-        .known("repair", view.repair.as_ref().map(repair::row), no_repair))
+        .known("repair", view.repair.as_ref().map(|repair| repair::row(view, repair)), no_repair))
 }
 
 /// The reason for the absence of a trial.
@@ -211,7 +213,7 @@ fn limit_row(view: &ProjectDesign, margin: &SpecificationMargin) -> Object {
     let requirement = side.problem.specifications.get(specification).map(|one| &one.requirement);
     Object::new()
         .with("specification", specification)
-        .with("name", view.named(specification))
+        .with("name", searched_limit_name(view, view.searched_limit(specification)))
         .with("kind", requirement.map_or("", crate::specification::kind_key))
         .with("frequency_rad_per_s", margin.frequency_rad_per_s)
         .with("margin_db", margin.margin_db)
@@ -221,7 +223,7 @@ fn limit_row(view: &ProjectDesign, margin: &SpecificationMargin) -> Object {
 fn explanation(view: &ProjectDesign, explanation: &Explanation) -> Object {
     let names = &view.designed.view.names;
     Object::new()
-        .with("sentence", explanation.sentence.as_str())
+        .with("sentence", explanation_sentence(explanation))
         .with("severity", if explanation.is_impossible { "impossible" } else { "warning" })
         .maybe("frequency_rad_per_s", explanation.frequency_rad_per_s)
         .each("plants", &explanation.plants, |plant| names.named(plant))

@@ -6,14 +6,18 @@ use phea_qft::design::quantization::CoefficientFormat;
 use phea_qft::design::{BINDING_DB, DesignRound, DesignStatus, Objective, Starts};
 use phea_qft::verification::{SpecificationMargin, Verdict};
 
-use super::compared;
+use super::comparison::{ComparedFigure, compared};
 use super::factored;
 use super::relaxed;
+use super::repair::{repair_sentences, repair_words};
+use super::rounding::rounding_sentences;
+use super::unfinished::unfinished_sentence;
+use super::words::{searched_limit_name, structure_words, unusable_words, verdict_sentence};
 use super::{AuditedController, Explanation, ProjectDesign, Repair, RepairStatus};
-use super::{repair_words, status_sentence, structure_words};
 use crate::answer::significant;
 use crate::audit::{self, margin_words, summary};
 use crate::document::{Cell, Document, StatusMark, Table};
+use crate::explanation::explanation_sentence;
 use crate::project::{Loaded, snippet};
 use crate::quantity::DisplayUnit;
 use crate::trial;
@@ -66,7 +70,7 @@ pub fn output(loaded: &Loaded, view: &ProjectDesign) -> Result<Document, LinearE
         out.append(trial::document(trial, None));
     }
     if let Some(repair) = &view.repair {
-        out.append(repaired(loaded, repair)?);
+        out.append(repaired(loaded, view, repair)?);
     }
     out.append(super::pressure_feedback(view));
     out.heading("Controller");
@@ -102,8 +106,8 @@ fn in_project(loaded: &Loaded, view: &ProjectDesign) -> Document {
         Verdict::NotProven => ", though it is not proven",
         _ => ", though it does not satisfy every specification",
     };
-    match view.unusable() {
-        Some(why) => out.verdict(StatusMark::Bad, unusable_words(&why), vec![]),
+    match unusable_words(view) {
+        Some(why) => out.verdict(StatusMark::Bad, not_to_be_used(&why), vec![]),
         None => {
             out.heading(format!("{}{caution}", in_place_of(view)));
             out.preformatted(pasted(loaded, view));
@@ -113,7 +117,7 @@ fn in_project(loaded: &Loaded, view: &ProjectDesign) -> Document {
 }
 
 /// In place of the tables of a controller that must not be used.
-fn unusable_words(why: &str) -> String {
+fn not_to_be_used(why: &str) -> String {
     format!("Do not use this controller: {why}. It is not printed as a part of a project.")
 }
 
@@ -133,15 +137,16 @@ fn in_place_of(view: &ProjectDesign) -> &'static str {
 
 /// How the search ended, what is known whatever a search finds, and the audit of the result.
 pub(crate) fn status(view: &ProjectDesign) -> Document {
-    let mut sentences = view.unfinished_sentences();
-    sentences.extend(view.unusable().map(|why| format!("do not use the designed controller: {why}")));
+    let unfinished = view.unfinished.iter().map(|part| unfinished_sentence(*part).to_string());
+    let mut sentences: Vec<String> = unfinished.collect();
+    sentences.extend(unusable_words(view).map(|why| format!("do not use the designed controller: {why}")));
     sentences.extend(view.explanations.iter().map(|explanation| explanation_words(view, explanation)));
     sentences.extend(summary(&view.designed.view));
     sentences.extend(not_led_sentence(view));
-    sentences.extend(view.rounding.iter().flat_map(|rounding| rounding.sentences(view.gain_per)));
+    sentences.extend(view.rounding.iter().flat_map(|rounding| rounding_sentences(rounding, view.gain_per)));
     let mut out = Document::default();
     let mark = view.designed.view.verdict().into();
-    out.verdict(mark, format!("Design: {}", status_sentence(view)), sentences);
+    out.verdict(mark, format!("Design: {}", verdict_sentence(&view.verdict())), sentences);
     out
 }
 
@@ -156,15 +161,15 @@ fn not_led_sentence(view: &ProjectDesign) -> Option<String> {
 
 /// The consequences of the machine's contradiction, with the controllers that come nearest to what
 /// cannot be achieved.
-fn repaired(loaded: &Loaded, repair: &Repair) -> Result<Document, LinearError> {
+fn repaired(loaded: &Loaded, view: &ProjectDesign, repair: &Repair) -> Result<Document, LinearError> {
     let mut out = Document::default();
-    out.heading(format!("Repair: {}", repair_words(repair)));
-    out.sentences(repair.sentences.iter().cloned());
+    out.heading(format!("Repair: {}", repair_words(repair.status)));
+    out.sentences(repair_sentences(view, repair));
     if let Some(nearest) = repair.nearest() {
         out.heading("Nearest controller");
         out.append(laws(&nearest.designed)?);
-        match nearest.unusable() {
-            Some(why) => out.verdict(StatusMark::Bad, unusable_words(&why), vec![]),
+        match unusable_words(nearest) {
+            Some(why) => out.verdict(StatusMark::Bad, not_to_be_used(&why), vec![]),
             None => {
                 out.heading_on_page(in_place_of(nearest));
                 out.preformatted(pasted(loaded, nearest));
@@ -232,7 +237,7 @@ pub(crate) fn explanation_words(view: &ProjectDesign, explanation: &Explanation)
     let kind = if explanation.is_impossible { "" } else { "to be kept in mind: " };
     let plant = explanation.plants.first().map(|plant| view.designed.view.names.text(plant));
     let plant = plant.filter(|text| !text.is_empty()).map_or(String::new(), |text| format!(" ({text})"));
-    format!("{kind}{}{plant}", explanation.sentence)
+    format!("{kind}{}{plant}", explanation_sentence(explanation))
 }
 
 /// The transfer functions of one controller in factored form; in a sampled loop both before and
@@ -270,17 +275,17 @@ pub(crate) fn side_by_side(view: &ProjectDesign) -> Document {
         ("designed", Some(&view.designed)),
         ("made without samples", view.continuous.as_deref()),
     ];
-    let columns: Vec<(&str, Vec<(String, String)>)> = sides
+    let columns: Vec<(&str, Vec<ComparedFigure>)> = sides
         .into_iter()
         .filter_map(|(name, side)| Some((name, compared(side?, view.controlled_unit()))))
         .collect();
     let mut table = Table::new(std::iter::once("").chain(columns.iter().map(|(name, _)| *name)));
     // a designed loop has limits that the given one has not
-    let names = columns.iter().map(|(_, rows)| rows).max_by_key(|rows| rows.len());
-    for (index, (name, _)) in names.into_iter().flatten().enumerate() {
-        let cell = |rows: &Vec<(String, String)>| {
-            let own = rows.iter().find(|(known, _)| known == name);
-            own.map_or(Cell::Missing, |(_, text)| compared_cell(index, text))
+    let longest = columns.iter().map(|(_, rows)| rows).max_by_key(|rows| rows.len());
+    for ComparedFigure { by, name, .. } in longest.into_iter().flatten() {
+        let cell = |rows: &Vec<ComparedFigure>| {
+            let own = rows.iter().find(|own| own.by == *by);
+            own.map_or(Cell::Missing, |own| own.cell.clone())
         };
         table.row(std::iter::once(name.as_str().into()).chain(columns.iter().map(|(_, rows)| cell(rows))));
     }
@@ -292,14 +297,6 @@ pub(crate) fn side_by_side(view: &ProjectDesign) -> Document {
     });
     out.table(table);
     out
-}
-
-/// The first row holds verdicts.
-fn compared_cell(row: usize, text: &str) -> Cell {
-    match text {
-        "met" | "violated" if row == 0 => Cell::from(text).marked(text == "met"),
-        _ => text.into(),
-    }
 }
 
 /// The first design, if the repair found another one.
@@ -318,7 +315,7 @@ fn limits(view: &ProjectDesign, margins: &[SpecificationMargin]) -> Table {
     let names = &view.designed.view.names;
     let mut found = Table::new(["specification", "rad/s", "margin"].into_iter().chain(names.headings()));
     for SpecificationMargin { specification, frequency_rad_per_s, margin_db, plant, .. } in margins {
-        let name = view.named(*specification).into();
+        let name = searched_limit_name(view, view.searched_limit(*specification)).into();
         let row = [name, Cell::frequency(*frequency_rad_per_s), Cell::margin(*margin_db)];
         found.row(row.into_iter().chain(names.cells(plant).into_iter().map(Cell::from)));
     }

@@ -1,8 +1,7 @@
 //! What may be built: the limits of a design beyond its specifications, with what it reaches.
 
 use phea_engineering::design::{
-    CommandOfSteps, DesignLimit, DesignLimitKind, StepLimit, limit_key, limit_unit_key, limit_words,
-    origin_key, origin_words,
+    CommandOfSteps, DesignLimit, DesignLimitKind, StepLimit, limit_key, limit_unit_key, origin_key,
 };
 use phea_engineering::plant_names::NamedPlant;
 use phea_engineering::simulate::ForceLimit;
@@ -12,6 +11,7 @@ use super::{ProjectDesign, relaxed};
 use crate::answer::{Object, significant};
 use crate::audit::PrefilterGain;
 use crate::document::{Cell, Document, Table};
+use crate::limit_kind::{limit_words, origin_words};
 use crate::quantity::DisplayUnit;
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::portable::magnitude;

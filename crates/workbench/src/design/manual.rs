@@ -30,7 +30,7 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
         }
     };
     let of_gain = Gain::of(view);
-    let row = |part: &ManualPart| [Cell::from(part.name()), Cell::from(settings(part, of_gain))];
+    let row = |part: &ManualPart| [Cell::from(part_name(part)), Cell::from(settings(part, of_gain))];
     out.table(Table::new(["part", "settings"]).with(words.parts.iter().map(row)));
     out.explanation(
         "The parts act in series: PI is K_p (1 + 1/(T_i s)), PID is K_p (1 + 1/(T_i s) + T_d s/(T_f s + 1)), the standard form (ISA) with one gain for all terms; a low pass is 1/(T_f s + 1); the depth of a notch is that of its magnitude at its frequency, its width the frequency times twice the damping ratio of its poles.",
@@ -175,6 +175,21 @@ impl Gain {
             }
             None => format!("{name} = {}", significant(gain, DIGITS)),
         }
+    }
+}
+
+/// A part as manuals call it.
+pub(super) fn part_name(part: &ManualPart) -> &'static str {
+    match part {
+        ManualPart::Proportional { .. } => "P",
+        ManualPart::Integral { .. } => "I",
+        ManualPart::ProportionalIntegral { .. } => "PI",
+        ManualPart::ProportionalIntegralDerivative { .. } => "PID with filter",
+        ManualPart::LowPass { .. } => "low pass",
+        ManualPart::SecondOrderLowPass { .. } => "low pass of second order",
+        ManualPart::Lead { .. } => "lead",
+        ManualPart::Lag { .. } => "lag",
+        ManualPart::Notch { .. } => "notch",
     }
 }
 

@@ -5,6 +5,7 @@ use phea_engineering::design::{MissingPlants, PressureFeedbackDesign};
 use super::ProjectDesign;
 use crate::answer::{Object, significant};
 use crate::document::Document;
+use crate::error::design_error_words;
 use crate::quantity::{ANGULAR_FREQUENCY, VOLTAGE_PER_PRESSURE, display};
 
 /// The feedback with what it gains; empty where it was not free.
@@ -58,6 +59,7 @@ pub fn pressure_feedback_document(found: &PressureFeedbackDesign) -> Document {
 /// What was left out, and why.
 fn missing(plants: &MissingPlants) -> String {
     let MissingPlants { count, of, reason } = plants;
+    let reason = design_error_words(reason);
     format!("it was found without {count} of {of} plants with waves in their lines: {reason}")
 }
 
@@ -66,7 +68,10 @@ pub fn pressure_feedback_object(found: &PressureFeedbackDesign) -> Object {
     let [limited_without, limited] = found.limited_at_rad_per_s;
     let damping = found.least_damping_ratio;
     let missing = |plants: &MissingPlants| {
-        Object::new().with("count", plants.count).with("of", plants.of).with("reason", plants.reason.as_str())
+        Object::new()
+            .with("count", plants.count)
+            .with("of", plants.of)
+            .with("reason", design_error_words(&plants.reason))
     };
     Object::new()
         .with("used", found.is_used)

@@ -1,7 +1,7 @@
 //! The gain from relaxing each limit that binds.
 
 use phea_engineering::design::{
-    DesignLimitKind, Gained, RELAXED_BY, RelaxedGain, RelaxedLimit, limit_key, limit_unit_key, limit_words,
+    DesignLimitKind, Gained, RELAXED_BY, RelaxedGain, RelaxedLimit, limit_key, limit_unit_key,
 };
 use phea_qft::design::{DesignStatus, Objective};
 use phea_qft::specification::Limit;
@@ -9,6 +9,7 @@ use phea_qft::specification::Limit;
 use super::ProjectDesign;
 use crate::answer::{Object, significant};
 use crate::document::Document;
+use crate::limit_kind::limit_words;
 use crate::quantity::DisplayUnit;
 use crate::simulate::required_words;
 

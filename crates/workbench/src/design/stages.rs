@@ -9,8 +9,9 @@ use phea_engineering::design::DesignPart;
 use phea_qft::bound::Placement;
 
 use super::answer::factors;
+use super::words::{structure_parts, unusable_words};
 use super::{AuditedController, ProjectDesign, Repair};
-use super::{DESIGNED_CERTIFICATE, DESIGNED_PROJECT, NEAREST_PROJECT, structure_words};
+use super::{DESIGNED_CERTIFICATE, DESIGNED_PROJECT, NEAREST_PROJECT};
 use crate::answer::{Csv, OutputFile};
 use crate::audit::{self, certificate_of};
 use crate::error::CommandError;
@@ -44,7 +45,7 @@ pub fn files(loaded: &Loaded, view: &ProjectDesign) -> Vec<OutputFile> {
             Some(chosen) => with_line_model(&bytes, chosen),
             None => bytes,
         };
-        Some(OutputFile::new(name, marked(&bytes, design?.unusable())))
+        Some(OutputFile::new(name, marked(&bytes, unusable_words(design?))))
     };
     let certificate = certificate_of(loaded, &view.designed.view, DESIGNED_CERTIFICATE);
     named.into_iter().filter_map(file).chain(certificate).collect()
@@ -184,7 +185,7 @@ fn rounds(view: &ProjectDesign) -> OutputFile {
         Csv::new("round,structure,objective_db,plants,frequencies,searched_margin_db,audited_margin_db");
     for (index, round) in view.design.rounds.iter().enumerate() {
         let audited = round.audited_margin_db.map_or(String::new(), |margin| margin.to_string());
-        let structure = structure_words(&round.structure).replace(", ", " + ");
+        let structure = structure_parts(&round.structure).join(" + ");
         let number = index + 1;
         csv.row(&[
             &number,

@@ -1,15 +1,15 @@
 //! The structures that were tried against what each reaches.
 
-use phea_engineering::design::{
-    DesignLimitKind, LedBy, ReachedStructure, gain_at_high_frequency, limit_words, structure_key,
-    structure_words,
-};
+use phea_engineering::design::{DesignLimitKind, LedBy, ReachedStructure, SearchedLimit, structure_key};
 use phea_qft::design::{ControllerChoice, Objective, StructureEnding};
 
 use super::ProjectDesign;
+use super::comparison::gain_at_high_frequency;
+use super::words::{reached_words, searched_limit_name};
 use crate::answer::{Object, significant};
 use crate::audit::NominalMargins;
 use crate::document::{Cell, Document, Table};
+use crate::limit_kind::limit_words;
 use crate::quantity::DisplayUnit;
 
 /// Ending of a structure that was not worth its poles beside another one than that which is taken.
@@ -52,7 +52,7 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
         let found = significant(slowest, 3);
         Some(format!(
             "{}: a zero ended at {found} rad/s, the lowest that is looked for: a lower one may reach more",
-            words(one)
+            reached_words(one)
         ))
     }));
     let is_missed = |one: &ReachedStructure| !one.is_chosen && misses_in_time(view, one);
@@ -80,7 +80,8 @@ pub(crate) fn document(view: &ProjectDesign) -> Document {
 /// The limits of tracking on the way to a required step.
 fn way_sentence(view: &ProjectDesign) -> Option<String> {
     let way = limit_words(DesignLimitKind::RequiredStep);
-    let is_led = view.structures.iter().any(|one| one.binding.as_deref() == Some(way));
+    let way_binds = Some(SearchedLimit::Design(DesignLimitKind::RequiredStep));
+    let is_led = view.structures.iter().any(|one| one.binding == way_binds);
     is_led.then(|| {
         format!("the {way} is limits on |F T| that the search over frequency keeps; a design is judged by its steps")
     })
@@ -90,16 +91,22 @@ fn way_sentence(view: &ProjectDesign) -> Option<String> {
 /// again beyond the crossover.
 fn laws_that_differ(view: &ProjectDesign) -> Vec<String> {
     let renamed = view.structures.iter().filter_map(|one| {
-        let name = one.name.filter(|_| one.other_words.is_some())?.words();
-        Some(format!("{}: a {name} whose T_d would not be positive", words(one)))
+        let name = one.name.filter(|_| one.no_pid.is_some())?.words();
+        Some(format!("{}: a {name} whose T_d would not be positive", reached_words(one)))
     });
-    let again =
-        |one: &ReachedStructure| Some(format!("{} {}", words(one), one.nominal?.crossovers.again_words()?));
+    let again = |one: &ReachedStructure| {
+        Some(format!("{} {}", reached_words(one), one.nominal?.crossovers.again_words()?))
+    };
     let again: Vec<String> = view.structures.iter().filter_map(again).collect();
     let risen = (!again.is_empty()).then(|| {
         format!("beyond the crossover |L| of the nominal loop is above 1 again: {}", again.join(", "))
     });
     renamed.chain(risen).collect()
+}
+
+/// The limit that leaves a structure no room.
+fn binding(view: &ProjectDesign, one: &ReachedStructure) -> Option<String> {
+    one.binding.map(|limit| searched_limit_name(view, limit))
 }
 
 /// What a design was led by, of the structure that is taken; `None` where limits over frequency
@@ -153,13 +160,6 @@ fn earned_sentence(view: &ProjectDesign) -> Option<String> {
     })
 }
 
-fn words(one: &ReachedStructure) -> String {
-    if let Some(other) = &one.other_words {
-        return other.clone();
-    }
-    one.name.map_or_else(|| structure_words(&one.structure), |name| name.words().to_string())
-}
-
 fn row(view: &ProjectDesign, one: &ReachedStructure) -> Vec<Cell> {
     let or_missing = |text: Option<String>| text.map_or(Cell::Missing, Cell::from);
     let compared = one.compared_db.map(|value| compared_words(view, value));
@@ -178,11 +178,11 @@ fn row(view: &ProjectDesign, one: &ReachedStructure) -> Vec<Cell> {
         or_missing(reached.map(|time_s| time_words(time_s, "not risen")))
     });
     let mut cells = vec![
-        words(one).into(),
+        reached_words(one).into(),
         Cell::count(one.order),
         ending_words(view, one).into(),
         one.least.as_ref().map_or(Cell::Missing, |least| Cell::margin(least.margin_db)),
-        or_missing(one.binding.clone().or_else(|| led_words(view, one))),
+        or_missing(binding(view, one).or_else(|| led_words(view, one))),
         or_missing(crossover),
         or_missing(delay),
         or_missing(gain),
@@ -334,13 +334,13 @@ pub(super) fn rows(view: &ProjectDesign) -> Vec<Object> {
         let name = structure_key(one.name);
         Object::new()
             .maybe("name", (!name.is_empty()).then_some(name))
-            .with("words", words(one))
+            .with("words", reached_words(one))
             .with("order", one.order)
             .with("status", ending_key(view, one))
             .with("taken", one.is_chosen)
             .maybe("slowest_zero_rad_per_s", one.slowest_zero_rad_per_s)
             .maybe("worst_margin_db", one.least.as_ref().map(|least| least.margin_db))
-            .maybe("binding", one.binding.clone())
+            .maybe("binding", binding(view, one))
             .maybe("binding_rad_per_s", one.least.as_ref().map(|least| least.frequency_rad_per_s))
             .and(one.nominal.as_ref().map(|own| crossovers(Some(own))).unwrap_or_default())
             .maybe("delay_margin_s", one.nominal.map(|margins| margins.delay_margin_s))

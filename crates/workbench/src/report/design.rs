@@ -20,6 +20,7 @@ use crate::design::{
 };
 use crate::document::{Document, StatusMark};
 use crate::error::CommandError;
+use crate::explanation::explanation_sentence;
 use crate::figure::Figure;
 use crate::impossible::late_of_steps;
 use crate::project::{LateError, Loaded, Project};
@@ -61,10 +62,10 @@ pub(super) fn designed(
     let view = match design_project(source, setup, None, watch).map_err(CommandError::from) {
         Ok(view) if view.is_stopped() => return Err(Stopped.into()),
         Ok(view) => view,
-        Err(CommandError::Design(DesignError::NoController(mut sentences))) => {
-            sentences
-                .insert(0, "the search ended without a controller that makes every plant stable".to_string());
-            return Ok(Designed::Nothing(sentences));
+        Err(CommandError::Design(DesignError::NoController(known))) => {
+            let none = "the search ended without a controller that makes every plant stable".to_string();
+            let known = known.iter().map(explanation_sentence);
+            return Ok(Designed::Nothing(std::iter::once(none).chain(known).collect()));
         }
         Err(CommandError::Design(DesignError::ImpossibleSteps(found))) => {
             return Ok(Designed::Impossible(late_of_steps(&found).iter().map(LateError::sentence).collect()));

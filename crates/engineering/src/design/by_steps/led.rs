@@ -21,7 +21,7 @@ use crate::side_by_side::all_cores;
 use crate::simulate::TrackingWish;
 
 /// Name of the stage.
-pub(super) const STAGE: &str = "shaping by the steps";
+pub(super) const STAGE: &str = "shaping by steps";
 /// How often what an audit finds joins the search.
 const ROUNDS: usize = 5;
 /// A round that brings less than this share is one in vain, and so many in turn are the last.

@@ -123,7 +123,7 @@ impl ProbedPlants {
             }
             Err(error) => (self.values.len(), vec![error; self.values.len()]),
         };
-        let reason = refused.first()?.to_string();
+        let reason = refused.first()?.clone();
         Some(MissingPlants { count: refused.len(), of, reason })
     }
 }

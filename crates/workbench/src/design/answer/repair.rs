@@ -3,8 +3,8 @@
 use super::{audited, conflicts, round};
 use crate::answer::Object;
 use crate::audit;
-use crate::design::repair_key;
-use crate::design::{Repair, RepairStatus};
+use crate::design::repair::{repair_key, repair_sentences};
+use crate::design::{ProjectDesign, Repair, RepairStatus};
 use crate::trial;
 
 /// `taken_in` is the machine whose plant was taken in; `plant_before` and `plant_after` are that
@@ -13,7 +13,7 @@ use crate::trial;
 /// where none does, with the rounds of its search: those of the first design come before them, as
 /// they do in `rounds` where it is met; `family_with_waves` the controller that was found with the
 /// waves in every plant of the family.
-pub(super) fn row(repair: &Repair) -> Object {
+pub(super) fn row(view: &ProjectDesign, repair: &Repair) -> Object {
     let relaxation_db = match repair.status {
         RepairStatus::Infeasible { relaxation_db } => Some(relaxation_db),
         _ => None,
@@ -23,7 +23,7 @@ pub(super) fn row(repair: &Repair) -> Object {
     let before = repair.other.as_deref().filter(|_| repair.status == RepairStatus::Met);
     let rounds = nearest.map(|design| design.design.rounds.iter().map(round).collect::<Vec<_>>());
     Object::new()
-        .with("status", repair_key(repair))
+        .with("status", repair_key(repair.status))
         .known("taken_in", repair.taken_in.as_deref(), no_plant)
         .known("quarter_wave_rad_per_s", repair.quarter_wave_rad_per_s, "no waves were looked at")
         .known("relaxation_db", relaxation_db, "the repair was not found infeasible")
@@ -35,5 +35,5 @@ pub(super) fn row(repair: &Repair) -> Object {
         .maybe("nearest_machine", nearest.and_then(|design| design.trial.as_ref()).map(trial::body))
         .maybe("nearest_rounds", rounds)
         .maybe("family_with_waves", repair.whole.as_ref().map(audit::body))
-        .with("sentences", repair.sentences.as_slice())
+        .with("sentences", repair_sentences(view, repair).as_slice())
 }

@@ -6,13 +6,14 @@ use crate::answer::Object;
 use crate::plant_names::PlantNames;
 
 use crate::design::Rounding;
+use crate::design::rounding::signal_word;
 
 pub(super) fn row(rounding: &Rounding, names: &PlantNames) -> Object {
     let plant = |index: usize| names.named(&rounding.plant(index));
     let effects = rounding.each().into_iter().map(|(of, on, effect)| {
         Object::new()
-            .with("of", of)
-            .with("on", on)
+            .with("of", signal_word(of))
+            .with("on", signal_word(on))
             .with("peak", effect.peak)
             .with("peak_plant", plant(effect.peak_plant))
             .with("rms", effect.rms)
@@ -29,5 +30,5 @@ pub(super) fn row(rounding: &Rounding, names: &PlantNames) -> Object {
         .maybe("effects", Some(effects).filter(|effects| !effects.is_empty()))
         .maybe("command_steps_at_once", known.and_then(|effects| effects.command_steps_at_once))
         .maybe("limit_cycle", limit_cycle)
-        .maybe("reason", rounding.effects().err())
+        .maybe("reason", rounding.effects().err().map(ToString::to_string))
 }

@@ -13,7 +13,7 @@ use super::steps::{NEVER_RISEN, NEVER_SETTLED, StepProperty, steps};
 use crate::answer::significant;
 use crate::audit::{ProjectAudit, frequency_words, in_time};
 use crate::caveat::{caveats, outside_parameters, sentence};
-use crate::design::{DESIGNED_PROJECT, ProjectDesign};
+use crate::design::{DESIGNED_PROJECT, ProjectDesign, rig_miss_words};
 use crate::project::{DeclaredSpecification, Project, SpecificationKind};
 use crate::quantity::DisplayUnit;
 use crate::report::design::Designed;
@@ -163,7 +163,7 @@ fn designed_words(view: &ProjectDesign, given_is_met: bool) -> String {
         ),
         DesignStatus::Met if view.misses_on_rig() => format!(
             "do not use the designed one (`{DESIGNED_PROJECT}`) unchanged: it satisfies every specification, and {}; state the step that the rig must make (`amplitude`), allow more time, or add poles (`design.maximum_order`)",
-            view.missed_on_rig_words()
+            view.rig_miss().map_or("", rig_miss_words)
         ),
         DesignStatus::Met if given_is_met => {
             format!("keep it, or take the designed one of `{DESIGNED_PROJECT}` where its numbers are better")

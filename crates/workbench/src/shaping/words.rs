@@ -1,8 +1,7 @@
 //! Why no element passes the point that is asked for, in words.
 
+use phea_dynamics::portable;
 use phea_qft::manual_shaping::{ElementPattern, NeededCoordinate, PassError, Reach};
-
-use crate::audit::rounded;
 
 /// The name of an element, with an article.
 pub(super) fn element_words(pattern: ElementPattern) -> &'static str {
@@ -78,5 +77,6 @@ fn unreachable_words(name: &str, turn_deg: Option<f64>, raise_db: Option<f64>, r
 }
 
 fn signed(value: f64) -> String {
-    if value > 0.0 { format!("+{}", rounded(value)) } else { rounded(value).to_string() }
+    let rounded = portable::rounded(value, 4);
+    if value > 0.0 { format!("+{rounded}") } else { rounded.to_string() }
 }

@@ -1,51 +1,104 @@
 //! The criteria by which controllers are compared, in words.
 
+use phea_engineering::design::AuditedController;
 use phea_qft::verification::Verdict;
 
-use super::side::AuditedController;
 use crate::audit::{margin_words, verdict_words};
-use crate::quantity::DisplayUnit;
-use crate::quantity::significant;
+use crate::document::Cell;
+use crate::quantity::{DisplayUnit, significant};
 
-/// Name and value of everything that a controller is compared by: verdicts first, then size, then
-/// margins. The same names for every controller of a project. Its gain is in V per the unit of what
-/// is controlled, where the plant has units.
-pub fn compared(side: &AuditedController, per: Option<&str>) -> Vec<(String, String)> {
-    let mut rows = vec![("verdict".to_string(), verdict_words(side.view.verdict()).to_string())];
+/// A criterion by which controllers are compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ComparedBy {
+    Verdict,
+    /// The margin of a specification, by its index.
+    Margin(usize),
+    Order,
+    HighFrequencyGain,
+    Crossover,
+    AboveOneAgain,
+    GainMargin,
+    PhaseMargin,
+    ModulusMargin,
+    DelayMargin,
+}
+
+/// A controller by one criterion.
+pub(super) struct ComparedFigure {
+    pub(super) by: ComparedBy,
+    /// The name of the criterion.
+    pub(super) name: String,
+    pub(super) cell: Cell,
+}
+
+/// Everything that a controller is compared by: verdicts first, then size, then margins. Its gain
+/// is in V per the unit of what is controlled, where the plant has units.
+pub(super) fn compared(side: &AuditedController, per: Option<&str>) -> Vec<ComparedFigure> {
+    let verdict = side.view.verdict();
+    let cell = match verdict {
+        Verdict::Met | Verdict::Violated => {
+            Cell::from(verdict_words(verdict)).marked(verdict == Verdict::Met)
+        }
+        Verdict::NotProven => verdict_words(verdict).into(),
+    };
+    let mut rows = vec![ComparedFigure { by: ComparedBy::Verdict, name: "verdict".to_string(), cell }];
     rows.extend(side.view.audit.specifications.iter().enumerate().map(|(index, finding)| {
         let margin = finding.worst.as_ref().map_or("-".to_string(), |worst| margin_words(worst.margin_db));
-        (format!("margin of {}", side.view.numbered(index)), margin)
+        let name = format!("margin of {}", side.view.numbered(index));
+        ComparedFigure { by: ComparedBy::Margin(index), name, cell: margin.into() }
     }));
+    let named = |(by, name, text): (ComparedBy, &str, String)| ComparedFigure {
+        by,
+        name: name.to_string(),
+        cell: text.into(),
+    };
+    rows.extend(figures(side, per).map(named));
+    rows
+}
+
+/// Size and margins of a controller.
+fn figures(side: &AuditedController, per: Option<&str>) -> [(ComparedBy, &'static str, String); 8] {
     let figures = &side.figures;
     let nominal = figures.nominal.as_ref();
     let or_dash = |text: Option<String>| text.unwrap_or("-".to_string());
-    let named = [
-        ("order of controller and prefilter", format!("{} and {}", figures.order, figures.prefilter_order)),
-        ("high-frequency gain", high_frequency_words(side, per)),
-        ("crossover of the nominal loop", or_dash(nominal.map(|margins| margins.crossovers.first_words()))),
+    [
         (
+            ComparedBy::Order,
+            "order of controller and prefilter",
+            format!("{} and {}", figures.order, figures.prefilter_order),
+        ),
+        (ComparedBy::HighFrequencyGain, "high-frequency gain", high_frequency_words(side, per)),
+        (
+            ComparedBy::Crossover,
+            "crossover of the nominal loop",
+            or_dash(nominal.map(|margins| margins.crossovers.first_words())),
+        ),
+        (
+            ComparedBy::AboveOneAgain,
             "|L| of the nominal loop above 1 again",
             or_dash(nominal.map(|margins| margins.crossovers.again_words().unwrap_or("nowhere".to_string()))),
         ),
         (
+            ComparedBy::GainMargin,
             "gain margin of the nominal loop",
             or_dash(nominal.map(|margins| limited(margins.gain_margin_db, "dB"))),
         ),
         (
+            ComparedBy::PhaseMargin,
             "phase margin of the nominal loop",
             or_dash(nominal.map(|margins| phase_words(side, margins.phase_margin_deg))),
         ),
         (
+            ComparedBy::ModulusMargin,
             "modulus margin of the family",
             or_dash(figures.modulus_margin.map(|margin| significant(margin, 3))),
         ),
         (
+            ComparedBy::DelayMargin,
             "delay margin of the family",
             or_dash(figures.delay_margin_s.map(|delay| limited(DisplayUnit::MILLISECOND.of(delay), "ms"))),
         ),
-    ];
-    rows.extend(named.map(|(name, text)| (name.to_string(), text)));
-    rows
+    ]
 }
 
 fn high_frequency_words(side: &AuditedController, per: Option<&str>) -> String {
@@ -62,7 +115,7 @@ fn high_frequency_words(side: &AuditedController, per: Option<&str>) -> String {
 
 /// `-20.6 dB re 1 V/(N s)`, the limit of s^r G for a controller of relative degree r, in dB of the
 /// unit of that limit; `-20.6 dB, s G` for a plant without units.
-pub fn gain_at_high_frequency(gain_db: &str, relative_degree: i64, per: Option<&str>) -> String {
+pub(super) fn gain_at_high_frequency(gain_db: &str, relative_degree: i64, per: Option<&str>) -> String {
     let Some(per) = per else {
         let of = match relative_degree {
             0 => String::new(),

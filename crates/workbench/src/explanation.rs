@@ -1,23 +1,53 @@
-//! The findings of a diagnosis, in words.
+//! Facts that are impossible or hard for a controller, in sentences.
 
 use std::f64::consts::TAU;
 use std::fmt::{Display, Formatter, Result};
 
 use num_complex::Complex64;
-
+use phea_dynamics::portable;
+use phea_engineering::design::{ExplainedFact, ExplainedLimit, Explanation, limit_key};
 use phea_qft::design::{Constraint, ConstraintPlace, Finding};
 use phea_qft::verification::SpecificationMargin;
 
-use crate::audit::rounded;
+use crate::limit_kind::limit_words;
+
+/// The sentence of an explanation.
+pub fn explanation_sentence(explanation: &Explanation) -> String {
+    match &explanation.fact {
+        ExplainedFact::NothingAsksForFeedback => NOTHING_ASKS.to_string(),
+        ExplainedFact::Finding(finding) => {
+            let name_of = |index: usize| {
+                let named = explanation.limits.iter().find(|(known, _)| *known == index);
+                named.map_or(String::new(), |(_, limit)| limit_name(limit))
+            };
+            FindingWords { finding, name_of: &name_of }.to_string()
+        }
+    }
+}
+
+const NOTHING_ASKS: &str = "nothing asks for feedback: the plants of the family differ by less than the limits on tracking allow, so that a prefilter alone could keep them; add a `sensitivity` or a `load_motion`, which say how much of a disturbance may remain";
+
+fn limit_name(limit: &ExplainedLimit) -> String {
+    match limit {
+        ExplainedLimit::Specification(name) => name.clone(),
+        ExplainedLimit::Design(kind) if kind.has_key() => format!("the limit `design.{}`", limit_key(*kind)),
+        ExplainedLimit::Design(kind) => format!("the limit on the {}", limit_words(*kind)),
+    }
+}
+
+/// To four significant digits, for a reader.
+fn rounded(value: f64) -> f64 {
+    portable::rounded(value, 4)
+}
 
 /// The names of specifications by their indices.
 type Names<'a> = &'a dyn Fn(usize) -> String;
 
 /// A finding as a sentence.
-pub(super) struct FindingWords<'a> {
-    pub(super) finding: &'a Finding,
+struct FindingWords<'a> {
+    finding: &'a Finding,
     /// The name of a specification by its index.
-    pub(super) name_of: Names<'a>,
+    name_of: Names<'a>,
 }
 
 impl Display for FindingWords<'_> {

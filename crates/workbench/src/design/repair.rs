@@ -1,28 +1,65 @@
 //! What a repair did, and what cannot be achieved, in sentences.
 
-use phea_qft::design::ControllerChoice;
+use phea_engineering::design::{NEAREST_PROJECT, ProjectDesign, Repair, RepairRemedy, RepairStatus};
 use phea_qft::verification::Verdict;
 
-use super::{Repair, RepairStatus};
 use crate::audit::{ProjectAudit, frequency_words, margin_words, stability_sentence};
-use crate::design::{NEAREST_PROJECT, ProjectDesign};
-use crate::project::{DeclaredLine, Project};
 use crate::quantity::{DisplayUnit, significant};
 use crate::trial::{Agreement, TrialRun, agreement_word};
 
+/// The word of the outcome of a repair, in JSON.
+pub(super) fn repair_key(status: RepairStatus) -> &'static str {
+    match status {
+        RepairStatus::Met => "met",
+        RepairStatus::Infeasible { .. } => "infeasible",
+        RepairStatus::NotConverged => "not_converged",
+        RepairStatus::NotStabilised => "not_stabilised",
+        RepairStatus::Stopped => "stopped",
+        RepairStatus::NothingToTakeIn => "nothing_to_take_in",
+    }
+}
+
+/// The outcome for people.
+pub(super) fn repair_words(status: RepairStatus) -> &'static str {
+    match status {
+        RepairStatus::Met => "met",
+        RepairStatus::Infeasible { .. } => "infeasible",
+        RepairStatus::NotConverged => "not converged",
+        RepairStatus::NotStabilised => "not stabilised",
+        RepairStatus::Stopped => "stopped",
+        RepairStatus::NothingToTakeIn => "nothing to take in",
+    }
+}
+
+/// Steps of a repair and limits of what it can achieve, for an engineer.
+pub(super) fn repair_sentences(view: &ProjectDesign, repair: &Repair) -> Vec<String> {
+    let mut sentences = added(view, repair);
+    if repair.status == RepairStatus::Met {
+        sentences.extend(view.contradicting_waves().map(stable_with_waves));
+    }
+    sentences.extend(left(view.trial.iter().flat_map(|trial| &trial.runs)));
+    sentences
+}
+
 /// What was added, the result, and what would help if it failed.
-pub(super) fn sentences(
-    project: &Project,
-    repair: &Repair,
-    told: &ProjectDesign,
-    found: &ProjectDesign,
-) -> Vec<String> {
-    let mut sentences: Vec<String> = repair.before.iter().map(before).collect();
-    sentences.push(outcome(repair, found));
+fn added(view: &ProjectDesign, repair: &Repair) -> Vec<String> {
+    if let Some(error) = &repair.no_family {
+        return vec![format!("the plant with waves in its lines cannot be added: {error}")];
+    }
+    let Some(plant) = &repair.before else { return vec![] };
+    if plant.audit.verdict == Verdict::Met {
+        return view.contradicting_waves().map(stable_with_waves).into_iter().collect();
+    }
+    let Some(other) = repair.other.as_deref() else { return vec![nothing_found()] };
+    let [told, found] = match repair.status {
+        RepairStatus::Met => [other, view],
+        _ => [view, other],
+    };
+    let mut sentences = vec![before(plant), outcome(repair, found)];
     sentences.extend(repair.after.iter().map(|after| with_waves(repair.status, after)));
     if repair.status != RepairStatus::Met {
         sentences.extend(crossing(repair, told));
-        sentences.push(help(project, repair, told));
+        sentences.push(help(repair));
         sentences.extend(nearest(found));
         sentences.extend(not_led(found));
     }
@@ -57,18 +94,11 @@ fn whole(view: Option<&ProjectAudit>) -> String {
 
 /// The loop of the first design with the plant.
 fn before(view: &ProjectAudit) -> String {
-    match view.audit.stability.verdict {
-        Verdict::Met => {
-            format!(
-                "the linear loop reproduces the nonlinear simulation once its plant includes waves: {}",
-                margins(view)
-            )
-        }
-        _ => format!(
-            "the linear loop reproduces the nonlinear simulation once its plant includes waves: {}",
-            stability_sentence(&view.audit.stability, &view.names)
-        ),
-    }
+    let shown = match view.audit.stability.verdict {
+        Verdict::Met => margins(view),
+        _ => stability_sentence(&view.audit.stability, &view.names),
+    };
+    format!("the linear loop reproduces the nonlinear simulation once its plant includes waves: {shown}")
 }
 
 fn outcome(repair: &Repair, found: &ProjectDesign) -> String {
@@ -118,16 +148,9 @@ fn margins(view: &ProjectAudit) -> String {
     told.collect::<Vec<_>>().join(", ")
 }
 
-/// The highest frequency at which |L| = 1: a resonance may bring it there, far beyond the
-/// crossover.
-fn last_crossing(design: &ProjectDesign) -> Option<f64> {
-    let nominal = design.designed.figures.nominal.as_ref()?;
-    Some(nominal.crossover_rad_per_s).filter(|crossing| *crossing > 0.0)
-}
-
 /// Up to where the loop has |L| = 1, and where the line is a quarter wave long.
 fn crossing(repair: &Repair, told: &ProjectDesign) -> Option<String> {
-    let (own, quarter) = (last_crossing(told)?, repair.quarter_wave_rad_per_s?);
+    let (own, quarter) = (told.designed.figures.last_crossing_rad_per_s()?, repair.quarter_wave_rad_per_s?);
     let beyond = if own > quarter { "beyond" } else { "below" };
     Some(format!(
         "in the loop that satisfies the family |L| is 1 up to {}, {beyond} the quarter wave of its slower line at {}",
@@ -140,38 +163,32 @@ fn frequency(rad_per_s: f64) -> String {
     format!("{} rad/s ({})", significant(rad_per_s, 3), DisplayUnit::HERTZ.text(rad_per_s, 3))
 }
 
-/// What would help: a line so short that its quarter wave lies beyond that frequency, a wall that
-/// damps, less bandwidth.
-fn help(project: &Project, repair: &Repair, told: &ProjectDesign) -> String {
-    let mut ways = Vec::new();
-    let lines = project.actuator.as_ref().map(|actuator| [&actuator.line.a, &actuator.line.b]);
-    let longest = lines.iter().flatten().filter_map(|line| DeclaredLine::length(line)).fold(0.0, f64::max);
-    if let (Some(own), Some(quarter)) = (last_crossing(told), repair.quarter_wave_rad_per_s)
-        && own > quarter
-        && longest > 0.0
-    {
-        let length = DisplayUnit::METRE.text(longest * quarter / own, 2);
-        ways.push(format!("a line shorter than {length}, whose quarter wave lies beyond that frequency"));
-    }
-    if lines.iter().flatten().any(|line| line.hose().is_some()) {
-        ways.push(
-            "what is known of the wall that damps its waves (`line.model = \"segments\"` with `line.relaxation_time`)"
-                .to_string(),
-        );
-    }
-    if let ControllerChoice::Grow { maximum_order } | ControllerChoice::Any { maximum_order, .. } =
-        told.options.controller
-    {
-        ways.push(format!("a controller of higher order (`design.maximum_order`, now {maximum_order})"));
-    }
-    let wider = match repair.status {
-        RepairStatus::Infeasible { relaxation_db } => {
-            format!(" (limits {} dB wider are enough)", significant(relaxation_db, 3))
-        }
-        _ => String::new(),
-    };
-    ways.push(format!("specifications that ask for less bandwidth{wider}"));
+/// Changes that would help.
+fn help(repair: &Repair) -> String {
+    let ways: Vec<String> = repair.remedies.iter().map(remedy_words).collect();
     format!("what would help: {}", ways.join("; "))
+}
+
+fn remedy_words(remedy: &RepairRemedy) -> String {
+    match *remedy {
+        RepairRemedy::ShorterLine { below_m } => {
+            let length = DisplayUnit::METRE.text(below_m, 2);
+            format!("a line shorter than {length}, whose quarter wave lies beyond that frequency")
+        }
+        RepairRemedy::WallDamping => {
+            "what is known of the wall that damps its waves (`line.model = \"segments\"` with `line.relaxation_time`)"
+                .to_string()
+        }
+        RepairRemedy::HigherOrder { maximum_order } => {
+            format!("a controller of higher order (`design.maximum_order`, now {maximum_order})")
+        }
+        RepairRemedy::LessBandwidth { relaxation_db } => {
+            let wider = relaxation_db.map_or(String::new(), |relaxation_db| {
+                format!(" (limits {} dB wider are enough)", significant(relaxation_db, 3))
+            });
+            format!("specifications that ask for less bandwidth{wider}")
+        }
+    }
 }
 
 /// The trial of the nearest controller on the machine.
@@ -187,7 +204,7 @@ fn nearest(found: &ProjectDesign) -> Option<String> {
 
 /// A machine with waves that contradicts the design although its plant satisfies every
 /// specification in the loop.
-pub(super) fn stable_with_waves(run: &TrialRun) -> String {
+fn stable_with_waves(run: &TrialRun) -> String {
     format!(
         "the linear loop satisfies every specification with waves in its plant too, and {} contradicts it all the same: so the waves are not the cause",
         run.what
@@ -195,13 +212,13 @@ pub(super) fn stable_with_waves(run: &TrialRun) -> String {
 }
 
 /// No controller at all.
-pub(super) fn nothing_found() -> String {
+fn nothing_found() -> String {
     "that plant was added, and the search ended without a controller that makes every plant stable"
         .to_string()
 }
 
 /// Deviations that no linear plant explains, run by run, and what to change.
-pub(super) fn left<'a>(runs: impl Iterator<Item = &'a TrialRun>) -> Vec<String> {
+fn left<'a>(runs: impl Iterator<Item = &'a TrialRun>) -> Vec<String> {
     let contradicting = runs.filter(|run| run.agreement == Agreement::Contradicts);
     let others = contradicting.filter(|run| run.quarter_wave_rad_per_s.is_none());
     others.map(|run| format!("{}: {}: {}", run.what, run.reason, advice(run))).collect()

@@ -1,0 +1,215 @@
+//! What a run of a machine shows against its linear loop, and which machine it was, as facts.
+
+use super::run::Leg;
+use crate::rig::RigError;
+use crate::simulate::SimulateError;
+
+/// A machine that is driven.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum TrialMachine {
+    /// The rig as declared.
+    Declared,
+    /// The rig with waves in its lines.
+    WithWaves,
+    /// The worst plant of the audit, made into a rig.
+    WorstPlant(WorstOf),
+    /// The worst of the corners of the box and of plants inside it.
+    WorstOfBox {
+        /// Corners that were driven.
+        corners: usize,
+        /// Plants inside the box that were driven.
+        inside: usize,
+    },
+}
+
+/// What a plant is the worst of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum WorstOf {
+    /// A specification, with its number and name.
+    Specification(String),
+    /// The requirement in time of a specification, with its number and name.
+    InTime(String),
+    /// The required step.
+    RequiredStep,
+}
+
+/// What a run shows against the linear loop, and the cause of a difference.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrialReason {
+    /// What it shows.
+    pub finding: TrialFinding,
+    /// The cause of a difference, where it was sought and found.
+    pub cause: Option<DifferenceCause>,
+}
+
+impl From<TrialFinding> for TrialReason {
+    fn from(finding: TrialFinding) -> TrialReason {
+        TrialReason { finding, cause: None }
+    }
+}
+
+/// What a run of a machine shows against the linear loop.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TrialFinding {
+    /// Neither the linear loop nor the machine settles.
+    NeitherSettles {
+        /// Overshoots of the machine and of the linear loop, percent, where they differ.
+        overshoots: Option<[f64; 2]>,
+    },
+    /// The simulation does not start.
+    NotStarted(SimulateError),
+    /// The simulation diverges from this time on, s.
+    Diverges(f64),
+    /// The run ended early.
+    Ended {
+        /// Time of its end, s.
+        time: f64,
+        /// Its status.
+        status: &'static str,
+    },
+    /// The force does not settle.
+    Unsettled {
+        /// The step after which it does not.
+        leg: Leg,
+        /// What it does in the end; `None` where that is not known.
+        end: Option<UnsettledEnd>,
+    },
+    /// The machine overshoots.
+    Overshoots {
+        /// Percent of the step.
+        percent: f64,
+        /// The step with that overshoot.
+        leg: Leg,
+        /// Overshoot of the linear loop, percent; `None` where it is not known.
+        linear: Option<f64>,
+        /// What else counts.
+        note: OvershootNote,
+    },
+    /// The settling time differs.
+    Settles {
+        /// Settling time of the machine, s.
+        machine: f64,
+        /// Settling time of the linear loop, s.
+        linear: f64,
+        /// Settling time that is required and that the machine alone exceeds, s; `None` where the
+        /// difference itself counts.
+        required: Option<f64>,
+    },
+}
+
+/// What a force that does not settle does in the end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum UnsettledEnd {
+    /// It comes to rest off its reference.
+    AtRest {
+        /// Force, N.
+        force: f64,
+        /// Distance from the reference, percent of the step.
+        off_percent: f64,
+    },
+    /// It swings between these forces, N.
+    Swings([f64; 2]),
+}
+
+/// What counts about a run that overshoots.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OvershootNote {
+    /// The overshoot alone.
+    Nothing,
+    /// The limit on |L/(1+L)| lets no loop overshoot so far.
+    BeyondLimit,
+    /// The force does not come to rest and swings between these forces, N.
+    Swings([f64; 2]),
+    /// No solver determines the result.
+    Undetermined,
+    /// The run reaches this limit or end: the name of an occurrence.
+    Meets(&'static str),
+}
+
+/// Cause of a difference between a machine and its linear loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DifferenceCause {
+    /// The waves of the lines.
+    Waves {
+        /// Frequency at which a line is a quarter wave long, rad/s.
+        quarter_wave: f64,
+        /// How a wall of these lines may be declared to damp; `None` where none can.
+        wall: Option<DampingWall>,
+    },
+    /// Something other than waves: with lumped lines the same steps differ as well.
+    OtherThanWaves,
+    /// The noise of the sensors.
+    Noise,
+}
+
+/// Keys that declare the damping of a hose's wall.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DampingWall {
+    /// `line.relaxation_time`.
+    RelaxationTime,
+    /// `line.model = "segments"` with `line.relaxation_time`.
+    SegmentsWithRelaxationTime,
+}
+
+/// What a trial does not drive.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NotDriven {
+    /// A plant without a rig.
+    Plant {
+        /// What it is the worst of.
+        of: WorstOf,
+        /// Its parameters, or its name.
+        plant: String,
+        /// Why it has no rig.
+        reason: NoRig,
+    },
+    /// A smaller step of a scenario, from one force to the other, N.
+    SmallerStep([f64; 2]),
+}
+
+/// Why a plant has no rig.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoRig {
+    /// The plant is one in motion.
+    #[error("a machine is tried from rest, and this plant is one in motion")]
+    InMotion,
+    /// A number of the plant is none of the rig.
+    #[error("no rig is known with another `{0}`")]
+    UnknownNumber(String),
+    /// No rig was found with these parameters.
+    #[error("no rig was found whose linear model has these parameters: {}", missed(.0))]
+    Missed(Vec<MissedParameter>),
+    /// The rig cannot be computed.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// A parameter is none of the linear model.
+    #[error("`{0}` is not a parameter")]
+    UnknownParameter(String),
+    /// No number of the rig determines a parameter.
+    #[error("nothing in the rig moves `{0}`")]
+    Fixed(String),
+    /// No number of the rig determines a parameter without others.
+    #[error("nothing in the rig moves `{0}` alone")]
+    Coupled(String),
+    /// The project declares no rig.
+    #[error("there is no rig")]
+    NoActuator,
+}
+
+/// A parameter that the nearest rig does not have.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MissedParameter {
+    /// Name of the parameter.
+    pub name: String,
+    /// Its value, SI.
+    pub found: f64,
+    /// The value of the plant, SI.
+    pub wanted: f64,
+}
+
+fn missed(parameters: &[MissedParameter]) -> String {
+    let of = |one: &MissedParameter| {
+        format!("{} comes to {:.4e} and not to {:.4e}", one.name, one.found, one.wanted)
+    };
+    parameters.iter().map(of).collect::<Vec<_>>().join("; ")
+}
