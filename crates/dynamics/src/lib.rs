@@ -28,6 +28,7 @@ pub mod order;
 pub mod pieces;
 pub mod portable;
 pub mod random;
+pub mod range;
 pub mod scalar;
 pub mod simulation;
 pub mod spectrum;

@@ -32,6 +32,7 @@ mod interconnection;
 pub(crate) mod matrix_exponential;
 mod moved_roots;
 mod polynomial;
+mod quantities;
 mod realization;
 mod refinement;
 mod roots;
@@ -48,6 +49,7 @@ pub(crate) use eigenvalues::working_eigenvalues;
 pub use held::{HeldFactors, HeldModes, HeldPoint};
 pub use moved_roots::MovedRoot;
 pub use polynomial::Polynomial;
+pub use quantities::{LinearNumber, LinearOperation};
 pub use state_space::StateSpace;
 pub(crate) use structure::irreducible_blocks;
 pub use transfer_function::TransferFunction;
@@ -73,8 +75,8 @@ pub enum LinearError {
     /// A number of the input is infinite or not a number.
     #[error("{what} is not a finite number")]
     NotFinite {
-        /// What the number was.
-        what: &'static str,
+        /// Name of the number.
+        what: LinearNumber,
     },
     /// A polynomial that is zero everywhere is given where roots or a denominator are needed.
     #[error("the polynomial is zero everywhere")]
@@ -134,8 +136,8 @@ pub enum LinearError {
     /// The operation needs the other time domain.
     #[error("{operation} needs a {needed} system")]
     WrongDomain {
-        /// What was asked for.
-        operation: &'static str,
+        /// Operation that was requested.
+        operation: LinearOperation,
         /// `"continuous"` or `"sampled"`.
         needed: &'static str,
     },
@@ -174,8 +176,8 @@ pub enum LinearError {
     /// space.
     #[error("{operation} with dead time is not a rational function")]
     NotRational {
-        /// What was asked for.
-        operation: &'static str,
+        /// Operation that was requested.
+        operation: LinearOperation,
     },
     /// Tustin's map takes this real root to infinity: the sample time does not fit the system.
     #[error("a root at {root_rad_per_s} rad/s has no image at this sample time")]
@@ -202,7 +204,7 @@ pub enum LinearError {
     Frequency {
         /// The frequency, rad/s.
         frequency_rad_per_s: f64,
-        /// What was asked for.
-        operation: &'static str,
+        /// Operation that was requested.
+        operation: LinearOperation,
     },
 }

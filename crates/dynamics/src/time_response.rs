@@ -19,6 +19,7 @@ mod cosine_sums;
 mod delayed_loop;
 mod linear_response;
 mod of_frequency_response;
+mod quantities;
 mod sampled_loop;
 mod second_order;
 mod signal;
@@ -27,12 +28,14 @@ mod step_metrics;
 pub use delayed_loop::delayed_loop_step;
 pub use linear_response::{forced_response, forced_response_of_states, step_response};
 pub use of_frequency_response::{step_of_frequency_response, weights_of_frequency_response};
+pub use quantities::{ResponseCount, ResponseNumber};
 pub use sampled_loop::sampled_loop_step;
 pub use second_order::{SecondOrder, SettlingRule, damping_ratio_from_overshoot};
 pub use signal::{Interpolation, SampledSignal, uniform_times};
 pub use step_metrics::{Settling, StepBaseline, StepMetrics, step_metrics};
 
 use crate::linear::LinearError;
+use crate::range::RequiredRange;
 
 /// Why a response in time, or a number read off one, does not exist.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -43,8 +46,8 @@ pub enum TimeResponseError {
     /// Two lists that belong together differ in length.
     #[error("{what}: {found} where {expected} are needed")]
     Count {
-        /// What is counted.
-        what: &'static str,
+        /// Name of the count.
+        what: ResponseCount,
         /// How many there are.
         found: usize,
         /// How many there should be.
@@ -61,12 +64,12 @@ pub enum TimeResponseError {
     /// A number outside the range in which the formula has a meaning.
     #[error("{what} is {value}; it must be {expected}")]
     OutOfRange {
-        /// What the number is.
-        what: &'static str,
+        /// Name of the number.
+        what: ResponseNumber,
         /// The number.
         value: f64,
-        /// The range, in words.
-        expected: &'static str,
+        /// Range of the number.
+        expected: RequiredRange,
     },
     /// The baseline has no step: its initial and final value are equal.
     #[error("initial and final value are equal ({value}): there is no step to measure")]

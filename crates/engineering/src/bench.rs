@@ -17,12 +17,15 @@ pub use friction::{FrictionRow, FrictionRun, FrictionSeries, friction_runs};
 pub use reversals::ReversalReading;
 
 use phea_dynamics::random::stream;
+use phea_dynamics::simulation::{ProfileError, SimulationError};
 use phea_dynamics::watch::{Stopped, Watch, tell};
+use phea_hydraulics::line::LineError;
 use phea_hydraulics::servovalve::{OilLaw, SlowSpool, SpoolImperfection, TestStand, WarmOil, ramp_delay};
 
 use self::command_path::CommandPath;
 pub(crate) use self::instrument::Instruments;
 use crate::followed::{followed, roughness};
+use crate::identify_error::KnownLineError;
 pub use crate::project::StaticTest;
 use crate::project::{Bench, DeclaredActuator, FlowMeter, OilTemperature, SupplyModel};
 use crate::quantity::{DisplayUnit, TIME, display};
@@ -116,7 +119,7 @@ pub enum BenchError {
     },
     /// The tests of a line cannot be made.
     #[error("[bench.line]: {0}")]
-    Line(String),
+    Line(#[from] BenchLineError),
     /// The friction has no bristles.
     #[error(
         "[bench.friction] needs `model = \"lugre\"` in [cylinder.friction]: no other friction breaks away"
@@ -161,6 +164,29 @@ pub enum BenchError {
     /// Stopped by the watch.
     #[error("stopped")]
     Stopped,
+}
+
+/// Why there are no tests of a line.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BenchLineError {
+    /// The project has no line to test.
+    #[error(transparent)]
+    Known(#[from] KnownLineError),
+    /// The line cannot be simulated.
+    #[error(transparent)]
+    Line(#[from] LineError),
+    /// The flow is not a function of time.
+    #[error(transparent)]
+    Profile(#[from] ProfileError),
+    /// The simulation does not start.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// Fewer than three lines of the period are excited.
+    #[error("`bench.line.frequencies` has fewer than three lines of `bench.line.period`")]
+    FewFrequencies,
+    /// The simulation ended early.
+    #[error("the simulation of the line does not come to its end: state shorter tests")]
+    Unfinished,
 }
 
 /// A frequency in rad/s for people.

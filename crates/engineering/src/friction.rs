@@ -23,6 +23,7 @@ mod reading;
 mod reasons;
 mod shaking;
 mod shown;
+mod sign_error;
 mod signs;
 mod varying;
 
@@ -43,8 +44,7 @@ use phea_hydraulics::friction::{FRICTION_COEFFICIENTS, LuGre, Stribeck};
 
 use self::problem::{FrictionProblem, KeptShapes};
 use crate::estimate::Estimate;
-use crate::identify::IdentifyError;
-use crate::quantity::{VELOCITY, display};
+use crate::identify_error::{FrictionFitError, IdentifyError, UnsteadyRun};
 
 /// Names of the coefficients as `[cylinder.friction]` has them, and their units.
 pub const FRICTION_NAMES: [(&str, &str); BOTH_WAYS] = [
@@ -148,7 +148,7 @@ pub fn identify_friction(
     }
     let guess::Guess { around, others, by_direction, presses, shakes } =
         guess::guess(&recordings, &slides, known.moving_mass)
-            .ok_or_else(|| IdentifyError::Data(nothing(&recordings, &varying)))?;
+            .ok_or_else(|| FrictionFitError::NothingDetermined(unsteady(&recordings, &varying)))?;
     let goes_both_ways = goes_both_ways(&slides, &presses);
     let setting = (known.moving_mass, around);
     let problem = FrictionProblem::new(&recordings, &slides, (&presses, &shakes), setting, goes_both_ways);
@@ -202,12 +202,10 @@ impl<'a> SearchedFriction<'a> {
     ) -> Result<(SearchedFriction<'a>, Option<DirectionEvidence>), IdentifyError> {
         let same = SearchedFriction::from_guess(problem.clone(), others, kept, watch)?;
         if same.minimum.ending == Ending::NoStart {
-            return Err(IdentifyError::Data(NO_START.to_string()));
+            return Err(FrictionFitError::NoStart.into());
         }
         if same.minimum.linearised.residuals.len() <= problem.count() {
-            return Err(IdentifyError::Data(
-                "the recordings have too few rows to fit a friction".to_string(),
-            ));
+            return Err(FrictionFitError::TooFewRows.into());
         }
         let Some(curve) = by_direction else { return Ok((same, None)) };
         let directions = DirectionModel::DiffersByDirection;
@@ -266,23 +264,15 @@ impl<'a> SearchedFriction<'a> {
     }
 }
 
-const NO_START: &str = "no friction near the recorded forces lets the piston stay where it is recorded: look for a position or a pressure that is wrong by a factor, or for rows of two tests in one file";
-
-/// Why nothing can be found, with what was left out.
-fn nothing(recordings: &[FrictionRecording], varying: &[VaryingVelocity]) -> String {
-    let of = |one: &VaryingVelocity| {
-        let file = recordings.get(one.recording).map_or("", |recording| recording.file.as_str());
-        let [mean, least, greatest] =
-            [one.velocity, one.range[0], one.range[1]].map(|velocity| display(velocity, &VELOCITY, 3));
-        format!("{file} goes from {least} to {greatest} where it moves by {mean} on average")
+/// Runs that were left out because their velocity is constant on average only.
+fn unsteady(recordings: &[FrictionRecording], varying: &[VaryingVelocity]) -> Vec<UnsteadyRun> {
+    let of = |one: &VaryingVelocity| UnsteadyRun {
+        file: recordings.get(one.recording).map_or(String::new(), |recording| recording.file.clone()),
+        mean: one.velocity,
+        range: one.range,
     };
-    match varying {
-        [] => NOTHING.to_string(),
-        varying => format!("{NOTHING} ({})", varying.iter().map(of).collect::<Vec<_>>().join("; ")),
-    }
+    varying.iter().map(of).collect()
 }
-
-const NOTHING: &str = "no recording determines the friction: there is neither a constant velocity for 20 rows or more, nor a force that presses the piston from rest or shakes it while its position is recorded";
 
 /// True where friction acts both ways, so that it differs from a force that is always there.
 fn goes_both_ways(slides: &[ConstantVelocity], presses: &[PressedRows]) -> bool {

@@ -14,7 +14,6 @@ mod contents;
 mod evidence;
 mod fit;
 mod guess;
-mod in_use;
 mod instruments;
 mod intervals;
 mod joint;
@@ -32,7 +31,6 @@ mod warm;
 pub use bootstrap::{Bootstrap, FEWEST_REPETITIONS};
 pub use contents::{ColumnContents, FileContents, RecordedFiles};
 pub use evidence::{DECISIVE, ExplainedBy, ModelEvidence};
-pub use in_use::{in_use, recorded_files};
 pub use joint::{COVERAGE, JointRegion, JointRegionError, SMALLEST_EFFECT, joint_region, with_valve};
 pub use misfit::{Misfit, MisfitPlace};
 pub use not_identifiable::NotIdentifiableCombination;
@@ -43,7 +41,7 @@ pub use terms::{TermEvidence, ValveTerm};
 pub use warm::TestOil;
 
 use phea_dynamics::least_squares::Ending;
-use phea_dynamics::watch::{Stopped, Watch};
+use phea_dynamics::watch::Watch;
 use phea_hydraulics::servovalve::{
     LeakageModel, OilLaw, STATIC_COEFFICIENTS, StaticCoefficients, TestedValve, ValveTerms, ramp_delay,
 };
@@ -51,7 +49,8 @@ use phea_hydraulics::servovalve::{
 use self::fit::Fit;
 use self::variables::Variables;
 use crate::estimate::Estimate;
-use crate::project::{Project, RatedFlow, Refusal, ValveCoefficients};
+use crate::identify_error::IdentifyError;
+use crate::project::{Project, RatedFlow, ValveCoefficients};
 
 /// Names of the coefficients, in order, and their units.
 pub const COEFFICIENT_NAMES: [(&str, &str); STATIC_COEFFICIENTS] = [
@@ -279,26 +278,6 @@ pub struct SignalFit {
     /// Correlation of neighbouring residuals: near zero for noise, near one where the model is
     /// wrong.
     pub correlation: f64,
-}
-
-/// Why nothing was identified.
-#[derive(Debug, thiserror::Error)]
-pub enum IdentifyError {
-    /// Files are refused.
-    #[error("{0}")]
-    Files(Box<Refusal>),
-    /// The files contain nothing from which coefficients follow.
-    #[error("{0}")]
-    Data(String),
-    /// Stopped by the progress callback.
-    #[error("stopped")]
-    Stopped,
-}
-
-impl From<Stopped> for IdentifyError {
-    fn from(_: Stopped) -> IdentifyError {
-        IdentifyError::Stopped
-    }
 }
 
 /// Finds the coefficients that explain all recordings at once.

@@ -29,6 +29,7 @@ pub mod family;
 mod followed;
 pub mod friction;
 pub mod identify;
+pub mod identify_error;
 pub mod impossible;
 mod impossible_steps;
 pub mod limit_kind;

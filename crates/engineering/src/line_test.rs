@@ -15,6 +15,7 @@ mod known;
 mod misfit;
 mod not_identifiable;
 mod reading;
+mod record_error;
 mod response_noise;
 mod rise;
 mod rise_air;

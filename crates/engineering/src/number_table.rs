@@ -30,17 +30,30 @@ impl TableFormat {
     }
 }
 
+/// Error for a format in which no table is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("a table is written as `csv` or `parquet`")]
+pub struct UnknownTableFormat;
+
 impl std::str::FromStr for TableFormat {
-    type Err = String;
+    type Err = UnknownTableFormat;
 
     /// The format with this ending.
-    fn from_str(text: &str) -> Result<TableFormat, String> {
+    fn from_str(text: &str) -> Result<TableFormat, UnknownTableFormat> {
         match text {
             "csv" => Ok(TableFormat::Csv),
             "parquet" => Ok(TableFormat::Parquet),
-            _ => Err("a table is written as `csv` or `parquet`".to_string()),
+            _ => Err(UnknownTableFormat),
         }
     }
+}
+
+/// Error for a row with more values than columns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{values} values for {columns} columns")]
+struct SurplusValues {
+    values: usize,
+    columns: usize,
 }
 
 /// Rows of a group, which is held until it is written: half a megabyte for each column.
@@ -102,8 +115,8 @@ impl<W: Write + Send> NumberTable<W> {
             Writing::Parquet { group, .. } => group.len(),
         };
         if values.len() > count {
-            let message = format!("{} values for {count} columns", values.len());
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+            let surplus = SurplusValues { values: values.len(), columns: count };
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, surplus));
         }
         let row = (0..count).map(|column| values.get(column).copied().unwrap_or(f64::NAN));
         match &mut self.0 {

@@ -13,6 +13,7 @@ mod member;
 mod reading;
 mod resampled;
 mod spacing;
+mod spacing_error;
 mod test_controller;
 
 pub use levels::{FALSE_ALARM, LevelComparison, LevelDifference, compare_levels};
@@ -21,11 +22,12 @@ pub use reading::{ReferenceSignal, ReferenceSource, SampledPair, sampled_pairs};
 pub use resampled::Resampled;
 pub(crate) use resampled::{EvenRows, even_rows, interpolated, is_software_timed};
 pub use spacing::{RowSpacing, UNEVEN, time_step};
+pub use spacing_error::EvenlySampled;
 pub use test_controller::TestController;
 
 use phea_dynamics::watch::{Watch, tell};
 
-use crate::identify::IdentifyError;
+use crate::identify_error::{IdentifyError, ResponseFitError};
 
 /// Settings of the estimation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +64,8 @@ pub fn members(
     let mut members = Vec::with_capacity(records.len());
     for (index, record) in records.iter().enumerate() {
         tell(watch, "frequency responses", index, records.len())?;
-        members.push(member::member(record, settings).map_err(IdentifyError::Data)?);
+        let fault = |fault| ResponseFitError { file: record.file.clone(), fault };
+        members.push(member::member(record, settings).map_err(fault)?);
     }
     Ok(members)
 }

@@ -14,6 +14,7 @@ mod cell;
 mod clock;
 mod column;
 mod decode;
+mod error;
 mod faults;
 mod gauge;
 mod heading;
@@ -27,6 +28,7 @@ mod times;
 pub use column::{Column, Measurand, Sought, TIME_NAMES, TIMES};
 pub(crate) use times::{median_step, not_increasing};
 
+use self::error::{RowError, TableHint};
 use self::parquet::ParquetRows;
 use self::text::TextRows;
 use crate::project::{Findings, Place, RawFinding};
@@ -138,8 +140,8 @@ impl MeasuredTable {
     pub(crate) fn all_numbers(&self, columns: &[&Column], findings: &mut Findings) -> Vec<Vec<f64>> {
         for place in &self.left_out {
             findings.push(
-                RawFinding::error(*place, "there is no number in this row")
-                    .expected("a number in each column"),
+                RawFinding::error(*place, RowError::NoNumber.to_string())
+                    .expected(TableHint::NumberInEachColumn.to_string()),
             );
         }
         let numbers = self.numbers(columns, findings);
@@ -149,10 +151,10 @@ impl MeasuredTable {
         for (column, gaps) in columns.iter().zip(&numbers.gaps) {
             for row in gaps {
                 let message = match self.cell(*row, column, findings) {
-                    "" => "there is no value".to_string(),
-                    text => format!("`{text}` is not a number"),
+                    "" => RowError::NoValue,
+                    text => RowError::NotANumber(text.to_string()),
                 };
-                let found = self.error(*row, column, message, findings);
+                let found = self.error(*row, column, message.to_string(), findings);
                 findings.push(found.expected(column.expected()));
             }
         }
@@ -173,8 +175,8 @@ impl MeasuredTable {
                 RawFinding::error(rows.place(findings.content(rows.text), row, column.index), message)
             }
             TableRows::Parquet(rows) => {
-                let heading = self.heading(column);
-                RawFinding::error(rows.place(row), format!("row {}, column `{heading}`: {message}", row + 1))
+                let at = parquet::number_of(row, self.heading(column));
+                RawFinding::error(rows.place(row), format!("{at}: {message}"))
             }
         }
     }
@@ -221,7 +223,7 @@ impl MeasuredTable {
         match &self.rows {
             TableRows::Text(rows) => rows.incomplete(findings.content(rows.text), row, self.headings.len()),
             TableRows::Parquet(rows) => {
-                RawFinding::error(rows.place(row), format!("row {} is incomplete", row + 1))
+                RawFinding::error(rows.place(row), RowError::Incomplete(row + 1).to_string())
             }
         }
     }
@@ -248,10 +250,8 @@ impl MeasuredTable {
         let listed = runs.iter().take(MOST_LISTED).map(named).collect::<Vec<_>>().join(", ");
         let rest: usize = runs.iter().skip(MOST_LISTED).map(|[first, last]| last - first + 1).sum();
         let plural = if rows.len() == 1 { "" } else { "s" };
-        match rest {
-            0 => format!("{word}{plural} {listed}"),
-            rest => format!("{word}s {listed} and {rest} more"),
-        }
+        let more = if rest == 0 { String::new() } else { format!(" and {rest} more") };
+        format!("{word}{plural} {listed}{more}")
     }
 }
 

@@ -15,7 +15,7 @@ pub use neck::Neck;
 use phea_dynamics::scalar::{LocalFunction, Parameters, Scalar};
 
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
-use crate::parameter::{ParameterError, Problems};
+use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
 /// A gas-charged accumulator. Units: m3, Pa gauge, 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +36,12 @@ impl Accumulator {
         problems.positive("gas_volume", gas_volume);
         problems.positive("precharge_pressure", precharge_pressure);
         let is_index = (1.0..=5.0 / 3.0).contains(&polytropic_exponent);
-        problems.require("polytropic_exponent", polytropic_exponent, is_index, "from 1 to 5/3");
+        problems.require(
+            "polytropic_exponent",
+            polytropic_exponent,
+            is_index,
+            ParameterRequirement::PolytropicExponent,
+        );
         problems.into_vec()
     }
 }

@@ -11,7 +11,7 @@ use crate::force_sensor::ForceSensor;
 use crate::friction::Friction;
 use crate::line::{Line, StiffeningMember};
 use crate::linkage::Linkage;
-use crate::parameter::{ParameterError, Problems};
+use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 use crate::series::SeriesElement;
 use crate::servovalve::{Servovalve, Supply};
 use crate::stiffness::{ChamberCompliance, StiffnessModel, chamber_compliance};
@@ -145,7 +145,7 @@ fn heat_problems(gas: &Accumulator, time_constant: f64) -> Vec<ParameterError> {
     let mut problems = Problems::default();
     problems.positive("thermal_time_constant", time_constant);
     let index = gas.polytropic_exponent;
-    let one = "1 together with a thermal time constant";
+    let one = ParameterRequirement::IsothermalWithHeat;
     problems.require("polytropic_exponent", index, index == 1.0, one);
     problems.into_vec()
 }
@@ -160,12 +160,12 @@ fn adjustment_problems(
     problems.all(adjustment.problems(gas));
     match adjustment.valve() {
         Some(_) => {
-            let alone = "absent where a valve lies between chamber and gas";
+            let alone = ParameterRequirement::NoNeckNextToValve;
             let diameter = neck.map_or(0.0, |neck| neck.inertance);
             problems.require("neck_inertance", diameter, neck.is_none(), alone);
         }
         None => {
-            let alone = "absent where gas is added and taken";
+            let alone = ParameterRequirement::NoHeatWithChangedGas;
             let time = time_constant.unwrap_or(0.0);
             problems.require("thermal_time_constant", time, time_constant.is_none(), alone);
         }
@@ -228,7 +228,7 @@ impl Actuator {
         problems.component("force_sensor", force_sensor.problems());
         problems.component("series", components.series.map_or(Vec::new(), |series| series.problems()));
         problems.component("linkage", components.linkage.map_or(Vec::new(), |linkage| linkage.problems()));
-        let not_empty = "positive together with the line's volume: an empty chamber has no pressure";
+        let not_empty = ParameterRequirement::ChamberNotEmpty;
         let volume_a = cylinder.dead_volume_a + line_a.volume();
         let volume_b = cylinder.dead_volume_b + line_b.volume();
         problems.require("cylinder.dead_volume_a", volume_a, volume_a > 0.0, not_empty);

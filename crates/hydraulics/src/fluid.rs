@@ -2,7 +2,7 @@
 
 use phea_dynamics::scalar::Scalar;
 
-use crate::parameter::{ParameterError, Problems};
+use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
 /// Atmospheric pressure in Pa absolute (ISO 2533 standard atmosphere at sea level): the pressure at
 /// which the volume fraction of entrained air is stated, and the difference between gauge and
@@ -44,14 +44,14 @@ impl Fluid {
                 "entrained_air.volume_fraction",
                 volume_fraction,
                 is_fraction,
-                "from 0 to below 1",
+                ParameterRequirement::FractionBelowOne,
             );
             let is_index = (1.0..=5.0 / 3.0).contains(&polytropic_exponent);
             problems.require(
                 "entrained_air.polytropic_exponent",
                 polytropic_exponent,
                 is_index,
-                "from 1 to 5/3",
+                ParameterRequirement::PolytropicExponent,
             );
         }
         problems.into_vec()

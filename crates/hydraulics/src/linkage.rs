@@ -17,7 +17,7 @@ pub use weight::{LinkedWeight, STANDARD_GRAVITY, WeightAt};
 
 use phea_dynamics::scalar::Scalar;
 
-use crate::parameter::{ParameterError, Problems};
+use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 use chebyshev::ChebyshevSeries;
 use geometry::{rising_root, through_table, where_it_is};
 
@@ -338,7 +338,7 @@ impl Linkage {
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         let first = self.extension.coefficients[0];
-        problems.require("geometry", first, true, "one that closes over the stroke");
+        problems.require("geometry", first, true, ParameterRequirement::ClosedLinkage);
         problems.into_vec()
     }
 }

@@ -15,8 +15,100 @@ pub struct ParameterError {
     pub quantity: String,
     /// The value given, in SI units.
     pub value: f64,
-    /// The requirement, to follow "must be".
-    pub requirement: &'static str,
+    /// Requirement that it violates.
+    pub requirement: ParameterRequirement,
+}
+
+/// Requirement on a parameter, to follow "must be".
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ParameterRequirement {
+    /// Any finite number.
+    #[error("a finite number")]
+    FiniteNumber,
+    /// Positive numbers.
+    #[error("positive")]
+    Positive,
+    /// Numbers that are not negative.
+    #[error("zero or positive")]
+    ZeroOrPositive,
+    /// Fractions with both ends.
+    #[error("from 0 to 1")]
+    FractionWithEnds,
+    /// Fractions without the upper end.
+    #[error("from 0 to below 1")]
+    FractionBelowOne,
+    /// Fractions of up to a half, without both ends.
+    #[error("between 0 and 1/2")]
+    BelowHalf,
+    /// Poisson ratios of an elastic solid.
+    #[error("from 0 to 0.5")]
+    PoissonRatio,
+    /// Polytropic exponents, from isothermal to that of a monatomic gas.
+    #[error("from 1 to 5/3")]
+    PolytropicExponent,
+    /// Counts of segments.
+    #[error("from 1 to 8")]
+    SegmentCount,
+    /// Exponent of a gas whose heat is modelled.
+    #[error("1 together with a thermal time constant")]
+    IsothermalWithHeat,
+    /// Neck of an accumulator behind a valve.
+    #[error("absent where a valve lies between chamber and gas")]
+    NoNeckNextToValve,
+    /// Thermal time constant of gas whose amount changes.
+    #[error("absent where gas is added and taken")]
+    NoHeatWithChangedGas,
+    /// Volume of a chamber and its line at the end of the stroke.
+    #[error("positive together with the line's volume: an empty chamber has no pressure")]
+    ChamberNotEmpty,
+    /// Expansion of a hose.
+    #[error("such that the hose holds oil at the operating pressure")]
+    HoseHoldsOil,
+    /// Least dynamic stiffening of a hose.
+    #[error("at least 1: a hose is softest when it is slow")]
+    AtLeastOneOfHose,
+    /// Nominal dynamic stiffening.
+    #[error("at least the minimum")]
+    AtLeastMinimum,
+    /// Greatest dynamic stiffening.
+    #[error("at least the nominal")]
+    AtLeastNominal,
+    /// Modulus of a wall in fast motion.
+    #[error("at least the static modulus: a wall is softest when it is slow")]
+    AtLeastStaticModulus,
+    /// Modulus of a hose with fixed ends.
+    #[error("positive, or the wall would give energy")]
+    PassiveWall,
+    /// Static friction.
+    #[error("at least the Coulomb friction")]
+    AtLeastCoulomb,
+    /// Dimensions of a linkage.
+    #[error("one that closes over the stroke")]
+    ClosedLinkage,
+    /// Position at which a stage begins.
+    #[error("after the transition before it, with its own within the stroke")]
+    AfterTransition,
+    /// Damping of a stop.
+    #[error("zero where the element has neither `damping` nor `mass`: nothing moves against it")]
+    NothingMovesAgainstStop,
+    /// Line of a transmission.
+    #[error("that of a hose or pipe: a plain volume has neither length nor bore")]
+    HoseOrPipe,
+    /// Filling pressure.
+    #[error("above vacuum")]
+    AboveVacuum,
+    /// Tank pressure.
+    #[error("above vacuum (a gauge pressure)")]
+    GaugeAboveVacuum,
+    /// Supply pressure.
+    #[error("above the tank pressure")]
+    AboveTankPressure,
+    /// Lap of a spool.
+    #[error("less than the full travel of the spool")]
+    WithinTravel,
+    /// Width of a hysteresis.
+    #[error("above the threshold it includes")]
+    AboveThreshold,
 }
 
 impl ParameterError {
@@ -32,9 +124,15 @@ pub(crate) struct Problems(Vec<ParameterError>);
 
 impl Problems {
     /// Refuses `value` unless `holds`; a value that is not finite is always refused.
-    pub(crate) fn require(&mut self, quantity: &str, value: f64, holds: bool, requirement: &'static str) {
+    pub(crate) fn require(
+        &mut self,
+        quantity: &str,
+        value: f64,
+        holds: bool,
+        requirement: ParameterRequirement,
+    ) {
         if !value.is_finite() {
-            let requirement = "a finite number";
+            let requirement = ParameterRequirement::FiniteNumber;
             self.0.push(ParameterError { quantity: quantity.to_string(), value, requirement });
         } else if !holds {
             self.0.push(ParameterError { quantity: quantity.to_string(), value, requirement });
@@ -42,11 +140,11 @@ impl Problems {
     }
 
     pub(crate) fn positive(&mut self, quantity: &str, value: f64) {
-        self.require(quantity, value, value > 0.0, "positive");
+        self.require(quantity, value, value > 0.0, ParameterRequirement::Positive);
     }
 
     pub(crate) fn not_negative(&mut self, quantity: &str, value: f64) {
-        self.require(quantity, value, value >= 0.0, "zero or positive");
+        self.require(quantity, value, value >= 0.0, ParameterRequirement::ZeroOrPositive);
     }
 
     pub(crate) fn component(&mut self, owner: &str, problems: Vec<ParameterError>) {

@@ -35,7 +35,7 @@ pub use test_stand::{StandState, TestStand};
 
 use phea_dynamics::scalar::Scalar;
 
-use crate::parameter::{ParameterError, Problems};
+use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
 /// One number for each of the valve's four edges; the thesis numbers them 3, 4, 5, 6 in this order.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -178,8 +178,18 @@ impl Supply {
         let mut problems = Problems::default();
         let Supply { pressure, tank_pressure } = *self;
         let above_vacuum = tank_pressure > -crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
-        problems.require("tank_pressure", tank_pressure, above_vacuum, "above vacuum (a gauge pressure)");
-        problems.require("pressure", pressure, pressure > tank_pressure, "above the tank pressure");
+        problems.require(
+            "tank_pressure",
+            tank_pressure,
+            above_vacuum,
+            ParameterRequirement::GaugeAboveVacuum,
+        );
+        problems.require(
+            "pressure",
+            pressure,
+            pressure > tank_pressure,
+            ParameterRequirement::AboveTankPressure,
+        );
         problems.into_vec()
     }
 }

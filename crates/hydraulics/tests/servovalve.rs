@@ -6,6 +6,7 @@ use phea_dynamics::scalar::{Dual, Parameters};
 use phea_dynamics::simulation::DIRECTIONS;
 use phea_hydraulics::actuator::{Actuator, Components};
 use phea_hydraulics::operating_point::{Condition, operating_point};
+use phea_hydraulics::parameter::ParameterRequirement;
 use phea_hydraulics::reference_rig::{USEFUL_AREA, components, hose_line, valve, valve_with_equal_edges};
 use phea_hydraulics::servovalve::{
     ChamberFlows, Edges, LeakageModel, LeakageShape, Servovalve, SpoolDirection, Supply, blocked_ports,
@@ -300,5 +301,5 @@ fn impossible_valves_are_refused_by_name() {
     let names: Vec<String> = broken.problems().into_iter().map(|problem| problem.quantity).collect();
     assert_eq!(names, ["leakage_shape", "damping_ratio"]);
     let inverted = Supply { pressure: 1e5, tank_pressure: 2e5 };
-    assert_eq!(inverted.problems()[0].requirement, "above the tank pressure");
+    assert_eq!(inverted.problems()[0].requirement, ParameterRequirement::AboveTankPressure);
 }

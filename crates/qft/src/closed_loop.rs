@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Controller, RateSensor, Timing};
-use phea_dynamics::linear::{Discretization, LinearError, TimeDomain, TransferFunction};
+use phea_dynamics::linear::{Discretization, LinearError, LinearOperation, TimeDomain, TransferFunction};
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, PlantMember, RationalCoefficients, UncertainPlant};
@@ -174,7 +174,10 @@ impl Compensation {
         let feedback = deployed(controller.feedback.transfer_function()?, timing)?;
         let prefilter = deployed(controller.prefilter.transfer_function()?, &timing.of_prefilter())?;
         if sensor.domain() != TimeDomain::Continuous {
-            return Err(LinearError::WrongDomain { operation: "a sensor", needed: "continuous" });
+            return Err(LinearError::WrongDomain {
+                operation: LinearOperation::Sensor,
+                needed: "continuous",
+            });
         }
         let inner = timing.inner_feedback;
         let is_sampled = timing.sample_time_s.is_some() && !inner.is_zero();

@@ -47,7 +47,7 @@ pub use certificate::{
     Late, LimitOf, LimitedLoop, ParameterSegment, PoleCount, Quotient, RollOffBound, Sampling, Sections,
     StableBox,
 };
-pub use checker::{Rejection, check};
+pub use checker::{CertificateNumber, Rejection, check};
 pub use comparison::{CertificateDifference, differences};
 pub use prove::{ProofOptions, prove};
 pub use walk::ProofRegion;

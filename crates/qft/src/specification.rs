@@ -12,7 +12,7 @@ use phea_dynamics::portable;
 
 pub use limit::{Limit, LimitError, LimitTable};
 pub use margin::{
-    GuaranteedMargins, MarginError, delay_margin_limit, guaranteed_margins,
+    GuaranteedMargins, MarginError, MarginNumber, delay_margin_limit, guaranteed_margins,
     guaranteed_margins_of_robust_stability, guaranteed_margins_of_sensitivity,
     robust_stability_limit_for_gain_increase, robust_stability_limit_for_gain_reduction,
     robust_stability_limit_for_modulus_margin, robust_stability_limit_for_phase_margin,

@@ -4,7 +4,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
-use phea_dynamics::linear::{LinearError, Polynomial, TimeDomain, TransferFunction};
+use phea_dynamics::linear::{LinearError, LinearOperation, Polynomial, TimeDomain, TransferFunction};
 use phea_dynamics::portable;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients};
 use phea_qft::closed_loop::{Compensation, MemberResponse};
@@ -291,5 +291,8 @@ fn controllers_of_other_samples_and_sensors_in_z_are_refused() {
     assert_eq!(refused(plain(), general(discrete(0.02)), timing(Some(0.01), 0.0)), mismatch);
     assert_eq!(refused(general(discrete(0.01)), plain(), timing(Some(0.01), 0.0)), None);
     let sensor = Compensation::new(&Controller::default(), discrete(0.01)).err();
-    assert_eq!(sensor, Some(LinearError::WrongDomain { operation: "a sensor", needed: "continuous" }));
+    assert_eq!(
+        sensor,
+        Some(LinearError::WrongDomain { operation: LinearOperation::Sensor, needed: "continuous" })
+    );
 }

@@ -1,5 +1,5 @@
 //! Whether a rig moves along a line or turns: the one place that knows what this makes of
-//! dimensions, units, names for programs and words.
+//! dimensions, units and names for programs.
 //!
 //! The equations of both are the same: with its displacement in place of the areas, a motor's angle
 //! is its position, its torque its force and its inertia its mass. Programs and equations therefore
@@ -7,14 +7,11 @@
 
 mod formulae;
 mod names;
-mod vocabulary;
 
 use std::borrow::Cow;
 
 use crate::dimension::*;
 use crate::display_unit::DisplayUnit;
-
-pub use vocabulary::Vocabulary;
 
 /// The motion of a rig.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

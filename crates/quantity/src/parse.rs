@@ -11,7 +11,7 @@ use std::f64::consts::{LN_10, TAU};
 use std::ops::Range;
 
 use super::dimension::{CURRENT, DIMENSIONS, Dimension, Exponents, GAIN, PERCENT, VOLTAGE};
-use super::error::QuantityError;
+use super::error::{QuantityError, QuantityExpectation, QuantityFault, QuantityHint};
 use super::exact::Whole;
 use super::separators::refuse_thousands;
 use super::unit::{self, Unit};
@@ -41,13 +41,14 @@ const MAXIMUM_EXPONENT: i32 = 16;
 /// assert_eq!(parse("70 bar", &PRESSURE), Ok(70e5));
 /// assert_eq!(parse("10 gpm", &FLOW), Ok(6.30901964e-4));
 /// assert_eq!(parse("2.5 %", &PERCENT), Ok(2.5));
-/// assert_eq!(parse("70 mm", &PRESSURE).unwrap_err().message, "expected a pressure, found a length");
+/// assert_eq!(parse("70 mm", &PRESSURE).unwrap_err().to_string(), "expected a pressure, found a length");
 /// ```
 pub fn parse(text: &str, dimension: &Dimension) -> Result<f64, QuantityError> {
     if text.len() > MAXIMUM_LENGTH {
-        return Err(QuantityError::new("too long for a quantity", 0..text.len()));
+        return Err(QuantityError::new(QuantityFault::TooLong, 0..text.len()));
     }
-    let expected = || Some(format!("{}, such as {}", dimension.name, dimension.examples));
+    let (name, examples) = (dimension.name, dimension.examples);
+    let expected = || Some(QuantityExpectation::OfDimension { name, examples });
     let with_expected = |mut error: QuantityError| {
         error.expected = error.expected.or_else(expected);
         error
@@ -68,25 +69,21 @@ pub fn parse(text: &str, dimension: &Dimension) -> Result<f64, QuantityError> {
     number.times(&product, text).map_err(with_expected)
 }
 
-/// How the command of a valve that is driven by current is stated.
-const OF_CURRENT: &str = "commands are voltages: write the voltage at which the amplifier gives this current";
-
 /// The unit in a part of a text.
 fn product_of(text: &str, range: Range<usize>, dimension: &Dimension) -> Result<UnitProduct, QuantityError> {
     let product = UnitReader { text, at: range.start, end: range.end, factors: 0 }.unit()?;
     let is_angular = dimension.exponents == Exponents::whole(0, 0, -1, 0, 1);
     if is_angular && product.exponents == PER_SECOND && product.over != product.under {
-        let error = QuantityError::new("revolutions or radians in this time", range);
-        return Err(error.help("write rpm, Hz, rad/s or rad/min"));
+        let error = QuantityError::new(QuantityFault::AmbiguousRotation, range);
+        return Err(error.help(QuantityHint::UnitsOfRotation));
     }
     if accepts(dimension, product.exponents) {
         let ten = if std::ptr::eq(dimension, &PERCENT) { product.ten + 2 } else { product.ten };
         return Ok(UnitProduct { ten, ..product });
     }
-    let message = format!("expected {}, found {}", dimension.name, name_of(product.exponents));
-    let error = QuantityError::new(message, range);
+    let error = QuantityError::new(other_dimension(dimension.name, product.exponents), range);
     let is_current = product.exponents == CURRENT.exponents && dimension.exponents == VOLTAGE.exponents;
-    Err(if is_current { error.help(OF_CURRENT) } else { error })
+    Err(if is_current { error.help(QuantityHint::CommandsAreVoltages) } else { error })
 }
 
 /// A unit, and whether its numbers are decibels; an empty text is the unit of a pure number.
@@ -97,8 +94,10 @@ pub(crate) fn unit_of(unit: &str, dimension: &Dimension) -> Result<(UnitProduct,
     }
     match unit.trim() {
         "" if is_pure => Ok((UnitProduct::default(), false)),
-        "" => Err(QuantityError::new("there is no unit", 0..unit.len())),
-        _ if unit.len() > MAXIMUM_LENGTH => Err(QuantityError::new("too long for a unit", 0..unit.len())),
+        "" => Err(QuantityError::new(QuantityFault::NoUnit, 0..unit.len())),
+        _ if unit.len() > MAXIMUM_LENGTH => {
+            Err(QuantityError::new(QuantityFault::TooLongUnit, 0..unit.len()))
+        }
         trimmed => product_of(trimmed, 0..trimmed.len(), dimension).map(|product| (product, false)),
     }
 }
@@ -114,9 +113,8 @@ fn unitless(text: &str, number: &DecimalNumber, dimension: &Dimension) -> Result
     }
     let zero = if text.trim().starts_with('.') { "0" } else { "" };
     let bare = format!("{zero}{}", text.trim());
-    let message = "this number has no unit";
-    let help = format!("add one, or write {bare} without quotes for {}", dimension.si);
-    Err(QuantityError::new(message, 0..text.len()).help(help))
+    let help = QuantityHint::AddUnit { bare, si: dimension.si };
+    Err(QuantityError::new(QuantityFault::NumberWithoutUnit, 0..text.len()).help(help))
 }
 
 const PER_SECOND: Exponents = Exponents::whole(0, 0, -1, 0, 0);
@@ -127,10 +125,10 @@ pub(crate) fn accepts(dimension: &Dimension, found: Exponents) -> bool {
     found == dimension.exponents || (dimension.exponents == rotation && found == PER_SECOND)
 }
 
-fn name_of(exponents: Exponents) -> String {
-    match DIMENSIONS.iter().find(|dimension| dimension.exponents == exponents) {
-        Some(dimension) => dimension.name.to_string(),
-        None => format!("something in {}", exponents.in_base_units()),
+fn other_dimension(expected: &'static str, found: Exponents) -> QuantityFault {
+    match DIMENSIONS.iter().find(|dimension| dimension.exponents == found) {
+        Some(found) => QuantityFault::OtherDimension { expected, found: found.name },
+        None => QuantityFault::UnnamedDimension { expected, found },
     }
 }
 
@@ -138,7 +136,7 @@ fn finite(value: f64, text: &str) -> Result<f64, QuantityError> {
     if value.is_finite() {
         Ok(value)
     } else {
-        Err(QuantityError::new("the number is too large", 0..text.len()))
+        Err(QuantityError::new(QuantityFault::TooLarge, 0..text.len()))
     }
 }
 
@@ -203,8 +201,8 @@ impl DecimalNumber {
 
     fn missing(text: &str, start: usize) -> QuantityError {
         let rest = text[start..].chars().next().map_or(0, char::len_utf8);
-        let message = if rest == 0 { "an empty text" } else { "a quantity begins with a number" };
-        QuantityError::new(message, start..start + rest)
+        let fault = if rest == 0 { QuantityFault::Empty } else { QuantityFault::NoNumber };
+        QuantityError::new(fault, start..start + rest)
     }
 
     pub(crate) fn times(&self, product: &UnitProduct, text: &str) -> Result<f64, QuantityError> {
@@ -219,10 +217,7 @@ impl DecimalNumber {
         let value = finite(if self.negative { -magnitude } else { magnitude }, text)?;
         let nothing = self.digits.chars().all(|digit| digit == '0');
         if value == 0.0 && !nothing {
-            return Err(QuantityError::new(
-                "the number is too small to be distinguished from zero",
-                0..text.len(),
-            ));
+            return Err(QuantityError::new(QuantityFault::TooSmall, 0..text.len()));
         }
         Ok(value)
     }
@@ -307,7 +302,7 @@ impl UnitReader<'_> {
         let product = self.product(true)?;
         if self.at < self.end {
             let range = self.at..self.at + self.peek().map_or(0, char::len_utf8);
-            return Err(QuantityError::new("unexpected character in a unit", range));
+            return Err(QuantityError::new(QuantityFault::UnexpectedCharacter, range));
         }
         Ok(product)
     }
@@ -338,8 +333,8 @@ impl UnitReader<'_> {
             };
             if divided && !divide {
                 let range = operator_at..operator_at + self.peek().map_or(0, char::len_utf8);
-                let error = QuantityError::new("a product after \"/\" can be read in two ways", range);
-                return Err(error.help("put parentheses around what is divided by, as in m3/(s.Pa)"));
+                let error = QuantityError::new(QuantityFault::ProductAfterDivision, range);
+                return Err(error.help(QuantityHint::Parentheses));
             }
             divided |= divide;
             self.at += length;
@@ -348,7 +343,7 @@ impl UnitReader<'_> {
             let factor = if divide { factor.inverse() } else { factor };
             let range = operator_at..self.at;
             result =
-                result.times(&factor).ok_or_else(|| QuantityError::new("no such unit is in use", range))?;
+                result.times(&factor).ok_or_else(|| QuantityError::new(QuantityFault::NotInUse, range))?;
         }
     }
 
@@ -356,7 +351,7 @@ impl UnitReader<'_> {
         self.factors += 1;
         let start = self.at;
         if self.factors > MAXIMUM_FACTORS {
-            return Err(QuantityError::new("too many factors in one unit", start..self.end));
+            return Err(QuantityError::new(QuantityFault::TooManyFactors, start..self.end));
         }
         let base = match self.peek() {
             Some('(') if group_allowed => {
@@ -364,7 +359,7 @@ impl UnitReader<'_> {
                 self.skip_spaces();
                 let inner = self.product(false)?;
                 if self.peek() != Some(')') {
-                    return Err(QuantityError::new("this parenthesis is not closed", start..start + 1));
+                    return Err(QuantityError::new(QuantityFault::OpenParenthesis, start..start + 1));
                 }
                 self.at += 1;
                 inner
@@ -375,7 +370,7 @@ impl UnitReader<'_> {
             None => Ok(base),
             Some(halves) => base
                 .power(halves)
-                .ok_or_else(|| QuantityError::new("no unit of this grammar has that power", start..self.at)),
+                .ok_or_else(|| QuantityError::new(QuantityFault::ImpossiblePower, start..self.at)),
         }
     }
 
@@ -391,7 +386,7 @@ impl UnitReader<'_> {
             self.text[self.at..self.end].chars().take_while(letters).map(char::len_utf8).sum();
         if length == 0 {
             let wide = self.peek().map_or(0, char::len_utf8);
-            return Err(QuantityError::new("expected the name of a unit", start..start + wide));
+            return Err(QuantityError::new(QuantityFault::NoName, start..start + wide));
         }
         self.at += length;
         let name = &self.text[start..self.at];
@@ -420,10 +415,7 @@ impl UnitReader<'_> {
             halves.filter(|h| h.fract() == 0.0 && h.abs() <= f64::from(MAXIMUM_EXPONENT) && *h != 0.0);
         match in_range {
             Some(halves) => Ok(Some(halves as i32)),
-            None => Err(QuantityError::new(
-                "expected an exponent such as 2, -1 or 0.5",
-                start..self.at.max(start + 1),
-            )),
+            None => Err(QuantityError::new(QuantityFault::NoExponent, start..self.at.max(start + 1))),
         }
     }
 }
@@ -439,12 +431,12 @@ fn named(name: &str) -> Option<UnitProduct> {
 }
 
 fn unknown(name: &str, range: Range<usize>) -> QuantityError {
-    let error = QuantityError::new(format!("unknown unit `{name}`"), range);
+    let error = QuantityError::new(QuantityFault::UnknownUnit(name.to_string()), range);
     if ["bara", "barA", "psia", "PSIA"].contains(&name) {
-        return error.help("pressures are gauge here: subtract the atmospheric pressure");
+        return error.help(QuantityHint::GaugePressures);
     }
     match nearest(name, unit::names()) {
-        Some(name) => error.help(format!("did you mean `{name}`?")),
+        Some(name) => error.help(QuantityHint::NearUnit(name)),
         None => error,
     }
 }

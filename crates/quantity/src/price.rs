@@ -1,7 +1,7 @@
 //! Prices in text: `"180 EUR"` for a piece, `"40 EUR/m"` for a length.
 
 use super::dimension::LENGTH;
-use super::error::QuantityError;
+use super::error::{QuantityError, QuantityExpectation, QuantityFault, QuantityHint};
 use super::parse::{DecimalNumber, parse};
 use super::pattern::{UNSIGNED, length_units};
 use super::print::print_bare;
@@ -45,31 +45,31 @@ pub struct Price {
 ///
 /// # Example
 /// ```
-/// use phea_quantity::{PricedBy, parse_price};
+/// use phea_quantity::{PricedBy, QuantityHint, parse_price};
 /// let hose = parse_price("12.192 EUR/ft", PricedBy::Length)?;
 /// assert!((hose.amount - 40.0).abs() < 1e-12 && hose.currency.code() == "EUR");
-/// assert_eq!(parse_price("180 EURO", PricedBy::Piece).unwrap_err().help.as_deref(), Some("did you mean EUR?"));
+/// assert_eq!(parse_price("180 EURO", PricedBy::Piece).unwrap_err().help, Some(Box::new(QuantityHint::NearCurrency("EUR"))));
 /// # Ok::<(), phea_quantity::QuantityError>(())
 /// ```
 pub fn parse_price(text: &str, by: PricedBy) -> Result<Price, QuantityError> {
-    let examples = match by {
-        PricedBy::Piece => "a price such as \"180 EUR\"",
-        PricedBy::Length => "a price for a length, such as \"40 EUR/m\"",
+    let expected = || match by {
+        PricedBy::Piece => QuantityExpectation::Price,
+        PricedBy::Length => QuantityExpectation::PriceForLength,
     };
-    let error = |message: &str, start: usize, help: Option<String>| QuantityError {
-        message: message.to_string(),
+    let error = |fault: QuantityFault, start: usize, help: Option<Box<QuantityHint>>| QuantityError {
+        fault,
         range: start..text.len(),
-        expected: Some(examples.to_string()),
+        expected: Some(expected()),
         help,
     };
     let read = refuse_thousands(text).and_then(|()| DecimalNumber::read(text));
     let number = read.map_err(|mut found| {
-        found.expected = Some(examples.to_string());
+        found.expected = Some(expected());
         found
     })?;
     let amount: f64 = text.get(..number.end).unwrap_or_default().trim().parse().unwrap_or(f64::INFINITY);
     if !amount.is_finite() || amount < 0.0 {
-        return Err(error("a price is a number that is not negative", 0, None));
+        return Err(error(QuantityFault::NegativePrice, 0, None));
     }
     let rest = text.get(number.end..).unwrap_or_default();
     let (code, unit) = match rest.split_once('/') {
@@ -78,21 +78,20 @@ pub fn parse_price(text: &str, by: PricedBy) -> Result<Price, QuantityError> {
     };
     let Some(currency) = CURRENCIES.iter().find(|known| **known == code).map(|code| Currency(code)) else {
         let upper = code.to_uppercase();
-        let help = nearest(&upper, CURRENCIES.iter().copied()).map(|near| format!("did you mean {near}?"));
-        let help = help.unwrap_or_else(|| "write its code of three letters, such as EUR or USD".to_string());
-        let message =
-            if code.is_empty() { "this price has no currency" } else { "there is no such currency" };
-        return Err(error(message, number.end, Some(help)));
+        let near = nearest(&upper, CURRENCIES.iter().copied()).map(QuantityHint::NearCurrency);
+        let help = near.unwrap_or(QuantityHint::CodeOfCurrency);
+        let fault = if code.is_empty() { QuantityFault::NoCurrency } else { QuantityFault::UnknownCurrency };
+        return Err(error(fault, number.end, Some(Box::new(help))));
     };
     let metres = match (by, unit) {
         (PricedBy::Piece, None) => 1.0,
         (PricedBy::Length, Some(unit)) => parse(&format!("1 {unit}"), &LENGTH)
-            .map_err(|found| error(&found.message, number.end, found.help))?,
+            .map_err(|found| error(found.fault, number.end, found.help))?,
         (PricedBy::Piece, Some(_)) => {
-            return Err(error("this is a price per length; expected a price per piece", number.end, None));
+            return Err(error(QuantityFault::PricePerLength, number.end, None));
         }
         (PricedBy::Length, None) => {
-            return Err(error("this is a price per piece; expected a price per length", number.end, None));
+            return Err(error(QuantityFault::PricePerPiece, number.end, None));
         }
     };
     Ok(Price { amount: amount / metres, currency })

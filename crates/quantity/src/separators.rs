@@ -1,6 +1,6 @@
 //! Numbers as people write them who set off thousands, or the decimals with a comma.
 
-use super::error::QuantityError;
+use super::error::{QuantityError, QuantityFault, QuantityHint};
 
 /// Signs that stand between digits.
 const SIGNS: [char; 8] = ['.', ',', '\'', '\u{2019}', '_', ' ', '\u{a0}', '\u{202f}'];
@@ -28,21 +28,24 @@ pub(crate) fn refuse_thousands(text: &str) -> Result<(), QuantityError> {
     let Some(readings) = found.readings(rest) else { return Ok(()) };
     let written = text.get(found.start..found.end).unwrap_or_default();
     let has_comma = found.groups.iter().any(|(sign, _)| *sign == ',');
-    let message = match readings.as_slice() {
-        [one, other] => format!("`{written}` can be read as {one} or as {other}"),
-        _ if has_comma => "a comma inside a number".to_string(),
-        _ => "a sign between the digits of a number".to_string(),
+    let fault = match readings.as_slice() {
+        [one, other] => QuantityFault::TwoReadings {
+            written: written.to_string(),
+            readings: Box::new([one.clone(), other.clone()]),
+        },
+        _ if has_comma => QuantityFault::Comma,
+        _ => QuantityFault::SignBetweenDigits,
     };
-    let cures: Vec<String> = readings.iter().map(|number| format!("{number}{rest}")).collect();
-    let help = match cures.is_empty() {
-        true => "write the decimal sign as a point and no separators".to_string(),
-        false => format!("write {}", cures.join(" or ")),
+    let written_out: Vec<String> = readings.iter().map(|number| format!("{number}{rest}")).collect();
+    let help = match written_out.is_empty() {
+        true => QuantityHint::NoSeparators,
+        false => QuantityHint::WriteOneOf(written_out),
     };
     let range = match (readings.len(), written.find(',')) {
         (0 | 1, Some(comma)) => found.start + comma..found.start + comma + 1,
         _ => found.start..found.end,
     };
-    Err(QuantityError { message, range, expected: None, help: Some(help) })
+    Err(QuantityError::new(fault, range).help(help))
 }
 
 impl<'a> SeparatedNumber<'a> {

@@ -24,7 +24,7 @@ pub use friction::{FrictionRequest, friction_watched};
 pub use identify::{IdentifyRequest, identify_watched};
 pub use line_test::{LineRequest, line_watched};
 pub use output_names::OutputNames;
-pub use phea_engineering::identify::IdentifyError;
+pub use phea_engineering::identify_error::IdentifyError;
 pub use phea_engineering::response::ResponseSettings;
 pub use phea_hydraulics::servovalve::LeakageModel;
 pub use refusal::{error_json, error_text, failure_json, files_json, refusal_json, stopped_text};

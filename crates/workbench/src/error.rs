@@ -15,7 +15,7 @@ use phea_engineering::bench::BenchError;
 use phea_engineering::campaign::CampaignError;
 use phea_engineering::design::DesignError;
 use phea_engineering::family::ProjectFamilyError;
-use phea_engineering::identify::IdentifyError;
+use phea_engineering::identify_error::IdentifyError;
 use phea_engineering::linear_loop::LoopError;
 use phea_engineering::linearize::SweepError;
 use phea_engineering::option::OptionError;
@@ -29,6 +29,7 @@ use phea_engineering::sizing::SizingError;
 use phea_engineering::specification::SpecificationError;
 use phea_engineering::trial::TrialError;
 
+use crate::identify::ValveInUseError;
 use crate::project::{Diagnostic, Loaded, Refusal, Severity, refused};
 use crate::source::Source;
 
@@ -103,6 +104,9 @@ pub enum CommandError {
     /// The recordings of the project say nothing of its valve.
     #[error("{0}")]
     Identify(IdentifyError),
+    /// The recordings of the project give no valve in place of the declared one.
+    #[error(transparent)]
+    ValveInUse(ValveInUseError),
     /// A plant that is not an actuator, without specifications.
     #[error(
         "a report on a [plant] needs at least one [[specification]]; one on a rig needs [valve], [cylinder] and [line]"
@@ -271,6 +275,15 @@ impl From<AlternativesError> for CommandError {
             AlternativesError::Option(error) => error.into(),
             AlternativesError::Refused(refusal) => CommandError::Refused(refusal),
             error => CommandError::Alternatives(error),
+        }
+    }
+}
+
+impl From<ValveInUseError> for CommandError {
+    fn from(error: ValveInUseError) -> CommandError {
+        match error {
+            ValveInUseError::Identify(error) => error.into(),
+            error => CommandError::ValveInUse(error),
         }
     }
 }

@@ -4,7 +4,9 @@ mod answer;
 mod document;
 mod figures;
 mod files;
+mod from_recordings;
 mod in_use;
+mod misfit;
 mod numbers;
 mod region;
 
@@ -15,6 +17,7 @@ pub(crate) use document::document;
 pub(crate) use document::{write_coefficients, write_signals};
 pub(crate) use figures::ValveFigures;
 pub use files::Read;
+pub use from_recordings::{ValveInUseError, in_use, recorded_files};
 pub(crate) use in_use::{in_use_above, write_in_use};
 pub(crate) use numbers::{is_valve_of_thesis, write as write_numbers};
 pub use region::FoundRegion;

@@ -57,7 +57,7 @@ pub mod trial;
 mod verdict_words;
 
 pub use phea_engineering::{
-    estimate, family, linear_loop, linear_step, option, replaced, rig, robust, setup,
+    estimate, family, identify_error, linear_loop, linear_step, option, replaced, rig, robust, setup,
 };
 pub use phea_figure as figure;
 pub use phea_project::{self as project, catalogue, source};

@@ -3,10 +3,13 @@
 
 mod json;
 mod markup;
+mod vocabulary;
+
+pub(crate) use vocabulary::Vocabulary;
 
 use crate::answer::Object;
 use crate::project::{InputSignal, Loaded, Project};
-use crate::quantity::{MotionKind, Vocabulary};
+use crate::quantity::MotionKind;
 use crate::source::OutputFile;
 
 /// The words for a project, in which the texts of its user stay as they are.

@@ -10,9 +10,10 @@ use phea_dynamics::portable::{exp_complex, magnitude};
 use phea_dynamics::random::{normal, stream};
 use phea_qft::family::{Family, MeasuredPlant};
 use phea_workbench::answer::Answer;
-use phea_workbench::command::{self, Request, ResponseRequest, ResponseSettings, response_watched};
+use phea_workbench::command::{
+    self, IdentifyError, Request, ResponseRequest, ResponseSettings, response_watched,
+};
 use phea_workbench::family::family;
-use phea_workbench::identify::IdentifyError;
 use phea_workbench::project::{self, Loaded};
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;

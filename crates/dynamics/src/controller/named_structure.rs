@@ -15,7 +15,6 @@
 /// use phea_dynamics::controller::NamedStructure;
 /// let poles = NamedStructure::ALL.map(NamedStructure::order);
 /// assert!(poles.is_sorted());
-/// assert_eq!(NamedStructure::PiNotchLowPass.words(), "PI with notch and low pass");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NamedStructure {
@@ -52,21 +51,6 @@ impl NamedStructure {
         NamedStructure::PiNotchLead,
         NamedStructure::PiTwoNotches,
     ];
-
-    /// As people write it.
-    pub fn words(self) -> &'static str {
-        match self {
-            NamedStructure::Proportional => "P",
-            NamedStructure::Integral => "I",
-            NamedStructure::ProportionalIntegral => "PI",
-            NamedStructure::PiLowPass => "PI with low pass",
-            NamedStructure::Pid => "PID with filter",
-            NamedStructure::PiNotch => "PI with notch",
-            NamedStructure::PiNotchLowPass => "PI with notch and low pass",
-            NamedStructure::PiNotchLead => "PI with notch and lead",
-            NamedStructure::PiTwoNotches => "PI with two notches",
-        }
-    }
 
     /// Number of poles.
     pub fn order(self) -> usize {

@@ -1,6 +1,6 @@
 use num_complex::Complex64;
 
-use crate::linear::{LinearError, Polynomial, TimeDomain, TransferFunction};
+use crate::linear::{LinearError, LinearOperation, Polynomial, TimeDomain, TransferFunction};
 use crate::order::sort_by_number;
 
 /// Denominators at z = 1 up to this are of integrators: 1e-12 rad of pole angle, beyond any sampled
@@ -45,7 +45,7 @@ impl Section {
     /// ```
     pub fn in_series(function: &TransferFunction) -> Result<Vec<Section>, LinearError> {
         if function.domain() == TimeDomain::Continuous {
-            return Err(LinearError::WrongDomain { operation: "sections", needed: "sampled" });
+            return Err(LinearError::WrongDomain { operation: LinearOperation::Sections, needed: "sampled" });
         }
         if !function.is_proper() {
             return Err(LinearError::Improper {
@@ -54,7 +54,7 @@ impl Section {
             });
         }
         if function.dead_time_s() != 0.0 {
-            return Err(LinearError::NotRational { operation: "sections" });
+            return Err(LinearError::NotRational { operation: LinearOperation::Sections });
         }
         Ok(cascade(function))
     }

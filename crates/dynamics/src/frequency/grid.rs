@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-use crate::linear::{LinearError, TimeDomain, TransferFunction};
+use crate::linear::{LinearError, LinearOperation, TimeDomain, TransferFunction};
 use crate::order::sorted_distinct;
 use crate::portable::{argument, exp, ln, magnitude, pow};
 
@@ -20,7 +20,7 @@ use crate::portable::{argument, exp, ln, magnitude, pow};
 /// # Ok::<(), phea_dynamics::linear::LinearError>(())
 /// ```
 pub fn logarithmic_grid(from: f64, to: f64, points: usize) -> Result<Vec<f64>, LinearError> {
-    let operation = "a logarithmic grid";
+    let operation = LinearOperation::LogarithmicGrid;
     for frequency_rad_per_s in [from, to] {
         if !(frequency_rad_per_s > 0.0 && frequency_rad_per_s.is_finite()) {
             return Err(LinearError::Frequency { frequency_rad_per_s, operation });

@@ -4,7 +4,7 @@ use num_complex::Complex64;
 
 use super::grid::logarithmic_grid;
 use crate::linear::even_part::EvenPart;
-use crate::linear::{LinearError, TimeDomain, TransferFunction};
+use crate::linear::{LinearError, LinearOperation, TimeDomain, TransferFunction};
 use crate::portable::magnitude;
 
 /// Frequencies in rad/s between which Re Z(jw) < 0; the upper end may be infinity.
@@ -88,10 +88,10 @@ const ON_AXIS: f64 = 1e-12;
 /// ```
 pub fn passivity(impedance: &TransferFunction) -> Result<PassivityReport, LinearError> {
     if impedance.domain() != TimeDomain::Continuous {
-        return Err(LinearError::WrongDomain { operation: "passivity", needed: "continuous" });
+        return Err(LinearError::WrongDomain { operation: LinearOperation::Passivity, needed: "continuous" });
     }
     if impedance.dead_time_s() != 0.0 {
-        return Err(LinearError::NotRational { operation: "passivity" });
+        return Err(LinearError::NotRational { operation: LinearOperation::Passivity });
     }
     let on_axis = |pole: &Complex64| pole.re.abs() <= ON_AXIS * magnitude(*pole);
     let right_half_plane_poles: Vec<Complex64> =

@@ -8,7 +8,7 @@ use super::matrix_exponential::ExactStep;
 use super::realization::delay_states;
 use super::structure::{Resolvent, widened};
 use super::transfer_function::TransferFunction;
-use super::{LinearError, StateSpace, TimeDomain, realization, zeros};
+use super::{LinearError, LinearNumber, LinearOperation, StateSpace, TimeDomain, realization, zeros};
 use crate::portable::{cos, exp, expm1, sin, tan};
 
 /// How a continuous system becomes a sampled one.
@@ -137,7 +137,7 @@ impl TransferFunction {
         sample_time_s: f64,
     ) -> Result<Self, LinearError> {
         if !gain.is_finite() {
-            return Err(LinearError::NotFinite { what: "the gain of the sampled system" });
+            return Err(LinearError::NotFinite { what: LinearNumber::SampledGain });
         }
         let domain = TimeDomain::Discrete { sample_time_s };
         TransferFunction::assembled(gain, zeros, poles, domain).with_dead_time(self.dead_time_s())
@@ -159,9 +159,10 @@ impl StateSpace {
                 self.trapezoidal(prewarped(frequency_rad_per_s, sample_time_s)?, sample_time_s)
             }
             Discretization::ZeroOrderHold => held_with_fraction(self, sample_time_s, 0.0),
-            Discretization::Matched => {
-                Err(LinearError::WrongDomain { operation: "matched discretisation", needed: "factored" })
-            }
+            Discretization::Matched => Err(LinearError::WrongDomain {
+                operation: LinearOperation::MatchedDiscretisation,
+                needed: "factored",
+            }),
         }
     }
 
@@ -254,7 +255,10 @@ fn held_with_fraction(
 
 fn check_continuous(domain: TimeDomain, sample_time_s: f64) -> Result<(), LinearError> {
     if domain != TimeDomain::Continuous {
-        return Err(LinearError::WrongDomain { operation: "discretisation", needed: "continuous" });
+        return Err(LinearError::WrongDomain {
+            operation: LinearOperation::Discretisation,
+            needed: "continuous",
+        });
     }
     if !(sample_time_s.is_finite() && sample_time_s > 0.0) {
         return Err(LinearError::SampleTime { sample_time_s });
@@ -270,7 +274,7 @@ fn check_continuous(domain: TimeDomain, sample_time_s: f64) -> Result<(), Linear
 pub(super) fn prewarped(frequency_rad_per_s: f64, sample_time_s: f64) -> Result<f64, LinearError> {
     let half_angle = frequency_rad_per_s * sample_time_s / 2.0;
     if !(half_angle > 0.0 && half_angle < std::f64::consts::FRAC_PI_2) {
-        return Err(LinearError::Frequency { frequency_rad_per_s, operation: "prewarping" });
+        return Err(LinearError::Frequency { frequency_rad_per_s, operation: LinearOperation::Prewarping });
     }
     Ok(frequency_rad_per_s / tan(half_angle))
 }

@@ -8,11 +8,11 @@
 use nalgebra::{DMatrix, Schur};
 use num_complex::Complex64;
 
-use super::LinearError;
 use super::double_double::ComplexDoubleDouble;
 use super::hessenberg;
 use super::refinement::{converge, sort, symmetrise};
 use super::structure::{balance, irreducible_blocks};
+use super::{LinearError, LinearNumber};
 use crate::portable::magnitude;
 
 /// All eigenvalues, sorted, in exact conjugate pairs; that of an irreducible block which is
@@ -57,7 +57,7 @@ fn by_blocks(
     adjust: impl Fn(&DMatrix<f64>, &mut [Complex64]),
 ) -> Result<Vec<Complex64>, LinearError> {
     if matrix.iter().any(|entry| !entry.is_finite()) {
-        return Err(LinearError::NotFinite { what: "an entry of a matrix" });
+        return Err(LinearError::NotFinite { what: LinearNumber::MatrixEntry });
     }
     let mut all = Vec::with_capacity(matrix.nrows());
     for states in irreducible_blocks(matrix) {

@@ -19,11 +19,11 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
 
-use super::LinearError;
 use super::double_double::{ComplexDoubleDouble, DoubleDouble};
 use super::matrix_exponential::exponential;
 use super::realization::Chain;
 use super::wide::{Wide, WideColumn};
+use super::{LinearError, LinearNumber};
 pub use modes::{HeldFactors, HeldModes, HeldPoint};
 
 /// Beyond exp of this the poles of a sampled plant leave the range of numbers.
@@ -63,7 +63,7 @@ impl Held {
         fraction_s: f64,
     ) -> Result<Held, LinearError> {
         let growth: f64 = poles.iter().map(|pole| (pole.re * sample_time_s).max(0.0)).sum();
-        let unbounded = LinearError::NotFinite { what: "a pole of the sampled plant" };
+        let unbounded = LinearError::NotFinite { what: LinearNumber::SampledPole };
         if growth.is_nan() || growth > GROWTH_MAXIMUM {
             return Err(unbounded);
         }

@@ -9,7 +9,7 @@ use num_complex::Complex64;
 use super::double_double::{ComplexDoubleDouble, DoubleDouble};
 use super::polynomial::expand;
 use super::refinement::{refine, symmetrise};
-use super::{LinearError, Polynomial, StateSpace, TransferFunction};
+use super::{LinearError, LinearOperation, Polynomial, StateSpace, TransferFunction};
 
 /// gain (s - r_1) (s - r_2) ...
 #[derive(Clone)]
@@ -88,7 +88,7 @@ impl TransferFunction {
     pub fn parallel(&self, other: &TransferFunction) -> Result<Self, LinearError> {
         let domain = self.common_domain(other)?;
         if self.dead_time_s() != other.dead_time_s() {
-            return Err(LinearError::NotRational { operation: "a sum" });
+            return Err(LinearError::NotRational { operation: LinearOperation::Sum });
         }
         let mut only_other = other.poles().to_vec();
         let mut only_self = Vec::new();
@@ -115,7 +115,7 @@ impl TransferFunction {
     pub fn feedback(&self, other: &TransferFunction) -> Result<Self, LinearError> {
         let domain = self.common_domain(other)?;
         if self.dead_time_s() != 0.0 || other.dead_time_s() != 0.0 {
-            return Err(LinearError::NotRational { operation: "a closed loop" });
+            return Err(LinearError::NotRational { operation: LinearOperation::ClosedLoop });
         }
         let open = RootFactors::product(1.0, self.poles(), other.poles());
         let loop_numerator = RootFactors::product(self.gain() * other.gain(), self.zeros(), other.zeros());

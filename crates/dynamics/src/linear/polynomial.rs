@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 
 use super::double_double::{ComplexDoubleDouble, DoubleDouble};
-use super::{LinearError, roots};
+use super::{LinearError, LinearNumber, roots};
 use crate::portable::magnitude;
 
 /// A polynomial with real coefficients, highest power first, without leading zeros.
@@ -48,7 +48,7 @@ impl Polynomial {
     pub fn from_roots(gain: f64, roots: &[Complex64]) -> Result<Self, LinearError> {
         let roots = roots::conjugate_pairs(roots)?;
         if !gain.is_finite() {
-            return Err(LinearError::NotFinite { what: "a gain" });
+            return Err(LinearError::NotFinite { what: LinearNumber::Gain });
         }
         Ok(Polynomial::expanded(gain, &roots))
     }

@@ -15,14 +15,16 @@ use num_complex::Complex64;
 
 use super::double_double::DoubleDouble;
 use super::polynomial::expand;
-use super::{LinearError, MAXIMUM_DELAY_STATES, StateSpace, TimeDomain, TransferFunction};
+use super::{LinearError, LinearOperation, MAXIMUM_DELAY_STATES, StateSpace, TimeDomain, TransferFunction};
 use crate::order::sort_by_number;
 use crate::portable::magnitude;
 
 pub(crate) fn cascade(system: &TransferFunction) -> Result<StateSpace, LinearError> {
     let delay = match system.domain() {
         _ if system.dead_time_s() == 0.0 => 0,
-        TimeDomain::Continuous => return Err(LinearError::NotRational { operation: "a state space" }),
+        TimeDomain::Continuous => {
+            return Err(LinearError::NotRational { operation: LinearOperation::StateSpace });
+        }
         TimeDomain::Discrete { sample_time_s } => delay_states(system.dead_time_s() / sample_time_s)?,
     };
     let chain = chain_of(system)?;

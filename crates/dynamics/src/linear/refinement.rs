@@ -3,7 +3,7 @@
 
 use num_complex::Complex64;
 
-use super::LinearError;
+use super::{LinearError, LinearNumber};
 use crate::portable::magnitude;
 
 /// Improves all roots of a function at once by the iteration of Ehrlich and Aberth,
@@ -162,7 +162,7 @@ fn interleave_pairs(roots: &mut [Complex64]) {
 /// Partners may differ by rounding (1e-12 of their magnitude); anything else is refused.
 pub(crate) fn conjugate_pairs(roots: &[Complex64]) -> Result<Vec<Complex64>, LinearError> {
     if roots.iter().any(|root| !root.is_finite()) {
-        return Err(LinearError::NotFinite { what: "a zero or pole" });
+        return Err(LinearError::NotFinite { what: LinearNumber::ZeroOrPole });
     }
     let mut result: Vec<Complex64> =
         roots.iter().filter(|root| root.im == 0.0).map(|root| Complex64::new(root.re, 0.0)).collect();

@@ -11,7 +11,7 @@ use pulp::{Arch, Simd, WithSimd};
 use super::double_double::ComplexDoubleDouble;
 pub(crate) use super::refinement::conjugate_pairs;
 use super::refinement::{repelled_step, sort, symmetrise};
-use super::{LinearError, Polynomial};
+use super::{LinearError, LinearNumber, Polynomial};
 use crate::order::sort_by_number;
 use crate::portable::{self, magnitude};
 
@@ -48,7 +48,7 @@ fn found(
     }
     let coefficients = polynomial.coefficients();
     if coefficients.iter().any(|c| !c.is_finite()) {
-        return Err(LinearError::NotFinite { what: "a coefficient" });
+        return Err(LinearError::NotFinite { what: LinearNumber::Coefficient });
     }
     let at_origin = coefficients.iter().rev().take_while(|&&c| c == 0.0).count();
     // a common factor, a power of two, changes no root and keeps products in range

@@ -6,7 +6,7 @@ use num_complex::Complex64;
 use super::eigenvalues::eigenvalues;
 use super::structure::{Resolvent, product, widened};
 use super::transfer_function::is_stable_pole;
-use super::{LinearError, TimeDomain, TransferFunction, realization, zeros};
+use super::{LinearError, LinearNumber, TimeDomain, TransferFunction, realization, zeros};
 use crate::portable;
 
 /// A linear system with any number of inputs and outputs.
@@ -69,7 +69,7 @@ impl StateSpace {
             }
         }
         if [&a, &b, &c, &d].iter().any(|matrix| matrix.iter().any(|entry| !entry.is_finite())) {
-            return Err(LinearError::NotFinite { what: "an entry of a matrix" });
+            return Err(LinearError::NotFinite { what: LinearNumber::MatrixEntry });
         }
         if let TimeDomain::Discrete { sample_time_s } = domain
             && !(sample_time_s.is_finite() && sample_time_s > 0.0)

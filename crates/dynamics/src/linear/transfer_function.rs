@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-use super::{LinearError, Polynomial, TimeDomain, roots};
+use super::{LinearError, LinearNumber, LinearOperation, Polynomial, TimeDomain, roots};
 use crate::portable::{self, exp_complex};
 
 /// A single-input, single-output system in factored form.
@@ -52,7 +52,7 @@ impl TransferFunction {
         poles: Vec<Complex64>,
     ) -> Result<Self, LinearError> {
         if !gain.is_finite() {
-            return Err(LinearError::NotFinite { what: "a gain" });
+            return Err(LinearError::NotFinite { what: LinearNumber::Gain });
         }
         let (zeros, poles) = (roots::conjugate_pairs(&zeros)?, roots::conjugate_pairs(&poles)?);
         Ok(TransferFunction::assembled(gain, zeros, poles, TimeDomain::Continuous))
@@ -67,7 +67,7 @@ impl TransferFunction {
         let zeros = if numerator.is_zero() { Vec::new() } else { numerator.roots()? };
         let gain = numerator.leading_coefficient() / denominator.leading_coefficient();
         if !gain.is_finite() {
-            return Err(LinearError::NotFinite { what: "a gain" });
+            return Err(LinearError::NotFinite { what: LinearNumber::Gain });
         }
         Ok(TransferFunction::assembled(gain, zeros, poles, TimeDomain::Continuous))
     }
@@ -312,7 +312,7 @@ impl TransferFunction {
     /// [`LinearError::NoInverse`] for zero gain, [`LinearError::NotRational`] with dead time.
     pub fn inverse(&self) -> Result<Self, LinearError> {
         if self.dead_time_s != 0.0 {
-            return Err(LinearError::NotRational { operation: "an inverse" });
+            return Err(LinearError::NotRational { operation: LinearOperation::Inverse });
         }
         let gain = 1.0 / self.gain;
         if self.gain == 0.0 || !gain.is_finite() {

@@ -2,8 +2,9 @@
 
 use std::ops::DerefMut;
 
-use super::{Method, Profile, Stretch};
+use super::{Method, Profile, SimulationCount, SimulationNumber, Stretch};
 use crate::portable;
+use crate::range::RequiredRange;
 
 /// Duration, inputs and output step of a simulation.
 #[derive(Clone, Debug, PartialEq)]
@@ -317,8 +318,8 @@ pub enum SimulationError {
     /// A count does not fit the system.
     #[error("{found} {what} where the system has {expected}")]
     Count {
-        /// What is counted.
-        what: &'static str,
+        /// Name of the count.
+        what: SimulationCount,
         /// How many there are.
         found: usize,
         /// How many there should be.
@@ -327,12 +328,12 @@ pub enum SimulationError {
     /// A time or a tolerance is invalid.
     #[error("{what} is {value}, but must be {requirement}")]
     Setting {
-        /// Which.
-        what: &'static str,
-        /// Its value.
+        /// Name of the number.
+        what: SimulationNumber,
+        /// The number.
         value: f64,
-        /// What it must be.
-        requirement: &'static str,
+        /// Range of the number.
+        requirement: RequiredRange,
     },
     /// A state at the start is not a finite number.
     #[error("state {index} is {value} at the start")]

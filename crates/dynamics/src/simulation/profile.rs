@@ -3,12 +3,16 @@
 mod combination;
 mod interpolation;
 mod multisine;
+mod number;
 mod piece;
 
 pub use multisine::{Harmonic, schroeder_phases};
+pub use number::ProfileNumber;
 pub use piece::{Moment, ProfilePiece};
 
 use piece::PieceShape;
+
+use crate::range::RequiredRange;
 
 /// A known function of time w(t), in whatever unit its user gives it: smooth pieces, one after the
 /// other.
@@ -44,12 +48,12 @@ pub enum ProfileError {
     /// A number outside the range in which the function has a meaning.
     #[error("{what} is {value}; it must be {expected}")]
     OutOfRange {
-        /// What the number is.
-        what: &'static str,
+        /// Name of the number.
+        what: ProfileNumber,
         /// The number.
         value: f64,
-        /// The range, in words.
-        expected: &'static str,
+        /// Range of the number.
+        expected: RequiredRange,
     },
     /// Times that do not rise strictly, or are not finite.
     #[error("time number {index} ({time_s} s) does not come after the one before it")]
@@ -98,7 +102,7 @@ impl Profile {
     pub fn steps(initial: f64, steps: &[(f64, f64)]) -> Result<Profile, ProfileError> {
         rising(steps.iter().map(|step| step.0))?;
         for value in steps.iter().map(|step| step.1).chain([initial]) {
-            finite("a value of the steps", value)?;
+            finite(ProfileNumber::StepValue, value)?;
         }
         let piece =
             |&(time_s, value): &(f64, f64)| (time_s, ProfilePiece::new(PieceShape::Constant { value }));
@@ -115,9 +119,9 @@ impl Profile {
     /// # Errors
     /// [`ProfileError::OutOfRange`] unless the duration is positive and all numbers are finite.
     pub fn smooth_step(start_s: f64, duration_s: f64, distance: f64) -> Result<Profile, ProfileError> {
-        finite("the start of a smooth step", start_s)?;
-        positive("the duration of a smooth step", duration_s)?;
-        finite("the distance of a smooth step", distance)?;
+        finite(ProfileNumber::SmoothStepStart, start_s)?;
+        positive(ProfileNumber::SmoothStepDuration, duration_s)?;
+        finite(ProfileNumber::SmoothStepDistance, distance)?;
         let coefficients = [0.0, 0.0, 0.0, 10.0, -15.0, 6.0].map(|coefficient| coefficient * distance);
         let rise = PieceShape::Polynomial { origin_s: start_s, span_s: duration_s, coefficients };
         let end = PieceShape::Constant { value: distance };
@@ -142,9 +146,9 @@ impl Profile {
     /// # Ok::<(), phea_dynamics::simulation::ProfileError>(())
     /// ```
     pub fn ramp(start_s: f64, duration_s: f64, distance: f64) -> Result<Profile, ProfileError> {
-        finite("the start of a ramp", start_s)?;
-        positive("the duration of a ramp", duration_s)?;
-        finite("the height of a ramp", distance)?;
+        finite(ProfileNumber::RampStart, start_s)?;
+        positive(ProfileNumber::RampDuration, duration_s)?;
+        finite(ProfileNumber::RampHeight, distance)?;
         let coefficients = [0.0, distance, 0.0, 0.0, 0.0, 0.0];
         let rise = PieceShape::Polynomial { origin_s: start_s, span_s: duration_s, coefficients };
         let end = PieceShape::Constant { value: distance };
@@ -161,9 +165,9 @@ impl Profile {
     /// [`ProfileError::OutOfRange`] unless the time constant is positive and all numbers are
     /// finite.
     pub fn first_order(start_s: f64, time_constant_s: f64, distance: f64) -> Result<Profile, ProfileError> {
-        finite("the start of a first-order step", start_s)?;
-        positive("the time constant of a first-order step", time_constant_s)?;
-        finite("the distance of a first-order step", distance)?;
+        finite(ProfileNumber::LagStart, start_s)?;
+        positive(ProfileNumber::LagTimeConstant, time_constant_s)?;
+        finite(ProfileNumber::LagDistance, distance)?;
         let approach = PieceShape::Exponential { origin_s: start_s, time_constant_s, distance };
         Ok(Profile::from_rest(&[(start_s, approach)]))
     }
@@ -177,9 +181,9 @@ impl Profile {
     /// # Errors
     /// [`ProfileError::OutOfRange`] unless the frequency is positive and all numbers are finite.
     pub fn sine(start_s: f64, amplitude: f64, frequency_rad_per_s: f64) -> Result<Profile, ProfileError> {
-        finite("the start of a sine", start_s)?;
-        finite("the amplitude of a sine", amplitude)?;
-        positive("the frequency of a sine", frequency_rad_per_s)?;
+        finite(ProfileNumber::SineStart, start_s)?;
+        finite(ProfileNumber::SineAmplitude, amplitude)?;
+        positive(ProfileNumber::SineFrequency, frequency_rad_per_s)?;
         let sine = PieceShape::Sine {
             origin_s: start_s,
             amplitude,
@@ -206,11 +210,11 @@ impl Profile {
         amplitude: f64,
         [initial_rad_per_s, final_rad_per_s]: [f64; 2],
     ) -> Result<Profile, ProfileError> {
-        finite("the start of a chirp", start_s)?;
-        positive("the duration of a chirp", duration_s)?;
-        finite("the amplitude of a chirp", amplitude)?;
-        positive("the initial frequency of a chirp", initial_rad_per_s)?;
-        positive("the final frequency of a chirp", final_rad_per_s)?;
+        finite(ProfileNumber::ChirpStart, start_s)?;
+        positive(ProfileNumber::ChirpDuration, duration_s)?;
+        finite(ProfileNumber::ChirpAmplitude, amplitude)?;
+        positive(ProfileNumber::ChirpInitialFrequency, initial_rad_per_s)?;
+        positive(ProfileNumber::ChirpFinalFrequency, final_rad_per_s)?;
         let sine = PieceShape::Sine {
             origin_s: start_s,
             amplitude,
@@ -258,7 +262,7 @@ impl Profile {
         }
         rising(times_s.iter().copied())?;
         for &value in values {
-            finite("a value of the table", value)?;
+            finite(ProfileNumber::TableValue, value)?;
         }
         Ok(interpolation::through(times_s, values))
     }
@@ -354,14 +358,13 @@ fn rising(times_s: impl Iterator<Item = f64>) -> Result<(), ProfileError> {
     Ok(())
 }
 
-fn finite(what: &'static str, value: f64) -> Result<(), ProfileError> {
-    if value.is_finite() { Ok(()) } else { Err(ProfileError::OutOfRange { what, value, expected: "finite" }) }
+fn finite(what: ProfileNumber, value: f64) -> Result<(), ProfileError> {
+    let expected = RequiredRange::Finite;
+    if value.is_finite() { Ok(()) } else { Err(ProfileError::OutOfRange { what, value, expected }) }
 }
 
-fn positive(what: &'static str, value: f64) -> Result<(), ProfileError> {
-    if value.is_finite() && value > 0.0 {
-        Ok(())
-    } else {
-        Err(ProfileError::OutOfRange { what, value, expected: "positive and finite" })
-    }
+fn positive(what: ProfileNumber, value: f64) -> Result<(), ProfileError> {
+    let expected = RequiredRange::PositiveAndFinite;
+    let fits = value.is_finite() && value > 0.0;
+    if fits { Ok(()) } else { Err(ProfileError::OutOfRange { what, value, expected }) }
 }

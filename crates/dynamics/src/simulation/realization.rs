@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::linear::{LinearError, StateSpace, TimeDomain, TransferFunction};
+use crate::linear::{LinearError, LinearOperation, StateSpace, TimeDomain, TransferFunction};
 use crate::scalar::Scalar;
 
 /// Singular values below this are zero: an equation that says nothing.
@@ -29,7 +29,7 @@ impl Realization {
     pub(super) fn new(function: &TransferFunction) -> Result<Realization, LinearError> {
         if function.domain() != TimeDomain::Continuous {
             return Err(LinearError::WrongDomain {
-                operation: "acting between samples",
+                operation: LinearOperation::BetweenSamples,
                 needed: "continuous",
             });
         }

@@ -7,9 +7,11 @@ use num_complex::Complex64;
 use super::task::Task;
 use super::trajectory::drive_one;
 use super::{
-    Input, InputSchedule, Observer, Sampler, SimulationError, SimulationSettings, Status, StepCounts, System,
+    Input, InputSchedule, Observer, Sampler, SimulationError, SimulationNumber, SimulationSettings, Status,
+    StepCounts, System,
 };
 use crate::portable;
+use crate::range::RequiredRange;
 
 /// Rows of a period: harmonics up to the thirtieth do not meet one another.
 const ROWS: usize = 64;
@@ -116,10 +118,9 @@ pub fn sine_response<E: System<f64> + Clone>(
     watch: &mut dyn FnMut(f64) -> bool,
 ) -> Result<SineResponse, SimulationError> {
     let window = plan.window_periods as usize * ROWS;
-    let requirement = "at least one period and two windows, of a positive frequency";
     let period_s = std::f64::consts::TAU / plan.frequency_rad_per_s;
     if window == 0 || plan.most_windows < 2 || !(period_s > 0.0 && period_s.is_finite()) {
-        let what = "plan of a sine";
+        let (what, requirement) = (SimulationNumber::SinePlan, RequiredRange::OnePeriodAndTwoWindows);
         return Err(SimulationError::Setting { what, value: plan.frequency_rad_per_s, requirement });
     }
     let output_step_s = period_s / ROWS as f64;

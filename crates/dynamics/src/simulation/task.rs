@@ -2,7 +2,8 @@
 
 use super::course::{Observer, Outcome, Sampler, SimulationError};
 use super::kernel::Kernel;
-use super::{InputSchedule, Lane};
+use super::{InputSchedule, Lane, SimulationCount, SimulationNumber};
+use crate::range::RequiredRange;
 
 /// One simulation.
 pub struct Task<'a, O> {
@@ -45,9 +46,9 @@ pub(super) fn check<S: Lane, O: Observer>(
     let expected = if task.start.len() == with_waves { with_waves } else { system.states() };
     let scales = system.scales();
     let counts = [
-        ("states at the start", task.start.len(), expected),
-        ("inputs", inputs.len() + delays.len(), system.inputs()),
-        ("scales", scales.len(), system.states()),
+        (SimulationCount::StartStates, task.start.len(), expected),
+        (SimulationCount::Inputs, inputs.len() + delays.len(), system.inputs()),
+        (SimulationCount::Scales, scales.len(), system.states()),
     ];
     for (what, found, expected) in counts {
         if found != expected {
@@ -56,23 +57,24 @@ pub(super) fn check<S: Lane, O: Observer>(
     }
     let states = system.states();
     if let Some(index) = task.observer.wanted().iter().find(|&&index| index >= states) {
-        let what = "states that are looked at";
+        let what = SimulationCount::ObservedStates;
         return Err(SimulationError::Count { what, found: index + 1, expected: states });
     }
     let sample_time = task.sampler.as_ref().map(|sampler| sampler.sample_time_s());
     let delay = task.sampler.as_ref().map_or(0.0, |sampler| sampler.delay_s());
-    let positive = [("duration", *duration_s), ("output step", *output_step_s)];
-    let sample = sample_time.map(|value| ("sample time", value));
-    let travel = delays.iter().map(|&delay| ("delay of a wave", delay));
-    let magnitudes = scales.iter().map(|scale| ("scale of a state", scale.lane(lane)));
+    let positive =
+        [(SimulationNumber::Duration, *duration_s), (SimulationNumber::OutputStep, *output_step_s)];
+    let sample = sample_time.map(|value| (SimulationNumber::SampleTime, value));
+    let travel = delays.iter().map(|&delay| (SimulationNumber::WaveDelay, delay));
+    let magnitudes = scales.iter().map(|scale| (SimulationNumber::StateScale, scale.lane(lane)));
     for (what, value) in positive.into_iter().chain(sample).chain(travel).chain(magnitudes) {
         if !(value > 0.0 && value.is_finite()) {
-            return Err(SimulationError::Setting { what, value, requirement: "positive" });
+            return Err(SimulationError::Setting { what, value, requirement: RequiredRange::Positive });
         }
     }
     if !(delay >= 0.0 && delay.is_finite()) {
-        let requirement = "zero or positive";
-        return Err(SimulationError::Setting { what: "delay of the command", value: delay, requirement });
+        let (what, requirement) = (SimulationNumber::CommandDelay, RequiredRange::ZeroOrPositive);
+        return Err(SimulationError::Setting { what, value: delay, requirement });
     }
     match task.start.iter().enumerate().find(|(_, value)| !value.is_finite()) {
         Some((index, &value)) => Err(SimulationError::Start { index, value }),

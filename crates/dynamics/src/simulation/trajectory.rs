@@ -2,7 +2,9 @@
 
 use super::driver::drive;
 use super::task::{Queue, Task};
-use super::{InputSchedule, Observer, Outcome, Sampler, SimulationError, SimulationSettings, System};
+use super::{
+    InputSchedule, Observer, Outcome, Sampler, SimulationCount, SimulationError, SimulationSettings, System,
+};
 
 /// States and inputs at the rows of a result.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -116,7 +118,7 @@ pub fn drive_one<'a, E: System<f64> + Clone, O: Observer>(
 ) -> Result<(Outcome, O), SimulationError> {
     let mut queue = Single { task: Some(task), watch, result: None };
     drive(&mut system.clone(), &mut queue, settings)?;
-    queue.result.ok_or(SimulationError::Count { what: "results", found: 0, expected: 1 })
+    queue.result.ok_or(SimulationError::Count { what: SimulationCount::Results, found: 0, expected: 1 })
 }
 
 /// Simulates a system from its state at time zero (followed by the waves in transit, if given)

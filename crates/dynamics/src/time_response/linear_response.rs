@@ -2,7 +2,7 @@
 
 use nalgebra::DVector;
 
-use super::{SampledSignal, TimeResponseError};
+use super::{ResponseCount, SampledSignal, TimeResponseError};
 use crate::linear::double_double::DoubleDouble;
 use crate::linear::matrix_exponential::ExactStep;
 use crate::linear::{StateSpace, TimeDomain, TransferFunction};
@@ -64,8 +64,8 @@ pub fn forced_response_of_states(
     times_s: &[f64],
 ) -> Result<Vec<DVector<f64>>, TimeResponseError> {
     let counts = [
-        ("input signals", inputs.len(), system.inputs()),
-        ("initial states", initial_state.len(), system.order()),
+        (ResponseCount::InputSignals, inputs.len(), system.inputs()),
+        (ResponseCount::InitialStates, initial_state.len(), system.order()),
     ];
     for (what, found, expected) in counts {
         if found != expected {

@@ -2,8 +2,9 @@
 
 use nalgebra::DVector;
 
-use super::{TimeResponseError, step_response};
-use crate::linear::{LinearError, StateSpace, TimeDomain, TransferFunction};
+use super::{ResponseNumber, TimeResponseError, step_response};
+use crate::linear::{LinearError, LinearOperation, StateSpace, TimeDomain, TransferFunction};
+use crate::range::RequiredRange;
 
 /// The samples of the unit step of a loop in z: times in s, and the output.
 ///
@@ -40,7 +41,11 @@ pub fn sampled_loop_step(
     samples: usize,
 ) -> Result<(Vec<f64>, Vec<f64>), TimeResponseError> {
     let TimeDomain::Discrete { sample_time_s } = plant.domain() else {
-        return Err(LinearError::WrongDomain { operation: "a step by samples", needed: "sampled" }.into());
+        return Err(LinearError::WrongDomain {
+            operation: LinearOperation::StepBySamples,
+            needed: "sampled",
+        }
+        .into());
     };
     if [with_sensor, feedback, prefilter].iter().any(|one| one.domain() != plant.domain()) {
         return Err(LinearError::DomainMismatch.into());
@@ -51,8 +56,12 @@ pub fn sampled_loop_step(
         [Stepped::new(plant)?, Stepped::new(with_sensor)?, Stepped::new(feedback)?];
     let at_once = 1.0 + controller.gain * measured.gain;
     if at_once == 0.0 {
-        let expected = "different from zero";
-        return Err(TimeResponseError::OutOfRange { what: "1 + L(inf)", value: at_once, expected });
+        let expected = RequiredRange::NotZero;
+        return Err(TimeResponseError::OutOfRange {
+            what: ResponseNumber::LoopAtOnce,
+            value: at_once,
+            expected,
+        });
     }
     let mut outputs = Vec::with_capacity(samples);
     for reference in reference {

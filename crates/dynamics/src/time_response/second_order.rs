@@ -5,9 +5,10 @@ use std::f64::consts::PI;
 
 use num_complex::Complex64;
 
-use super::TimeResponseError;
+use super::{ResponseNumber, TimeResponseError};
 use crate::linear::{TimeDomain, TransferFunction};
 use crate::portable::{atan2, cos, exp, ln, sin, sinh};
+use crate::range::RequiredRange;
 
 /// A unit-gain second-order system.
 ///
@@ -84,12 +85,12 @@ impl SecondOrder {
     /// # Errors
     /// [`TimeResponseError::OutOfRange`].
     pub fn new(natural_frequency_rad_per_s: f64, damping_ratio: f64) -> Result<Self, TimeResponseError> {
-        positive("the natural frequency in rad/s", natural_frequency_rad_per_s)?;
+        positive(ResponseNumber::NaturalFrequency, natural_frequency_rad_per_s)?;
         if !(damping_ratio.is_finite() && damping_ratio >= 0.0) {
             return Err(TimeResponseError::OutOfRange {
-                what: "the damping ratio",
+                what: ResponseNumber::DampingRatio,
                 value: damping_ratio,
-                expected: "zero or positive",
+                expected: RequiredRange::ZeroOrPositive,
             });
         }
         Ok(SecondOrder { natural_frequency_rad_per_s, damping_ratio })
@@ -109,7 +110,7 @@ impl SecondOrder {
         settling_time_s: f64,
         rule: SettlingRule,
     ) -> Result<Self, TimeResponseError> {
-        positive("the settling time in s", settling_time_s)?;
+        positive(ResponseNumber::SettlingTime, settling_time_s)?;
         let damping_ratio = damping_ratio_from_overshoot(overshoot_percent)?;
         SecondOrder::new(rule.factor() / (damping_ratio * settling_time_s), damping_ratio)
     }
@@ -173,9 +174,9 @@ impl SecondOrder {
     pub fn settling_time_s(&self, band_percent: f64) -> Result<Option<f64>, TimeResponseError> {
         if !(band_percent > 0.0 && band_percent < 100.0) {
             return Err(TimeResponseError::OutOfRange {
-                what: "the settling band in percent",
+                what: ResponseNumber::SettlingBand,
                 value: band_percent,
-                expected: "between 0 and 100",
+                expected: RequiredRange::BetweenZeroAndHundred,
             });
         }
         if self.damping_ratio == 0.0 {
@@ -277,9 +278,9 @@ impl SecondOrder {
 pub fn damping_ratio_from_overshoot(overshoot_percent: f64) -> Result<f64, TimeResponseError> {
     if !(0.0..100.0).contains(&overshoot_percent) {
         return Err(TimeResponseError::OutOfRange {
-            what: "the overshoot in percent",
+            what: ResponseNumber::Overshoot,
             value: overshoot_percent,
-            expected: "from 0 up to but not 100",
+            expected: RequiredRange::BelowHundred,
         });
     }
     if overshoot_percent == 0.0 {
@@ -289,10 +290,10 @@ pub fn damping_ratio_from_overshoot(overshoot_percent: f64) -> Result<f64, TimeR
     Ok(-logarithm / crate::portable::hypot(PI, logarithm))
 }
 
-fn positive(what: &'static str, value: f64) -> Result<(), TimeResponseError> {
+fn positive(what: ResponseNumber, value: f64) -> Result<(), TimeResponseError> {
     if value.is_finite() && value > 0.0 {
         Ok(())
     } else {
-        Err(TimeResponseError::OutOfRange { what, value, expected: "positive and finite" })
+        Err(TimeResponseError::OutOfRange { what, value, expected: RequiredRange::PositiveAndFinite })
     }
 }

@@ -1,6 +1,7 @@
 //! Input signals given by samples.
 
-use super::TimeResponseError;
+use super::{ResponseCount, ResponseNumber, TimeResponseError};
+use crate::range::RequiredRange;
 
 /// What an input does between two samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +43,7 @@ impl SampledSignal {
     ) -> Result<Self, TimeResponseError> {
         if times_s.len() != values.len() {
             let (found, expected) = (values.len(), times_s.len());
-            return Err(TimeResponseError::Count { what: "values of a signal", found, expected });
+            return Err(TimeResponseError::Count { what: ResponseCount::SignalValues, found, expected });
         }
         let mut last = f64::NEG_INFINITY;
         for (index, &time_s) in times_s.iter().enumerate() {
@@ -53,9 +54,9 @@ impl SampledSignal {
         }
         if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
             return Err(TimeResponseError::OutOfRange {
-                what: "a value of a signal",
+                what: ResponseNumber::SignalValue,
                 value,
-                expected: "finite",
+                expected: RequiredRange::Finite,
             });
         }
         Ok(SampledSignal { times_s, values, interpolation })
@@ -110,9 +111,9 @@ impl SampledSignal {
 pub fn uniform_times(duration_s: f64, points: usize) -> Result<Vec<f64>, TimeResponseError> {
     if !(duration_s.is_finite() && duration_s > 0.0) {
         return Err(TimeResponseError::OutOfRange {
-            what: "a duration",
+            what: ResponseNumber::Duration,
             value: duration_s,
-            expected: "positive and finite",
+            expected: RequiredRange::PositiveAndFinite,
         });
     }
     let last = points.saturating_sub(1).max(1) as f64;

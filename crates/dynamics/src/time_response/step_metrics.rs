@@ -1,6 +1,7 @@
 //! What is read off a step response.
 
-use super::TimeResponseError;
+use super::{ResponseCount, ResponseNumber, TimeResponseError};
+use crate::range::RequiredRange;
 
 /// The step that a response is measured against.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,7 +104,11 @@ pub fn step_metrics(
         .map(|(time, value)| (time - baseline.step_time_s, (value - baseline.initial_value) / step))
         .collect();
     let (Some(&first), Some(&last)) = (samples.first(), samples.last()) else {
-        return Err(TimeResponseError::Count { what: "samples after the step", found: 0, expected: 1 });
+        return Err(TimeResponseError::Count {
+            what: ResponseCount::SamplesAfterStep,
+            found: 0,
+            expected: 1,
+        });
     };
     let higher = |best: (f64, f64, f64), (sample, value): (&(f64, f64), f64)| {
         if sample.1 > best.1 { (sample.0, sample.1, value) } else { best }
@@ -134,7 +139,7 @@ fn check(
 ) -> Result<(), TimeResponseError> {
     if times_s.len() != values.len() {
         let (found, expected) = (values.len(), times_s.len());
-        return Err(TimeResponseError::Count { what: "values of a response", found, expected });
+        return Err(TimeResponseError::Count { what: ResponseCount::ResponseValues, found, expected });
     }
     let mut last = f64::NEG_INFINITY;
     for (index, &time_s) in times_s.iter().enumerate() {
@@ -146,16 +151,16 @@ fn check(
     let numbers = [baseline.step_time_s, baseline.initial_value, baseline.final_value];
     if let Some(&value) = values.iter().chain(&numbers).find(|value| !value.is_finite()) {
         return Err(TimeResponseError::OutOfRange {
-            what: "a value of the response",
+            what: ResponseNumber::ResponseValue,
             value,
-            expected: "finite",
+            expected: RequiredRange::Finite,
         });
     }
     if !(settling_band_percent > 0.0 && settling_band_percent < 100.0) {
         return Err(TimeResponseError::OutOfRange {
-            what: "the settling band in percent",
+            what: ResponseNumber::SettlingBand,
             value: settling_band_percent,
-            expected: "between 0 and 100",
+            expected: RequiredRange::BetweenZeroAndHundred,
         });
     }
     if baseline.final_value == baseline.initial_value {

@@ -2,7 +2,8 @@
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::simulation::{
-    Input, InputSchedule, Profile, Sampler, Simulated, SimulationError, SimulationSettings, Status, System,
+    Input, InputSchedule, Profile, Sampler, Simulated, SimulationError, SimulationNumber, SimulationSettings,
+    Status, System,
 };
 
 use super::laws::{Integral, Law, Lawful, Oscillator, course, simulate};
@@ -187,17 +188,20 @@ fn what_does_not_fit_is_refused() {
         other => panic!("{other:?}"),
     };
     for tolerance in [0.0, -1e-6, 1.0, f64::NAN, f64::INFINITY] {
-        assert_eq!(setting(refused(&[0.0], &good, None, tolerance)), "tolerance");
+        assert_eq!(setting(refused(&[0.0], &good, None, tolerance)), SimulationNumber::Tolerance);
     }
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let with = |duration_s, output_step_s| InputSchedule { duration_s, output_step_s, ..good.clone() };
-        assert_eq!(setting(refused(&[0.0], &with(bad, 0.1), None, 1e-6)), "duration");
-        assert_eq!(setting(refused(&[0.0], &with(1.0, bad), None, 1e-6)), "output step");
-        assert_eq!(setting(refused(&[0.0], &good, Some(Saying(bad, 0.0, 1.0)), 1e-6)), "sample time");
+        assert_eq!(setting(refused(&[0.0], &with(bad, 0.1), None, 1e-6)), SimulationNumber::Duration);
+        assert_eq!(setting(refused(&[0.0], &with(1.0, bad), None, 1e-6)), SimulationNumber::OutputStep);
+        assert_eq!(
+            setting(refused(&[0.0], &good, Some(Saying(bad, 0.0, 1.0)), 1e-6)),
+            SimulationNumber::SampleTime
+        );
     }
     for bad in [-1e-9, f64::NAN, f64::INFINITY] {
         let sampler = Some(Saying(0.1, bad, 1.0));
-        assert_eq!(setting(refused(&[0.0], &good, sampler, 1e-6)), "delay of the command");
+        assert_eq!(setting(refused(&[0.0], &good, sampler, 1e-6)), SimulationNumber::CommandDelay);
     }
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         assert!(matches!(refused(&[bad], &good, None, 1e-6), SimulationError::Start { index: 0, .. }));

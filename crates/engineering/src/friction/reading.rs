@@ -1,8 +1,8 @@
 use super::signs;
-use crate::identify::IdentifyError;
+use crate::identify_error::{FrictionFitError, IdentifyError};
 use crate::project::{Findings, Project};
 use crate::quantity::{FORCE, LENGTH, PRESSURE, TIME, VELOCITY};
-use crate::response::{RowSpacing, interpolated, is_software_timed, time_step};
+use crate::response::{EvenlySampled, RowSpacing, interpolated, is_software_timed, time_step};
 use crate::setup::Setup;
 use crate::source::Source;
 use crate::table::{Column, Measurand, MeasuredTable, Sought, TIME_NAMES};
@@ -23,15 +23,12 @@ impl KnownCylinder {
     /// [`IdentifyError`] for a project without a cylinder.
     pub fn of(project: &Project) -> Result<KnownCylinder, IdentifyError> {
         if project.motion().is_rotary() {
-            let message = "friction is identified for a [cylinder]: recordings of a [motor] are not read yet";
-            return Err(IdentifyError::Data(message.to_string()));
+            return Err(FrictionFitError::OfMotor.into());
         }
-        let rig = Setup::rig_of(project).map_err(|error| IdentifyError::Data(error.to_string()))?;
+        let rig = Setup::rig_of(project)?;
         let cylinder = rig.actuator.components().cylinder;
         if cylinder.stroke.telescope().is_some() {
-            let message = "friction is identified for one pair of areas, and those of a telescopic piston change: identify each stage by \
-                           itself, without [[cylinder.stage]]";
-            return Err(IdentifyError::Data(message.to_string()));
+            return Err(FrictionFitError::Telescopic.into());
         }
         Ok(KnownCylinder { areas: [cylinder.area_a, cylinder.area_b], moving_mass: cylinder.moving_mass })
     }
@@ -137,7 +134,7 @@ fn recording(
         let even = |values: &[f64]| interpolated(&times, values, spacing.usual);
         (spacing.usual, even(&motion), [&pressures_a, &pressures_b, &loads].map(|values| even(values)))
     } else {
-        let step = time_step(&table, time?, &times, "a run of the cylinder", findings)?;
+        let step = time_step(&table, time?, &times, EvenlySampled::CylinderRun, findings)?;
         (step, motion, [pressures_a, pressures_b, loads])
     };
     let at = |values: &[f64], row: usize| values.get(row).copied().unwrap_or(0.0);

@@ -5,6 +5,7 @@
 
 use phea_dynamics::order;
 
+use super::sign_error::{SignError, SignHint};
 use crate::project::{Findings, RawFinding};
 use crate::table::{Column, MeasuredTable};
 use crate::tendency::Tendency;
@@ -31,11 +32,13 @@ pub(super) fn velocity_along_position(
     let [distances, means] = [moved(positions), averaged(velocities)];
     let opposite = Tendency::about_zero(&means, &distances).filter(Tendency::is_opposite);
     let Some(tendency) = opposite else { return };
-    let [position, name] = [position, velocity].map(|column| table.heading(column));
-    let message = format!("`{name}` is against the slope of `{position}` ({})", shown(tendency));
+    let [position, name] = [position, velocity].map(|column| table.heading(column).to_string());
+    let hint = SignHint::ChangeOneSign { velocity: name.clone(), position: position.clone() };
+    let message = SignError::Velocity { velocity: name, position, tendency };
     let place = table.headings.get(velocity.index).map(|heading| heading.place).unwrap_or_default();
-    let found = RawFinding::error(place, message).expected("the velocity with which the position grows");
-    findings.push(found.help(format!("change the sign of `{name}` or of `{position}`")));
+    let found = RawFinding::error(place, message.to_string());
+    let found = found.expected(SignHint::VelocityOfPosition.to_string());
+    findings.push(found.help(hint.to_string()));
 }
 
 /// Refuses a run in which the force that drives the mass is against its motion.
@@ -60,24 +63,13 @@ pub(super) fn force_along_motion(
     let Some(tendency) = tendency.filter(Tendency::is_opposite) else { return };
     let quoted = |column: &&Column| format!("`{}`", table.heading(column));
     let names: Vec<String> = pushing.iter().flatten().map(quoted).collect();
-    let motion_name = quoted(&motion);
-    let message = format!(
-        "the force that drives the piston, of {}, is against its motion by {motion_name} ({})",
-        names.join(", "),
-        shown(tendency)
-    );
+    let hint =
+        SignHint::OtherSign { motion: quoted(&motion), exchanged: names.len() > 1, shifted: !goes_both_ways };
+    let message = SignError::Force { columns: names.join(", "), motion: quoted(&motion), tendency };
     let place = table.headings.get(motion.index).map(|heading| heading.place).unwrap_or_default();
-    let found = RawFinding::error(place, message)
-        .expected("A_A p_A - A_B p_B - F_e in the direction of the motion, which friction opposes");
-    let exchanged = if names.len() > 1 { ", or the columns of the ports are exchanged" } else { "" };
-    let zero = if goes_both_ways { "" } else { ", or their zero is off by more than the friction" };
-    findings.push(found.help(format!(
-        "{motion_name} grows as the rod extends, and a load cell reads positive where the rod pushes: one of them has the other sign{exchanged}{zero}"
-    )));
-}
-
-fn shown(Tendency { correlation, rows }: Tendency) -> String {
-    format!("correlation {correlation:.2} over {rows} blocks of rows")
+    let found = RawFinding::error(place, message.to_string());
+    let found = found.expected(SignHint::ForceAlongMotion.to_string());
+    findings.push(found.help(hint.to_string()));
 }
 
 /// Rows of a block.

@@ -9,7 +9,8 @@ use super::averaged::averaged;
 use super::channels::{Channel, EVALUATIONS, Together};
 use super::recording::Recording;
 use super::variables::{COUNT, Kind, Variables, over};
-use super::{COEFFICIENT_NAMES, IdentifyError, Search, SignalFit};
+use super::{COEFFICIENT_NAMES, Search, SignalFit};
+use crate::identify_error::{IdentifyError, ValveFitError};
 
 /// Number of rounds in which the scale of each signal is computed from its residuals.
 const ROUNDS: usize = 4;
@@ -183,7 +184,7 @@ fn fitted_from<'a>(
     watch: Watch<'_>,
 ) -> Result<Fit<'a>, IdentifyError> {
     if together.channels.is_empty() {
-        return Err(IdentifyError::Data("no recorded signal changes: there is nothing to fit".to_string()));
+        return Err(ValveFitError::NothingChanges.into());
     }
     let (start, agreeing) = best_start(starts, &together, watch)?;
     let minimum = if has_many_rows(together.recordings) {
@@ -200,7 +201,7 @@ fn fitted_from<'a>(
         settled(&mut together, &start, depth, watch)?
     };
     if minimum.ending == Ending::NoStart || minimum.linearised.residuals.len() <= together.variables.count() {
-        return Err(IdentifyError::Data("the recordings have too few rows to fit a valve".to_string()));
+        return Err(ValveFitError::TooFewRows.into());
     }
     Ok(Fit { together, minimum, starts: [starts.len(), agreeing] })
 }

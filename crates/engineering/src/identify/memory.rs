@@ -14,11 +14,11 @@ use phea_dynamics::portable;
 use phea_dynamics::watch::Watch;
 use phea_hydraulics::servovalve::TestInput;
 
-use super::IdentifyError;
 use super::channels::Channel;
 use super::evidence::{DECISIVE, criteria, independent_fraction};
 use super::fit::{self, Depth, Fit};
 use super::recording::Recording;
+use crate::identify_error::IdentifyError;
 
 /// Fits with other memories at most.
 const PASSES: usize = 6;

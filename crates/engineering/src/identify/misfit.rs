@@ -9,8 +9,6 @@ use phea_dynamics::order::ends;
 
 use super::recording::{SignalKind, TestBranch};
 use super::{Identification, SignalFit};
-use crate::project::DeclaredMisfit;
-use crate::quantity::{VOLTAGE, display};
 
 /// Correlation of neighbouring residuals up to which they are noise: those of recordings that the
 /// model explains reach 0.23.
@@ -76,24 +74,6 @@ impl Identification {
         let mut found: Vec<Misfit> = self.signals.iter().filter_map(of).collect();
         found.sort_by(|one, other| other.fraction.total_cmp(&one.fraction));
         found
-    }
-
-    /// Which signal of which recording, and where.
-    pub fn misfit_at(&self, misfit: &Misfit) -> String {
-        let file = self.recordings.get(misfit.recording).map_or("", |one| one.file.as_str());
-        let signal = misfit.kind.name().replace('_', " ");
-        let Some(MisfitPlace { is_rising, command, .. }) = misfit.place else {
-            return format!("{signal} of {file}");
-        };
-        let [from, to] = command.map(|end| display(end, &VOLTAGE, 3));
-        let (way, from, to) = if is_rising { ("rises", from, to) } else { ("falls", to, from) };
-        format!("{signal} of {file}, most while the command {way} from {from} to {to}")
-    }
-
-    /// The greatest misfit as a project states it: the value of `valve.misfit`.
-    pub fn declared_misfit(&self) -> Option<DeclaredMisfit> {
-        let misfit = self.misfits().into_iter().next()?;
-        Some(DeclaredMisfit { share: misfit.fraction, at: Some(self.misfit_at(&misfit)) })
     }
 
     /// The part of the branches where the residuals of a signal have the greatest mean.

@@ -9,6 +9,7 @@
 //! file.
 
 mod assembled;
+mod error;
 mod plausible;
 mod polarity;
 mod rated;
@@ -18,6 +19,7 @@ mod turns;
 use phea_dynamics::order::ends;
 use phea_hydraulics::servovalve::PortCircuit;
 
+use self::error::{RecordedTestError, RecordedTestHint};
 use super::Known;
 use super::contents::{ColumnContents, FileContents, RecordedFiles};
 use super::recording::Recording;
@@ -152,8 +154,8 @@ fn recording(
     }
     let whole = table.header_place();
     if taken.rows() < FEWEST_ROWS && findings.error_count() == before {
-        let found = RawFinding::error(whole, format!("{} rows are too few for a test", taken.rows()));
-        findings.push(found.expected(format!("at least {FEWEST_ROWS} rows below the names of the columns")));
+        let found = RawFinding::error(whole, RecordedTestError::TooFewRows(taken.rows()).to_string());
+        findings.push(found.expected(RecordedTestHint::AtLeastRows(FEWEST_ROWS).to_string()));
     }
     if findings.error_count() > before {
         return None;
@@ -216,11 +218,8 @@ fn columns(
     }
     let of = |signal: TestSignal| columns.iter().any(|(one, _)| *one == signal);
     if declared.test.is_none() && of(TestSignal::LeakFlow) && of(TestSignal::Flow) {
-        let message = "`leak_flow` is of blocked ports, `flow` of joined ones: one file holds one test";
-        findings.push(
-            RawFinding::error(table.header_place(), message)
-                .help("`test` in `[[identify.recording]]` of a project says which it is"),
-        );
+        let found = RawFinding::error(table.header_place(), RecordedTestError::TwoTests.to_string());
+        findings.push(found.help(RecordedTestHint::TestOfProject.to_string()));
     }
     unused.sort_unstable();
     let names = unused.iter().filter_map(|index| table.headings.get(*index));
@@ -263,14 +262,11 @@ fn is_above_tank(
     let named = |signal| columns.iter().find(|(one, _)| *one == signal);
     let column = named(TestSignal::TankPressure).or(named(TestSignal::SupplyPressure));
     let (Some(first), Some((_, column))) = (dry.first(), column) else { return };
-    let message = format!(
-        "the tank pressure is not below the supply pressure in {} of {} rows",
-        dry.len(),
-        taken.rows()
-    );
-    let found = table.error(rows.get(*first).copied().unwrap_or(0), column, message, findings);
+    let message = RecordedTestError::TankAboveSupply { count: dry.len(), rows: taken.rows() };
+    let row = rows.get(*first).copied().unwrap_or(0);
+    let found = table.error(row, column, message.to_string(), findings);
     findings.push(match dry.len() == taken.rows() {
-        true => found.help("are the columns exchanged, or in other units than their headings say?"),
+        true => found.help(RecordedTestHint::ExchangedColumns.to_string()),
         false => found,
     });
 }

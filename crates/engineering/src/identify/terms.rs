@@ -3,9 +3,9 @@
 use phea_dynamics::watch::Watch;
 use phea_hydraulics::servovalve::{LeakageModel, TestedValve, ValveTerms};
 
-use super::IdentifyError;
 use super::evidence::{DECISIVE, criteria};
 use super::fit::{self, Fit};
+use crate::identify_error::IdentifyError;
 
 /// A term that a valve may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

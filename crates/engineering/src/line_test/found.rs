@@ -6,7 +6,7 @@ use super::rise::rise_fit;
 use super::shaken::response_fit;
 use super::{KnownLine, LineRecord, NotIdentifiableLine, ResponseFit, RiseFit, WideQuantity};
 use crate::estimate::{Estimate, NORMAL_95};
-use crate::identify::IdentifyError;
+use crate::identify_error::{IdentifyError, LineFitError};
 use crate::response::{ResponseSettings, SampledPair, members};
 
 /// A line as identified from recordings.
@@ -103,14 +103,14 @@ pub fn identify_line(
             LineRecord::Response(response) => responses.push(response),
         }
     }
-    let several = |count: usize, kind: &str| {
-        let message = format!("{count} {kind} are named: one at most is explained at a time");
-        if count > 1 { Err(IdentifyError::Data(message)) } else { Ok(()) }
-    };
-    several(rises.len(), "pressure rises")?;
-    several(responses.len(), "frequency responses")?;
+    if rises.len() > 1 {
+        return Err(LineFitError::SeveralRises(rises.len()).into());
+    }
+    if responses.len() > 1 {
+        return Err(LineFitError::SeveralResponses(responses.len()).into());
+    }
     let oil = known.aerated_oil();
-    let rise = rises.pop().map(|record| rise_fit(record, oil)).transpose().map_err(IdentifyError::Data)?;
+    let rise = rises.pop().map(|record| rise_fit(record, oil)).transpose()?;
     let known = match rise.as_ref().and_then(RiseFit::air) {
         Some(air) => known.with_air(air),
         None => known,
@@ -120,7 +120,7 @@ pub fn identify_line(
         Some(record) => Some(shaken(&record, rise.as_ref(), (&known, settings), watch)?),
     };
     if rise.is_none() && response.is_none() {
-        return Err(IdentifyError::Data("there is no recording of a line".to_string()));
+        return Err(LineFitError::NoRecording.into());
     }
     Ok(combined(known, rise, response))
 }
@@ -134,7 +134,7 @@ fn shaken(
 ) -> Result<ResponseFit, IdentifyError> {
     let pressure = record.output.iter().sum::<f64>() / record.output.len().max(1) as f64;
     let member = members(std::slice::from_ref(record), settings, watch)?.pop();
-    let member = member.ok_or_else(|| IdentifyError::Data("there is no record".to_string()))?;
+    let member = member.ok_or(LineFitError::NoRecord)?;
     let slow = rise.filter(|rise| rise.reaches(pressure)).map(|rise| {
         let [compliance, deviation] = rise.compliance(pressure);
         [ln(compliance), deviation / compliance]

@@ -4,6 +4,7 @@ use phea_hydraulics::fluid::{EntrainedAir, Fluid};
 use phea_hydraulics::line::{Conduit, LaminarFriction, Line, LineModel};
 
 use super::rise_air::AeratedOil;
+use crate::identify_error::KnownLineError;
 use crate::project::{LineMotion, LineSegments, LineSide};
 use crate::rig::line_model;
 use crate::setup::Setup;
@@ -48,15 +49,14 @@ impl KnownLine {
     /// The line of a project.
     ///
     /// # Errors
-    /// Reason for which there is none: no actuator, impossible parameters, a line without length.
-    pub fn of(setup: &Setup<'_>, side: LineSide) -> Result<KnownLine, String> {
-        let rig = setup.rig().map_err(|error| error.to_string())?;
-        let declared = setup.project.actuator.as_ref().ok_or("the project has no line")?;
+    /// [`KnownLineError`] without an actuator, with impossible parameters, and for a line without
+    /// volume.
+    pub fn of(setup: &Setup<'_>, side: LineSide) -> Result<KnownLine, KnownLineError> {
+        let rig = setup.rig()?;
+        let declared = setup.project.actuator.as_ref().ok_or(KnownLineError::NoLine)?;
         let components = rig.actuator.components();
         if components.cylinder.stroke.telescope().is_some() {
-            let message = "lines are identified with a piston of one pair of areas, and those of a telescopic piston change: \
-                           identify them without [[cylinder.stage]]";
-            return Err(message.to_string());
+            return Err(KnownLineError::Telescopic);
         }
         let lines = &declared.line;
         let (line, declared, piston_area) = match side {
@@ -73,7 +73,7 @@ impl KnownLine {
             piston_area,
             leaves_accumulator: declared.accumulator.is_some(),
         };
-        if known.volume() > 0.0 { Ok(known) } else { Err("the line holds no oil".to_string()) }
+        if known.volume() > 0.0 { Ok(known) } else { Err(KnownLineError::NoOil) }
     }
 
     /// m3, of the oil that it holds at the operating pressure: its moduli refer to it.

@@ -2,8 +2,9 @@
 
 use phea_dynamics::order;
 
+use super::record_error::{LineRecordError, LineRecordHint};
 use super::{RiseRecord, VolumeSource};
-use crate::identify::IdentifyError;
+use crate::identify_error::IdentifyError;
 use crate::project::{Findings, RawFinding, RecordedLoop};
 use crate::quantity::{FLOW, LENGTH, PRESSURE, TIME, VOLUME};
 use crate::response::{EvenRows, SampledPair, even_rows};
@@ -136,20 +137,19 @@ fn rises_with_volume(
 ) {
     let together = Tendency::of(volumes, pressures).filter(Tendency::is_opposite);
     let Some(Tendency { correlation, rows }) = together else { return };
-    let [pressure, volume] = columns.map(|column| table.heading(column));
-    let message = format!(
-        "`{pressure}` falls while `{volume}` fills the line (correlation {correlation:.2} over {rows} rows)"
-    );
-    let found = RawFinding::error(table.header_place(), message);
-    let found = found.expected("a pressure that rises with the oil in the line");
-    findings.push(found.help(format!("change the sign of `{volume}`")));
+    let [pressure, volume] = columns.map(|column| table.heading(column).to_string());
+    let hint = LineRecordHint::ChangeSign(volume.clone());
+    let message = LineRecordError::PressureFalls { pressure, volume, correlation, rows };
+    let found = RawFinding::error(table.header_place(), message.to_string());
+    let found = found.expected(LineRecordHint::RisingPressure.to_string());
+    findings.push(found.help(hint.to_string()));
 }
 
 fn are_enough(table: &MeasuredTable, rows: &[f64], findings: &mut Findings) -> bool {
     if rows.len() < FEWEST_ROWS {
-        let message = format!("{} rows are too few for a test of a line", rows.len());
-        let found = RawFinding::error(table.header_place(), message);
-        findings.push(found.expected(format!("at least {FEWEST_ROWS} rows")));
+        let message = LineRecordError::TooFewRows(rows.len());
+        let found = RawFinding::error(table.header_place(), message.to_string());
+        findings.push(found.expected(LineRecordHint::AtLeastRows(FEWEST_ROWS).to_string()));
     }
     rows.len() >= FEWEST_ROWS
 }

@@ -8,6 +8,7 @@ use phea_hydraulics::fluid::EntrainedAir;
 
 use super::rise_air::AeratedOil;
 use super::rise_noise::{Whitened, whitened};
+use crate::identify_error::LineFitError;
 
 /// Source of a displaced volume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,11 +97,11 @@ const AIR_STEPS: usize = 8;
 /// ```text
 /// V_k = ... + V (-ln((1 - a) V_liquid(p_k) + a V_gas(p_k)) - p_k/beta_0)          a the fraction of free air
 /// ```
-pub(super) fn rise_fit(record: RiseRecord, oil: Option<AeratedOil>) -> Result<RiseFit, String> {
+pub(super) fn rise_fit(record: RiseRecord, oil: Option<AeratedOil>) -> Result<RiseFit, LineFitError> {
     let pressures = ends(record.pressures.iter().copied());
     let [low, high] = pressures;
     if low >= high {
-        return Err(format!("{}: the pressure never moves", record.file));
+        return Err(LineFitError::PressureNeverMoves { file: record.file });
     }
     let with_drift = !record.times.is_empty();
     let of = |terms: usize, drift: bool| fitted(&record, pressures, RiseModel { terms, drift, air: None });
@@ -122,7 +123,7 @@ pub(super) fn rise_fit(record: RiseRecord, oil: Option<AeratedOil>) -> Result<Ri
     if criterion(&aerated) < criterion(&best) {
         best = aerated;
     }
-    let fit = best.ok_or_else(|| format!("{}: volume and pressure do not move together", record.file))?;
+    let fit = best.ok_or_else(|| LineFitError::Unrelated { file: record.file.clone() })?;
     Ok(fit.into_rise(record, pressures))
 }
 

@@ -15,6 +15,7 @@ use super::KnownLine;
 use super::known::EXACT;
 use super::response_noise::smoothed_deviations;
 use crate::estimate::{Estimate, NORMAL_95};
+use crate::identify_error::{IdentifyError, LineFitError};
 use crate::response::ResponseMember;
 
 /// Parameters of the response of a blocked line. SI.
@@ -83,13 +84,12 @@ pub(super) fn response_fit(
     known: &KnownLine,
     slow: Option<[f64; 2]>,
     watch: Watch<'_>,
-) -> Result<ResponseFit, crate::identify::IdentifyError> {
+) -> Result<ResponseFit, IdentifyError> {
     let model = known.sought_model();
     let deviations = smoothed_deviations(&member.points);
     let sought = SoughtLine { known, model, points: &member.points, deviations: &deviations, slow };
     let best = sought.best(watch)?;
-    let refuse = || format!("{}: no blocked line has such a response", member.file);
-    let best = best.ok_or_else(refuse).map_err(crate::identify::IdentifyError::Data)?;
+    let best = best.ok_or_else(|| LineFitError::NoSuchResponse { file: member.file.clone() })?;
     let parameters = sought.parameters(&best.variables);
     let count = best.variables.len();
     let rows = best.linearised.residuals.len();

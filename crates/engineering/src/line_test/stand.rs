@@ -10,14 +10,13 @@ use std::f64::consts::PI;
 use phea_dynamics::portable;
 use phea_dynamics::random::{normal, stream};
 use phea_dynamics::simulation::{
-    Harmonic, Input, InputSchedule, Profile, ProfileError, SimulationSettings, Status, schroeder_phases,
-    simulate,
+    Harmonic, Input, InputSchedule, Profile, SimulationSettings, Status, schroeder_phases, simulate,
 };
 use phea_dynamics::watch::{Watch, tell};
 use phea_hydraulics::line::{BlockedLine, StiffeningMember};
 
 use super::KnownLine;
-use crate::bench::{BenchError, Instruments, MOST_ROWS};
+use crate::bench::{BenchError, BenchLineError, Instruments, MOST_ROWS};
 use crate::project::{Bench, LineBench};
 use crate::setup::Setup;
 
@@ -76,11 +75,11 @@ pub fn line_runs(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<LineRun>, Be
 /// [`BenchError`] for a project whose line cannot be simulated.
 pub fn clean_line_runs(setup: &Setup<'_>, watch: Watch<'_>) -> Result<Vec<LineRun>, BenchError> {
     let Some(bench) = setup.project.bench.line else { return Ok(Vec::new()) };
-    let known = KnownLine::of(setup, bench.side).map_err(BenchError::Line)?;
+    let known = KnownLine::of(setup, bench.side).map_err(BenchLineError::from)?;
     let line = |pressure: f64| {
         let model = known.stand_model();
         BlockedLine::new(&known.line, &known.fluid, pressure, StiffeningMember::Nominal, &model)
-            .map_err(|error| BenchError::Line(error.to_string()))
+            .map_err(BenchLineError::from)
     };
     let [low, high] = bench.pressures;
     let rise = rise(&line(f64::midpoint(low, high))?, &bench, watch)?;
@@ -121,7 +120,7 @@ fn rise(line: &BlockedLine, bench: &LineBench, watch: Watch<'_>) -> Result<LineR
     }
     times.push(at);
     flows.push(0.0);
-    let profile = Profile::table(&times, &flows).map_err(refused)?;
+    let profile = Profile::table(&times, &flows).map_err(BenchLineError::from)?;
     let mut found =
         run(line, LineSeries::PressureRise, (profile.clone(), low), [at, bench.rise_sample_time], watch)?;
     found.inputs = integral(&found.times, |time| profile.value(time));
@@ -152,8 +151,7 @@ fn shaken(
 ) -> Result<LineRun, BenchError> {
     let frequencies = excited(bench);
     if frequencies.len() < 3 {
-        let message = "`bench.line.frequencies` has fewer than three lines of `bench.line.period`";
-        return Err(BenchError::Line(message.to_string()));
+        return Err(BenchLineError::FewFrequencies.into());
     }
     let compliance = line.static_compliance(pressure);
     let per_flow: f64 = frequencies.iter().map(|w| 0.5 / (w * compliance * w * compliance)).sum();
@@ -166,7 +164,7 @@ fn shaken(
     // what the sines have taken in when they begin, so that the mean is as stated
     let begun = |one: &Harmonic| portable::cos(one.phase_rad) / one.frequency_rad_per_s;
     let first = pressure - amplitude / compliance * harmonics.iter().map(begun).sum::<f64>();
-    let profile = Profile::multisine(0.0, &harmonics).map_err(refused)?;
+    let profile = Profile::multisine(0.0, &harmonics).map_err(BenchLineError::from)?;
     let duration = bench.period * f64::from(bench.periods) - bench.sample_time;
     let times = [duration, bench.sample_time];
     run(line, LineSeries::FrequencyResponse, (profile, first), times, watch)
@@ -217,13 +215,12 @@ fn run(
         }
         !stopped
     })
-    .map_err(|error| BenchError::Line(error.to_string()))?;
+    .map_err(BenchLineError::from)?;
     if stopped {
         return Err(BenchError::Stopped);
     }
     if simulated.outcome.status != Status::Completed {
-        let message = "the simulation of the line does not come to its end: state shorter tests";
-        return Err(BenchError::Line(message.to_string()));
+        return Err(BenchLineError::Unfinished.into());
     }
     let trajectory = simulated.trajectory;
     Ok(LineRun {
@@ -232,8 +229,4 @@ fn run(
         pressures: trajectory.states.iter().map(|state| line.open_end(state)).collect(),
         times: trajectory.times_s,
     })
-}
-
-fn refused(error: ProfileError) -> BenchError {
-    BenchError::Line(error.to_string())
 }

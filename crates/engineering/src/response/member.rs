@@ -4,6 +4,7 @@ use phea_dynamics::spectrum::{
 };
 
 use super::{ReferenceSignal, ReferenceSource, Resampled, ResponseSettings, SampledPair};
+use crate::identify_error::{MovingSignal, RecordFault};
 use crate::project::RecordedLoop;
 
 /// Blocks of a record.
@@ -90,11 +91,13 @@ pub enum Unusable {
 /// Fraction of the strongest line's power below which the input does not excite: 60 dB.
 const UNEXCITED: f64 = 1e-6;
 
-pub(super) fn member(record: &SampledPair, settings: &ResponseSettings) -> Result<ResponseMember, String> {
-    let file = &record.file;
+pub(super) fn member(
+    record: &SampledPair,
+    settings: &ResponseSettings,
+) -> Result<ResponseMember, RecordFault> {
     let steps = |seconds: f64| (seconds / record.time_step).round() as usize;
     if record.input.iter().all(|value| Some(value) == record.input.first()) {
-        return Err(format!("{file}: the input never moves, so that it excites nothing"));
+        return Err(RecordFault::InputNeverMoves);
     }
     let settling = settings.settling.map(steps);
     let recorded = reference_of(record);
@@ -128,10 +131,10 @@ pub(super) fn member(record: &SampledPair, settings: &ResponseSettings) -> Resul
     let least = settings.coherence.max(least_coherence(estimated.independent));
     let (points, left_out) = sorted(estimated.points, least);
     if points.is_empty() {
-        return Err(no_points(record, reference, &left_out, least));
+        return Err(no_points(reference, &left_out, least));
     }
     Ok(ResponseMember {
-        file: file.clone(),
+        file: record.file.clone(),
         signals: record.signals,
         units: record.units,
         rows: record.input.len(),
@@ -169,20 +172,13 @@ fn reference_of(record: &SampledPair) -> Option<&ReferenceSignal> {
 
 /// Refuses a record whose input follows the noise of its output: the quotient of both would tend to
 /// the negative inverse of the controller.
-fn loop_is_open(record: &SampledPair) -> Result<(), String> {
-    let SampledPair { file, signals: [input, output], .. } = record;
-    let cure = "record the reference in a column `reference`, `excitation` or `set_point`, make the reference periodic, or, where [controller] of the project is that of the test, state `controller = \"declared\"` in its [[identify.response]]";
-    let why = format!("`{output}` over `{input}` tends to the negative inverse of the controller, -1/C");
+fn loop_is_open(record: &SampledPair) -> Result<(), RecordFault> {
+    let [input, output] = record.signals;
     match record.recorded_loop {
         Some(RecordedLoop::Open) => Ok(()),
-        Some(RecordedLoop::Closed) => {
-            Err(format!("{file}: the loop was closed, and no column says what moved it: {why}; {cure}"))
-        }
+        Some(RecordedLoop::Closed) => Err(RecordFault::NoReference { input, output }),
         None => match feedback(&record.input, &record.output, WithinRow::Possible) {
-            fraction if fraction > 0.0 => Err(format!(
-                "{file}: the loop was closed during the test: `{input}` follows the noise of `{output}` ({:.0} % of its innovation), so that {why}; {cure}. Where no controller acted, state `loop = \"open\"` in its [[identify.response]]",
-                100.0 * fraction
-            )),
+            fraction if fraction > 0.0 => Err(RecordFault::FollowsNoise { input, output, fraction }),
             _ => Ok(()),
         },
     }
@@ -193,7 +189,7 @@ fn of_periods(
     reference: Option<&ReferenceSignal>,
     period: usize,
     settling: usize,
-) -> Result<Estimated, String> {
+) -> Result<Estimated, RecordFault> {
     let signals = [record.input.as_slice(), record.output.as_slice()];
     let blocks = periods(signals, record.time_step, period, settling)
         .ok_or_else(|| too_short(record, period, settling))?;
@@ -211,12 +207,11 @@ fn of_periods(
     Ok(Estimated { method, points, independent: blocks.independent(), distortion })
 }
 
-fn of_segments(record: &SampledPair, length: usize, settling: usize) -> Result<Estimated, String> {
+fn of_segments(record: &SampledPair, length: usize, settling: usize) -> Result<Estimated, RecordFault> {
     let [input, output] =
         [&record.input, &record.output].map(|signal| signal.get(settling..).unwrap_or_default());
-    let blocks = segments([input, output], record.time_step, length).ok_or_else(|| {
-        format!("{}: {} rows are too few for segments of {length} rows", record.file, input.len())
-    })?;
+    let blocks = segments([input, output], record.time_step, length)
+        .ok_or(RecordFault::TooFewForSegments { rows: input.len(), length })?;
     let (count, independent) = (blocks.count(), blocks.independent());
     let method = Averaging::Segments { length: length as f64 * record.time_step, count, independent };
     // the window spreads what is left of the mean over two lines
@@ -228,13 +223,13 @@ fn of_bands(
     record: &SampledPair,
     reference: Option<&ReferenceSignal>,
     settling: usize,
-) -> Result<Estimated, String> {
+) -> Result<Estimated, RecordFault> {
     let later = |signal: &'_ [f64]| signal.get(settling..).unwrap_or_default().to_vec();
     let [input, output] = [&record.input, &record.output].map(|signal| later(signal));
     let reference = reference.map_or_else(|| input.clone(), |one| later(&one.values));
     let points = local_polynomials(&reference, [&input, &output], record.time_step);
     if points.is_empty() && (record.controller.is_none() || settling > 0) {
-        return Err(format!("{}: {} rows are too few for a frequency response", record.file, input.len()));
+        return Err(RecordFault::TooFewRows { rows: input.len() });
     }
     let length = input.len() as f64 * record.time_step;
     let method = Averaging::LocalPolynomials { length, bands: points.len() };
@@ -260,34 +255,22 @@ fn sorted(estimated: Vec<SpectralPoint>, least: f64) -> (Vec<SpectralPoint>, Vec
 }
 
 /// The reason why a record has no response at any frequency.
-fn no_points(
-    record: &SampledPair,
-    reference: Option<&ReferenceSignal>,
-    left_out: &[LeftOut],
-    least: f64,
-) -> String {
-    let file = &record.file;
+fn no_points(reference: Option<&ReferenceSignal>, left_out: &[LeftOut], least: f64) -> RecordFault {
     let moving = reference.map(|reference| match reference.source {
-        ReferenceSource::Column(name) => format!("the column `{name}`"),
-        ReferenceSource::Controller => {
-            "the reference that is calculated with [controller], y + u/C,".to_string()
-        }
+        ReferenceSource::Column(name) => MovingSignal::Column(name),
+        ReferenceSource::Controller => MovingSignal::Calculated,
     });
     match moving {
-        Some(moving) if left_out.iter().all(|one| one.reason == Unusable::NotExcited) => format!(
-            "{file}: {moving} moves the input at no frequency more than noise does: nothing moved the loop from outside"
-        ),
-        Some(moving) => format!(
-            "{file}: at no frequency is noise small against what {moving} moves: the squared coherence is below {least:.2}; move the reference more, or longer"
-        ),
-        None => format!(
-            "{file}: at no frequency does the output depend on the input with a squared coherence of {least:.2}"
-        ),
+        Some(moving) if left_out.iter().all(|one| one.reason == Unusable::NotExcited) => {
+            RecordFault::NotMoved { moving }
+        }
+        Some(moving) => RecordFault::MovedTooLittle { moving, least },
+        None => RecordFault::Incoherent { least },
     }
 }
 
 /// A stated period in steps of the record.
-fn whole_steps(record: &SampledPair, stated: f64) -> Result<usize, String> {
+fn whole_steps(record: &SampledPair, stated: f64) -> Result<usize, RecordFault> {
     let exact = stated / record.time_step;
     let steps = exact.round();
     // half a step off at the end of the record leaks as much as one off in a period
@@ -295,24 +278,21 @@ fn whole_steps(record: &SampledPair, stated: f64) -> Result<usize, String> {
     if (exact - steps).abs() * periods > 0.5 || steps < 4.0 {
         // to a nanosecond: the step is a mean of rounded stamps
         let seconds = |rows: f64| (rows * record.time_step * 1e9).round() / 1e9;
-        return Err(format!(
-            "{}: a period of {stated} s is {exact:.4} rows of {} s; a period of whole rows has no leakage: {} s or {} s",
-            record.file,
-            seconds(1.0),
-            seconds(exact.floor()),
-            seconds(exact.ceil())
-        ));
+        return Err(RecordFault::PeriodOfPartRows {
+            stated,
+            rows: exact,
+            time_step: seconds(1.0),
+            whole: [exact.floor(), exact.ceil()].map(seconds),
+        });
     }
     Ok(steps as usize)
 }
 
-fn too_short(record: &SampledPair, period: usize, settling: usize) -> String {
+fn too_short(record: &SampledPair, period: usize, settling: usize) -> RecordFault {
     let seconds = |rows: usize| rows as f64 * record.time_step;
-    format!(
-        "{}: {:.4} s are too short: after {:.4} s for the transient, at least two periods of {:.4} s are needed, whose difference shows how much is noise",
-        record.file,
-        seconds(record.input.len()),
-        seconds(settling),
-        seconds(period)
-    )
+    RecordFault::TooShort {
+        length: seconds(record.input.len()),
+        settling: seconds(settling),
+        period: seconds(period),
+    }
 }

@@ -1,6 +1,6 @@
 use super::TestController;
 use super::resampled::{EvenRows, Resampled, even_rows};
-use crate::identify::IdentifyError;
+use crate::identify_error::IdentifyError;
 use crate::project::{Findings, RecordedLoop, RecordedResponse, ResponseSignal};
 use crate::quantity::{FORCE, RATIO, TIME, VOLTAGE};
 use crate::source::Source;

@@ -1,4 +1,5 @@
 use super::spacing::{FEW_JUMPS, RowSpacing, time_step};
+use super::spacing_error::EvenlySampled;
 use crate::project::Findings;
 use crate::table::{Column, MeasuredTable};
 
@@ -45,7 +46,7 @@ pub(crate) fn even_rows(
 ) -> Option<EvenRows> {
     let spacing = RowSpacing::of(times);
     if !is_software_timed(&spacing, times) || spacing.jumps <= FEW_JUMPS {
-        let step = time_step(table, column, times, "a frequency response", findings)?;
+        let step = time_step(table, column, times, EvenlySampled::FrequencyResponse, findings)?;
         return Some(EvenRows { step, signals, resampled: None });
     }
     let between = |pair: &[f64]| if let [one, next] = pair { next - one } else { 0.0 };

@@ -1,7 +1,7 @@
 use phea_dynamics::order::ends;
 
+use super::spacing_error::{EvenlySampled, SpacingError, SpacingHint};
 use crate::project::{Findings, RawFinding};
-use crate::quantity::{TIME, display};
 use crate::table::{Column, MeasuredTable, median_step};
 
 /// Fraction of the time between rows by which a row may be early or late.
@@ -12,18 +12,19 @@ const FEWEST_ROWS: usize = 32;
 
 /// The time between rows, in s. Rows that are early or late by more than [`UNEVEN`] of it are
 /// refused, unless their stamps are rounded to no more than that: what is calculated takes the
-/// samples as evenly spaced. `purpose` says what that is.
+/// samples as evenly spaced.
 pub fn time_step(
     table: &MeasuredTable,
     column: &Column,
     times: &[f64],
-    purpose: &str,
+    sampled: EvenlySampled,
     findings: &mut Findings,
 ) -> Option<f64> {
     let place = table.header_place();
     if times.len() < FEWEST_ROWS {
-        let message = format!("{} rows are too few for {purpose}", times.len());
-        findings.push(RawFinding::error(place, message).expected(format!("at least {FEWEST_ROWS} rows")));
+        let message = SpacingError::TooFewRows { rows: times.len(), sampled };
+        let found = RawFinding::error(place, message.to_string());
+        findings.push(found.expected(SpacingHint::AtLeastRows(FEWEST_ROWS).to_string()));
         return None;
     }
     let spacing = RowSpacing::of(times);
@@ -43,14 +44,9 @@ pub fn time_step(
     let row = times.windows(2).position(|pair| off(pair) > beyond).map_or(0, |row| row + 1);
     let since =
         times.get(row).zip(times.get(row.saturating_sub(1))).map_or(0.0, |(one, before)| one - before);
-    let message = format!("{} after the row before", display(since, &TIME, 4));
-    let found = table.error(row, column, message, findings);
-    let expected = format!("evenly sampled rows: {} apart, as most are", display(usual, &TIME, 4));
-    findings.push(
-        found
-            .expected(expected)
-            .help("interpolating would filter the signals: export the record with the clock of its sampling"),
-    );
+    let found = table.error(row, column, SpacingError::After(since).to_string(), findings);
+    let found = found.expected(SpacingHint::Apart(usual).to_string());
+    findings.push(found.help(SpacingHint::ClockOfSampling.to_string()));
     None
 }
 

@@ -5,6 +5,7 @@ use phea_qft::closed_loop::Compensation;
 
 use super::member::power;
 use super::{ReferenceSignal, ReferenceSource, SampledPair};
+use crate::identify_error::RecordFault;
 use crate::project::Project;
 use crate::setup::{ControlError, Setup};
 
@@ -76,16 +77,14 @@ impl TestController {
     /// The reference of a record, y + u/C.
     ///
     /// # Errors
-    /// A sentence where the command reaches its limit, and where the noise of the output is in the
-    /// reference: then this controller was not that of the test.
-    pub(super) fn reference(&self, record: &SampledPair) -> Result<ReferenceSignal, String> {
-        let SampledPair { file, signals: [input, output], .. } = record;
+    /// [`RecordFault`] where the command reaches its limit, and where the noise of the output is in
+    /// the reference: then this controller was not that of the test.
+    pub(super) fn reference(&self, record: &SampledPair) -> Result<ReferenceSignal, RecordFault> {
+        let [input, output] = record.signals;
         let is_limited = |value: &&f64| self.command_limit.is_some_and(|limit| value.abs() >= LIMIT * limit);
         let limited = record.input.iter().filter(is_limited).count();
         if limited > 0 {
-            return Err(format!(
-                "{file}: `{input}` is at the limit of [controller] in {limited} rows, in which it does not follow from `{output}`: record the reference, or move it less"
-            ));
+            return Err(RecordFault::AtLimit { input, output, rows: limited });
         }
         let inverse = |angle: f64| {
             let inverse = 1.0 / self.between_rows(angle, record.time_step);
@@ -94,19 +93,14 @@ impl TestController {
         let errors = Transform::new(record.input.len()).filtered(&record.input, &inverse);
         let values: Vec<f64> = record.output.iter().zip(&errors).map(|(y, error)| y + error).collect();
         if power(&values) <= SILENT * power(&record.output) {
-            return Err(format!(
-                "{file}: `{input}` follows from `{output}` by [controller] within rounding: nothing moved the loop from outside"
-            ));
+            return Err(RecordFault::FollowsFromOutput { input, output });
         }
         let within_row = match self.compensation.sample_time_s() {
             Some(_) => WithinRow::Impossible,
             None => WithinRow::Possible,
         };
         match feedback(&values, &record.output, within_row) {
-            fraction if fraction > 0.0 => Err(format!(
-                "{file}: [controller] was not that of the test: the reference that is calculated with it, y + u/C, follows the noise of `{output}` ({:.0} % of its innovation); declare its gain, `sample_time` and `delay` as they were in the test, or record the reference",
-                100.0 * fraction
-            )),
+            fraction if fraction > 0.0 => Err(RecordFault::OtherController { output, fraction }),
             _ => Ok(ReferenceSignal { source: ReferenceSource::Controller, values }),
         }
     }

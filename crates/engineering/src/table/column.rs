@@ -1,5 +1,6 @@
 //! Which column is what, in which unit.
 
+use super::error::{ColumnError, TableHint};
 use super::heading::{bare, endings, unit_beside, unit_meant};
 use super::{Heading, MeasuredTable};
 use crate::project::{Findings, RawFinding};
@@ -149,8 +150,9 @@ impl MeasuredTable {
         let found: Vec<Option<Column>> = sought.iter().map(|sought| self.column(sought, findings)).collect();
         let taken = |index: usize| found.iter().flatten().filter(|column| column.index == index).count();
         for (index, heading) in self.headings.iter().enumerate().filter(|(index, _)| taken(*index) > 1) {
-            let message = format!("`{}` is taken for {} signals", heading.text, taken(index));
-            findings.push(RawFinding::error(heading.place, message));
+            let message =
+                ColumnError::TakenForSeveral { heading: heading.text.clone(), signals: taken(index) };
+            findings.push(RawFinding::error(heading.place, message.to_string()));
         }
         let has_name =
             |index: &usize| self.headings.get(*index).is_some_and(|heading| !heading.text.is_empty());
@@ -172,10 +174,13 @@ impl MeasuredTable {
         let (index, heading, beside) = matching.next()?;
         if let Some((_, second, _)) = matching.next() {
             let message = match sought.heading {
-                Some(stated) => format!("a second column `{stated}`"),
-                None => format!("`{}` is a second column of `{}`", second.text, sought.measurand.name),
+                Some(stated) => ColumnError::SecondStated(stated.to_string()),
+                None => ColumnError::SecondOfSignal {
+                    heading: second.text.clone(),
+                    signal: sought.measurand.name,
+                },
             };
-            findings.push(RawFinding::error(second.place, message));
+            findings.push(RawFinding::error(second.place, message.to_string()));
             return None;
         }
         let said = if beside.is_empty() { heading.unit.as_deref().map_or("", bare) } else { beside };
@@ -194,8 +199,8 @@ impl MeasuredTable {
             .filter(|(other, _)| sought.unit.is_some() && *other != unit && !other.is_empty())
         {
             let message =
-                format!("`{}` is read in {unit}, as the project says, and not in {other}", heading.text);
-            findings.push(RawFinding::warning(heading.place, message));
+                ColumnError::ReadInStatedUnit { heading: heading.text.clone(), stated: unit.clone(), other };
+            findings.push(RawFinding::warning(heading.place, message.to_string()));
         }
         let is_share = sought.measurand.may_be_share && unit == "%";
         Some(Column { index, unit, is_share, is_reversed: sought.is_reversed, scale, is_time })
@@ -203,8 +208,11 @@ impl MeasuredTable {
 
     fn without_unit(&self, sought: &Sought<'_>, heading: &Heading, written: &str) -> RawFinding {
         let message = match written {
-            "" => format!("`{}` has no unit", heading.text),
-            written => format!("`{written}` is not a unit of {}", sought.measurand.dimension.name),
+            "" => ColumnError::NoUnit(heading.text.clone()),
+            written => ColumnError::NotAUnit {
+                written: written.to_string(),
+                dimension: sought.measurand.dimension.name,
+            },
         };
         let names: Vec<String> = match sought.heading {
             Some(stated) => {
@@ -213,45 +221,42 @@ impl MeasuredTable {
             None => sought.usual_names(),
         };
         let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
-        let found =
-            RawFinding::error(heading.place, message).expected(format!("one of {}", quoted.join(", ")));
+        let found = RawFinding::error(heading.place, message.to_string())
+            .expected(TableHint::OneOf(quoted.join(", ")).to_string());
         let is_absolute = ["bara", "psia"].contains(&written.to_lowercase().as_str());
         let near = nearest(written, endings(sought.measurand.dimension));
         let is_current = sought.measurand.may_be_share && unit_meant(written, &CURRENT).is_some();
-        found.maybe_help(match near {
-            _ if is_current => {
-                let name = sought.measurand.name;
-                Some(format!("divide the current by the nominal one and head the column `{name}_percent`"))
-            }
-            _ if is_absolute => {
-                Some("pressures are gauge here: subtract the atmospheric pressure".to_string())
-            }
+        let hint = match near {
+            _ if is_current => Some(TableHint::CurrentAsPercent(sought.measurand.name)),
+            _ if is_absolute => Some(TableHint::AbsolutePressure),
             near => near.map(|near| match sought.heading {
-                Some(_) => format!("did you mean `{near}`?"),
-                None => format!("did you mean `{}_{near}`?", sought.measurand.name),
+                Some(_) => TableHint::Near(near.to_string()),
+                None => TableHint::Near(format!("{}_{near}", sought.measurand.name)),
             }),
-        })
+        };
+        found.maybe_help(hint.map(|hint| hint.to_string()))
     }
 
-    /// That there is no column of a signal, with the heading that may have been meant.
+    /// Error for a missing signal column, with the closest heading.
     pub fn missing(&self, sought: &Sought<'_>) -> RawFinding {
         let headings = || self.headings.iter().map(|heading| heading.text.as_str());
         let names = sought.usual_names();
         let near = names.iter().find_map(|name| nearest(name, headings()));
         let near = near.or_else(|| nearest(sought.measurand.name, headings()));
+        let message = ColumnError::Missing(sought.heading.unwrap_or(sought.measurand.name).to_string());
+        let found = RawFinding::error(self.header_place(), message.to_string());
         let found = match sought.heading {
-            Some(stated) => RawFinding::error(self.header_place(), format!("there is no column `{stated}`")),
+            Some(_) => found,
             None => {
-                let message = format!("there is no column `{}`", sought.measurand.name);
                 let shown: Vec<String> = names.iter().take(4).map(|name| format!("`{name}`")).collect();
-                RawFinding::error(self.header_place(), message)
-                    .expected(format!("one such as {}", shown.join(", ")))
+                found.expected(TableHint::OneSuchAs(shown.join(", ")).to_string())
             }
         };
-        match near {
-            Some(near) => found.help(format!("did you mean `{near}`?")),
-            None => found.help(format!("there are: {}", headings().collect::<Vec<_>>().join(", "))),
-        }
+        let hint = match near {
+            Some(near) => TableHint::Near(near.to_string()),
+            None => TableHint::Headings(headings().collect::<Vec<_>>().join(", ")),
+        };
+        found.help(hint.to_string())
     }
 
     /// The columns that none of these signals is named in.
@@ -263,15 +268,16 @@ impl MeasuredTable {
         all.filter(move |(_, heading)| is_unnamed(heading)).map(|(index, _)| index)
     }
 
-    /// That a column is none of those that are looked for, with the name that may have been meant.
+    /// Error for a column of no signal, with the closest name.
     pub fn unknown(&self, index: usize, sought: &[Sought<'_>]) -> RawFinding {
         let place = self.headings.get(index).map(|heading| heading.place).unwrap_or_default();
         let text = self.headings.get(index).map_or("", |heading| &heading.text);
         let names: Vec<String> = sought.iter().flat_map(Sought::usual_names).collect();
-        let found = RawFinding::error(place, format!("unknown column `{text}`"));
-        match nearest(text, names.iter().map(String::as_str)) {
-            Some(near) => found.help(format!("did you mean `{near}`?")),
-            None => found.help(format!("known here: {}", names.join(", "))),
-        }
+        let found = RawFinding::error(place, ColumnError::Unknown(text.to_string()).to_string());
+        let hint = match nearest(text, names.iter().map(String::as_str)) {
+            Some(near) => TableHint::Near(near.to_string()),
+            None => TableHint::KnownNames(names.join(", ")),
+        };
+        found.help(hint.to_string())
     }
 }

@@ -1,23 +1,24 @@
 //! From bytes to text.
 
+use super::error::ForeignFile;
 use crate::project::Findings;
 
-/// How files begin that are not tables of text, what they are, and what to do.
-const OTHERS: [(&[u8], &str); 7] = [
-    (b"PK\x03\x04", "a spreadsheet or an archive: save the sheet as CSV"),
-    (b"\xd0\xcf\x11\xe0", "a spreadsheet of an old kind: save the sheet as CSV"),
-    (b"\x1f\x8b", "compressed: unpack it first"),
-    (b"MATLAB 5.0", "a file of MATLAB: save the signals with `writetable` or `parquetwrite`"),
-    (b"\x89HDF", "a file of HDF5, as MATLAB too writes them: save the signals as CSV or Parquet"),
-    (b"TDSm", "a file of LabVIEW: save the signals as CSV or Parquet"),
-    (b"%PDF", "a document: save the table as CSV"),
+/// First bytes of files that are not tables of text.
+const OTHERS: [(&[u8], ForeignFile); 7] = [
+    (b"PK\x03\x04", ForeignFile::Archive),
+    (b"\xd0\xcf\x11\xe0", ForeignFile::OldSpreadsheet),
+    (b"\x1f\x8b", ForeignFile::Compressed),
+    (b"MATLAB 5.0", ForeignFile::Matlab),
+    (b"\x89HDF", ForeignFile::Hdf5),
+    (b"TDSm", ForeignFile::Labview),
+    (b"%PDF", ForeignFile::Document),
 ];
 
 /// The text of a file, and how many bytes of it come before. Other encodings than UTF-8 are those
 /// that spreadsheets write: UTF-16 with its mark, and one byte for each sign (ISO 8859-1).
 pub(super) fn text(file: &str, mut bytes: Vec<u8>, findings: &mut Findings) -> Option<(String, usize)> {
     if let Some((_, what)) = OTHERS.iter().find(|(start, _)| bytes.starts_with(start)) {
-        findings.unreadable(file, &format!("the file is not text with a table but {what}"));
+        findings.unreadable(file, &what.to_string());
         return None;
     }
     let (found, skipped) = if bytes.starts_with(b"\xff\xfe") {
@@ -32,7 +33,7 @@ pub(super) fn text(file: &str, mut bytes: Vec<u8>, findings: &mut Findings) -> O
     };
     let is_text = |content: &String| !content.bytes().take(MOST_LOOKED_AT).any(is_control);
     let Some(content) = found.filter(is_text) else {
-        findings.unreadable(file, "the file is not text");
+        findings.unreadable(file, &ForeignFile::NotText.to_string());
         return None;
     };
     // lines may end as they did on old systems

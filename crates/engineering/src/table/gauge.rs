@@ -1,9 +1,9 @@
 //! Gauge pressures below the atmosphere.
 
+use super::error::{ColumnError, TableHint};
 use super::{Column, MeasuredTable};
 use crate::followed::roughness;
 use crate::project::{Findings, RawFinding};
-use crate::quantity::{PRESSURE, display};
 
 /// Pa, gauge pressure of a vacuum.
 const VACUUM: f64 = -101_325.0;
@@ -26,22 +26,17 @@ impl MeasuredTable {
         row: impl Fn(usize) -> usize,
         findings: &mut Findings,
     ) {
-        let heading = self.heading(column);
-        let shown = |pressure: f64| display(pressure, &PRESSURE, 3);
+        let heading = self.heading(column).to_string();
         let read: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
         let noise = roughness(&read);
         let is_impossible = |value: &f64| *value < VACUUM - OF_A_ROW * noise;
         if let Some(first) = values.iter().position(is_impossible) {
             let least = values.iter().copied().fold(f64::INFINITY, f64::min);
             let count = values.iter().filter(|value| is_impossible(value)).count();
-            let message = format!(
-                "`{heading}` falls to {}, which is below a vacuum, in {count} of {} rows",
-                shown(least),
-                values.len()
-            );
-            let found = self.error(row(first), column, message, findings);
-            let found = found.expected(format!("a gauge pressure above {}", display(VACUUM, &PRESSURE, 4)));
-            findings.push(found.help("is the zero of its transducer off, or the sign or unit wrong?"));
+            let message = ColumnError::BelowVacuum { heading, least, count, rows: values.len() };
+            let found = self.error(row(first), column, message.to_string(), findings);
+            let found = found.expected(TableHint::GaugePressureAbove(VACUUM).to_string());
+            findings.push(found.help(TableHint::ZeroSignOrUnit.to_string()));
             return;
         }
         let mut sorted = read;
@@ -51,14 +46,10 @@ impl MeasuredTable {
         let index = sorted.len() / 20;
         let low = *sorted.select_nth_unstable_by(index, f64::total_cmp).1;
         if low < ZERO_OFF - OF_A_TWENTIETH * noise {
-            let negative = sorted.iter().filter(|value| **value < 0.0).count();
+            let count = sorted.iter().filter(|value| **value < 0.0).count();
             let place = self.headings.get(column.index).map(|heading| heading.place).unwrap_or_default();
-            let message = format!(
-                "`{heading}` is below the atmosphere in {negative} of {} rows, by {}: the zero of its transducer may be off",
-                sorted.len(),
-                shown(-low)
-            );
-            findings.push(RawFinding::warning(place, message));
+            let message = ColumnError::BelowAtmosphere { heading, by: -low, count, rows: sorted.len() };
+            findings.push(RawFinding::warning(place, message.to_string()));
         }
     }
 }

@@ -2,6 +2,7 @@
 //! charts export plots, not records.
 
 use super::cell::{Cells, Separator};
+use super::error::{MeasuredTableError, TableHint};
 use super::layout::{TextLayout, lines};
 use crate::project::{Place, RawFinding};
 
@@ -36,8 +37,9 @@ fn read(text: usize, content: &str) -> Result<LabviewHeader, RawFinding> {
                 return Ok(LabviewHeader { layout: TextLayout { separator, header: start }, units });
             }
             (Some("X_Columns"), Some(kind)) if kind != "One" => {
-                let message = format!("a LabVIEW file with X_Columns {kind} has no time, or several");
-                return Err(RawFinding::error(place, message).help("save it with one time column"));
+                let found =
+                    RawFinding::error(place, MeasuredTableError::LabviewTimes(kind.to_string()).to_string());
+                return Err(found.help(TableHint::OneTimeColumn.to_string()));
             }
             (Some("Y_Unit_Label"), first) => {
                 units.extend(first.into_iter().chain(cells).map(str::to_string));
@@ -47,7 +49,7 @@ fn read(text: usize, content: &str) -> Result<LabviewHeader, RawFinding> {
         }
     }
     let place = Place { text, start: 0, end: MEASUREMENT.len() };
-    Err(RawFinding::error(place, "this LabVIEW file has no row of names that begins with X_Value"))
+    Err(RawFinding::error(place, MeasuredTableError::LabviewNames.to_string()))
 }
 
 /// What LabVIEW writes behind the name of a plot.
@@ -61,7 +63,7 @@ pub(super) fn refuse_chart(text: usize, content: &str) -> Result<(), RawFinding>
     let is_chart = |(line, _): &(&str, usize)| line.matches(PLOT).count() > 1;
     let Some((line, start)) = lines(content, 0).take(MOST_ABOVE).find(is_chart) else { return Ok(()) };
     let place = Place { text, start, end: start + line.trim_end().len() };
-    let message = "this is the export of a LabVIEW chart: plots next to each other, without time, in numbers such as 25.1m";
-    let found = RawFinding::error(place, message).expected("a record: a row for each sample, with its time");
-    Err(found.help("write the recorded signals to a measurement file (`.lvm`) or CSV instead of the chart"))
+    let found = RawFinding::error(place, MeasuredTableError::LabviewChart.to_string());
+    let found = found.expected(TableHint::RecordWithTimes.to_string());
+    Err(found.help(TableHint::MeasurementFile.to_string()))
 }

@@ -11,6 +11,7 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
 use super::column::Column;
+use super::error::{MeasuredTableError, ParquetColumnError, RowError, TableHint};
 use super::faults::Faults;
 use super::{ColumnNumbers, Heading};
 use crate::project::{Findings, Place, RawFinding};
@@ -38,8 +39,9 @@ pub(super) fn open(
     findings: &mut Findings,
 ) -> Option<(Vec<Heading>, ParquetRows)> {
     let opened = SerializedFileReader::new(Bytes::from(bytes));
-    let opened = opened.map_err(|error| findings.unreadable(file, &format!("no table of Parquet: {error}")));
-    let opened = opened.ok()?;
+    let opened = opened
+        .map_err(|error| findings.unreadable(file, &MeasuredTableError::NoParquet(error).to_string()))
+        .ok()?;
     let text = findings.add_text(file, "", 0);
     let metadata = opened.metadata().file_metadata();
     let count = usize::try_from(metadata.num_rows()).unwrap_or(0);
@@ -54,15 +56,21 @@ pub(super) fn open(
     if let Some(codec) = packed.into_iter().find(|codec| !is_readable(*codec)) {
         let (codec, place) = (codec.to_string(), Place { text, start: 0, end: 0 });
         let name = codec.split('(').next().unwrap_or_default();
-        let found = RawFinding::error(place, format!("the file is compressed by {name}"));
-        findings.push(found.help("write it with Snappy (`compression=\"snappy\"`) or without a compression"));
+        let found = RawFinding::error(place, MeasuredTableError::Codec(name.to_string()).to_string());
+        findings.push(found.help(TableHint::SnappyOrNone.to_string()));
         return None;
     }
     if count == 0 {
-        findings.push(RawFinding::error(Place { text, start: 0, end: 0 }, "the file has no rows"));
+        let place = Place { text, start: 0, end: 0 };
+        findings.push(RawFinding::error(place, MeasuredTableError::NoRows.to_string()));
         return None;
     }
     Some((headings, ParquetRows { text, file: opened, count }))
+}
+
+/// Number of a row, from 1, and the column, where rows have no lines.
+pub(super) fn number_of(row: usize, heading: &str) -> String {
+    format!("row {}, column `{heading}`", row + 1)
 }
 
 fn is_readable(codec: Compression) -> bool {
@@ -158,7 +166,8 @@ impl ParquetReading<'_> {
         if value.is_none() {
             let row = self.values.len();
             self.wrong.add(|| {
-                let message = format!("row {}, column `{}`: `{text}` is not a number", row + 1, self.name);
+                let message = RowError::NotANumber(text.to_string());
+                let message = format!("{}: {message}", number_of(row, self.name));
                 RawFinding::error(self.rows.place(row), message).expected(self.column.expected())
             });
         }
@@ -226,18 +235,17 @@ impl ParquetRows {
         numbers
     }
 
-    /// Reads a column; or why it cannot be read.
-    fn column(&self, index: usize, reading: &mut ParquetReading<'_>) -> Result<(), String> {
-        const NO_NUMBERS: &str = "its values are not numbers";
+    /// Reads a column.
+    fn column(&self, index: usize, reading: &mut ParquetReading<'_>) -> Result<(), ParquetColumnError> {
         let description = self.file.metadata().file_metadata().schema_descr().column(index);
         if description.max_rep_level() > 0 {
-            return Err("its values are lists".to_string());
+            return Err(ParquetColumnError::Lists);
         }
         let level = description.max_def_level();
-        let whole = ParquetInteger::of(&description).ok_or(NO_NUMBERS)?;
+        let whole = ParquetInteger::of(&description).ok_or(ParquetColumnError::NotNumbers)?;
         for group in 0..self.file.num_row_groups() {
-            let group = self.file.get_row_group(group).map_err(|error| readable(&error))?;
-            match group.get_column_reader(index).map_err(|error| readable(&error))? {
+            let group = self.file.get_row_group(group)?;
+            match group.get_column_reader(index)? {
                 ColumnReader::DoubleColumnReader(reader) => {
                     each(reader, level, |value| reading.double(value))?;
                 }
@@ -248,12 +256,12 @@ impl ParquetRows {
                 ColumnReader::Int32ColumnReader(reader) => each(reader, level, |value| {
                     reading.whole(value.map(i64::from), whole, u64::from(u32::MAX));
                 })?,
-                _ => return Err(NO_NUMBERS.to_string()),
+                _ => return Err(ParquetColumnError::NotNumbers),
             }
         }
         match reading.values.len() == self.count {
             true => Ok(()),
-            false => Err(format!("{} values for {} rows", reading.values.len(), self.count)),
+            false => Err(ParquetColumnError::OtherCount { values: reading.values.len(), rows: self.count }),
         }
     }
 }
@@ -263,14 +271,13 @@ fn each<T: DataType>(
     mut reader: ColumnReaderImpl<T>,
     level: i16,
     mut take: impl FnMut(Option<T::T>),
-) -> Result<(), String> {
+) -> Result<(), ParquetError> {
     let (mut found, mut levels) = (Vec::new(), Vec::new());
     loop {
         found.clear();
         levels.clear();
         let of_levels = (level > 0).then_some(&mut levels);
-        let read = reader.read_records(BATCH, of_levels, None, &mut found);
-        let (records, _, _) = read.map_err(|error| readable(&error))?;
+        let (records, _, _) = reader.read_records(BATCH, of_levels, None, &mut found)?;
         if records == 0 {
             return Ok(());
         }
@@ -281,9 +288,4 @@ fn each<T: DataType>(
             levels.iter().for_each(|one| take(if *one == level { found.next() } else { None }));
         }
     }
-}
-
-/// What the library says.
-fn readable(error: &ParquetError) -> String {
-    error.to_string()
 }

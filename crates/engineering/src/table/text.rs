@@ -3,6 +3,7 @@
 use super::cell::{Cells, Separator};
 use super::clock::ClockReading;
 use super::column::{Column, Sought};
+use super::error::{MeasuredTableError, RowError, TableHint};
 use super::faults::Faults;
 use super::heading::{bare, unit_meant};
 use super::labview;
@@ -73,21 +74,19 @@ pub(super) fn open(
     }
     if starts.is_empty() {
         let place = Place { text, start: 0, end: 0 };
-        return Err(RawFinding::error(place, "the file has no rows below the names of its columns"));
+        return Err(RawFinding::error(place, MeasuredTableError::NothingBelowNames.to_string()));
     }
     Ok((headings, TextRows { text, separator, starts }, left_out))
 }
 
-/// Where other headings are named.
-const OTHER_HEADINGS: &str = "a project names other headings: [[identify.recording]] for tests of a valve, [[identify.response]] for frequency responses";
-
-/// That no row names columns, with the spelling that may have been meant.
+/// Error for a text without a row of names, with the spelling that may have been meant.
 fn unnamed(text: usize, content: &str, sought: &[Sought<'_>]) -> RawFinding {
     let names: Vec<String> = sought.iter().flat_map(Sought::usual_names).collect();
     let mut rows = lines(content, 0).filter(|(line, _)| is_row(line, Separator::Spaces));
     let Some((first, start)) = rows.next() else {
-        let found = RawFinding::error(Place { text, start: 0, end: 0 }, "the file is empty");
-        return found.expected("a row with the names of the columns");
+        let found =
+            RawFinding::error(Place { text, start: 0, end: 0 }, MeasuredTableError::Empty.to_string());
+        return found.expected(TableHint::RowOfNames.to_string());
     };
     let words = first.split([',', ';', '\t', '|']).map(|word| word.trim().trim_matches('"'));
     let near = words
@@ -95,11 +94,11 @@ fn unnamed(text: usize, content: &str, sought: &[Sought<'_>]) -> RawFinding {
         .find_map(|word| Some((word, nearest(word, names.iter().map(String::as_str))?)));
     let place = Place { text, start, end: start + first.trim_end().len() };
     let example: Vec<&str> = sought.iter().filter_map(|one| names_first(one, &names)).take(3).collect();
-    let found = RawFinding::error(place, "no row has the names of columns")
-        .expected(format!("a row with names such as {}", example.join(", ")));
-    found.help(
-        near.map_or(OTHER_HEADINGS.to_string(), |(word, name)| format!("`{word}`: did you mean `{name}`?")),
-    )
+    let found = RawFinding::error(place, MeasuredTableError::NoNames.to_string())
+        .expected(TableHint::NamesSuchAs(example.join(", ")).to_string());
+    let near =
+        near.map(|(word, near)| TableHint::NearWord { word: word.to_string(), near: near.to_string() });
+    found.help(near.unwrap_or(TableHint::HeadingsInProject).to_string())
 }
 
 /// One of the names of what is looked for.
@@ -167,12 +166,14 @@ impl TextRows {
             start: first.start,
             end: last.start + last.text.len(),
         });
-        let count =
-            if cells.len() == 1 { "one value".to_string() } else { format!("{} values", cells.len()) };
-        let found = RawFinding::error(place, format!("{count} for {columns} columns"));
+        let message = match cells.len() {
+            1 => RowError::OneValue { columns },
+            values => RowError::OtherCount { values, columns },
+        };
+        let found = RawFinding::error(place, message.to_string());
         match self.separator {
             Separator::Sign(b',') if cells.len() > columns => {
-                found.help("where the decimal sign is a comma, separate values with semicolons or tabs")
+                found.help(TableHint::SemicolonsOrTabs.to_string())
             }
             _ => found,
         }
@@ -237,22 +238,20 @@ impl TextRows {
 /// That some numbers have a decimal point and some a decimal comma.
 fn two_signs(content: &str, point: Option<Place>, comma: Option<Place>) -> Option<RawFinding> {
     let (point, comma) = (point?, comma?);
-    let text = |place: Place| content.get(place.start..place.end).unwrap_or_default();
-    let message = format!("`{}` has a comma where `{}` has a point", text(comma), text(point));
-    let found = RawFinding::error(comma, message).expected("one decimal sign in the whole file");
-    Some(found.help("write numbers without signs between thousands"))
+    let text = |place: Place| content.get(place.start..place.end).unwrap_or_default().to_string();
+    let message = RowError::TwoDecimalSigns { comma: text(comma), point: text(point) };
+    let found = RawFinding::error(comma, message.to_string());
+    let found = found.expected(TableHint::OneDecimalSign.to_string());
+    Some(found.help(TableHint::NoThousandsSigns.to_string()))
 }
 
 /// That a text is not a number.
 fn no_number(place: Place, text: &str) -> RawFinding {
-    let found = RawFinding::error(place, format!("`{text}` is not a number"));
+    let found = RawFinding::error(place, RowError::NotANumber(text.to_string()).to_string());
     if text.contains('.') && text.contains(',') {
-        return found.help("write numbers without signs between thousands");
+        return found.help(TableHint::NoThousandsSigns.to_string());
     }
-    found.maybe_help(
-        text.contains(':')
-            .then(|| "write times as seconds from the start, 10:00:00.001 or 2026-11-27T10:00:00.001".into()),
-    )
+    found.maybe_help(text.contains(':').then(|| TableHint::TimesAsSeconds.to_string()))
 }
 
 /// Numbers while they are read.

@@ -2,6 +2,7 @@
 
 use super::cell::TextCell;
 use super::column::Column;
+use super::error::{ColumnError, TableHint};
 use crate::project::{Place, RawFinding};
 
 /// How the numbers of a column are written, as long as `1.004` may be a thousand and four.
@@ -60,12 +61,9 @@ impl ThousandsSigns {
         }
         let (number, start) = self.first?;
         let place = Place { text, start, end: start + number.len() };
-        let message = format!(
-            "`{number}` continues the whole numbers next to it as {}: a sign stands between thousands in {} rows",
-            number.replace(['.', ','], ""),
-            self.count
-        );
-        let found = RawFinding::error(place, message).expected(column.expected());
-        Some(found.help("write numbers without signs between thousands"))
+        let without_sign = number.replace(['.', ','], "");
+        let message = ColumnError::SignBetweenThousands { number, without_sign, rows: self.count };
+        let found = RawFinding::error(place, message.to_string()).expected(column.expected());
+        Some(found.help(TableHint::NoThousandsSigns.to_string()))
     }
 }

@@ -1,5 +1,6 @@
 //! Rows whose times do not increase.
 
+use super::error::{RowError, TableHint};
 use super::{Column, MeasuredTable};
 use crate::project::{Findings, RawFinding};
 
@@ -24,16 +25,16 @@ pub(crate) fn not_increasing(
     let wrong = misplaced(times, row);
     let is_equal = row.checked_sub(1).and_then(|before| times.get(before)) == times.get(row);
     let message = match (is_equal, wrong < row) {
-        (true, _) => "the time of the row before, with other values",
-        (false, true) => "a time that is not before that of the next row",
-        (false, false) => "a time before that of the row before",
+        (true, _) => RowError::SameTime,
+        (false, true) => RowError::NotBeforeNext,
+        (false, false) => RowError::BeforePrevious,
     };
     let cure = match is_equal {
-        true => "write times with all their digits",
-        false => "sort the rows by time; where the clock started anew, write two files",
+        true => TableHint::AllDigitsOfTimes,
+        false => TableHint::SortByTime,
     };
-    let found = table.error(if is_equal { row } else { wrong }, column, message, findings);
-    found.expected("times that increase from row to row").help(cure)
+    let found = table.error(if is_equal { row } else { wrong }, column, message.to_string(), findings);
+    found.expected(TableHint::IncreasingTimes.to_string()).help(cure.to_string())
 }
 
 /// Rows to either side whose usual step counts.

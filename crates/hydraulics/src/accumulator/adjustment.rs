@@ -12,7 +12,7 @@ use phea_dynamics::scalar::Scalar;
 use super::Accumulator;
 use crate::fluid::ATMOSPHERIC_PRESSURE_ABSOLUTE;
 use crate::orifice::{flow, regular_root_slope};
-use crate::parameter::{ParameterError, Problems};
+use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
 /// What of an accumulator its setting moves, and where the setting is at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +67,12 @@ impl Adjustment {
     pub fn problems(&self, at_rest: &Accumulator) -> Vec<ParameterError> {
         let mut problems = Problems::default();
         let is_share = (0.0..=1.0).contains(&self.setting);
-        problems.require("adjustment.setting", self.setting, is_share, "from 0 to 1");
+        problems.require(
+            "adjustment.setting",
+            self.setting,
+            is_share,
+            ParameterRequirement::FractionWithEnds,
+        );
         match self.part {
             AdjustedPart::Gas { .. } => {
                 let ends = [-self.setting, 1.0 - self.setting];

@@ -1,6 +1,6 @@
 use phea_dynamics::scalar::Scalar;
 
-use crate::parameter::{ParameterError, Problems};
+use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
 /// The steady friction curve. Units: N, m/s, N s/m.
 ///
@@ -185,7 +185,7 @@ impl FrictionLevels {
         let mut problems = Problems::default();
         problems.positive("coulomb", self.coulomb);
         let not_below = self.static_friction >= self.coulomb;
-        problems.require("static", self.static_friction, not_below, "at least the Coulomb friction");
+        problems.require("static", self.static_friction, not_below, ParameterRequirement::AtLeastCoulomb);
         problems.not_negative("viscous", self.viscous);
         problems.into_vec()
     }

@@ -1,5 +1,5 @@
 use super::{Hose, StiffeningMember};
-use crate::parameter::{ParameterError, Problems};
+use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
 /// The wall of a hose that moves along its axis: its mass and its compliances.
 ///
@@ -118,7 +118,12 @@ impl BraidedWall {
         let mut problems = Problems::default();
         problems.positive("mass_per_length", self.mass_per_length);
         problems.not_negative("pressure_compliance", self.pressure_compliance);
-        problems.require("coupling_compliance", self.coupling_compliance, true, "a finite number");
+        problems.require(
+            "coupling_compliance",
+            self.coupling_compliance,
+            true,
+            ParameterRequirement::FiniteNumber,
+        );
         problems.positive("axial_compliance", self.axial_compliance);
         problems.into_vec()
     }

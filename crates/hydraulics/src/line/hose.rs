@@ -3,7 +3,7 @@ use std::f64::consts::FRAC_PI_4;
 use phea_dynamics::scalar::Scalar;
 
 use super::StiffeningMember;
-use crate::parameter::{ParameterError, Problems};
+use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
 /// A hose described by its catalogue's volumetric expansion. Units: m, m3/m, m3/(m Pa).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,14 +65,24 @@ impl Hose {
             "operating_expansion",
             self.operating_expansion,
             oil > 0.0,
-            "such that the hose holds oil at the operating pressure",
+            ParameterRequirement::HoseHoldsOil,
         );
         problems.positive("expansion_slope", self.expansion_slope);
         let Stiffening { nominal, minimum, maximum } = self.dynamic_stiffening;
-        let at_least_one = "at least 1: a hose is softest when it is slow";
+        let at_least_one = ParameterRequirement::AtLeastOneOfHose;
         problems.require("dynamic_stiffening.minimum", minimum, minimum >= 1.0, at_least_one);
-        problems.require("dynamic_stiffening.nominal", nominal, nominal >= minimum, "at least the minimum");
-        problems.require("dynamic_stiffening.maximum", maximum, maximum >= nominal, "at least the nominal");
+        problems.require(
+            "dynamic_stiffening.nominal",
+            nominal,
+            nominal >= minimum,
+            ParameterRequirement::AtLeastMinimum,
+        );
+        problems.require(
+            "dynamic_stiffening.maximum",
+            maximum,
+            maximum >= nominal,
+            ParameterRequirement::AtLeastNominal,
+        );
         problems.into_vec()
     }
 }

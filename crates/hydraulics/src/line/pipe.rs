@@ -1,6 +1,6 @@
 use phea_dynamics::scalar::Scalar;
 
-use crate::parameter::{ParameterError, Problems};
+use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
 /// A round pipe. Units: m, Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +52,7 @@ impl Pipe {
             problems.positive("wall_thickness", thickness);
             problems.positive("youngs_modulus", youngs_modulus);
             let possible = (0.0..=0.5).contains(&poisson_ratio);
-            problems.require("poisson_ratio", poisson_ratio, possible, "from 0 to 0.5");
+            problems.require("poisson_ratio", poisson_ratio, possible, ParameterRequirement::PoissonRatio);
         }
         problems.into_vec()
     }

@@ -2,7 +2,7 @@ use num_complex::Complex64;
 use phea_dynamics::scalar::Scalar;
 
 use super::{Hose, StiffeningMember};
-use crate::parameter::{ParameterError, Problems};
+use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
 /// A wall that creeps: a spring in parallel with a spring and damper in series (Zener). Units: Pa,
 /// s.
@@ -56,7 +56,7 @@ impl StandardLinearSolid {
             "dynamic_modulus",
             self.dynamic_modulus,
             stiffens,
-            "at least the static modulus: a wall is softest when it is slow",
+            ParameterRequirement::AtLeastStaticModulus,
         );
         problems.positive("relaxation_time", self.relaxation_time);
         problems.into_vec()

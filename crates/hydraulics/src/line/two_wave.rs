@@ -7,7 +7,7 @@ use super::transmission_line::check_end_share;
 use super::travelling_waves::WaveData;
 use super::{BraidedWall, Conduit, Hose, LineError, LineResponse, StiffeningMember, TravellingWaves};
 use crate::fluid::Fluid;
-use crate::parameter::{ParameterError, Problems};
+use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
 /// A hose along which two waves travel each way, shared by fluid and wall, held at both ends.
 pub type TwoWaveLine<S = f64> = TravellingWaves<2, S>;
@@ -89,12 +89,7 @@ impl TwoWaveHose {
         problems.component("wall", self.wall.problems());
         // Energy is positive only if pressure without motion of the ends widens the hose.
         let modulus = self.fixed_end_conduit().effective_bulk_modulus;
-        problems.require(
-            "fixed_end_modulus",
-            modulus,
-            modulus > 0.0,
-            "positive, or the wall would give energy",
-        );
+        problems.require("fixed_end_modulus", modulus, modulus > 0.0, ParameterRequirement::PassiveWall);
         let mut all = problems.into_vec();
         let geometry = Conduit { effective_bulk_modulus: 1.0, ..self.fixed_end_conduit() };
         all.extend(geometry.problems());

@@ -1,7 +1,7 @@
 use phea_dynamics::scalar::Scalar;
 
 use crate::contact::Contact;
-use crate::parameter::{ParameterError, Problems};
+use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
 /// The load on the force sensor. Units: kg, N/m, N s/m, m.
 ///
@@ -67,7 +67,7 @@ impl LoadModel {
             LoadModel::Wall { mass, damping, gap, contact } => {
                 problems.positive("mass", mass);
                 problems.not_negative("damping", damping);
-                problems.require("gap", gap, true, "a finite number");
+                problems.require("gap", gap, true, ParameterRequirement::FiniteNumber);
                 problems.component("contact", contact.problems());
             }
         }

@@ -2,7 +2,7 @@ use phea_dynamics::scalar::Scalar;
 
 use super::ForceFrom;
 use crate::contact::Contact;
-use crate::parameter::{ParameterError, Problems};
+use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
 /// A spring with damper and mass between force sensor and load. Units: N/m, N s/m, kg.
 ///
@@ -70,10 +70,8 @@ impl SeriesSpring {
                 let damped = ends.relative_damping;
                 let free = self.damping.is_none() && self.mass.is_none();
                 let requirement = match free {
-                    true => {
-                        "zero where the element has neither `damping` nor `mass`: nothing moves against it"
-                    }
-                    false => "zero or positive",
+                    true => ParameterRequirement::NothingMovesAgainstStop,
+                    false => ParameterRequirement::ZeroOrPositive,
                 };
                 problems.require(
                     "stop_damping",

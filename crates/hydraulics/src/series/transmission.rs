@@ -3,7 +3,7 @@ use phea_dynamics::scalar::Scalar;
 use super::OilColumn;
 use crate::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, Fluid};
 use crate::line::{Conduit, Line, StiffeningMember};
-use crate::parameter::{ParameterError, Problems};
+use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
 /// Most segments into which the line of a transmission is cut: each adds two states.
 pub const MOST_SEGMENTS: usize = 8;
@@ -67,14 +67,19 @@ impl Transmission {
             Line::Hose { length, .. } | Line::Pipe { length, .. } => (true, length),
             Line::Volume { volume, .. } => (false, volume),
         };
-        let conduit = "that of a hose or pipe: a plain volume has neither length nor bore";
+        let conduit = ParameterRequirement::HoseOrPipe;
         problems.require("line.volume", length, is_conduit, conduit);
-        problems.require("line.length", length, length > 0.0, "positive");
+        problems.require("line.length", length, length > 0.0, ParameterRequirement::Positive);
         problems.not_negative("end_volume", self.end_volume);
         let absolute = self.filling_pressure + ATMOSPHERIC_PRESSURE_ABSOLUTE;
-        problems.require("filling_pressure", self.filling_pressure, absolute > 0.0, "above vacuum");
+        problems.require(
+            "filling_pressure",
+            self.filling_pressure,
+            absolute > 0.0,
+            ParameterRequirement::AboveVacuum,
+        );
         let count = (1..=MOST_SEGMENTS).contains(&self.segments);
-        problems.require("segments", self.segments as f64, count, "from 1 to 8");
+        problems.require("segments", self.segments as f64, count, ParameterRequirement::SegmentCount);
         problems.into_vec()
     }
 }

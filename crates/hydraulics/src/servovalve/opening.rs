@@ -3,7 +3,7 @@
 use phea_dynamics::scalar::Scalar;
 
 use super::{Edges, Servovalve, SpoolDirection, hyperbolic_secant};
-use crate::parameter::Problems;
+use crate::parameter::{ParameterRequirement, Problems};
 
 /// How the area of an edge follows the spool.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -213,7 +213,7 @@ impl OpeningShape {
     pub(super) fn check(&self, problems: &mut Problems) {
         let OpeningShape { lap_positive, lap_negative, saturation } = *self;
         for (name, lap) in [("lap.positive", lap_positive), ("lap.negative", lap_negative)] {
-            problems.require(name, lap, lap.abs() < 1.0, "less than the full travel of the spool");
+            problems.require(name, lap, lap.abs() < 1.0, ParameterRequirement::WithinTravel);
         }
         problems.not_negative("saturation", saturation);
     }

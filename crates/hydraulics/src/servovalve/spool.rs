@@ -1,7 +1,7 @@
 use phea_dynamics::scalar::Scalar;
 
 use super::Servovalve;
-use crate::parameter::{ParameterError, Problems};
+use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
 /// How much stiffer than its own spring a sticking spool is: of a command within the threshold it
 /// follows 1/(1 + this).
@@ -57,13 +57,18 @@ impl SpoolImperfection {
     /// Impossible parameters of this spool; empty if there are none.
     pub fn problems(&self) -> Vec<ParameterError> {
         let mut problems = Problems::default();
-        problems.require("null_bias", self.null_bias, true, "a finite number");
+        problems.require("null_bias", self.null_bias, true, ParameterRequirement::FiniteNumber);
         let threshold = self.threshold.unwrap_or(0.0);
         if let Some(threshold) = self.threshold {
             problems.positive("threshold", threshold);
         }
         if let Some(width) = self.hysteresis_width {
-            problems.require("hysteresis_width", width, width > threshold, "above the threshold it includes");
+            problems.require(
+                "hysteresis_width",
+                width,
+                width > threshold,
+                ParameterRequirement::AboveThreshold,
+            );
         }
         if let Some(limit) = self.rate_limit {
             problems.positive("rate_limit", limit);

@@ -1,6 +1,6 @@
 use phea_dynamics::scalar::Scalar;
 
-use crate::parameter::{ParameterError, Problems};
+use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 
 /// The most stages that follow the first.
 pub const FURTHER_STAGES: usize = 3;
@@ -117,7 +117,7 @@ impl Telescope {
         let mut before = 0.0;
         for stage in self.stages.iter().flatten() {
             let (from, to) = (stage.from - half, stage.from + half);
-            let requirement = "after the transition before it, with its own within the stroke";
+            let requirement = ParameterRequirement::AfterTransition;
             problems.require("stage.from", stage.from, from >= before && to <= self.stroke, requirement);
             for ratio in stage.ratios {
                 problems.positive("stage.piston_areas", ratio);

@@ -7,7 +7,7 @@ use crate::text::{Place, RawFinding};
 use crate::tree::{TreeNode, Value};
 use crate::visitor::FormulaShape;
 use phea_quantity::spelling::nearest;
-use phea_quantity::{self as quantity, Price, PricedBy};
+use phea_quantity::{self as quantity, Price, PricedBy, QuantityError};
 
 impl Reader<'_> {
     /// The SI value of a number or a quantity in text, within the key's range.
@@ -18,9 +18,8 @@ impl Reader<'_> {
             Value::Text(text) => match quantity::parse(text, key.dimension) {
                 Ok(value) => value,
                 Err(error) => {
-                    let place = self.inside(node, text, error.range);
-                    let found = RawFinding::error(place, error.message).maybe_help(error.help);
-                    self.findings.push(found.maybe_expected(error.expected));
+                    let place = self.inside(node, text, error.range.clone());
+                    self.findings.push(refused_quantity(place, &error));
                     return None;
                 }
             },
@@ -62,9 +61,8 @@ impl Reader<'_> {
         match quantity::parse_price(text, by) {
             Ok(price) => Some(price),
             Err(error) => {
-                let place = self.inside(node, text, error.range);
-                let found = RawFinding::error(place, error.message).maybe_help(error.help);
-                self.findings.push(found.maybe_expected(error.expected));
+                let place = self.inside(node, text, error.range.clone());
+                self.findings.push(refused_quantity(place, &error));
                 None
             }
         }
@@ -238,6 +236,13 @@ fn objection(key: Key, value: f64) -> String {
         (false, _, false) => format!("at most {}", show(range.maximum)),
     };
     format!("`{name}` must be {side}; it is {}", show(value))
+}
+
+/// Finding for a text that is not a quantity.
+fn refused_quantity(place: Place, error: &QuantityError) -> RawFinding {
+    RawFinding::error(place, error.fault.to_string())
+        .maybe_help(error.help.as_ref().map(ToString::to_string))
+        .maybe_expected(error.expected.as_ref().map(ToString::to_string))
 }
 
 impl<'a> Reader<'a> {

@@ -11,6 +11,7 @@ use crate::key::Key;
 /// Of a number whose dimension depends on what the user names.
 pub(super) static ANY: Dimension = Dimension {
     name: "a quantity",
+    noun: "quantity",
     exponents: Exponents::NONE,
     units: &[],
     examples: "0.9, \"70 bar\"",
@@ -36,10 +37,9 @@ pub(super) fn definitions() -> Value {
     Value::Object(all)
 }
 
-/// The name of a dimension, without its article and characters that a pointer cannot contain.
+/// The noun of a dimension, without characters that a pointer cannot contain.
 fn identifier(dimension: &Dimension) -> String {
-    let name = dimension.name.trim_start_matches("an ").trim_start_matches("a ");
-    name.replace(|c: char| !c.is_ascii_alphanumeric(), "_")
+    dimension.noun.replace(|c: char| !c.is_ascii_alphanumeric(), "_")
 }
 
 fn reference(name: &str) -> Value {

@@ -17,7 +17,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::controller::RateSensor;
-use phea_dynamics::linear::{LinearError, Polynomial, TimeDomain, TransferFunction};
+use phea_dynamics::linear::{LinearError, LinearOperation, Polynomial, TimeDomain, TransferFunction};
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RateNumerators, RationalCoefficients};
 
 /// K H_v V_d of one plant.
@@ -142,7 +142,7 @@ pub(crate) fn closed(
 ) -> Result<PlantCoefficients<f64>, LinearError> {
     let Some(rate) = moved_rate(&plant).filter(|_| gain != 0.0) else { return Ok(plant) };
     if plant.dead_time_s > 0.0 || sensor.delay_s > 0.0 {
-        return Err(LinearError::NotRational { operation: "a rate that is fed back" });
+        return Err(LinearError::NotRational { operation: LinearOperation::RateFeedback });
     }
     let back = Polynomial::new(rate.command.clone()).scaled(-gain);
     let filter = Polynomial::new(sensor.filter.denominator());
@@ -166,9 +166,9 @@ impl FedBack {
             (None, None) => Ok(None),
             (Some((gain, rate)), None) => FedBack::new(gain, rate).map(Some),
             (None, Some((feedback, path))) => FedBack::new(-1.0, &path.series(feedback)?).map(Some),
-            (Some(_), Some(_)) => Err(LinearError::NotRational {
-                operation: "a rate and an inner signal that are both fed back",
-            }),
+            (Some(_), Some(_)) => {
+                Err(LinearError::NotRational { operation: LinearOperation::RateAndInnerFeedback })
+            }
         }
     }
 

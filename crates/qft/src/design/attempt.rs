@@ -102,7 +102,7 @@ impl<E: Into<LoopDesignError>> From<E> for Leave {
 
 /// Name of the stage in progress reports.
 pub(super) const SHAPING: &str = "shaping the loop";
-const CHECKING: &str = "looking between the samples";
+const CHECKING: &str = "looking between samples";
 const AUDITING: &str = "auditing";
 const WHOLE: [f64; 2] = [0.0, 1.0];
 

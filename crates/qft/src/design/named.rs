@@ -18,12 +18,12 @@ pub(super) fn stage(name: NamedStructure) -> &'static str {
         NamedStructure::Proportional => "trying P",
         NamedStructure::Integral => "trying I",
         NamedStructure::ProportionalIntegral => "trying PI",
-        NamedStructure::PiLowPass => "trying PI with low pass",
-        NamedStructure::Pid => "trying PID with filter",
-        NamedStructure::PiNotch => "trying PI with notch",
-        NamedStructure::PiNotchLowPass => "trying PI with notch and low pass",
-        NamedStructure::PiNotchLead => "trying PI with notch and lead",
-        NamedStructure::PiTwoNotches => "trying PI with two notches",
+        NamedStructure::PiLowPass => "trying PI+low-pass",
+        NamedStructure::Pid => "trying PID",
+        NamedStructure::PiNotch => "trying PI+notch",
+        NamedStructure::PiNotchLowPass => "trying PI+notch+low-pass",
+        NamedStructure::PiNotchLead => "trying PI+notch+lead",
+        NamedStructure::PiTwoNotches => "trying PI+notch+notch",
     }
 }
 

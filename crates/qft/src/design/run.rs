@@ -285,7 +285,7 @@ impl<'a> DesignProgress<'a> {
         let named = self.now.name().map(named_stage);
         move |Progress { stage, .. }| {
             let stage = match named {
-                _ if relaxing => "looking for the smallest relaxation",
+                _ if relaxing => "smallest relaxation",
                 Some(named) if stage == SHAPING => named,
                 _ => stage,
             };

@@ -33,6 +33,32 @@ const MODEL_DEGREE_MAXIMUM: usize = 8;
 /// Largest number of terms of the series of dead time.
 const DEAD_TIME_TERMS_MAXIMUM: usize = 24;
 
+/// Number of a certificate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CertificateNumber {
+    /// Frequency of a panel, rad/s.
+    #[error("a frequency")]
+    Frequency,
+    /// Variable of a plant of the family.
+    #[error("a variable of a plant")]
+    PlantVariable,
+    /// End of the interval of a parameter.
+    #[error("an end of a parameter")]
+    ParameterEnd,
+    /// Ratio to a limit, or end of a band.
+    #[error("a ratio or the end of a band")]
+    RatioOrBandEnd,
+    /// Band without a claim.
+    #[error("a band without a limit")]
+    BandWithoutLimit,
+    /// Dead time, s.
+    #[error("a dead time")]
+    DeadTime,
+    /// Number of the sampling.
+    #[error("of the sampling")]
+    Sampling,
+}
+
 /// Why a certificate is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Rejection {
@@ -41,7 +67,7 @@ pub enum Rejection {
     NoSuchLoop,
     /// A number that is not finite, a band without width, a ratio or frequency that is negative.
     #[error("{0} is not a number that it can be")]
-    Number(&'static str),
+    Number(CertificateNumber),
     /// A certificate of nothing.
     #[error("the certificate makes no claim")]
     NoClaim,
@@ -182,7 +208,7 @@ pub(crate) fn check_claim(certificate: &Certificate, claim: &Claim) -> Result<()
             check_ratio(certificate, limited, *ratio)?;
             let [from, to] = limited.band_rad_per_s;
             if !(from <= *frequency_rad_per_s && *frequency_rad_per_s <= to) {
-                return Err(Rejection::Number("a frequency"));
+                return Err(Rejection::Number(CertificateNumber::Frequency));
             }
             check_bounds_of(certificate, member.of_box)?;
             let pieces = at(certificate, member)?.claimed(limited, *ratio).ok_or(Rejection::NoSuchLoop)?;
@@ -273,7 +299,7 @@ fn check_bounds_of(certificate: &Certificate, of_box: usize) -> Result<(), Rejec
 fn at(certificate: &Certificate, member: &CertificateMember) -> Result<Loop<Interval>, Rejection> {
     let within = member.variables.iter().all(|share| (0.0..=1.0).contains(share));
     if !within || member.variables.len() != certificate.plant.variables {
-        return Err(Rejection::Number("a variable of a plant"));
+        return Err(Rejection::Number(CertificateNumber::PlantVariable));
     }
     sound(Loop::at(certificate, member))
 }
@@ -301,7 +327,7 @@ fn check_numbers(certificate: &Certificate) -> Result<(), Rejection> {
         && !plant.boxes.is_empty();
     match plant.boxes.iter().all(is_box) && in_bounds && in_time {
         true => Ok(()),
-        false => Err(Rejection::Number("an end of a parameter")),
+        false => Err(Rejection::Number(CertificateNumber::ParameterEnd)),
     }
 }
 
@@ -326,7 +352,7 @@ fn check_ratio(certificate: &Certificate, limited: &LimitedLoop, ratio: f64) -> 
     let has_side = limited.side == CertificateSide::Upper || limited.closed_loop == ClosedLoop::Tracking;
     match ratio.is_finite() && ratio > 0.0 && from >= 0.0 && from < to && has_limit && has_side {
         true => Ok(()),
-        false => Err(Rejection::Number("a ratio or the end of a band")),
+        false => Err(Rejection::Number(CertificateNumber::RatioOrBandEnd)),
     }
 }
 
@@ -345,7 +371,7 @@ fn check_pieces(
         check_panels(claimed, variables, *band, own)?;
         left = others;
     }
-    if pieces.is_empty() { Err(Rejection::Number("a band without a limit")) } else { Ok(()) }
+    if pieces.is_empty() { Err(Rejection::Number(CertificateNumber::BandWithoutLimit)) } else { Ok(()) }
 }
 
 pub(super) fn check_panels(
@@ -355,7 +381,7 @@ pub(super) fn check_panels(
     panels: &[FrequencyPanel],
 ) -> Result<(), Rejection> {
     if ends(&claimed.dead_time)[0].low() < 0.0 {
-        return Err(Rejection::Number("a dead time"));
+        return Err(Rejection::Number(CertificateNumber::DeadTime));
     }
     let mut reached = from;
     // the circle ends there, and the images are enclosed only slightly beyond it

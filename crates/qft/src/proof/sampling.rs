@@ -5,7 +5,7 @@
 use phea_dynamics::scalar::{Interval, Scalar};
 
 use super::certificate::{Certificate, ControlLaw, FrequencyPanel, RollOffBound, Sections};
-use super::checker::{Rejection, check_panels};
+use super::checker::{CertificateNumber, Rejection, check_panels};
 use super::claimed::Loop;
 use super::hurwitz::{RootLocation, roots_of};
 use super::polynomial::Decimal;
@@ -34,7 +34,11 @@ pub(super) fn check_sampling(certificate: &Certificate) -> Result<(), Rejection>
     let bounded = sampling.bounds.len() == plant.boxes.len()
         && sampling.bounds.iter().flatten().all(is_bound)
         && (0.0..=plant.delay_s).contains(&sampling.sensor_delay_s);
-    if laws_fit && numbers && images && bounded { Ok(()) } else { Err(Rejection::Number("of the sampling")) }
+    if laws_fit && numbers && images && bounded {
+        Ok(())
+    } else {
+        Err(Rejection::Number(CertificateNumber::Sampling))
+    }
 }
 
 fn is_bound(bound: &RollOffBound) -> bool {

@@ -25,6 +25,7 @@ use std::f64::consts::PI;
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable::{asin, sin};
+use phea_dynamics::range::RequiredRange;
 
 use super::{ClosedLoop, Limit, Requirement};
 
@@ -34,13 +35,36 @@ pub enum MarginError {
     /// A number outside the range in which the formula has a meaning.
     #[error("{what} is {value}; it must be {expected}")]
     OutOfRange {
-        /// What the number is.
-        what: &'static str,
+        /// Name of the number.
+        what: MarginNumber,
         /// The number.
         value: f64,
-        /// The range, in words.
-        expected: &'static str,
+        /// Range of the number.
+        expected: RequiredRange,
     },
+}
+
+/// Number of a margin, or of a limit that guarantees one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MarginNumber {
+    /// Limit on a closed loop.
+    #[error("the limit")]
+    Limit,
+    /// Factor by which the gain may grow.
+    #[error("the increase of gain")]
+    GainIncrease,
+    /// Factor to which the gain may fall.
+    #[error("the reduction of gain")]
+    GainReduction,
+    /// Phase margin, rad.
+    #[error("the phase margin in rad")]
+    PhaseMargin,
+    /// Least distance |1 + L|.
+    #[error("the modulus margin")]
+    ModulusMargin,
+    /// Additional delay, s.
+    #[error("the delay in s")]
+    Delay,
 }
 
 /// The margins that a limit guarantees, for a loop that is stable when closed and satisfies the
@@ -77,7 +101,7 @@ pub struct GuaranteedMargins {
 /// # Ok::<(), phea_qft::specification::MarginError>(())
 /// ```
 pub fn guaranteed_margins_of_robust_stability(limit: f64) -> Result<GuaranteedMargins, MarginError> {
-    let limit = positive("the limit", limit)?;
+    let limit = positive(MarginNumber::Limit, limit)?;
     Ok(GuaranteedMargins {
         gain_increase: 1.0 + 1.0 / limit,
         gain_reduction: if limit > 1.0 { (limit - 1.0) / limit } else { 0.0 },
@@ -106,7 +130,7 @@ pub fn guaranteed_margins_of_robust_stability(limit: f64) -> Result<GuaranteedMa
 /// # Ok::<(), phea_qft::specification::MarginError>(())
 /// ```
 pub fn guaranteed_margins_of_sensitivity(limit: f64) -> Result<GuaranteedMargins, MarginError> {
-    let limit = positive("the limit", limit)?;
+    let limit = positive(MarginNumber::Limit, limit)?;
     Ok(GuaranteedMargins {
         gain_increase: if limit > 1.0 { limit / (limit - 1.0) } else { f64::INFINITY },
         gain_reduction: limit / (limit + 1.0),
@@ -157,7 +181,7 @@ pub fn guaranteed_margins(requirement: &Requirement) -> Result<Option<Guaranteed
 /// assert_eq!(phea_qft::specification::robust_stability_limit_for_gain_increase(3.0), Ok(0.5));
 /// ```
 pub fn robust_stability_limit_for_gain_increase(factor: f64) -> Result<f64, MarginError> {
-    Ok(1.0 / (above_one("the increase of gain", factor)? - 1.0))
+    Ok(1.0 / (above_one(MarginNumber::GainIncrease, factor)? - 1.0))
 }
 
 /// The limit on |L/(1+L)| that lets the gain fall to this factor (above zero, below one).
@@ -174,7 +198,7 @@ pub fn robust_stability_limit_for_gain_increase(factor: f64) -> Result<f64, Marg
 /// assert_eq!(phea_qft::specification::robust_stability_limit_for_gain_reduction(0.5), Ok(2.0));
 /// ```
 pub fn robust_stability_limit_for_gain_reduction(factor: f64) -> Result<f64, MarginError> {
-    Ok(1.0 / (1.0 - between_zero_and_one("the reduction of gain", factor)?))
+    Ok(1.0 / (1.0 - between_zero_and_one(MarginNumber::GainReduction, factor)?))
 }
 
 /// The limit on |L/(1+L)| for this phase margin in rad (above zero, up to pi).
@@ -210,7 +234,7 @@ pub fn robust_stability_limit_for_phase_margin(phase_rad: f64) -> Result<f64, Ma
 /// assert_eq!(phea_qft::specification::robust_stability_limit_for_modulus_margin(0.5), Ok(1.0));
 /// ```
 pub fn robust_stability_limit_for_modulus_margin(distance: f64) -> Result<f64, MarginError> {
-    let distance = between_zero_and_one("the modulus margin", distance)?;
+    let distance = between_zero_and_one(MarginNumber::ModulusMargin, distance)?;
     Ok((1.0 - distance) / distance)
 }
 
@@ -228,7 +252,7 @@ pub fn robust_stability_limit_for_modulus_margin(distance: f64) -> Result<f64, M
 /// assert_eq!(phea_qft::specification::sensitivity_limit_for_gain_increase(2.0), Ok(2.0));
 /// ```
 pub fn sensitivity_limit_for_gain_increase(factor: f64) -> Result<f64, MarginError> {
-    let factor = above_one("the increase of gain", factor)?;
+    let factor = above_one(MarginNumber::GainIncrease, factor)?;
     Ok(factor / (factor - 1.0))
 }
 
@@ -246,7 +270,7 @@ pub fn sensitivity_limit_for_gain_increase(factor: f64) -> Result<f64, MarginErr
 /// assert_eq!(phea_qft::specification::sensitivity_limit_for_gain_reduction(0.5), Ok(1.0));
 /// ```
 pub fn sensitivity_limit_for_gain_reduction(factor: f64) -> Result<f64, MarginError> {
-    let factor = between_zero_and_one("the reduction of gain", factor)?;
+    let factor = between_zero_and_one(MarginNumber::GainReduction, factor)?;
     Ok(factor / (1.0 - factor))
 }
 
@@ -286,7 +310,7 @@ pub fn sensitivity_limit_for_phase_margin(phase_rad: f64) -> Result<f64, MarginE
 /// assert_eq!(phea_qft::specification::sensitivity_limit_for_modulus_margin(0.5), Ok(2.0));
 /// ```
 pub fn sensitivity_limit_for_modulus_margin(distance: f64) -> Result<f64, MarginError> {
-    Ok(1.0 / positive("the modulus margin", distance)?)
+    Ok(1.0 / positive(MarginNumber::ModulusMargin, distance)?)
 }
 
 /// The angle at which |L| = 1 meets |1 + L| = 1/W; infinity where it cannot.
@@ -301,8 +325,8 @@ fn phase_margin(limit: f64) -> f64 {
 
 fn limit_for_phase_margin(phase_rad: f64) -> Result<f64, MarginError> {
     if !(phase_rad > 0.0 && phase_rad <= PI) {
-        let expected = "above 0 and at most pi";
-        return Err(MarginError::OutOfRange { what: "the phase margin in rad", value: phase_rad, expected });
+        let (what, expected) = (MarginNumber::PhaseMargin, RequiredRange::UpToPi);
+        return Err(MarginError::OutOfRange { what, value: phase_rad, expected });
     }
     Ok(0.5 / sin(phase_rad / 2.0))
 }
@@ -326,28 +350,24 @@ fn limit_for_phase_margin(phase_rad: f64) -> Result<f64, MarginError> {
 /// # Ok::<(), phea_qft::specification::MarginError>(())
 /// ```
 pub fn delay_margin_limit(delay_s: f64) -> Result<Limit, MarginError> {
-    let gain = 1.0 / positive("the delay in s", delay_s)?;
+    let gain = 1.0 / positive(MarginNumber::Delay, delay_s)?;
     let limit = TransferFunction::from_factors(gain, Vec::new(), vec![Complex64::new(0.0, 0.0)]);
-    let expected = "large enough that its inverse is finite";
-    limit.map(Limit::Rational).map_err(|_| MarginError::OutOfRange {
-        what: "the delay in s",
-        value: delay_s,
-        expected,
-    })
+    let (what, expected) = (MarginNumber::Delay, RequiredRange::FiniteInverse);
+    limit.map(Limit::Rational).map_err(|_| MarginError::OutOfRange { what, value: delay_s, expected })
 }
 
-fn positive(what: &'static str, value: f64) -> Result<f64, MarginError> {
-    in_range(what, value, value > 0.0 && value.is_finite(), "positive and finite")
+fn positive(what: MarginNumber, value: f64) -> Result<f64, MarginError> {
+    in_range(what, value, value > 0.0 && value.is_finite(), RequiredRange::PositiveAndFinite)
 }
 
-fn above_one(what: &'static str, value: f64) -> Result<f64, MarginError> {
-    in_range(what, value, value > 1.0 && value.is_finite(), "above 1 and finite")
+fn above_one(what: MarginNumber, value: f64) -> Result<f64, MarginError> {
+    in_range(what, value, value > 1.0 && value.is_finite(), RequiredRange::AboveOne)
 }
 
-fn between_zero_and_one(what: &'static str, value: f64) -> Result<f64, MarginError> {
-    in_range(what, value, value > 0.0 && value < 1.0, "above 0 and below 1")
+fn between_zero_and_one(what: MarginNumber, value: f64) -> Result<f64, MarginError> {
+    in_range(what, value, value > 0.0 && value < 1.0, RequiredRange::BetweenZeroAndOne)
 }
 
-fn in_range(what: &'static str, value: f64, fits: bool, expected: &'static str) -> Result<f64, MarginError> {
+fn in_range(what: MarginNumber, value: f64, fits: bool, expected: RequiredRange) -> Result<f64, MarginError> {
     if fits { Ok(value) } else { Err(MarginError::OutOfRange { what, value, expected }) }
 }

@@ -16,6 +16,7 @@ mod step;
 mod translation;
 
 use phea_dynamics::linear::{LinearError, TransferFunction};
+use phea_dynamics::range::RequiredRange;
 use phea_dynamics::time_response::TimeResponseError;
 
 pub use check::{Reached, WishCheck, WishOutcome, Wished, check_lower, check_upper};
@@ -89,12 +90,12 @@ pub enum TimeDomainError {
     /// A number of a wish, or of a choice, outside its range.
     #[error("{what} is {value}; it must be {expected}")]
     OutOfRange {
-        /// What the number is.
-        what: &'static str,
+        /// Name of the number.
+        what: TimeDomainNumber,
         /// The number.
         value: f64,
-        /// The range, in words.
-        expected: &'static str,
+        /// Range of the number.
+        expected: RequiredRange,
     },
     /// The rule of thumb stands for another band than the wish.
     #[error("the rule of thumb is for a band of {rule_percent} %, the wish for {wish_percent} %")]
@@ -138,4 +139,27 @@ pub enum TimeDomainError {
     /// The transfer function cannot be formed.
     #[error(transparent)]
     Linear(#[from] LinearError),
+}
+
+/// Number of a requirement in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TimeDomainNumber {
+    /// Extra zero or pole, rad/s.
+    #[error("the extra root in rad/s")]
+    ExtraRoot,
+    /// Extra zero or pole, over the natural frequency.
+    #[error("the extra root over the natural frequency")]
+    ExtraRootRatio,
+    /// Overshoot, percent.
+    #[error("the overshoot in percent")]
+    Overshoot,
+    /// Settling time, s.
+    #[error("the settling time in s")]
+    SettlingTime,
+    /// Settling band, percent.
+    #[error("the settling band in percent")]
+    SettlingBand,
+    /// Lower end of a band, rad/s.
+    #[error("the band in rad/s")]
+    Band,
 }

@@ -2,7 +2,7 @@
 
 use crate::answer::{Answer, picture_files};
 use crate::friction::{self, KnownCylinder, friction_recordings, identify_friction, recorded_runs};
-use crate::identify::IdentifyError;
+use crate::identify_error::{IdentifyError, NothingToIdentify};
 use crate::project::Loaded;
 use crate::source::Source;
 
@@ -28,16 +28,11 @@ pub fn friction_watched(
     asked: &FrictionRequest,
     watch: Watch<'_>,
 ) -> Result<Answer, IdentifyError> {
-    let refused = |message: &str| IdentifyError::Data(message.to_string());
-    let loaded = loaded.ok_or_else(|| {
-        refused("friction needs the project of the cylinder, for its areas and its moving mass: name it")
-    })?;
+    let loaded = loaded.ok_or(NothingToIdentify::NoProjectOfCylinder)?;
     let project = &loaded.project;
     let files = if asked.files.is_empty() { recorded_runs(project) } else { asked.files.clone() };
     if files.is_empty() {
-        let message =
-            "there is no recorded run: name files, or declare `friction` in `[identify]` of the project";
-        return Err(refused(message));
+        return Err(NothingToIdentify::NoRun.into());
     }
     let known = KnownCylinder::of(project)?;
     let found = identify_friction(friction_recordings(source, &files, &known)?, &known, watch)?;

@@ -2,9 +2,10 @@
 
 use crate::answer::{Answer, picture_files};
 use crate::identify::{
-    self, IdentifyError, Known, Read, RecordedFiles, SMALLEST_EFFECT, Search, ValveFigures, identify,
-    joint_region, recorded_files, recordings,
+    self, Known, Read, RecordedFiles, SMALLEST_EFFECT, Search, ValveFigures, identify, joint_region,
+    recorded_files, recordings,
 };
+use crate::identify_error::{IdentifyError, NothingToIdentify};
 use crate::project::{Loaded, RecordedTest};
 use crate::source::Source;
 use phea_hydraulics::servovalve::LeakageModel;
@@ -77,9 +78,7 @@ fn files(loaded: Option<&Loaded>, asked: &IdentifyRequest) -> Result<Vec<Recorde
     let project = loaded.map(|loaded| &loaded.project);
     let files = project.map(recorded_files).unwrap_or_default();
     if files.is_empty() {
-        let message =
-            "there is no recorded test: name files, or declare `[[identify.recording]]` in the project";
-        return Err(IdentifyError::Data(message.to_string()));
+        return Err(NothingToIdentify::NoTest.into());
     }
     Ok(files)
 }

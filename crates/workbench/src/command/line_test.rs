@@ -1,7 +1,7 @@
 //! `identify --of line`: the effective bulk modulus of a line from recordings.
 
 use crate::answer::{Answer, picture_files};
-use crate::identify::IdentifyError;
+use crate::identify_error::{IdentifyError, LineFitError, NothingToIdentify};
 use crate::line_test::{self, KnownLine, identify_line, line_records};
 use crate::project::{LineSide, Loaded};
 use crate::response::ResponseSettings;
@@ -34,22 +34,18 @@ pub fn line_watched(
     asked: &LineRequest,
     watch: Watch<'_>,
 ) -> Result<Answer, IdentifyError> {
-    let refuse = |message: &str| IdentifyError::Data(message.to_string());
-    let loaded = loaded.ok_or_else(|| {
-        refuse("`--of line` needs the project of the line: its volume, its length and the oil in it")
-    })?;
+    let loaded = loaded.ok_or(NothingToIdentify::NoProjectOfLine)?;
     let project = &loaded.project;
-    let setup = Setup::new(project).map_err(|error| refuse(&error.to_string()))?;
+    let setup = Setup::new(project)?;
     let side = asked.side.or(project.bench.line.map(|bench| bench.side)).unwrap_or_default();
-    let known = KnownLine::of(&setup, side).map_err(IdentifyError::Data)?;
+    let known = KnownLine::of(&setup, side).map_err(LineFitError::from)?;
     let declared = project.identify.iter().flat_map(|identify| &identify.line);
     let files: Vec<String> = match asked.files.is_empty() {
         true => declared.map(|file| project.path_of(file)).collect(),
         false => asked.files.clone(),
     };
     if files.is_empty() {
-        let message = "there is no recording: name files, or declare `line` in `[identify]` of the project";
-        return Err(refuse(message));
+        return Err(NothingToIdentify::NoLineRecording.into());
     }
     let records = line_records(source, &files, known.piston_area)?;
     let found = identify_line(records, known, &asked.settings, watch)?;

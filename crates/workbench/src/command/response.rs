@@ -1,7 +1,7 @@
 //! `identify --of response`: frequency responses from recorded signals.
 
 use crate::answer::{Answer, picture_files};
-use crate::identify::IdentifyError;
+use crate::identify_error::{IdentifyError, NothingToIdentify};
 use crate::project::{Loaded, RecordedController, RecordedResponse};
 use crate::response::{
     self, Compared, ResponseSettings, TestController, compare_levels, members, sampled_pairs,
@@ -53,17 +53,13 @@ pub fn response_watched(
     let files =
         if asked.files.is_empty() { declared.clone() } else { asked.files.iter().map(of_file).collect() };
     if files.is_empty() {
-        let message =
-            "there is no record: name a file for each member, or declare it in [[identify.response]]";
-        return Err(IdentifyError::Data(message.to_string()));
+        return Err(NothingToIdentify::NoRecord.into());
     }
     let mut records = sampled_pairs(source, &files)?;
     let by_controller =
         |one: &RecordedResponse| one.recorded_controller == Some(RecordedController::Declared);
     if let Some(loaded) = loaded.filter(|_| files.iter().any(by_controller)) {
-        let controller = TestController::declared(&loaded.project)
-            .map_err(|error| IdentifyError::Data(error.to_string()))?
-            .map(Box::new);
+        let controller = TestController::declared(&loaded.project)?.map(Box::new);
         for (record, _) in records.iter_mut().zip(&files).filter(|(_, file)| by_controller(file)) {
             record.controller.clone_from(&controller);
         }
@@ -73,8 +69,7 @@ pub fn response_watched(
     let rig = loaded
         .filter(|loaded| loaded.project.actuator.is_some())
         .map(|loaded| Setup::rig_of(&loaded.project))
-        .transpose()
-        .map_err(|error| IdentifyError::Data(error.to_string()))?;
+        .transpose()?;
     let found: Vec<Compared> = found.into_iter().map(|member| Compared::with(member, rig.as_ref())).collect();
     let drawn = if asked.figures { response::pictures(&found) } else { Vec::new() };
     let pictures = picture_files(&drawn);

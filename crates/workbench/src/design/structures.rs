@@ -5,7 +5,7 @@ use phea_qft::design::{ControllerChoice, Objective, StructureEnding};
 
 use super::ProjectDesign;
 use super::comparison::gain_at_high_frequency;
-use super::words::{reached_words, searched_limit_name};
+use super::words::{reached_words, searched_limit_name, structure_name};
 use crate::answer::{Object, significant};
 use crate::audit::{NominalMargins, above_one_again_words, crossover_words};
 use crate::document::{Cell, Document, Table};
@@ -91,7 +91,7 @@ fn way_sentence(view: &ProjectDesign) -> Option<String> {
 /// again beyond the crossover.
 fn laws_that_differ(view: &ProjectDesign) -> Vec<String> {
     let renamed = view.structures.iter().filter_map(|one| {
-        let name = one.name.filter(|_| one.no_pid.is_some())?.words();
+        let name = structure_name(one.name.filter(|_| one.no_pid.is_some())?);
         Some(format!("{}: a {name} whose T_d would not be positive", reached_words(one)))
     });
     let again = |one: &ReachedStructure| {

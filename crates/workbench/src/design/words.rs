@@ -1,6 +1,6 @@
 //! Verdict, objective and structure of a design in words.
 
-use phea_dynamics::controller::Element;
+use phea_dynamics::controller::{Element, NamedStructure};
 use phea_engineering::design::{
     DesignVerdict, ProjectDesign, ReachedStructure, RigMiss, SearchedLimit, TriedControllers,
     UnusableController,
@@ -142,7 +142,7 @@ fn command_sentence(scenario: &str, [largest_v, limit_v]: [f64; 2], held_v: Opti
 fn tried(controllers: TriedControllers) -> String {
     match controllers {
         TriedControllers::GivenStructure => ", all of the given structure,".to_string(),
-        TriedControllers::Named(name) => format!(", all of the structure {},", name.words()),
+        TriedControllers::Named(name) => format!(", all of the structure {},", structure_name(name)),
         TriedControllers::UpToOrder(maximum_order) => format!(", of order {maximum_order} at most,"),
     }
 }
@@ -185,12 +185,27 @@ pub(super) fn structure_words(structure: &Structure) -> String {
     structure_parts(structure).join(", ")
 }
 
+/// Name of a structure, as people write it.
+pub(super) fn structure_name(name: NamedStructure) -> &'static str {
+    match name {
+        NamedStructure::Proportional => "P",
+        NamedStructure::Integral => "I",
+        NamedStructure::ProportionalIntegral => "PI",
+        NamedStructure::PiLowPass => "PI with low pass",
+        NamedStructure::Pid => "PID with filter",
+        NamedStructure::PiNotch => "PI with notch",
+        NamedStructure::PiNotchLowPass => "PI with notch and low pass",
+        NamedStructure::PiNotchLead => "PI with notch and lead",
+        NamedStructure::PiTwoNotches => "PI with two notches",
+    }
+}
+
 /// The name of a structure that was tried, or of the law that was found in its place.
 pub(super) fn reached_words(one: &ReachedStructure) -> String {
     if let Some(law) = &one.no_pid {
         return law.parts.iter().map(part_name).collect::<Vec<_>>().join(" with ");
     }
-    one.name.map_or_else(|| structure_words(&one.structure), |name| name.words().to_string())
+    one.name.map_or_else(|| structure_words(&one.structure), |name| structure_name(name).to_string())
 }
 
 fn part_words(part: &StructureFactor) -> &'static str {

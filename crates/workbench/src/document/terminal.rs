@@ -4,7 +4,7 @@
 use comfy_table::presets;
 
 use super::{Block, Document, Table};
-use crate::quantity::Vocabulary;
+use crate::motion::Vocabulary;
 
 impl Document {
     /// For a terminal.

@@ -5,6 +5,7 @@ use phea_hydraulics::servovalve::{LeakageModel, StaticCoefficients};
 use serde::Serialize;
 
 use super::files::{TestBody, WarningBody};
+use super::misfit::declared_misfit;
 use super::numbers;
 use super::region::{FoundRegion, RegionBody, body};
 use super::{
@@ -357,7 +358,10 @@ pub fn files(found: &Identification) -> Vec<OutputFile> {
     let line = |index: usize| {
         let (name, unit) = COEFFICIENT_NAMES.get(index).copied().unwrap_or_default();
         let value = numbers.get(index).copied().unwrap_or(f64::NAN);
-        let key = name.rsplit('.').next().unwrap_or(name);
+        let key = match name {
+            "leakage_shape" if found.tested.terms.leakage_by_edge => "supply_to_a",
+            name => name.rsplit('.').next().unwrap_or(name),
+        };
         let text = match unit {
             "1" | "m3/(s.Pa^0.5)" => in_toml(value, 5),
             unit => format!("\"{} {unit}\"", in_toml(value, 5)),
@@ -387,11 +391,11 @@ pub fn files(found: &Identification) -> Vec<OutputFile> {
         more.push_str(&format!("\n[valve.lap]    # over full travel\n{}", lines(12..14)));
     }
     if has.leakage_by_edge {
-        let shapes = format!("supply_to_a{}{}", line(8).trim_start_matches("leakage_shape"), lines(15..18));
+        let shapes = line(8) + &lines(15..18);
         more.push_str(&format!("\n[valve.leakage_shapes]\n{shapes}"));
     }
     let files: Vec<&str> = found.recordings.iter().map(|one| one.file.as_str()).collect();
-    let misfit = found.declared_misfit().map(|one| format!("misfit = {}\n", one.in_toml()));
+    let misfit = declared_misfit(found).map(|one| format!("misfit = {}\n", one.in_toml()));
     let misfit = misfit.unwrap_or_default();
     let text = format!(
         "# Identified by phea from {}.\n[valve]\nnominal_voltage = \"{} V\"\ntransition_pressure = \"{} Pa\"\ntare_pressure = \"{} Pa\"\nleakage_model = \"{}\"\n{}{misfit}\n[valve.flow_coefficients]    # m3/(s.Pa^0.5)\n{}\n[valve.leakage_coefficients]\n{}{more}",

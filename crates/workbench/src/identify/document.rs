@@ -3,7 +3,7 @@
 use phea_hydraulics::servovalve::{LeakageModel, STATIC_COEFFICIENTS};
 
 use super::answer::{EITHER_SIGN, correlations, word};
-use super::files::misfit_in_words;
+use super::misfit::misfit_in_words;
 use super::numbers;
 use super::region::{self, FoundRegion};
 use super::{

@@ -5,8 +5,9 @@ use std::borrow::Cow;
 use phea_hydraulics::servovalve::PortCircuit;
 use serde::Serialize;
 
-use super::{ColumnContents, FileContents, Identification, Misfit};
-use crate::answer::{Number, significant};
+use super::misfit::misfit_in_words;
+use super::{ColumnContents, FileContents, Identification};
+use crate::answer::Number;
 use crate::document::{Cell, Document, Table};
 use crate::project::{Diagnostic, TestSignal};
 use crate::quantity::DisplayUnit;
@@ -110,21 +111,6 @@ impl Read {
         });
         out.sentences(unused.chain(warnings));
     }
-}
-
-/// Misfit of a signal, in a sentence.
-pub(super) fn misfit_in_words(found: &Identification, misfit: &Misfit) -> String {
-    let percent = |fraction: f64| format!("{} %", significant(100.0 * fraction, 3));
-    let by = misfit.place.map_or_else(String::new, |place| {
-        let more = if place.fraction > 0.0 { "more" } else { "less" };
-        format!(", where the model shows {} {more} than was recorded", percent(place.fraction.abs()))
-    });
-    format!(
-        "the model leaves {} of the range unexplained of the {}{by}: neighbouring residuals are alike (correlation {})",
-        percent(misfit.fraction),
-        found.misfit_at(misfit),
-        significant(misfit.correlation, 2)
-    )
 }
 
 fn column(column: &ColumnContents) -> ColumnBody<'_> {

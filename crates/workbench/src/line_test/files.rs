@@ -20,7 +20,7 @@ pub fn files(found: &LineIdentification) -> Vec<OutputFile> {
 fn keys(found: &LineIdentification) -> Option<String> {
     let number = |value: f64, unit: &str| format!("\"{} {unit}\"", significant(value, DIGITS));
     let volume = found.known.volume();
-    let table = table(&found.known);
+    let table = format!("[{}]", path(&found.known));
     let rest = found.effective_bulk_modulus.as_ref().ok().map(|number| volume / number.value);
     let fast = found.dynamic_bulk_modulus.as_ref().ok().map(|number| volume / number.value);
     match found.known.line {
@@ -78,8 +78,7 @@ fn misfit(found: &LineIdentification) -> Option<String> {
     let greatest = misfits.iter().max_by(|one, other| one.fraction.total_cmp(&other.fraction))?;
     let at = Some(format!("{} of {}", greatest.signal, greatest.file));
     let entries = DeclaredMisfit { share: greatest.fraction, at }.entries().join("\n");
-    let line = table(&found.known).trim_end_matches(']');
-    Some(format!("\n{line}.misfit]\n{entries}\n"))
+    Some(format!("\n[{}.misfit]\n{entries}\n", path(&found.known)))
 }
 
 /// The free air in the oil, where the pressure rise shows it.
@@ -95,11 +94,11 @@ fn air(found: &LineIdentification) -> String {
     shown.map_or_else(String::new, of)
 }
 
-/// The table of the keys: that of both lines where the project declares them alike.
-fn table(known: &KnownLine) -> &'static str {
+/// Path of the table with the keys: that of both lines where the project declares them alike.
+fn path(known: &KnownLine) -> &'static str {
     match known.side {
-        _ if !known.differs_from_other => "[line]",
-        LineSide::A => "[line.a]",
-        LineSide::B => "[line.b]",
+        _ if !known.differs_from_other => "line",
+        LineSide::A => "line.a",
+        LineSide::B => "line.b",
     }
 }

@@ -1,7 +1,8 @@
 //! JSON: keys get the names of the motion, texts its words.
 
+use super::Vocabulary;
 use crate::answer::{Json, Object};
-use crate::quantity::{MotionKind, Vocabulary};
+use crate::quantity::MotionKind;
 
 /// The same object for a rig that turns. What hashes, versions and settings say stays.
 pub(super) fn said(object: Object, words: &Vocabulary) -> Object {

@@ -1,6 +1,7 @@
 //! Pages and drawings: the text between their tags.
 
-use crate::quantity::{MotionKind, Vocabulary};
+use super::Vocabulary;
+use crate::quantity::MotionKind;
 
 /// Elements whose text is not a sentence.
 const KEPT: [&str; 4] = ["code", "style", "script", "pre"];

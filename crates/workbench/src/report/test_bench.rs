@@ -4,9 +4,10 @@ use super::chapter::Chapter;
 use crate::document::Document;
 use crate::error::CommandError;
 use crate::identify::{
-    Identification, IdentifyError, Known, Read, RecordedFiles, Search, ValveFigures, identify,
-    is_valve_of_thesis, recorded_files, recordings, write_coefficients, write_numbers, write_signals,
+    Identification, Known, Read, RecordedFiles, Search, ValveFigures, identify, is_valve_of_thesis,
+    recorded_files, recordings, write_coefficients, write_numbers, write_signals,
 };
+use crate::identify_error::IdentifyError;
 use crate::project::{Loaded, Project};
 use crate::source::Source;
 use phea_dynamics::watch::Watch;

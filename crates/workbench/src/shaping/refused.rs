@@ -49,7 +49,7 @@ fn message(reason: &ChangeProblem) -> String {
         ChangeProblem::NotACoordinate(text) => format!("`{text}` is not a coordinate of the chart"),
         ChangeProblem::CoordinateGivenTwice => "this coordinate is given twice".to_string(),
         ChangeProblem::NotANumber(text) => format!("`{text}` is not a number"),
-        ChangeProblem::Frequency(error) => error.message.clone(),
+        ChangeProblem::Frequency(error) => error.fault.to_string(),
     }
 }
 
@@ -58,7 +58,7 @@ fn expected(reason: &ChangeProblem) -> Option<String> {
         ChangeProblem::NotSolved(_) | ChangeProblem::WithoutNumber(_) => {
             Some(format!("one of {}", solved_kinds().join(", ")))
         }
-        ChangeProblem::Frequency(error) => error.expected.clone(),
+        ChangeProblem::Frequency(error) => error.expected.as_ref().map(ToString::to_string),
         _ => None,
     }
 }
@@ -94,6 +94,6 @@ fn help(change: Change, reason: &ChangeProblem) -> Option<String> {
         | ChangeProblem::NotUnderstood(_)
         | ChangeProblem::CoordinateGivenTwice
         | ChangeProblem::NotANumber(_) => Some(EXAMPLE.to_string()),
-        ChangeProblem::Frequency(error) => error.help.clone(),
+        ChangeProblem::Frequency(error) => error.help.as_ref().map(ToString::to_string),
     }
 }

@@ -1,13 +1,14 @@
 //! A queue of systems, driven until none is left.
 
 use super::Drive;
+use crate::range::RequiredRange;
 use crate::scalar::{Dependence, Dual};
 use crate::simulation::course::{SimulationError, SimulationSettings, Status};
 use crate::simulation::derivatives::DIRECTIONS;
 use crate::simulation::slot::Slot;
 use crate::simulation::task::Queue;
 use crate::simulation::vector::can_drive;
-use crate::simulation::{Lane, System};
+use crate::simulation::{Lane, SimulationNumber, System};
 
 /// Drives every machine of a queue to its end. A lane that is done takes the next machine; each has
 /// its own time, step and breaks, and its outcome does not depend on its neighbours.
@@ -84,8 +85,8 @@ where
 {
     let tolerance = settings.tolerance;
     if !(tolerance > 0.0 && tolerance < 1.0) {
-        let requirement = "above 0 and below 1";
-        return Err(SimulationError::Setting { what: "tolerance", value: tolerance, requirement });
+        let (what, requirement) = (SimulationNumber::Tolerance, RequiredRange::BetweenZeroAndOne);
+        return Err(SimulationError::Setting { what, value: tolerance, requirement });
     }
     if !can_drive::<S>() {
         return Err(SimulationError::NoVectors);

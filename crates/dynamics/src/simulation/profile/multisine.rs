@@ -1,7 +1,7 @@
 //! Several sines at once.
 
 use super::piece::{PieceShape, ProfilePiece};
-use super::{Profile, ProfileError, finite, positive};
+use super::{Profile, ProfileError, ProfileNumber, finite, positive};
 
 /// One sine of a multisine.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,11 +65,11 @@ impl Profile {
     /// # Errors
     /// [`ProfileError::OutOfRange`] unless all frequencies are positive and all numbers are finite.
     pub fn multisine(start_s: f64, harmonics: &[Harmonic]) -> Result<Profile, ProfileError> {
-        finite("the start of a multisine", start_s)?;
+        finite(ProfileNumber::MultisineStart, start_s)?;
         for harmonic in harmonics {
-            finite("an amplitude of a multisine", harmonic.amplitude)?;
-            positive("a frequency of a multisine", harmonic.frequency_rad_per_s)?;
-            finite("a phase of a multisine", harmonic.phase_rad)?;
+            finite(ProfileNumber::MultisineAmplitude, harmonic.amplitude)?;
+            positive(ProfileNumber::MultisineFrequency, harmonic.frequency_rad_per_s)?;
+            finite(ProfileNumber::MultisinePhase, harmonic.phase_rad)?;
         }
         let shape = |harmonic: &Harmonic| PieceShape::Sine {
             origin_s: start_s,

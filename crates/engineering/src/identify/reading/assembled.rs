@@ -2,6 +2,7 @@
 
 use phea_hydraulics::servovalve::{PortCircuit, Supply, TestInput, WarmOil};
 
+use super::error::{RecordedTestError, RecordedTestHint};
 use super::turns::turns;
 use super::{Known, Taken};
 use crate::followed::{followed, roughness};
@@ -126,8 +127,7 @@ pub(super) fn is_test(taken: &Taken, circuit: PortCircuit, whole: Place, finding
         PortCircuit::Connected => (a && b) || has(TestSignal::Flow),
     };
     if !is_test {
-        let message = "there is nothing but inputs: neither a flow nor the pressure of a port";
-        findings.push(RawFinding::error(whole, message));
+        findings.push(RawFinding::error(whole, RecordedTestError::OnlyInputs.to_string()));
     }
     is_test
 }
@@ -146,11 +146,7 @@ pub(super) fn warn_of_unknown_drop(
     if circuit == PortCircuit::Blocked || absent.is_empty() {
         return;
     }
-    let message = format!(
-        "without {} the drop from port to port is not known and counts as zero: the flow coefficients come out too small by what the meter takes",
-        absent.join(" and ")
-    );
-    findings.push(RawFinding::warning(whole, message).help(
-        "record both pressures; a meter that takes a tenth of the drop makes the coefficients 5 % too small".to_string(),
-    ));
+    let message = RecordedTestError::UnknownDrop { absent: absent.join(" and ") };
+    let found = RawFinding::warning(whole, message.to_string());
+    findings.push(found.help(RecordedTestHint::BothPressures.to_string()));
 }

@@ -1,5 +1,6 @@
 //! Numbers that no test of a valve has: nearly always another unit than the one that is stated.
 
+use super::error::{ColumnSetting, RecordedTestError, RecordedTestHint, SignalInWords};
 use super::{Known, Taken};
 use crate::project::{Findings, RawFinding, TestSignal};
 use crate::quantity::{PRESSURE, UnitScale, display};
@@ -52,7 +53,7 @@ pub(super) fn check(
         let Some(values) = taken.of(*signal) else { continue };
         if *signal == TestSignal::Command && values.iter().all(|value| Some(value) == values.first()) {
             let place = table.headings.get(column.index).map(|heading| heading.place).unwrap_or_default();
-            findings.push(RawFinding::error(place, "the command never moves: this is not a test of a valve"));
+            findings.push(RawFinding::error(place, RecordedTestError::CommandNeverMoves.to_string()));
             continue;
         }
         let level = match signal {
@@ -81,8 +82,9 @@ pub(super) fn check(
                 "" => display(*value, dimension, 3),
                 text => format!("{text} {}", column.unit),
             };
-            let message = format!("{written} is not a plausible {} of a valve test", words(*signal));
-            let found = table.error(*row, column, message, findings);
+            let message =
+                RecordedTestError::ImplausibleValue { written, signal: SignalInWords::from(*signal) };
+            let found = table.error(*row, column, message.to_string(), findings);
             findings.push(found.expected(format!("at most {}", display(most, dimension, 3))));
         }
     }
@@ -112,54 +114,37 @@ fn implausible(
     supply: Option<f64>,
 ) -> RawFinding {
     let shown = |value: f64| display(value, signal.dimension(), 3);
-    let heading = table.heading(column);
-    let name = words(signal);
+    let heading = table.heading(column).to_string();
     let message = match (signal, supply) {
-        (TestSignal::Time, _) => {
-            format!("`{heading}` lasts {}: no test of a valve takes that long", shown(level))
+        (TestSignal::Time, _) => RecordedTestError::ImplausibleDuration { heading, duration: level },
+        (TestSignal::Command, _) => {
+            let nominal = limits[1] / BEYOND_NOMINAL;
+            RecordedTestError::ImplausibleCommand { heading, reached: level, nominal }
         }
-        (TestSignal::Command, _) => format!(
-            "`{heading}` reaches {}, the nominal voltage is {}",
-            shown(level),
-            shown(limits[1] / BEYOND_NOMINAL)
-        ),
-        (_, Some(supply)) => {
-            format!("`{heading}` reaches {}, the supply pressure {}", shown(level), shown(supply))
-        }
-        _ => format!("`{heading}` reaches {}: that is not a plausible {name} of a valve test", shown(level)),
+        (_, Some(supply)) => RecordedTestError::ImplausiblePort { heading, reached: level, supply },
+        _ => RecordedTestError::ImplausibleColumn { heading, reached: level, signal },
     };
     let place = table.headings.get(column.index).map(|heading| heading.place).unwrap_or_default();
     let expected = format!("{} to {}", shown(limits[0]), shown(limits[1]));
-    let found = RawFinding::error(place, message).expected(expected);
+    let found = RawFinding::error(place, message.to_string()).expected(expected);
     let units = other_units(signal, column, level, limits);
-    let project = "`[[identify.recording]]` of a project";
-    match units.as_slice() {
-        [] if signal == TestSignal::Command => {
-            found.help("state the `nominal_voltage` of the valve in a project")
-        }
-        [] => found.help(format!("is it the right column? {project} can name another")),
+    let hint = match units.as_slice() {
+        [] if signal == TestSignal::Command => RecordedTestHint::NominalVoltage,
+        [] => RecordedTestHint::OtherColumn,
         several => {
             let units = match several {
                 [others @ .., last] if !others.is_empty() => format!("{} or {last}", others.join(", ")),
                 several => several.concat(),
             };
-            let key = signal.name();
-            let first = several.first().copied().unwrap_or_default();
-            found.help(format!(
-                "these numbers would be plausible in {units}: correct the heading, or state the unit in {project}, such as `{key} = {{ column = \"{heading}\", unit = \"{first}\" }}`"
-            ))
+            let setting = ColumnSetting {
+                key: signal.name(),
+                heading: table.heading(column).to_string(),
+                unit: several.first().copied().unwrap_or_default().to_string(),
+            };
+            RecordedTestHint::PlausibleUnits { units, setting }
         }
-    }
-}
-
-/// Name of a signal in sentences.
-fn words(signal: TestSignal) -> String {
-    match signal {
-        TestSignal::PressureA => "pressure at port A".to_string(),
-        TestSignal::PressureB => "pressure at port B".to_string(),
-        TestSignal::Flow => "flow between the ports".to_string(),
-        signal => signal.name().replace('_', " "),
-    }
+    };
+    found.help(hint.to_string())
 }
 
 /// Units in which the numbers of a column would be those of a test.

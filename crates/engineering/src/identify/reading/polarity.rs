@@ -6,6 +6,9 @@
 use phea_hydraulics::servovalve::PortCircuit;
 
 use super::Taken;
+use super::error::{
+    ColumnSetting, OppositeSignals, RecordedTestError, RecordedTestHint, SignRemedy, TurnedSignal,
+};
 use crate::project::{Findings, RawFinding, TestSignal};
 use crate::table::{Column, MeasuredTable};
 use crate::tendency::Tendency;
@@ -13,14 +16,6 @@ use crate::tendency::Tendency;
 /// The least flow in one direction, over the greatest in the other, by which a meter indicates the
 /// direction: less is noise around zero.
 const SIGNED: f64 = 0.1;
-
-/// Signal that may have the wrong sign.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Turned {
-    Command,
-    Flow,
-    Ports,
-}
 
 /// A file whose signs are checked.
 struct CheckedRecording<'a> {
@@ -86,11 +81,12 @@ impl CheckedRecording<'_> {
         if 2 * negative <= shown.len() || sum >= 0.0 {
             return;
         }
-        let heading = self.heading(TestSignal::LeakFlow);
-        let message = format!("{heading} is negative in {negative} of {} rows", shown.len());
-        let found = self.finding(TestSignal::LeakFlow, message);
-        let found = found.expected("a leakage from the supply, which is positive");
-        findings.push(found.help(format!("the meter is reversed: {}", self.cure(Turned::Flow))));
+        let name = self.heading(TestSignal::LeakFlow);
+        let message = RecordedTestError::NegativeLeakage { name, count: negative, rows: shown.len() };
+        let found = self.finding(TestSignal::LeakFlow, message.to_string());
+        let found = found.expected(RecordedTestHint::PositiveLeakage.to_string());
+        let remedy = self.remedy(TurnedSignal::Flow);
+        findings.push(found.help(RecordedTestHint::MeterReversed(remedy).to_string()));
     }
 
     fn blocked_ports(&self, findings: &mut Findings) {
@@ -104,9 +100,9 @@ impl CheckedRecording<'_> {
         let tendency = tendency.or_else(|| Tendency::of(&pressures, command));
         if let Some(tendency) = tendency.filter(Tendency::is_opposite) {
             let message = falls(&name, &self.heading(TestSignal::Command), tendency);
-            let found = self.finding(TestSignal::Command, message);
-            let found = found.expected("a positive command opens the supply to port A, whose pressure rises");
-            findings.push(found.help(self.cures(&[Turned::Command, Turned::Ports])));
+            let found = self.finding(TestSignal::Command, message.to_string());
+            let found = found.expected(RecordedTestHint::RisingPressure.to_string());
+            findings.push(found.help(self.remedies(&[TurnedSignal::Command, TurnedSignal::Ports])));
         }
     }
 
@@ -133,88 +129,83 @@ impl CheckedRecording<'_> {
         let [drop_falls, flow_falls] = [of_drop, of_flow].map(|one| one.filter(Tendency::is_opposite));
         let [drop_rises, flow_rises] =
             [of_drop, of_flow].map(|one| one.is_some_and(|tendency| tendency.is_alike()));
-        let (signal, messages, turned): (TestSignal, Vec<String>, &[Turned]) = match (drop_falls, flow_falls)
-        {
-            (Some(drop), Some(flow)) => {
-                let both = [falls(drop_name, &command_name, drop), falls(&flow_name, &command_name, flow)];
-                (TestSignal::Command, both.to_vec(), &[Turned::Command])
-            }
-            (None, Some(flow)) => {
-                let over_drop = flow_over_drop.filter(Tendency::is_opposite);
-                let of_drop = over_drop.map(|tendency| falls(&flow_name, drop_name, tendency));
-                let message = falls(&flow_name, &command_name, flow);
-                let turned: &[Turned] =
-                    if drop_rises { &[Turned::Flow] } else { &[Turned::Flow, Turned::Command] };
-                (TestSignal::Flow, std::iter::once(message).chain(of_drop).collect(), turned)
-            }
-            (Some(drop), None) => {
-                let turned: &[Turned] =
-                    if flow_rises { &[Turned::Ports] } else { &[Turned::Command, Turned::Ports] };
-                let signal = if flow_rises { TestSignal::PressureA } else { TestSignal::Command };
-                (signal, vec![falls(drop_name, &command_name, drop)], turned)
-            }
-            (None, None) => return,
-        };
+        let (signal, opposite, turned): (TestSignal, Vec<OppositeSignals>, &[TurnedSignal]) =
+            match (drop_falls, flow_falls) {
+                (Some(drop), Some(flow)) => {
+                    let both =
+                        [falls(drop_name, &command_name, drop), falls(&flow_name, &command_name, flow)];
+                    (TestSignal::Command, both.to_vec(), &[TurnedSignal::Command])
+                }
+                (None, Some(flow)) => {
+                    let over_drop = flow_over_drop.filter(Tendency::is_opposite);
+                    let of_drop = over_drop.map(|tendency| falls(&flow_name, drop_name, tendency));
+                    let of_command = falls(&flow_name, &command_name, flow);
+                    let turned: &[TurnedSignal] = match drop_rises {
+                        true => &[TurnedSignal::Flow],
+                        false => &[TurnedSignal::Flow, TurnedSignal::Command],
+                    };
+                    (TestSignal::Flow, std::iter::once(of_command).chain(of_drop).collect(), turned)
+                }
+                (Some(drop), None) => {
+                    let turned: &[TurnedSignal] = match flow_rises {
+                        true => &[TurnedSignal::Ports],
+                        false => &[TurnedSignal::Command, TurnedSignal::Ports],
+                    };
+                    let signal = if flow_rises { TestSignal::PressureA } else { TestSignal::Command };
+                    (signal, vec![falls(drop_name, &command_name, drop)], turned)
+                }
+                (None, None) => return,
+            };
+        let messages: Vec<String> = opposite.iter().map(ToString::to_string).collect();
         let found = self.finding(signal, messages.join(", and "));
-        let found = found.expected(match &flow {
-            Some(_) => {
-                "flow from port A to port B, and the drop across the meter, that rise with the command"
-            }
-            None => "a drop from port A to port B across the meter that rises with the command",
-        });
-        findings.push(found.help(self.cures(turned)));
+        let expected = match &flow {
+            Some(_) => RecordedTestHint::RisingFlowAndDrop,
+            None => RecordedTestHint::RisingDrop,
+        };
+        findings.push(found.expected(expected.to_string()).help(self.remedies(turned)));
     }
 
     /// Signals that may be wrong, each with the setting that turns it.
-    fn cures(&self, turned: &[Turned]) -> String {
-        let named = turned.iter().map(|one| {
-            let what = match one {
-                Turned::Command => "the command is reversed",
-                Turned::Flow => "the flow meter is reversed",
-                Turned::Ports => "the pressures of the ports are exchanged",
-            };
-            (what, self.cure(*one))
-        });
+    fn remedies(&self, turned: &[TurnedSignal]) -> String {
+        let named = turned.iter().map(|one| (one, self.remedy(*one)));
         match turned {
-            [_] => named.map(|(what, cure)| format!("{what}: {cure}")).collect(),
+            [_] => named.map(|(what, remedy)| format!("{what}: {remedy}")).collect(),
             _ => {
-                let each: Vec<String> = named.map(|(what, cure)| format!("if {what}, {cure}")).collect();
+                let each: Vec<String> = named.map(|(what, remedy)| format!("if {what}, {remedy}")).collect();
                 each.join("; ")
             }
         }
     }
 
-    fn cure(&self, turned: Turned) -> String {
-        let place = "in its `[[identify.recording]]` of a project";
+    fn remedy(&self, turned: TurnedSignal) -> SignRemedy {
         let is_leakage = self.column(TestSignal::LeakFlow).is_some();
         let signal = match turned {
-            Turned::Command => TestSignal::Command,
-            Turned::Flow if is_leakage => TestSignal::LeakFlow,
-            Turned::Flow => TestSignal::Flow,
-            Turned::Ports => return format!("state {} {place}", self.exchanged_ports()),
+            TurnedSignal::Command => TestSignal::Command,
+            TurnedSignal::Flow if is_leakage => TestSignal::LeakFlow,
+            TurnedSignal::Flow => TestSignal::Flow,
+            TurnedSignal::Ports => return SignRemedy::Exchange(self.exchanged_ports()),
         };
-        let key = signal.name();
         match self.column(signal) {
-            Some(column) if column.is_reversed => format!("remove `reversed = true` of `{key}` {place}"),
-            _ => format!("state `{key} = {{ reversed = true }}` {place}"),
+            Some(column) if column.is_reversed => SignRemedy::RemoveReversed(signal.name()),
+            _ => SignRemedy::StateReversed(signal.name()),
         }
     }
 
     /// The columns of the ports, each for the other one.
-    fn exchanged_ports(&self) -> String {
+    fn exchanged_ports(&self) -> Vec<ColumnSetting> {
         let both = [TestSignal::PressureA, TestSignal::PressureB];
         let exchanged = both.iter().zip(both.iter().rev()).filter_map(|(of, other)| {
             let column = self.column(*other)?;
-            let (heading, unit) = (self.table.heading(column), &column.unit);
-            Some(format!("`{} = {{ column = \"{heading}\", unit = \"{unit}\" }}`", of.name()))
+            let heading = self.table.heading(column).to_string();
+            Some(ColumnSetting { key: of.name(), heading, unit: column.unit.clone() })
         });
-        exchanged.collect::<Vec<_>>().join(" and ")
+        exchanged.collect()
     }
 }
 
 /// One signal falls while another rises.
-fn falls(one: &str, other: &str, Tendency { correlation, rows }: Tendency) -> String {
-    format!("{one} falls while {other} rises (correlation {correlation:.2} over {rows} rows)")
+fn falls(one: &str, other: &str, Tendency { correlation, rows }: Tendency) -> OppositeSignals {
+    OppositeSignals { signal: one.to_string(), other: other.to_string(), correlation, rows }
 }
 
 /// The flow where the meter turns; NaN elsewhere.

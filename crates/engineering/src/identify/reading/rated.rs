@@ -3,9 +3,10 @@
 use phea_dynamics::order::sort_numbers;
 use phea_hydraulics::servovalve::PortCircuit;
 
+use super::error::{ColumnSetting, RecordedTestError, RecordedTestHint};
 use super::{Known, Taken};
 use crate::project::{Findings, RawFinding, TestSignal};
-use crate::quantity::{FLOW, UnitScale, significant};
+use crate::quantity::{FLOW, UnitScale};
 use crate::table::{Column, MeasuredTable};
 
 /// Factor between recorded and declared flow beyond which it is warned of.
@@ -43,22 +44,20 @@ pub(super) fn check(
     if (1.0 / UNUSUAL..=UNUSUAL).contains(&ratio) {
         return;
     }
-    let heading = table.heading(column);
+    let heading = table.heading(column).to_string();
     let place = table.headings.get(column.index).map(|heading| heading.place).unwrap_or_default();
-    let message = format!(
-        "`{heading}` is {} times the flow that the declared valve passes at these commands and pressures",
-        significant(ratio, 2)
-    );
+    let message = RecordedTestError::FlowOfOtherValve { heading: heading.clone(), ratio }.to_string();
     let found = match (1.0 / IMPOSSIBLE..=IMPOSSIBLE).contains(&ratio) {
         true => RawFinding::warning(place, message),
         false => RawFinding::error(place, message),
     };
-    findings.push(found.help(match unit_that_fits(column, ratio) {
-        Some(unit) => format!(
-            "these numbers would fit in {unit}: correct the heading, or state `flow = {{ column = \"{heading}\", unit = \"{unit}\" }}` in `[[identify.recording]]` of a project"
-        ),
-        None => "is it the declared valve, with its `nominal_voltage`, and are these its units?".to_string(),
-    }));
+    let hint = match unit_that_fits(column, ratio) {
+        Some(unit) => RecordedTestHint::UnitOfDeclaredValve {
+            setting: ColumnSetting { key: "flow", heading, unit: unit.to_string() },
+        },
+        None => RecordedTestHint::DeclaredValve,
+    };
+    findings.push(found.help(hint.to_string()));
 }
 
 /// Median of the recorded flow over the declared one.

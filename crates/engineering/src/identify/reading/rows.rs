@@ -3,6 +3,7 @@
 use phea_dynamics::order::median;
 
 use super::Taken;
+use super::error::{RecordedTestError, RecordedTestHint};
 use crate::followed::roughness;
 use crate::project::{Findings, RawFinding, TestSignal};
 use crate::table::{Column, ColumnNumbers, MeasuredTable, not_increasing};
@@ -32,34 +33,30 @@ pub(super) fn used(
     let rows = numbers.columns.first().map_or(0, Vec::len);
     let mut is_used = vec![true; rows];
     if let (Some(row), Some((_, first))) = (numbers.cut_off, columns.first()) {
-        let message = "the last row is not whole: it is left out";
-        findings.push(table.warning(&[row], first, message, findings));
+        let message = RecordedTestError::LastRowCutOff.to_string();
+        findings.push(table.warning(&[row], first, &message, findings));
     }
     for place in table.left_out() {
-        findings.push(RawFinding::warning(
-            *place,
-            "a row below the headings without numbers or units: it is left out",
-        ));
+        findings.push(RawFinding::warning(*place, RecordedTestError::RowWithoutNumbers.to_string()));
     }
     for ((signal, column), gaps) in columns.iter().zip(&numbers.gaps) {
         if gaps.is_empty() {
             continue;
         }
+        let heading = table.heading(column).to_string();
         if gaps.len() as f64 > MOST_GAPS * rows as f64 {
-            let message =
-                format!("`{}` has no value in {} of {rows} rows", table.heading(column), gaps.len());
+            let message = RecordedTestError::MostlyGaps { heading, gaps: gaps.len(), rows }.to_string();
             let found = table.error(gaps.first().copied().unwrap_or(0), column, message, findings);
-            findings.push(found.help("leave the column out where nothing was recorded"));
+            findings.push(found.help(RecordedTestHint::LeaveColumnOut.to_string()));
             continue;
         }
-        let heading = table.heading(column);
         let message = if is_input(*signal) {
             gaps.iter().for_each(|row| is_used.get_mut(*row).into_iter().for_each(|used| *used = false));
-            format!("`{heading}` has gaps, and these rows are left out")
+            RecordedTestError::GapsLeftOut(heading)
         } else {
-            format!("`{heading}` has gaps, where it is taken as not read")
+            RecordedTestError::GapsNotRead(heading)
         };
-        findings.push(table.warning(gaps, column, &message, findings));
+        findings.push(table.warning(gaps, column, &message.to_string(), findings));
     }
     leave_out_repeated(table, columns, numbers, &mut is_used, findings);
     leave_out_standing_out(table, columns, (numbers, plausible_v), &mut is_used, findings);
@@ -88,11 +85,8 @@ fn leave_out_standing_out(
         return;
     }
     out.iter().for_each(|row| is_used.get_mut(*row).into_iter().for_each(|used| *used = false));
-    let message = format!(
-        "`{}` stands out of the rows before and after, and these rows are left out",
-        table.heading(column)
-    );
-    findings.push(table.warning(&out, column, &message, findings));
+    let message = RecordedTestError::StandsOut(table.heading(column).to_string());
+    findings.push(table.warning(&out, column, &message.to_string(), findings));
 }
 
 /// Places at which a slow command is further from the median of five than it moves in three rows,
@@ -143,8 +137,8 @@ fn leave_out_repeated(
         before = Some((row, time));
     }
     if !repeated.is_empty() {
-        let message = "rows that repeat the row before are left out";
-        findings.push(table.warning(&repeated, column, message, findings));
+        let message = RecordedTestError::Repeated.to_string();
+        findings.push(table.warning(&repeated, column, &message, findings));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Timing;
-use phea_dynamics::linear::{Discretization, LinearError, TimeDomain, TransferFunction};
+use phea_dynamics::linear::{Discretization, LinearError, LinearOperation, TimeDomain, TransferFunction};
 use phea_dynamics::portable;
 
 use super::{Factor, NumberedFactor, Structure, StructureFactor};
@@ -64,7 +64,10 @@ impl Structure {
     ) -> Result<StructureResponse, LinearError> {
         let fixed = self.fixed()?;
         if fixed.domain() != TimeDomain::Continuous {
-            return Err(LinearError::WrongDomain { operation: "loop shaping", needed: "continuous" });
+            return Err(LinearError::WrongDomain {
+                operation: LinearOperation::LoopShaping,
+                needed: "continuous",
+            });
         }
         let [zeros, poles] = self.degrees()?;
         if timing.sample_time_s.is_some() && zeros > poles {

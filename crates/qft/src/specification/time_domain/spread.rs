@@ -2,9 +2,10 @@ use num_complex::Complex64;
 use phea_dynamics::linear::{Polynomial, TimeDomain};
 use phea_dynamics::order::{sort_numbers, sorted_distinct};
 use phea_dynamics::portable::{ln, log10};
+use phea_dynamics::range::RequiredRange;
 
 use super::super::Limit;
-use super::TimeDomainError;
+use super::{TimeDomainError, TimeDomainNumber};
 
 /// How far apart the limits of tracking are over frequency.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,7 +99,7 @@ pub fn tracking_spread(
 /// The part of the band in which no table has ended.
 fn common_band(lower: &Limit, upper: &Limit, [from, to]: [f64; 2]) -> Result<[f64; 2], TimeDomainError> {
     if !(from >= 0.0 && from.is_finite() && to >= from) {
-        let (what, expected) = ("the band in rad/s", "zero or positive, and increasing");
+        let (what, expected) = (TimeDomainNumber::Band, RequiredRange::IncreasingFromZero);
         return Err(TimeDomainError::OutOfRange { what, value: from, expected });
     }
     let ends = [lower, upper].into_iter().filter_map(|limit| {

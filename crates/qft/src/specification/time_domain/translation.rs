@@ -3,10 +3,11 @@ use std::f64::consts::PI;
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable::{atan2, exp, log1p};
+use phea_dynamics::range::RequiredRange;
 use phea_dynamics::time_response::{SecondOrder, step_response};
 
 use super::check::{TOLERANCE, check_lower, check_upper};
-use super::{ExtraRoot, LowerWish, TimeDomainError, TrackingLimit, Translation, UpperWish};
+use super::{ExtraRoot, LowerWish, TimeDomainError, TimeDomainNumber, TrackingLimit, Translation, UpperWish};
 
 /// The upper limit of tracking for a wish.
 ///
@@ -266,9 +267,9 @@ impl ExtraRoot {
     fn check(self) -> Result<(), TimeDomainError> {
         match self {
             ExtraRoot::None => Ok(()),
-            ExtraRoot::At { rad_per_s } => positive("the extra root in rad/s", rad_per_s),
+            ExtraRoot::At { rad_per_s } => positive(TimeDomainNumber::ExtraRoot, rad_per_s),
             ExtraRoot::Times { natural_frequencies } => {
-                positive("the extra root over the natural frequency", natural_frequencies)
+                positive(TimeDomainNumber::ExtraRootRatio, natural_frequencies)
             }
         }
     }
@@ -295,8 +296,7 @@ impl ExtraRoot {
 impl UpperWish {
     pub(super) fn check(&self) -> Result<(), TimeDomainError> {
         if !(0.0..100.0).contains(&self.overshoot_percent) {
-            let expected = "from 0 up to but not 100";
-            let what = "the overshoot in percent";
+            let (what, expected) = (TimeDomainNumber::Overshoot, RequiredRange::BelowHundred);
             return Err(TimeDomainError::OutOfRange { what, value: self.overshoot_percent, expected });
         }
         let (settling_time_s, settling_band_percent) = (self.settling_time_s, self.settling_band_percent);
@@ -306,20 +306,18 @@ impl UpperWish {
 
 impl LowerWish {
     pub(super) fn check(&self) -> Result<(), TimeDomainError> {
-        positive("the settling time in s", self.settling_time_s)?;
+        positive(TimeDomainNumber::SettlingTime, self.settling_time_s)?;
         let value = self.settling_band_percent;
         if value > 0.0 && value < 100.0 {
             return Ok(());
         }
-        let what = "the settling band in percent";
-        Err(TimeDomainError::OutOfRange { what, value, expected: "between 0 and 100" })
+        let (what, expected) = (TimeDomainNumber::SettlingBand, RequiredRange::BetweenZeroAndHundred);
+        Err(TimeDomainError::OutOfRange { what, value, expected })
     }
 }
 
-fn positive(what: &'static str, value: f64) -> Result<(), TimeDomainError> {
-    if value > 0.0 && value.is_finite() {
-        Ok(())
-    } else {
-        Err(TimeDomainError::OutOfRange { what, value, expected: "positive and finite" })
-    }
+fn positive(what: TimeDomainNumber, value: f64) -> Result<(), TimeDomainError> {
+    let expected = RequiredRange::PositiveAndFinite;
+    let fits = value > 0.0 && value.is_finite();
+    if fits { Ok(()) } else { Err(TimeDomainError::OutOfRange { what, value, expected }) }
 }

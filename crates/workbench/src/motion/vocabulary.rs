@@ -2,20 +2,8 @@
 
 /// What makes a text for people speak of torques and angles: whole words and units are replaced,
 /// and nothing within a text of the user.
-///
-/// # Example
-/// ```
-/// use phea_quantity::Vocabulary;
-/// let words = Vocabulary::rotary(vec!["force step".to_string()]);
-/// assert_eq!(words.of("the force comes to 12 N in `force_sensor`"), "the torque comes to 12 N.m in `force_sensor`");
-/// assert_eq!(words.of("force step: the piston stalls"), "force step: the shaft stalls");
-/// assert_eq!(words.of("[force_sensor] in [-2 kN, 5 kN]"), "[force_sensor] in [-2 kN.m, 5 kN.m]");
-/// assert_eq!(Vocabulary::rotary(vec!["k".to_string()]).of("12 kN"), "12 kN.m");
-/// assert_eq!(words.of("K_H at its least, and Z = -F_e/(s X_L)"), "K_θ at its least, and Z = -T_e/(s Θ_L)");
-/// assert_eq!(Vocabulary::default().of("12 kN"), "12 kN");
-/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Vocabulary {
+pub(crate) struct Vocabulary {
     words: &'static [(&'static str, &'static str)],
     /// Texts of the user, the longest first.
     kept: Vec<String>,
@@ -95,7 +83,7 @@ static ROTARY: &[(&str, &str)] = &[
 
 impl Vocabulary {
     /// That of a rig that turns. `kept` are texts of the user: names, titles, paths.
-    pub fn rotary(mut kept: Vec<String>) -> Vocabulary {
+    pub(crate) fn rotary(mut kept: Vec<String>) -> Vocabulary {
         // a name that is one of these words is printed as that word
         kept.retain(|text| !text.is_empty() && !ROTARY.iter().any(|(linear, _)| linear == text));
         kept.sort_by_key(|text| std::cmp::Reverse(text.len()));
@@ -103,12 +91,12 @@ impl Vocabulary {
     }
 
     /// Whether it leaves every text as it is.
-    pub fn is_plain(&self) -> bool {
+    pub(crate) fn is_plain(&self) -> bool {
         self.words.is_empty()
     }
 
     /// The text in these words. What stands in backticks or in brackets is a key, and stays.
-    pub fn of(&self, text: &str) -> String {
+    pub(crate) fn of(&self, text: &str) -> String {
         if self.is_plain() {
             return text.to_string();
         }
@@ -168,4 +156,25 @@ fn is_whole(before: Option<char>, after: &str) -> bool {
         None => true,
     };
     ends && before.is_none_or(|c| !part_of_name(c) && c != '.')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Vocabulary;
+
+    /// Whole words and units are replaced, not keys, texts of the user and those on a cylinder.
+    #[test]
+    fn a_text_speaks_of_torques() {
+        let words = Vocabulary::rotary(vec!["force step".to_string()]);
+        for (linear, rotary) in [
+            ("the force comes to 12 N in `force_sensor`", "the torque comes to 12 N.m in `force_sensor`"),
+            ("force step: the piston stalls", "force step: the shaft stalls"),
+            ("[force_sensor] in [-2 kN, 5 kN]", "[force_sensor] in [-2 kN.m, 5 kN.m]"),
+            ("K_H at its least, and Z = -F_e/(s X_L)", "K_θ at its least, and Z = -T_e/(s Θ_L)"),
+        ] {
+            assert_eq!(words.of(linear), rotary);
+        }
+        assert_eq!(Vocabulary::rotary(vec!["k".to_string()]).of("12 kN"), "12 kN.m");
+        assert_eq!(Vocabulary::default().of("12 kN"), "12 kN");
+    }
 }

@@ -9,16 +9,54 @@
 
 use phea_dynamics::watch::Watch;
 
+use super::misfit::declared_misfit;
 use super::{
-    COEFFICIENT_NAMES, Identification, IdentifyError, JointRegion, Known, RecordedFiles, SMALLEST_EFFECT,
+    COEFFICIENT_NAMES, Identification, JointRegion, JointRegionError, Known, RecordedFiles, SMALLEST_EFFECT,
     Search, identify, joint_region, recordings,
 };
 use crate::estimate::Estimate;
+use crate::identify_error::IdentifyError;
 use crate::project::{
     self, FromRecordings, HashedFile, IdentifiedFamily, IdentifiedNumber, IdentifiedUse, KeptNumber,
     KeptReason, LEAKAGE_MODELS, Loaded, Origin, Project, RecordedTest, UncertaintyDirection, sha256, word_of,
 };
 use crate::source::{Memory, Source};
+
+/// Why the valve of a project is not taken from its recordings.
+#[derive(Debug, thiserror::Error)]
+pub enum ValveInUseError {
+    /// Nothing was identified.
+    #[error(transparent)]
+    Identify(#[from] IdentifyError),
+    /// The search for a valve ended early.
+    #[error(
+        "the recordings lead to no valve: the search did not converge, so that they cannot take the place of [valve]; `phea identify` gives the details, and `--set identify.use=\"nothing\"` keeps the declared valve"
+    )]
+    NotConverged,
+    /// Coefficients of the plant without an estimate.
+    #[error(
+        "the recordings do not determine {}, so that they cannot take the place of [valve]; `phea identify` gives the details, and `--set identify.use=\"nothing\"` keeps the declared valve",
+        quoted(.0)
+    )]
+    NotDetermined(Vec<&'static str>),
+    /// Directions from recordings and from the project.
+    #[error(
+        "`identify.use = \"valve_and_uncertainty\"` gives the directions of the family, and the project has tables [[uncertainty_direction]] too: remove one of the two"
+    )]
+    DirectionsTwice,
+    /// The identified valve has no joint region.
+    #[error(transparent)]
+    Region(#[from] JointRegionError),
+    /// A setting for an identified number.
+    #[error(
+        "a setting states `{0}`, which the recordings give: add `--set identify.use=\"nothing\"` to state it"
+    )]
+    StatedBySetting(String),
+}
+
+fn quoted(names: &[&str]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
 
 /// The recordings that a project declares, each with its path as a source takes it.
 pub fn recorded_files(project: &Project) -> Vec<RecordedTest> {
@@ -33,13 +71,13 @@ pub fn recorded_files(project: &Project) -> Vec<RecordedTest> {
 /// another recording is another project.
 ///
 /// # Errors
-/// [`IdentifyError`] where files are refused, where the recordings do not determine a coefficient
+/// [`ValveInUseError`] where files are refused, where the recordings do not determine a coefficient
 /// that the plant depends on, and where what they determine contradicts the project.
 pub fn in_use(
     source: &dyn Source,
     loaded: &Loaded,
     watch: Watch<'_>,
-) -> Result<Option<Loaded>, IdentifyError> {
+) -> Result<Option<Loaded>, ValveInUseError> {
     let takes = loaded.project.identify.as_ref().map(|identify| identify.takes).unwrap_or_default();
     if takes == IdentifiedUse::Nothing || loaded.recorded.is_some() {
         return Ok(None);
@@ -94,34 +132,25 @@ fn held(source: &dyn Source, loaded: &Loaded, files: &[RecordedTest]) -> (Memory
 
 /// A fit that did not end, or left a coefficient of the plant open, is not a valve: the others were
 /// fitted together with it.
-fn determined(found: &Identification) -> Result<(), IdentifyError> {
-    let refused = |reason: String| {
-        Err(IdentifyError::Data(format!(
-            "{reason}, so that they cannot take the place of [valve]; `phea identify` gives the details, and `--set identify.use=\"nothing\"` keeps the declared valve"
-        )))
-    };
+fn determined(found: &Identification) -> Result<(), ValveInUseError> {
     if !found.has_converged() {
-        return refused("the recordings lead to no valve: the search did not converge".to_string());
+        return Err(ValveInUseError::NotConverged);
     }
     let plant = found.of_plant().filter_map(|index| {
         Some((COEFFICIENT_NAMES.get(index)?.0, found.estimates.get(index).copied().flatten()))
     });
-    let open: Vec<String> = plant
+    let open: Vec<&'static str> = plant
         .filter(|(name, estimate)| estimate.is_none() || found.at_bounds.contains(name))
-        .map(|(name, _)| format!("`{name}`"))
+        .map(|(name, _)| name)
         .collect();
-    match open.as_slice() {
-        [] => Ok(()),
-        open => refused(format!("the recordings do not determine {}", open.join(", "))),
-    }
+    if open.is_empty() { Ok(()) } else { Err(ValveInUseError::NotDetermined(open)) }
 }
 
-fn region(found: &Identification, project: &Project) -> Result<JointRegion, IdentifyError> {
+fn region(found: &Identification, project: &Project) -> Result<JointRegion, ValveInUseError> {
     if !project.directions.is_empty() {
-        let message = "`identify.use = \"valve_and_uncertainty\"` gives the directions of the family, and the project has tables [[uncertainty_direction]] too: remove one of the two";
-        return Err(IdentifyError::Data(message.to_string()));
+        return Err(ValveInUseError::DirectionsTwice);
     }
-    joint_region(found, project, SMALLEST_EFFECT).map_err(|error| IdentifyError::Data(error.to_string()))
+    Ok(joint_region(found, project, SMALLEST_EFFECT)?)
 }
 
 /// Numbers in place of declared ones, and numbers that stay as declared.
@@ -169,7 +198,7 @@ fn settings(
     settings.extend(others.map(|one| format!("{}={:e}", one.path, one.value)));
     settings.push(format!("valve.leakage_model={model}"));
     settings.push(format!("valve.tare_pressure={:e}", found.tested.tare_reference_drop));
-    let misfit = found.declared_misfit();
+    let misfit = declared_misfit(found);
     settings.extend(misfit.map(|one| format!("valve.misfit={}", one.in_toml())));
     let directions: Vec<String> =
         region.iter().flat_map(|region| &region.directions).map(direction).collect();
@@ -219,17 +248,13 @@ fn read_again(
     source: &dyn Source,
     loaded: &Loaded,
     recorded: FromRecordings,
-) -> Result<Loaded, IdentifyError> {
+) -> Result<Loaded, ValveInUseError> {
     let all: Vec<String> = recorded.settings.iter().chain(&loaded.settings).cloned().collect();
     let mut again = project::read(source, &loaded.path, &all, &loaded.catalogues)
         .map_err(|report| IdentifyError::Files(Box::new(report)))?;
     let other = recorded.numbers.iter().find(|one| again.project.number(&one.path) != Some(one.value));
     if let Some(one) = other {
-        let message = format!(
-            "a setting states `{}`, which the recordings give: add `--set identify.use=\"nothing\"` to state it",
-            one.path
-        );
-        return Err(IdentifyError::Data(message));
+        return Err(ValveInUseError::StatedBySetting(one.path.clone()));
     }
     for entry in &mut again.provenance {
         if recorded.numbers.iter().any(|one| one.path == entry.path) {
