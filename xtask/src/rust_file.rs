@@ -9,6 +9,8 @@ pub(crate) struct Line {
     pub(crate) text: String,
     /// The line without comments and without the contents of texts.
     pub(crate) code: String,
+    /// The contents of its texts, each ended by a null character.
+    pub(crate) texts: String,
     /// True if it begins inside a text.
     pub(crate) is_continued: bool,
     /// True if it is compiled for tests only: `#[test]`, `#[cfg(test)]`.
@@ -96,17 +98,17 @@ fn lines(text: &str) -> Vec<Line> {
     let mut inside = Inside::Code;
     for (index, text) in text.lines().enumerate() {
         let is_continued = inside != Inside::Code;
-        let code = code_of(text, &mut inside);
+        let (code, texts) = code_and_texts_of(text, &mut inside);
         let (number, text) = (index + 1, text.to_string());
-        lines.push(Line { number, text, code, is_continued, is_test: false });
+        lines.push(Line { number, text, code, texts, is_continued, is_test: false });
     }
     lines
 }
 
-/// The code of a line that begins inside this.
-fn code_of(line: &str, inside: &mut Inside) -> String {
+/// The code and the texts of a line that begins inside this.
+fn code_and_texts_of(line: &str, inside: &mut Inside) -> (String, String) {
     let chars: Vec<char> = line.chars().collect();
-    let mut code = String::new();
+    let (mut code, mut texts) = (String::new(), String::new());
     let mut index = 0;
     while index < chars.len() {
         let mut length = 1;
@@ -125,12 +127,17 @@ fn code_of(line: &str, inside: &mut Inside) -> String {
             }
             (Inside::Code, [c, ..]) => code.push(*c),
             (Inside::Text, ['\\', _, ..]) => length = 2,
-            (Inside::Text, ['"', ..]) => *inside = Inside::Code,
+            (Inside::Text, ['"', ..]) => {
+                *inside = Inside::Code;
+                texts.push('\0');
+            }
             (Inside::RawText(hashes), ['"', rest @ ..])
                 if rest.iter().take_while(|c| **c == '#').count() >= hashes =>
             {
                 (*inside, length) = (Inside::Code, 1 + hashes);
+                texts.push('\0');
             }
+            (Inside::Text | Inside::RawText(_), [c, ..]) => texts.push(*c),
             _ => {}
         }
         index += length;
@@ -138,7 +145,7 @@ fn code_of(line: &str, inside: &mut Inside) -> String {
     if *inside == Inside::Comment {
         *inside = Inside::Code;
     }
-    code
+    (code, texts)
 }
 
 /// The words of a line of code.

@@ -8,6 +8,7 @@ mod citation;
 mod dependencies;
 mod equations;
 mod examples;
+mod facts;
 mod golden;
 mod invariants;
 mod layout;
@@ -60,6 +61,7 @@ const CHECKS: &[(&str, Check)] = &[
     ("dependencies", dependencies::check),
     ("equations", equations::check),
     ("examples", examples::check),
+    ("facts", facts::check),
     ("golden", golden::check),
     ("invariants", invariants::check),
     ("layout", layout::check),

@@ -383,8 +383,7 @@ pub fn simulate_into(
     for (prepared, name) in prepared.iter().zip(&names) {
         let tolerance = prepared.bench.settings.tolerance;
         let mut pass = |plan: PassPlan| {
-            let stage =
-                if plan.is_first(tolerance) { "simulating" } else { "repeating at a smaller tolerance" };
+            let stage = if plan.is_first(tolerance) { "simulating" } else { "repeating the run" };
             let mut told = |time_s: f64| watch(Progress { stage, share: (before + time_s) / whole });
             prepared.pass(plan, (&output, name), &mut told)
         };

@@ -217,6 +217,6 @@ dimensions! {
     /// degC: the Celsius temperature, the thermodynamic one less 273.15 K.
     TEMPERATURE = "a" "temperature", Exponents::celsius(1), ["degC"], "degC", r#""37 degC""#;
     /// 1/degC, the share by which something changes with each degree.
-    TEMPERATURE_COEFFICIENT = "a" "share for each degree", Exponents::celsius(-1), [], "1/degC",
+    TEMPERATURE_COEFFICIENT = "a" "fraction per degree", Exponents::celsius(-1), [], "1/degC",
         r#"0.045, "4.5 %/degC""#;
 }

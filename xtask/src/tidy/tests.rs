@@ -222,6 +222,15 @@ fn lower_crates_touch_neither_files_nor_clocks_nor_threads() {
 }
 
 #[test]
+fn facts_are_no_sentences() {
+    let path = "crates/engineering/src/a.rs";
+    let broken = "fn f() -> String {\n    format!(\"the force of {} \\\n        settles\", 3)\n}\n";
+    let fine = "/// the force does not settle\n#[error(\n    \"the force does not settle\"\n)]\nstruct A;\nconst B: &str = \"line.a model\";\n#[test]\nfn t() {\n    f(\"the force does not settle\");\n}\n";
+    breaks("facts", (path, broken), (path, fine), &[]);
+    breaks("facts", (path, broken), ("crates/workbench/src/a.rs", broken), &[]);
+}
+
+#[test]
 fn files_functions_and_the_overview_have_a_size() {
     breaks_at("sizes", "a.rs", &"// a\n".repeat(501), &"// a\n".repeat(500));
     breaks_at("sizes", "ARCHITECTURE.md", &"a\n".repeat(121), &"a\n".repeat(120));

@@ -189,18 +189,16 @@ enum SweepProblem {
     NoRange,
     #[error("`{path}` takes {takes}, and only a number can be swept")]
     NoNumber { path: String, takes: String },
-    #[error("the project file has no number `{path}`{}", meant(near.as_deref()))]
-    UnknownKey { path: String, near: Option<String> },
+    #[error("the project file has no number `{path}`")]
+    UnknownKey { path: String },
+    #[error("the project file has no number `{path}`; did you mean `{near}`?")]
+    MisspelledKey { path: String, near: String },
     #[error("{error}; write {}, such as {}{}", dimension.name, dimension.examples, further(error))]
     Unreadable { error: quantity::QuantityError, dimension: &'static Dimension },
     #[error("{shown} is outside of what `{key}` may be")]
     OutOfRange { shown: String, key: &'static str },
     #[error("a sweep has 2 to {MOST_POINTS} points")]
     Points,
-}
-
-fn meant(near: Option<&str>) -> String {
-    near.map_or(String::new(), |near| format!("; did you mean `{near}`?"))
 }
 
 fn further(error: &quantity::QuantityError) -> String {
@@ -243,8 +241,12 @@ fn key(text: &str, path: &str) -> Result<Key, OptionError> {
         return Err(refused(text, &problem));
     }
     let names = keys.iter().filter(is_number).map(|entry| entry.path.as_str());
-    let near = nearest(path, names).map(str::to_string);
-    Err(refused(text, &SweepProblem::UnknownKey { path: path.to_string(), near }))
+    let path = path.to_string();
+    let problem = match nearest(&path, names).map(str::to_string) {
+        Some(near) => SweepProblem::MisspelledKey { path, near },
+        None => SweepProblem::UnknownKey { path },
+    };
+    Err(refused(text, &problem))
 }
 
 fn bare(text: &str) -> Option<f64> {

@@ -32,17 +32,32 @@ impl EmptyAccumulator {
     pub fn at(&self) -> LateError {
         let EmptyAccumulator { place, side, precharge_pressure, stated, pressure } = self;
         let bar = |value: f64| DisplayUnit::BAR.text(value, 4);
-        let from = stated.map_or(String::new(), |stated| {
-            format!(" at `working_temperature`, from {} at `precharge_temperature`,", bar(stated))
-        });
-        let message = format!(
-            "{}{from} is above the pressure of chamber {side} at the operating point, {}, so that the gas is shut off and changes nothing",
-            bar(*precharge_pressure),
-            bar(*pressure)
-        );
-        let help = "lower the precharge, or move the [operating_point]".to_string();
-        LateError { path: format!("{place}.precharge_pressure"), message, help }
+        let [precharge, pressure] = [*precharge_pressure, *pressure].map(bar);
+        let problem = match stated {
+            None => EmptyGas::AsStated { precharge, pressure, side: *side },
+            Some(stated) => EmptyGas::Heated { precharge, pressure, side: *side, stated: bar(*stated) },
+        };
+        LateError {
+            path: format!("{place}.precharge_pressure"),
+            message: problem.to_string(),
+            help: EmptyGas::Cure.to_string(),
+        }
     }
+}
+
+/// What is wrong with a precharge, and what to do about it.
+#[derive(Debug, thiserror::Error)]
+enum EmptyGas {
+    #[error(
+        "{precharge} is above the pressure of chamber {side} at the operating point, {pressure}, so that the gas is shut off and changes nothing"
+    )]
+    AsStated { precharge: String, pressure: String, side: char },
+    #[error(
+        "{precharge} at `working_temperature`, from {stated} at `precharge_temperature`, is above the pressure of chamber {side} at the operating point, {pressure}, so that the gas is shut off and changes nothing"
+    )]
+    Heated { precharge: String, pressure: String, side: char, stated: String },
+    #[error("lower the precharge, or move the [operating_point]")]
+    Cure,
 }
 
 /// The last operating points at standstill at which the gas is in use; `None` where it is up to the

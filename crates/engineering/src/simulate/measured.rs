@@ -129,8 +129,8 @@ fn of_file(
     times_s.iter_mut().for_each(|time_s| *time_s += declared.offset);
     rising(&table, time, &times_s, findings);
     if !times_s.iter().any(|time_s| (0.0..=duration_s).contains(time_s)) && findings.error_count() == 0 {
-        let found = table.error(0, time, "no row lies within the scenario", findings);
-        findings.push(found.help("`offset` is added to the times of the file"));
+        let found = table.error(0, time, MeasuredProblem::NoRowWithin.to_string(), findings);
+        findings.push(found.help(MeasuredProblem::OffsetIsAdded.to_string()));
     }
     let measurement = |(signal, values): (&MeasuredSignal, Vec<f64>)| Measurement {
         file: declared.file.clone(),
@@ -140,6 +140,15 @@ fn of_file(
         values,
     };
     Some(declared.signals.iter().zip(numbers).map(measurement).collect())
+}
+
+/// What is wrong with a file of measurements, and what its scenario says of its times.
+#[derive(Debug, thiserror::Error)]
+enum MeasuredProblem {
+    #[error("no row lies within the scenario")]
+    NoRowWithin,
+    #[error("`offset` is added to the times of the file")]
+    OffsetIsAdded,
 }
 
 /// A measurement that is compared with a run while it is sampled.

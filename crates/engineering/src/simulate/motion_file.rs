@@ -88,11 +88,16 @@ fn rows(
     rising(&table, time, times, findings);
     plausible::check_driving(project, &table, (value, values.dimension), values_at, findings);
     if times.len() < 2 && findings.error_count() == 0 {
-        let what = if std::ptr::eq(values, &POSITION) { "motion" } else { "signal" };
-        findings.push(RawFinding::error(table.header_place(), format!("a {what} needs two rows at least")));
+        let of = if std::ptr::eq(values, &POSITION) { "motion" } else { "signal" };
+        findings.push(RawFinding::error(table.header_place(), TooFewRows(of).to_string()));
     }
     Some(times.iter().copied().zip(values_at.iter().copied()).collect())
 }
+
+/// A file of a motion or a signal with less than two rows.
+#[derive(Debug, thiserror::Error)]
+#[error("a {0} needs two rows at least")]
+struct TooFewRows(&'static str);
 
 /// Reports the first time that is not after the one before.
 pub(super) fn rising(table: &MeasuredTable, column: &Column, times: &[f64], findings: &mut Findings) {

@@ -10,19 +10,59 @@ const BEYOND: f64 = 10.0;
 /// The range of what would be plausible, over what the rig holds.
 const USUAL: [f64; 2] = [1e-3, 1.5];
 
-/// What the rig holds of a quantity, in SI, and in words.
-fn held(actuator: &DeclaredActuator, dimension: &Dimension) -> Option<(f64, &'static str)> {
+/// What holds a quantity in a rig, as a clause before its value.
+#[derive(Clone, Copy, Debug, thiserror::Error)]
+enum Holder {
+    #[error("the motor holds")]
+    Motor,
+    #[error("the cylinder holds")]
+    Cylinder,
+    #[error("the stroke is")]
+    Stroke,
+    #[error("the nominal command is")]
+    Command,
+    #[error("the supply has")]
+    Supply,
+}
+
+/// A column that no rig of this size has.
+#[derive(Debug, thiserror::Error)]
+#[error("`{heading}` reaches {}{reached} {unit}, and {holder} {held}", if *is_small { "only " } else { "" })]
+struct ImplausibleColumn {
+    heading: String,
+    is_small: bool,
+    reached: String,
+    unit: String,
+    holder: Holder,
+    held: String,
+}
+
+/// What to do about such a column.
+#[derive(Debug, thiserror::Error)]
+enum ColumnCure {
+    #[error("is it the right column, in the unit that its heading says?")]
+    CheckColumn,
+    #[error("these numbers would be plausible in {0}: correct the heading")]
+    OtherUnit(String),
+    #[error(
+        "these numbers would be plausible in {0}: correct the heading; forces that are so small are stated in the project, as steps, ramps or sines"
+    )]
+    OtherUnitOfSmall(String),
+}
+
+/// What the rig holds of a quantity, in SI, and the part of it.
+fn held(actuator: &DeclaredActuator, dimension: &Dimension) -> Option<(f64, Holder)> {
     let is = |one: &Dimension| std::ptr::eq(dimension, one);
     let pressure = actuator.supply.pressure;
     match &actuator.motor {
-        Some(motor) if is(&TORQUE) => Some((motor.displacement * pressure, "the motor holds")),
+        Some(motor) if is(&TORQUE) => Some((motor.displacement * pressure, Holder::Motor)),
         None if is(&FORCE) => {
             let [a, b] = actuator.cylinder.effective_areas_m2();
-            Some((a.max(b) * pressure, "the cylinder holds"))
+            Some((a.max(b) * pressure, Holder::Cylinder))
         }
-        None if is(&LENGTH) => Some((actuator.stroke()?, "the stroke is")),
-        _ if is(&VOLTAGE) => Some((actuator.valve.nominal_voltage, "the nominal command is")),
-        _ if is(&PRESSURE) => Some((pressure, "the supply has")),
+        None if is(&LENGTH) => Some((actuator.stroke()?, Holder::Stroke)),
+        _ if is(&VOLTAGE) => Some((actuator.valve.nominal_voltage, Holder::Command)),
+        _ if is(&PRESSURE) => Some((pressure, Holder::Supply)),
         _ => None,
     }
 }
@@ -65,7 +105,7 @@ fn doubt(
     findings: &mut Findings,
 ) {
     let held = project.actuator.as_ref().and_then(|actuator| held(actuator, dimension));
-    let Some((held, words)) = held.filter(|(held, _)| *held > 0.0) else { return };
+    let Some((held, holder)) = held.filter(|(held, _)| *held > 0.0) else { return };
     let most =
         values.iter().filter(|value| !value.is_nan()).fold(0.0, |most: f64, value| most.max(value.abs()));
     let is_small = drives && is_of_full_scale(dimension) && most > 0.0 && most < USUAL[0] * held;
@@ -84,24 +124,21 @@ fn doubt(
             .filter(would_do)
             .copied()
             .collect();
-    let heading = table.heading(column);
+    let heading = table.heading(column).to_string();
     let reached = display(most / stated, &crate::quantity::RATIO, 4);
     if is_small && units.is_empty() {
         return;
     }
-    let only = if is_small { "only " } else { "" };
     let held = display(held, dimension, 4);
-    let message = format!("`{heading}` reaches {only}{reached} {}, and {words} {held}", column.unit);
+    let unit = column.unit.to_string();
+    let problem = ImplausibleColumn { heading, is_small, reached, unit, holder, held };
     let place = table.headings.get(column.index).map(|heading| heading.place).unwrap_or_default();
-    let found = RawFinding::error(place, message);
+    let found = RawFinding::error(place, problem.to_string());
     let units = units.join(" or ");
-    findings.push(match (units.is_empty(), is_small) {
-        (true, _) => found.help("is it the right column, in the unit that its heading says?"),
-        (false, false) => {
-            found.help(format!("these numbers would be plausible in {units}: correct the heading"))
-        }
-        (false, true) => found.help(format!(
-            "these numbers would be plausible in {units}: correct the heading; forces that are so small are stated in the project, as steps, ramps or sines"
-        )),
-    });
+    let cure = match (units.is_empty(), is_small) {
+        (true, _) => ColumnCure::CheckColumn,
+        (false, false) => ColumnCure::OtherUnit(units),
+        (false, true) => ColumnCure::OtherUnitOfSmall(units),
+    };
+    findings.push(found.help(cure.to_string()));
 }

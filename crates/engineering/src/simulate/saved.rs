@@ -139,10 +139,8 @@ impl SavedState {
     /// As the text of a file.
     pub fn text(&self, scenario: &str, sha256: &str) -> String {
         let name = scenario.replace('\\', "\\\\").replace('"', "\\\"");
-        let mut text =
-            "# The state at the end of a scenario: start = { file = \"...\" } goes on from here.\n"
-                .to_string();
-        let _ = writeln!(text, "schema = 1\nproject_sha256 = \"{sha256}\"\nscenario = \"{name}\"");
+        let mut text = include_str!("saved_head.toml").to_string();
+        let _ = writeln!(text, "project_sha256 = \"{sha256}\"\nscenario = \"{name}\"");
         text.push_str("time_s = ");
         number(&mut text, self.time_s);
         text.push('\n');
@@ -199,16 +197,34 @@ fn moved_before(root: &TreeNode) -> Option<(f64, Place)> {
     }
 }
 
+/// What is wrong with a saved state.
+#[derive(Debug, thiserror::Error)]
+enum SavedProblem {
+    #[error(
+        "the setting of the accumulators has moved by {before} at the end of that run, and by {begins} at the beginning of this one: \
+         let `setting_change` begin there, with `{{ at = \"0 s\", change = {before} }}`"
+    )]
+    SettingJumps { before: String, begins: String },
+    #[error("unknown key `{0}` in a saved state")]
+    UnknownKey(String),
+    #[error("a saved state says `schema = 1`")]
+    NoSchema,
+    #[error("`random` is missing: 16 hexadecimal digits")]
+    NoRandom,
+    #[error("`{0}` must be a finite number")]
+    NotFinite(String),
+    #[error("the state `{0}` is missing")]
+    NoState(String),
+    #[error("this machine and its controller have no state `{0}`")]
+    UnknownState(String),
+}
+
 /// Refuses a setting that would jump from where the run before left it.
 fn goes_on(root: &TreeNode, setting_change: f64, findings: &mut Findings) {
     let (before, place) = moved_before(root).unwrap_or((0.0, root.place));
     if (before - setting_change).abs() > SAME_SETTING {
         let [before, begins] = [before, setting_change].map(|change| significant(change, 6));
-        let message = format!(
-            "the setting of the accumulators has moved by {before} at the end of that run, and by {begins} at the beginning of this one: \
-             let `setting_change` begin there, with `{{ at = \"0 s\", change = {before} }}`"
-        );
-        findings.push(RawFinding::error(place, message));
+        findings.push(RawFinding::error(place, SavedProblem::SettingJumps { before, begins }.to_string()));
     }
 }
 
@@ -216,14 +232,12 @@ fn goes_on(root: &TreeNode, setting_change: f64, findings: &mut Findings) {
 fn taken(root: &TreeNode, bench: &ControlledMachine, findings: &mut Findings) -> SavedState {
     let known = ["schema", "project_sha256", "scenario", "time_s", "random", "state"];
     for entry in root.entries().iter().filter(|entry| !known.contains(&entry.key.as_str())) {
-        findings.push(RawFinding::error(
-            entry.key_place,
-            format!("unknown key `{}` in a saved state", entry.key),
-        ));
+        let problem = SavedProblem::UnknownKey(entry.key.clone());
+        findings.push(RawFinding::error(entry.key_place, problem.to_string()));
     }
     match root.get("schema").map(|entry| &entry.node.value) {
         Some(TreeValue::Number(1.0)) => {}
-        _ => findings.push(RawFinding::error(root.place, "a saved state says `schema = 1`")),
+        _ => findings.push(RawFinding::error(root.place, SavedProblem::NoSchema.to_string())),
     }
     let random = match root.get("random").map(|entry| &entry.node.value) {
         Some(TreeValue::Text(text)) => u64::from_str_radix(text, 16).ok(),
@@ -234,7 +248,7 @@ fn taken(root: &TreeNode, bench: &ControlledMachine, findings: &mut Findings) ->
         Control::Continuous(_) | Control::Open(_) => None,
     };
     if memories.is_some() && random.is_none() {
-        findings.push(RawFinding::error(root.place, "`random` is missing: 16 hexadecimal digits"));
+        findings.push(RawFinding::error(root.place, SavedProblem::NoRandom.to_string()));
     }
     let state = root.get("state").map(|entry| &entry.node);
     let place = state.map_or(root.place, |node| node.place);
@@ -243,11 +257,12 @@ fn taken(root: &TreeNode, bench: &ControlledMachine, findings: &mut Findings) ->
         let value = match state.and_then(|node| node.get(&name)).map(|entry| &entry.node) {
             Some(TreeNode { value: TreeValue::Number(value), .. }) if value.is_finite() => Some(*value),
             Some(node) => {
-                findings.push(RawFinding::error(node.place, format!("`{name}` must be a finite number")));
+                findings
+                    .push(RawFinding::error(node.place, SavedProblem::NotFinite(name.clone()).to_string()));
                 None
             }
             None => {
-                findings.push(RawFinding::error(place, format!("the state `{name}` is missing")));
+                findings.push(RawFinding::error(place, SavedProblem::NoState(name.clone()).to_string()));
                 None
             }
         };
@@ -267,8 +282,8 @@ fn taken(root: &TreeNode, bench: &ControlledMachine, findings: &mut Findings) ->
     };
     for entry in state.map(TreeNode::entries).unwrap_or_default() {
         if !known.contains(&entry.key) {
-            let message = format!("this machine and its controller have no state `{}`", entry.key);
-            findings.push(RawFinding::error(entry.key_place, message));
+            let problem = SavedProblem::UnknownState(entry.key.clone());
+            findings.push(RawFinding::error(entry.key_place, problem.to_string()));
         }
     }
     taken

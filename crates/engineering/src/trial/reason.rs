@@ -199,7 +199,8 @@ pub enum NoRig {
 }
 
 /// A parameter that the nearest rig does not have.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{name} comes to {found:.4e} and not to {wanted:.4e}")]
 pub struct MissedParameter {
     /// Name of the parameter.
     pub name: String,
@@ -210,8 +211,5 @@ pub struct MissedParameter {
 }
 
 fn missed(parameters: &[MissedParameter]) -> String {
-    let of = |one: &MissedParameter| {
-        format!("{} comes to {:.4e} and not to {:.4e}", one.name, one.found, one.wanted)
-    };
-    parameters.iter().map(of).collect::<Vec<_>>().join("; ")
+    parameters.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
 }
