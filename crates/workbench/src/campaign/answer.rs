@@ -110,7 +110,7 @@ fn requirement(one: &CampaignRequirement) -> Object {
     let wish = &one.wish;
     let object = Object::new()
         .with("specification", one.number)
-        .with("requirement", required_words(&wish))
+        .with("requirement", required_words(wish))
         .maybe("overshoot_percent", wish.overshoot_percent)
         .maybe("settling_time_s", wish.settling_time_s)
         .maybe("rise_time_s", wish.rise_time_s)
