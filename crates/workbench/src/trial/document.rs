@@ -13,14 +13,15 @@ use crate::simulate::{reached_words, required_words, satisfied_word};
 use crate::verdict_words::agreement_word;
 use phea_qft::verification::Verdict;
 
-/// The agreement in words; where it lacks nothing but the settling time, those that are furthest
-/// apart, of the nonlinear rig and of the linear loop.
+/// The agreement in words; where it lacks nothing but the settling time, with those times.
 fn headline(trial: &Trial) -> String {
     let agreement = trial.agreement();
-    let word = agreement_word(agreement);
-    if agreement != Agreement::AgreesButForSettling {
-        return word.to_string();
-    }
+    let is_but_for_settling = agreement == Agreement::AgreesButForSettling;
+    with_detail(agreement, if is_but_for_settling { settling_apart(trial) } else { None })
+}
+
+/// The settling times that are furthest apart, of the nonlinear rig and of the linear loop.
+fn settling_apart(trial: &Trial) -> Option<String> {
     let both = |run: &TrialRun| {
         let own_s = run.machine.as_ref()?.settling_time_s?;
         let slowest = run.legs.iter().find(|(_, step)| step.settling_time_s == Some(own_s));
@@ -29,15 +30,16 @@ fn headline(trial: &Trial) -> String {
     };
     let apart = |own_s: &f64, linear_s: &f64| (own_s / linear_s).max(linear_s / own_s);
     let furthest = trial.runs.iter().filter_map(both);
-    match furthest.max_by(|(one, of_one, _), (other, of_other, _)| {
+    let (own_s, linear_s, step) = furthest.max_by(|(one, of_one, _), (other, of_other, _)| {
         apart(one, of_one).total_cmp(&apart(other, of_other))
-    }) {
-        Some((own_s, linear_s, step)) => {
-            let [own, linear] = [own_s, linear_s].map(|time_s| DisplayUnit::MILLISECOND.text(time_s, 3));
-            format!("{word}: {own} for the linear {linear} ({BAND_PERCENT} %, {step})")
-        }
-        None => word.to_string(),
-    }
+    })?;
+    let [own, linear] = [own_s, linear_s].map(|time_s| DisplayUnit::MILLISECOND.text(time_s, 3));
+    Some(format!("{own} for the linear {linear} ({BAND_PERCENT} %, {step})"))
+}
+
+fn with_detail(agreement: Agreement, detail: Option<String>) -> String {
+    let word = agreement_word(agreement);
+    detail.map_or(word.to_string(), |detail| format!("{word}: {detail}"))
 }
 
 /// A trial, with its figure if that has a name and a title.
@@ -268,11 +270,20 @@ fn figure(trial: &Trial, [name, title]: [&str; 2]) -> Option<Figure> {
     Some(chart.draw(&Words::new(name, title, caption)))
 }
 
-/// The same in a few words: the word, and the machine that is worst.
+/// The agreement in a few words: the word, and what it rests on.
 pub(crate) fn words(trial: &Trial) -> String {
-    let word = headline(trial);
-    match trial.runs.iter().find(|run| run.agreement == trial.agreement()) {
-        Some(run) if run.agreement >= Agreement::Differs => format!("{word}: {}", run_name(run)),
-        _ => word,
+    with_detail(trial.agreement(), agreement_detail(trial))
+}
+
+/// The settling times that are furthest apart where nothing else is, or the machine that is worst;
+/// `None` where every run agrees.
+pub(crate) fn agreement_detail(trial: &Trial) -> Option<String> {
+    let agreement = trial.agreement();
+    match agreement {
+        Agreement::Agrees => None,
+        Agreement::AgreesButForSettling => settling_apart(trial),
+        Agreement::Differs | Agreement::Contradicts => {
+            trial.runs.iter().find(|run| run.agreement == agreement).map(run_name)
+        }
     }
 }

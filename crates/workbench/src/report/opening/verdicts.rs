@@ -113,8 +113,7 @@ fn of_machine(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
     };
     rows.extend(row(tried, sides, |side| {
         let trial = side.trial?;
-        let words = trial::words(trial);
-        let which = words.split_once(": ").map_or(String::new(), |(_, which)| format!(": {which}"));
+        let which = trial::agreement_detail(trial).map_or(String::new(), |detail| format!(": {detail}"));
         Some(Cell::agreement(trial.agreement()).then(Cell::from(which)))
     }));
     rows.extend(row("every scenario driven to its end", sides, |side| Some(driven(side.runs?))));
