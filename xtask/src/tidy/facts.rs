@@ -1,5 +1,4 @@
-//! The crates below the workbench return facts and no sentences: a text of four words or more is
-//! the message of an error type, or of a test.
+//! The crates below the workbench return facts: a text of four words is the message of an error.
 
 use super::Violation;
 use crate::repository::Repository;
