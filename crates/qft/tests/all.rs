@@ -11,7 +11,6 @@ mod family;
 mod fed_back;
 mod inner_feedback;
 mod inner_loop;
-mod kernels;
 mod manual_shaping;
 mod measured_discs;
 mod prefilter;

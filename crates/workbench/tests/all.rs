@@ -42,7 +42,6 @@ mod ideal_valve;
 mod impedance;
 mod impossible;
 mod json_contract;
-mod kernels;
 mod kinks_unfollowed;
 mod line_as_recorded;
 mod line_choice;

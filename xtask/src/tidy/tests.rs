@@ -147,10 +147,9 @@ fn files_are_named_and_tests_are_built() {
     let [lost, fine] = ["crates/a/tests/laws/lost.rs", "crates/a/tests/laws/limits.rs"];
     breaks("layout", (lost, ""), (fine, ""), &others);
     let unbuilt = "[package]\nname = \"a\"\n\n[lib]\ntest = false\n";
-    let others =
-        [("crates/a/Cargo.toml", unbuilt), ("crates/a/src/limit.rs", "#[cfg(test)]\nmod tests {}\n")];
-    let path = "crates/a/tests/kernels.rs";
-    breaks("layout", (path, ""), (path, "#[path = \"../src/limit.rs\"]\nmod limit;\n"), &others);
+    let others = [("crates/a/src/limit.rs", "#[cfg(test)]\nmod tests {}\n")];
+    let path = "crates/a/Cargo.toml";
+    breaks("layout", (path, unbuilt), (path, &unbuilt.replace("test = false", "")), &others);
 }
 
 #[test]
