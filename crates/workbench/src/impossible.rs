@@ -1,7 +1,7 @@
 //! Requirements that no loop can satisfy, in sentences, each with what would satisfy it.
 
 use phea_engineering::design::Explanation;
-use phea_engineering::impossible::{Impossibilities, Impossibility};
+use phea_engineering::impossible::Impossibility;
 use phea_qft::design::Finding;
 
 use crate::explanation::explanation_sentence;
@@ -12,15 +12,18 @@ use crate::quantity::{Units, significant};
 use crate::robust::RobustProblem;
 use crate::specification::{self, stated};
 
-/// The requirements of a project that no loop can satisfy, each at its key.
-pub(crate) fn late_of_all(impossible: &Impossibilities, units: &Units) -> Vec<LateError> {
-    let Impossibilities { found, problem } = impossible;
-    let of = |one: &Impossibility| match one {
-        Impossibility::CrossedLimits(error) => Some(specification::late(error)),
-        Impossibility::Step(step) => Some(late_of_step(step, units)),
-        Impossibility::Plants(path, finding) => Some(of_plants(path, finding, problem.as_ref()?)),
-    };
-    found.iter().filter_map(of).collect()
+/// A requirement of a project that no loop can satisfy, at its key; `None` for what plants forbid
+/// where there is no robust problem.
+pub(crate) fn late_of(
+    one: &Impossibility,
+    problem: Option<&RobustProblem>,
+    units: &Units,
+) -> Option<LateError> {
+    Some(match one {
+        Impossibility::CrossedLimits(error) => specification::late(error),
+        Impossibility::Step(step) => late_of_step(step, units),
+        Impossibility::Plants(path, finding) => of_plants(path, finding, problem?),
+    })
 }
 
 /// What a few plants forbid, with the first of them.

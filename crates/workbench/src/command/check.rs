@@ -6,7 +6,7 @@ use super::CommandError;
 use super::alternatives::read_alternatives;
 use super::impossible::Impossible;
 use super::unprinted::Unprinted;
-use crate::caveat::{self, caveats};
+use crate::caveat::{self, Caveat, caveats};
 use crate::derived::{self, derive};
 use crate::document::Document;
 use crate::family::{family, visited_box};
@@ -92,9 +92,9 @@ fn scenarios(source: &dyn Source, loaded: &Loaded, setup: &Setup<'_>) -> Result<
 fn told_first(setup: &Setup<'_>, impossible: &[Impossible]) -> Vec<String> {
     let outside = setup.outside().map(|(_, parameters)| caveat::outside(&parameters));
     // a required step beyond the rig is among the impossible requirements, with its line
-    let is_new = |sentence: &String| !impossible.iter().any(|one| one.is_stated_by(sentence));
-    let of_loop = caveat::sentences(&caveats(setup), &setup.project.units).into_iter().filter(is_new);
-    outside.into_iter().chain(of_loop).collect()
+    let is_new = |caveat: &Caveat| !impossible.iter().any(|one| one.is_step_of(caveat));
+    let of_loop: Vec<Caveat> = caveats(setup).into_iter().filter(is_new).collect();
+    outside.into_iter().chain(caveat::sentences(&of_loop, &setup.project.units)).collect()
 }
 
 /// A project without an actuator has only its family, which must be valid.

@@ -1,9 +1,10 @@
 //! What no loop can satisfy, with its line, in words and in JSON.
 
-use phea_engineering::impossible::impossibilities;
+use phea_engineering::impossible::{Impossibilities, Impossibility, ImpossibleStep, impossibilities};
 
 use crate::answer::Object;
-use crate::impossible::late_of_all;
+use crate::caveat::{Caveat, UncountedEffect};
+use crate::impossible::late_of;
 use crate::project::{LateError, Loaded, refused};
 use crate::setup::Setup;
 use crate::source::Source;
@@ -11,6 +12,7 @@ use crate::specification::SpecificationError;
 
 /// A requirement that no loop can satisfy.
 pub(super) struct Impossible {
+    fact: Impossibility,
     at: LateError,
     line: usize,
 }
@@ -25,12 +27,13 @@ impl Impossible {
         loaded: &Loaded,
         setup: &Setup<'_>,
     ) -> Result<Vec<Impossible>, SpecificationError> {
-        let found = impossibilities(source, setup)?;
-        let of = |at: LateError| {
+        let Impossibilities { found, problem } = impossibilities(source, setup)?;
+        let of = |fact: Impossibility| {
+            let at = late_of(&fact, problem.as_ref(), &setup.project.units)?;
             let line = refused(source, loaded, &at).diagnostics.first().map_or(0, |found| found.line);
-            Impossible { at, line }
+            Some(Impossible { fact, at, line })
         };
-        Ok(late_of_all(&found, &setup.project.units).into_iter().map(of).collect())
+        Ok(found.into_iter().filter_map(of).collect())
     }
 
     /// The sentence with its line and cure.
@@ -38,9 +41,14 @@ impl Impossible {
         format!("{} (line {}): {}", self.at.message, self.line, self.at.help)
     }
 
-    /// True where a sentence begins with this requirement.
-    pub(super) fn is_stated_by(&self, sentence: &str) -> bool {
-        sentence.starts_with(&self.at.message)
+    /// True if this is the required step beyond the rig that a caveat names.
+    pub(super) fn is_step_of(&self, caveat: &Caveat) -> bool {
+        match (&self.fact, &caveat.effect) {
+            (Impossibility::Step(ImpossibleStep::BeyondReach(own)), UncountedEffect::BeyondReach(other)) => {
+                own == other
+            }
+            _ => false,
+        }
     }
 
     /// The key, what is impossible, and what would satisfy it.
