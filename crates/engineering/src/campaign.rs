@@ -27,7 +27,7 @@ pub use ledger::{RequestedRuns, RowStore, Shard};
 pub use plan::{BeyondBox, Draw, FamilyBox, Plan};
 pub use range::VariedRange;
 pub use required::{CampaignRequirement, SatisfiedRuns};
-pub use row::{LUMP_NAMES, ROW_METRICS, Ran, Row, RowOutcome, STATUS_WORDS};
+pub use row::{LUMP_NAMES, ROW_METRICS, Ran, Row, RowOutcome};
 pub use spread::{QUANTILES, Spread};
 pub use statistics::{Bands, Summary, WorstRun};
 pub use workers::Effort;

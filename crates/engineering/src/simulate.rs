@@ -32,6 +32,7 @@ mod repetition;
 mod required;
 mod requirement;
 mod run;
+mod run_status;
 mod saved;
 pub(crate) mod shortest_number;
 mod sum;
@@ -66,11 +67,9 @@ pub use repetition::{
 };
 use run::RunPass;
 pub use run::{BeyondExpansion, Occurrence, ScenarioProblem, ScenarioRun, StoppedRun, UnresolvedMode};
-pub use run::{
-    COMMAND_LIMIT, COMPLETED, DIVERGED, ERRORS_AMPLIFIED, OUTSIDE_MODEL, REPEATED, UNDETERMINED,
-    amplification,
-};
-pub(crate) use run::{outside_model_s, status_word};
+pub use run::{COMMAND_LIMIT, ERRORS_AMPLIFIED, REPEATED, amplification};
+pub(crate) use run::{outside_model_s, run_status};
+pub use run_status::RunStatus;
 pub use saved::{NotSaved, SavedState};
 
 pub use bench::options;

@@ -31,7 +31,7 @@ pub(crate) use frequency::{
     document as frequency_document, files as frequency_files, pictures as frequency_pictures,
 };
 pub(crate) use metrics::{cells_of, label_within, settling_within, shown_in};
-pub(crate) use reasons::unmeasured_words;
+pub(crate) use reasons::{status_words, unmeasured_words};
 pub(crate) use required::{not_judged_words, requirement_sentence, satisfied_word};
 pub(crate) use span::around;
 pub(crate) use together::{NamedRun, at_a_glance, close_ups, measured_together, together};

@@ -12,13 +12,12 @@ use std::path::Path;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use phea_workbench::campaign::{
-    CampaignError, Effort, FamilyBox, Plan, RequestedRuns, Row, RowOutcome, RowStore, STATUS_WORDS, Shard,
-    Summary,
+    CampaignError, Effort, FamilyBox, Plan, RequestedRuns, Row, RowOutcome, RowStore, Shard, Summary,
 };
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, CommandError, Request};
 use phea_workbench::project::{self, Loaded};
 use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{Metric, simulate_project};
+use phea_workbench::simulate::{Metric, RunStatus, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -104,7 +103,7 @@ fn an_open_loop_is_drawn_as_a_closed_one_is() {
     let (source, loaded) = open_loop();
     let plan = Plan::new(&source, &loaded, 1).unwrap();
     let expected = plan.rows(0..45, SCALAR).unwrap();
-    assert!(expected.iter().all(|row| row.status() == "completed"));
+    assert!(expected.iter().all(|row| row.status() == RunStatus::Completed));
     for threads in [1, 2] {
         let rows = plan.rows(0..45, lanes(threads)).unwrap();
         assert_eq!(plan.table(&rows), plan.table(&expected), "{threads} threads");
@@ -274,7 +273,10 @@ fn impossible_draws_are_told_by_their_index() {
     let summary = Summary::of(&plan, &rows);
     assert!(refused > 3 && summary.refused.len() == refused);
     assert_eq!(summary.statuses.iter().sum::<usize>(), 200);
-    assert_eq!(summary.statuses[STATUS_WORDS.iter().position(|word| *word == "refused").unwrap()], refused);
+    assert_eq!(
+        summary.statuses[RunStatus::OF_ROWS.iter().position(|one| *one == RunStatus::Refused).unwrap()],
+        refused
+    );
 }
 
 /// The lumps of a draw are those that `linearize` finds with its settings.
@@ -296,7 +298,7 @@ fn the_start_varies_too_and_what_cannot_vary_is_refused() {
     let place = plan.ranges().iter().position(|range| range.path == "start.position").unwrap();
     assert_eq!((plan.ranges()[place].minimum, plan.ranges()[place].maximum), (0.125, 0.375));
     let rows = plan.rows(0..20, lanes(1)).unwrap();
-    assert!(rows.iter().all(|row| row.status() == "completed"));
+    assert!(rows.iter().all(|row| row.status() == RunStatus::Completed));
     let refused = |settings: &[&str]| {
         let loaded = load(&[&SHORT, settings].concat());
         Plan::new(&source(), &loaded, 1).map(|_| ()).unwrap_err()

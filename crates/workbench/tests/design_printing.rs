@@ -28,7 +28,7 @@ use phea_workbench::project::{
 use phea_workbench::robust::DEFAULT_TOLERANCE_DB;
 use phea_workbench::robust::robust_problem;
 use phea_workbench::setup::Setup;
-use phea_workbench::simulate::ReachedStep;
+use phea_workbench::simulate::{ReachedStep, RunStatus};
 use phea_workbench::source::Memory;
 use phea_workbench::trial::{self, Agreement, HeldRequirement, Leg, StepSize, Trial, TrialFinding, TrialRun};
 
@@ -424,7 +424,7 @@ fn run(view: &ProjectDesign, satisfied: &[bool]) -> TrialRun {
         machine_driven: trial::TrialMachine::Declared,
         size: StepSize::Required,
         plant: None,
-        status: "completed",
+        status: RunStatus::Completed,
         reference_n: [0.0, 1.0],
         linear: None,
         machine: None,

@@ -9,7 +9,7 @@ use phea_dynamics::linear::TransferFunction;
 use phea_hydraulics::linear::{LinearParameters, linear_model};
 use phea_workbench::project::{self, Project};
 use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{Cause, Metrics, simulate_project};
+use phea_workbench::simulate::{Cause, Metrics, RunStatus, simulate_project};
 use phea_workbench::source::Memory;
 
 const HOSE: &str = include_str!("../../../examples/ybitu/hose.toml");
@@ -132,7 +132,7 @@ fn of_the_motion(line: &str, settings: &[String]) -> Metrics {
         .unwrap()
         .remove(0);
     // a loop that the fed gain makes swing for good has its numbers too
-    assert!(run.stopped().is_none_or(|stopped| stopped.word == "diverged"), "{line} {settings:?}");
+    assert!(run.stopped().is_none_or(|stopped| stopped.status == RunStatus::Diverged), "{line} {settings:?}");
     let (_, metrics) = run.windows.into_iter().find(|(window, _)| window.cause == Cause::LoadMotion).unwrap();
     metrics
 }

@@ -8,7 +8,7 @@ use phea_workbench::campaign::{Effort, Plan};
 use phea_workbench::command::{self, Request};
 use phea_workbench::project::{self, LineMotion, LineSegments, Loaded, Refusal};
 use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{ScenarioRun, simulate_project};
+use phea_workbench::simulate::{RunStatus, ScenarioRun, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -249,7 +249,7 @@ fn a_campaign_varies_what_is_no_count() {
         let plan = Plan::new(&Memory::default(), &load(&settings), 1).unwrap();
         let alone = plan.rows(0..6, Effort { threads: 1, lanes: false }).unwrap();
         assert!(
-            alone.iter().all(|row| row.ran().is_some_and(|ran| ran.status == "completed")),
+            alone.iter().all(|row| row.ran().is_some_and(|ran| ran.status == RunStatus::Completed)),
             "{settings:?}"
         );
         assert_eq!(alone, plan.rows(0..6, Effort { threads: 1, lanes: true }).unwrap(), "{settings:?}");

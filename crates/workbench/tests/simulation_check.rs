@@ -6,7 +6,7 @@ use phea_hydraulics::signal::Signal;
 use phea_workbench::command::{self, Request, SimulateRequest};
 use phea_workbench::project::{self, Loaded};
 use phea_workbench::setup::Setup;
-use phea_workbench::simulate::{Metric, ScenarioRun, simulate_checked, simulate_project};
+use phea_workbench::simulate::{Metric, RunStatus, ScenarioRun, simulate_checked, simulate_project};
 use phea_workbench::source::Memory;
 use serde_json::Value;
 
@@ -160,7 +160,7 @@ fn a_check_that_is_stopped_compares_what_there_is() {
         .remove(0);
     assert!(stopped.stopped().is_none());
     let check = stopped.check.unwrap();
-    assert_eq!(check.stopped.unwrap().word, "cancelled");
+    assert_eq!(check.stopped.unwrap().status, RunStatus::Cancelled);
     assert!(check.force.unwrap().time_s <= check.stopped.unwrap().time_s);
     let project = load(&[SHORT]).project;
     let mut watch = |progress: command::Progress| progress.share < 0.25;

@@ -7,7 +7,7 @@ use super::comparison::{ColumnSense, sense_of};
 use super::{JudgedAlternative, NoNumber, no_rig};
 use crate::design::LoopFigures;
 use crate::quantity::DisplayUnit;
-use crate::simulate::{Metrics, ScenarioRun, StoppedRun, UNDETERMINED, Unmeasured};
+use crate::simulate::{Metrics, RunStatus, ScenarioRun, StoppedRun, Unmeasured};
 use crate::specification::SpecificationName;
 
 /// A number of an alternative.
@@ -178,11 +178,11 @@ fn energy_from_supply(run: &ScenarioRun) -> Result<f64, NoNumber> {
 
 /// Why a run has no numbers of the machine; `None` if it has.
 fn without_result(run: &ScenarioRun) -> Option<NoNumber> {
-    if let Some(StoppedRun { time_s, word, .. }) = run.stopped() {
-        return Some(NoNumber::Stopped { time_s, word });
+    if let Some(StoppedRun { time_s, status, .. }) = run.stopped() {
+        return Some(NoNumber::Stopped { time_s, status });
     }
-    match (run.status_word(), run.outside_model_s) {
-        (UNDETERMINED, _) => Some(NoNumber::Undetermined),
+    match (run.run_status(), run.outside_model_s) {
+        (RunStatus::Undetermined, _) => Some(NoNumber::Undetermined),
         (_, Some(time_s)) => Some(NoNumber::OutsideModel { time_s }),
         _ => None,
     }

@@ -1,7 +1,7 @@
 use super::JudgeError;
 use crate::linearize::NoClosedImpedance;
 use crate::parts::PartsUnknown;
-use crate::simulate::Unmeasured;
+use crate::simulate::{RunStatus, Unmeasured};
 
 /// Why a column of an alternative has no number.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +19,7 @@ pub enum NoNumber {
         /// Time of its end, s.
         time_s: f64,
         /// Status of the run.
-        word: &'static str,
+        status: RunStatus,
     },
     /// No solver determines the result of the run.
     Undetermined,

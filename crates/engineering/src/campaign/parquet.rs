@@ -102,7 +102,7 @@ fn contents(columns: &CampaignColumns, rows: &[Row]) -> Vec<ParquetColumn> {
     let mut all = vec![
         whole(&|row| i64::try_from(row.run).ok()),
         text(&|_| Some(columns.mark.clone())),
-        text(&|row| Some(row.status().to_string())),
+        text(&|row| Some(row.status().key().to_string())),
         text(&reason),
         double(&|row| row.ran()?.ended_s),
         whole(&|row| i64::try_from(row.ran()?.steps).ok()),

@@ -18,7 +18,7 @@ use crate::setup::Setup;
 use crate::simulate::{
     COMMAND_LIMIT, ControlledMachine, Divergence, ERRORS_AMPLIFIED, Follower, LineLimits, LineWatch,
     Occurrence, PassAgreement, PassPlan, PassResult, PreparedScenario, REPEATED, Repetition, SimulateError,
-    StoppedRun, amplification, course_of, moved, occurrences, options, outside_model_s, status_word,
+    StoppedRun, amplification, course_of, moved, occurrences, options, outside_model_s, run_status,
 };
 
 /// A run ready to be driven.
@@ -173,7 +173,7 @@ impl Prepared {
             None => {}
         }
         let ran = Ran {
-            status: status_word(stopped, outside_s, undetermined),
+            status: run_status(stopped, outside_s, undetermined),
             ended_s: stopped.map(|stopped| stopped.time_s),
             steps: outcome.work.steps,
             occurrences: kinds,

@@ -3,7 +3,7 @@
 use super::plan::Plan;
 use super::row::{Ran, Row};
 use crate::estimate::NORMAL_95;
-use crate::simulate::{COMPLETED, Metric, NotJudged, ReachedStep, TimeRequirement, TrackingWish, concerned};
+use crate::simulate::{Metric, NotJudged, ReachedStep, RunStatus, TimeRequirement, TrackingWish, concerned};
 
 /// A requirement in time, and how many runs satisfy it.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,7 +92,7 @@ fn reached(ran: &Ran, windows: &[usize]) -> ReachedStep {
     let most = |metric: Metric| {
         let values = windows.iter().map(|window| {
             let number = ran.metrics.get(*window).and_then(|numbers| numbers[metric]);
-            number.filter(|_| ran.status == COMPLETED).unwrap_or(f64::INFINITY)
+            number.filter(|_| ran.status == RunStatus::Completed).unwrap_or(f64::INFINITY)
         });
         values.fold(0.0, f64::max)
     };

@@ -8,8 +8,8 @@ use phea_quantity::Units;
 use super::csv::{Csv, quoted};
 use super::shortest_number;
 use super::simulate::{
-    COMMAND_LIMIT, COMPLETED, Cause, DIVERGED, ERRORS_AMPLIFIED, LINE_OCCURRENCES, Metric, Metrics,
-    OUTSIDE_MODEL, PerMetric, REPEATED, UNDETERMINED, Window,
+    COMMAND_LIMIT, Cause, ERRORS_AMPLIFIED, LINE_OCCURRENCES, Metric, Metrics, PerMetric, REPEATED,
+    RunStatus, Window,
 };
 
 /// The metrics in the order of a row, whose columns keep their places.
@@ -30,21 +30,6 @@ pub const LUMP_NAMES: [&str; 3] = ["hydraulic_stiffness", "flow_gain", "flow_pre
 
 const LUMP_COLUMNS: [&str; 3] =
     ["hydraulic_stiffness_n_per_m", "flow_gain_m3_per_s_v", "flow_pressure_coefficient_m3_per_s_pa"];
-
-/// How a run ended, in the words of a row.
-pub const STATUS_WORDS: [&str; 9] = [
-    COMPLETED,
-    "refused",
-    "step_too_small",
-    "not_finite",
-    "too_many_steps",
-    "unresolved_oscillation",
-    DIVERGED,
-    OUTSIDE_MODEL,
-    UNDETERMINED,
-];
-
-const REFUSED: &str = "refused";
 
 /// Metrics that compare the force with the reference.
 const OF_A_REFERENCE: [Metric; 6] = [
@@ -95,8 +80,8 @@ pub enum RowOutcome {
 /// The results of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ran {
-    /// One of [`STATUS_WORDS`].
-    pub status: &'static str,
+    /// Status of the run.
+    pub status: RunStatus,
     /// When it ended before its time, or diverged, s.
     pub ended_s: Option<f64>,
     /// Accepted steps of the pass that is reported.
@@ -110,10 +95,10 @@ pub struct Ran {
 }
 
 impl Row {
-    /// How it ended, in one of [`STATUS_WORDS`].
-    pub fn status(&self) -> &'static str {
+    /// Status of the run.
+    pub fn status(&self) -> RunStatus {
         match &self.outcome {
-            RowOutcome::Refused(_) => REFUSED,
+            RowOutcome::Refused(_) => RunStatus::Refused,
             RowOutcome::Driven(ran) => ran.status,
         }
     }
@@ -211,7 +196,7 @@ impl CampaignColumns {
     /// A row without its end.
     fn text(&self, row: &Row) -> String {
         let mut csv = Csv::default();
-        csv.cells(&[&row.run, &self.mark, &row.status()]);
+        csv.cells(&[&row.run, &self.mark, &row.status().key()]);
         let ran = row.ran();
         csv.cells(&[&match &row.outcome {
             RowOutcome::Refused(reason) => quoted(&reason.replace(['\n', '\r'], " ")),
@@ -260,7 +245,7 @@ impl CampaignColumns {
         let mut cells = cells.iter().map(String::as_str);
         let run = cells.next()?.parse().ok()?;
         let _mark = cells.next()?;
-        let status = word(&STATUS_WORDS, cells.next()?)?;
+        let status = RunStatus::of_row(cells.next()?)?;
         let reason = cells.next()?.to_string();
         let ended_s = number(cells.next()?)?;
         let steps = cells.next()?;
@@ -281,7 +266,7 @@ impl CampaignColumns {
         if cells.next().is_some() {
             return None;
         }
-        if status == REFUSED {
+        if status == RunStatus::Refused {
             return Some(Row { run, values, lumps, outcome: RowOutcome::Refused(reason) });
         }
         let more = [&COMMAND_LIMIT, &ERRORS_AMPLIFIED, &REPEATED];
@@ -305,10 +290,6 @@ impl CampaignColumns {
 fn check(text: &str) -> String {
     let sum: String = Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect();
     sum.chars().take(CHECK_LENGTH).collect()
-}
-
-fn word(words: &[&'static str], text: &str) -> Option<&'static str> {
-    words.iter().copied().find(|word| *word == text)
 }
 
 /// An empty cell stands for no number; any other must be a number.
@@ -373,7 +354,7 @@ mod tests {
 
     fn driven() -> Row {
         let ran = Ran {
-            status: "too_many_steps",
+            status: RunStatus::TooManySteps,
             ended_s: Some(2.5),
             steps: 17,
             occurrences: vec![INDICATORS[0], COMMAND_LIMIT],

@@ -2,7 +2,8 @@
 
 use super::plan::Plan;
 use super::required::{CampaignRequirement, required};
-use super::row::{LUMP_NAMES, ROW_METRICS, Ran, Row, RowOutcome, STATUS_WORDS, meaningful};
+use super::row::{LUMP_NAMES, ROW_METRICS, Ran, Row, RowOutcome, meaningful};
+use super::simulate::RunStatus;
 use super::spread::{Spread, quantiles, spread};
 use crate::simulate::{Metric, PerMetric};
 use phea_dynamics::order::sort_numbers;
@@ -28,12 +29,12 @@ pub struct WorstRun {
 /// Statistics of the runs of a campaign.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// How many ended in each of [`STATUS_WORDS`].
-    pub statuses: [usize; STATUS_WORDS.len()],
+    /// Number of runs of each status of [`RunStatus::OF_ROWS`].
+    pub statuses: [usize; RunStatus::OF_ROWS.len()],
     /// Runs without a machine, with the reason.
     pub refused: Vec<(u64, String)>,
-    /// Runs that ended before their time, with the word for it and the time in s.
-    pub ended: Vec<(u64, &'static str, f64)>,
+    /// Runs that ended before their time, with their status and the time in s.
+    pub ended: Vec<(u64, RunStatus, f64)>,
     /// Events on the way: kind, number of runs, and the first of them.
     pub occurrences: Vec<(&'static str, usize, u64)>,
     /// For each window, the spread of each metric that occurs in it.
@@ -77,7 +78,8 @@ impl Summary {
             RowOutcome::Driven(_) => None,
         };
         Summary {
-            statuses: STATUS_WORDS.map(|word| rows.iter().filter(|row| row.status() == word).count()),
+            statuses: RunStatus::OF_ROWS
+                .map(|status| rows.iter().filter(|row| row.status() == status).count()),
             refused: rows.iter().filter_map(refused).collect(),
             ended: driven.iter().filter_map(|(run, ran)| Some((*run, ran.status, ran.ended_s?))).collect(),
             occurrences: occurrences(&driven),

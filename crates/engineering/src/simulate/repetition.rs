@@ -7,7 +7,7 @@ use phea_dynamics::simulation::{Amplification, Status, StepCounts};
 use super::check::{FOLD, LARGEST_PART};
 use super::metric::Metric;
 use super::metrics::Measured;
-use super::{Cause, Metrics, StoppedRun, Window};
+use super::{Cause, Metrics, RunStatus, StoppedRun, Window};
 
 /// No pass is made at a smaller tolerance: rounding shows then.
 pub const SMALLEST_TOLERANCE: f64 = 1e-10;
@@ -121,7 +121,9 @@ impl PassResult {
 impl Repetition {
     /// Whether its watcher ended a pass.
     pub fn was_cancelled(&self) -> bool {
-        self.passes.iter().any(|pass| pass.stopped.is_some_and(|stopped| stopped.word == "cancelled"))
+        self.passes
+            .iter()
+            .any(|pass| pass.stopped.is_some_and(|stopped| stopped.status == RunStatus::Cancelled))
     }
 
     /// Whether there is a result: rounding does not decide it, and the last passes agree within a

@@ -1,7 +1,7 @@
 //! What is required in time, held against the steps of the reference in a scenario.
 
 use super::wish::{ReachedStep, TrackingWish};
-use super::{COMPLETED, Cause, Metrics, ScenarioRun, TimeRequirement, Window, time_requirements};
+use super::{Cause, Metrics, RunStatus, ScenarioRun, TimeRequirement, Window, time_requirements};
 use crate::project::Project;
 
 /// A requirement in time, and what the steps of a scenario do of it.
@@ -83,7 +83,7 @@ pub fn concerns(one: &TimeRequirement, window: &Window) -> bool {
 
 /// The worst of these steps of a run.
 fn reached(run: &ScenarioRun, steps: &[usize]) -> ReachedStep {
-    let is_complete = run.status_word() == COMPLETED;
+    let is_complete = run.run_status() == RunStatus::Completed;
     let most = |of: fn(&Metrics) -> super::Measured| {
         let values = steps.iter().map(|&place| {
             let value = run.windows.get(place).and_then(|(_, metrics)| of(metrics).ok());

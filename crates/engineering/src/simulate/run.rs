@@ -22,6 +22,7 @@ use super::measured::{Measurement, Overlay};
 use super::metrics::Metrics;
 use super::record::Record;
 use super::repetition::{self, PassPlan, PassResult, Repetition};
+use super::run_status::RunStatus;
 use super::saved::{self, NotSaved, SavedState};
 use super::{NoLedger, RunLedger, RunOutput, RunTable, SimulateError, ToleranceCheck, Window};
 use crate::project::Scenario;
@@ -126,8 +127,8 @@ impl Occurrence {
 pub struct StoppedRun {
     /// s.
     pub time_s: f64,
-    /// In one word, as in an answer.
-    pub word: &'static str,
+    /// Status of the run.
+    pub status: RunStatus,
     /// The mode whose oscillation would need more steps than are allowed.
     pub mode: Option<UnresolvedMode>,
 }
@@ -153,17 +154,16 @@ impl ScenarioRun {
         matches!(self.status, Status::Cancelled { .. }) || repeating
     }
 
-    /// How it ended, in one word, as in an answer; [`COMPLETED`] for a run whose numbers describe
-    /// the machine.
-    pub fn status_word(&self) -> &'static str {
+    /// Status of the run: completed if its numbers describe the machine.
+    pub fn run_status(&self) -> RunStatus {
         let undetermined = self.repetition.as_ref().is_some_and(|passes| !passes.is_determined());
-        status_word(self.stopped(), self.outside_model_s, undetermined)
+        run_status(self.stopped(), self.outside_model_s, undetermined)
     }
 
     /// Whether it ran to its end, within the validity of its equations, and to a result that its
     /// tolerance determines.
     pub fn is_reliable(&self) -> bool {
-        self.status_word() == COMPLETED
+        self.run_status() == RunStatus::Completed
     }
 
     /// Why and when it ended early or diverged; `None` if it did neither.
@@ -175,24 +175,24 @@ impl ScenarioRun {
 impl StoppedRun {
     /// That of a run to its end that diverges.
     pub fn diverged(divergence: &Divergence) -> StoppedRun {
-        StoppedRun { time_s: divergence.since_s(), word: DIVERGED, mode: None }
+        StoppedRun { time_s: divergence.since_s(), status: RunStatus::Diverged, mode: None }
     }
 
     /// The meaning of a status; `None` for a run that was completed.
     pub fn of(status: Status) -> Option<StoppedRun> {
         let mut mode = None;
-        let (time_s, word) = match status {
+        let time_s = match status {
             Status::Completed => return None,
-            Status::Cancelled { time_s } => (time_s, "cancelled"),
-            Status::StepTooSmall { time_s } => (time_s, "step_too_small"),
-            Status::NotFinite { time_s } => (time_s, "not_finite"),
-            Status::TooManySteps { time_s } => (time_s, "too_many_steps"),
+            Status::Cancelled { time_s }
+            | Status::StepTooSmall { time_s }
+            | Status::NotFinite { time_s }
+            | Status::TooManySteps { time_s } => time_s,
             Status::UnresolvedOscillation { time_s, frequency_rad_per_s, growth_per_s } => {
                 mode = Some(UnresolvedMode { frequency_rad_per_s, growth_per_s });
-                (time_s, "unresolved_oscillation")
+                time_s
             }
         };
-        Some(StoppedRun { time_s, word, mode })
+        Some(StoppedRun { time_s, status: RunStatus::of(status), mode })
     }
 }
 
@@ -412,29 +412,17 @@ pub const ERRORS_AMPLIFIED: &str = "errors_amplified";
 /// What a campaign calls a run that was repeated until its metrics agreed.
 pub const REPEATED: &str = "repeated";
 
-/// Status of a run that ran to its end and diverged.
-pub const DIVERGED: &str = "diverged";
-
-/// Status of a run that ran to its end, and left the validity of its equations on the way.
-pub const OUTSIDE_MODEL: &str = "outside_model";
-
-/// Status of a run that ran to its end, of whose repetitions no two give one result.
-pub const UNDETERMINED: &str = "undetermined";
-
-/// Status of a run that ran to its end, and nothing is wrong with it.
-pub const COMPLETED: &str = "completed";
-
 /// The status of a run: that of its end first.
-pub(crate) fn status_word(
+pub(crate) fn run_status(
     stopped: Option<StoppedRun>,
     outside_model_s: Option<f64>,
     undetermined: bool,
-) -> &'static str {
+) -> RunStatus {
     match (stopped, outside_model_s) {
-        (Some(stopped), _) => stopped.word,
-        (None, Some(_)) => OUTSIDE_MODEL,
-        (None, None) if undetermined => UNDETERMINED,
-        (None, None) => COMPLETED,
+        (Some(stopped), _) => stopped.status,
+        (None, Some(_)) => RunStatus::OutsideModel,
+        (None, None) if undetermined => RunStatus::Undetermined,
+        (None, None) => RunStatus::Completed,
     }
 }
 

@@ -12,7 +12,7 @@ use super::run::{Agreement, BAND_PERCENT, Leg, StepSize, TrialStep};
 use super::steps::Steps;
 use crate::audit::ProjectAudit;
 use crate::robust::RobustProblem;
-use crate::simulate::{DIVERGED, ScenarioRun, SimulateError, TimeRequirement, UNDETERMINED};
+use crate::simulate::{RunStatus, ScenarioRun, SimulateError, TimeRequirement};
 
 /// Motion of a force that counts as settled, as a share of the step.
 const STILL: f64 = 0.01;
@@ -94,8 +94,8 @@ pub(super) fn judge(
         if driven.grows && driven.run.divergence.is_some() {
             return (Agreement::Agrees, TrialFinding::NeitherSettles { overshoots: None });
         }
-        let finding = match stopped.word {
-            DIVERGED => TrialFinding::Diverges(stopped.time_s),
+        let finding = match stopped.status {
+            RunStatus::Diverged => TrialFinding::Diverges(stopped.time_s),
             status => TrialFinding::Ended { time: stopped.time_s, status },
         };
         return (broken, finding);
@@ -129,7 +129,7 @@ pub(super) fn judge(
     if let Some(missed) = missed_in_time(&whole, driven, problem) {
         return (Agreement::Differs, missed);
     }
-    if driven.run.status_word() == UNDETERMINED {
+    if driven.run.run_status() == RunStatus::Undetermined {
         return (Agreement::Differs, overshoots(OvershootNote::Undetermined));
     }
     match met(driven.run).first() {

@@ -3,7 +3,7 @@
 use super::run::Leg;
 use crate::plant_names::NamedPlant;
 use crate::rig::RigError;
-use crate::simulate::SimulateError;
+use crate::simulate::{RunStatus, SimulateError};
 use crate::specification::NamedSpecification;
 
 /// A machine that is driven.
@@ -67,7 +67,7 @@ pub enum TrialFinding {
         /// Time of its end, s.
         time: f64,
         /// Its status.
-        status: &'static str,
+        status: RunStatus,
     },
     /// The force does not settle.
     Unsettled {

@@ -16,7 +16,7 @@ use crate::quantity::Units;
 use crate::robust::RobustProblem;
 use crate::setup::Setup;
 use crate::simulate::{
-    RequiredSteps, RunOutput, ScenarioRun, SimulateError, simulate_into, stepped_references,
+    RequiredSteps, RunOutput, RunStatus, ScenarioRun, SimulateError, simulate_into, stepped_references,
 };
 use crate::source::Source;
 use phea_dynamics::simulation::Attention;
@@ -90,7 +90,7 @@ pub struct TrialRun {
     /// The plant of the audit from which it was made, if any.
     pub plant: Option<NamedPlant>,
     /// Its status: `completed`, or the word of what ended it.
-    pub status: &'static str,
+    pub status: RunStatus,
     /// The reference of the first step, from and to, N; the second returns, the third repeats it.
     pub reference_n: [f64; 2],
     /// What the linear loop predicts; `None` if it has no known response, or grows without bound.
@@ -344,7 +344,7 @@ impl<'a> TriedMachine<'a> {
             machine_driven: self.tried.machine.clone(),
             size,
             plant: self.tried.named.clone(),
-            status: "not_started",
+            status: RunStatus::NotStarted,
             reference_n: [steps.from_n, steps.to_n],
             linear,
             machine: None,
@@ -371,7 +371,7 @@ impl<'a> TriedMachine<'a> {
         let driven = Driven { run, steps, size, legs: &legs, linear, grows };
         let (agreement, finding) = judge(&driven, problem, view);
         TrialRun {
-            status: run.status_word(),
+            status: run.run_status(),
             machine: Some(driven.whole()),
             worst: driven.worst(),
             remaining_amplitude_n: driven.remains().map(|[low, high]| 0.5 * (high - low)),

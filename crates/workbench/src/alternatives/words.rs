@@ -4,7 +4,7 @@ use super::{FeasibilityUnknown, JudgeError, JudgedAlternative, LengthUnknown, No
 use crate::design::verdict_sentence;
 use crate::error::design_error_words;
 use crate::linearize::no_closed_impedance_words;
-use crate::simulate::{DIVERGED, unmeasured_words};
+use crate::simulate::{RunStatus, unmeasured_words};
 use phea_engineering::parts::{PartKind, PartsUnknown, UnstatedPart};
 
 /// The columns by their keys, with their names for people.
@@ -73,10 +73,12 @@ pub(super) fn judge_error_words(error: &JudgeError) -> String {
 pub(super) fn no_number_words(reason: &NoNumber) -> String {
     let fixed = match reason {
         NoNumber::NotJudged(error) => return judge_error_words(error),
-        NoNumber::Stopped { time_s, word: DIVERGED } => {
+        NoNumber::Stopped { time_s, status: RunStatus::Diverged } => {
             return format!("the run diverges from {time_s} s on");
         }
-        NoNumber::Stopped { time_s, word } => return format!("the run ended at {time_s} s: {word}"),
+        NoNumber::Stopped { time_s, status } => {
+            return format!("the run ended at {time_s} s: {}", status.key());
+        }
         NoNumber::OutsideModel { time_s } => {
             return format!("from {time_s} s on the equations of the simulation do not hold");
         }

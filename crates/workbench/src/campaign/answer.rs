@@ -2,12 +2,12 @@
 
 use super::{CampaignRequirement, RequestedRuns};
 use super::{Draw, Plan};
-use super::{LUMP_NAMES, STATUS_WORDS, meaningful};
+use super::{LUMP_NAMES, meaningful};
 use super::{QUANTILES, Spread};
 use super::{Summary, WorstRun};
 use crate::answer::Object;
 use crate::project::Loaded;
-use crate::simulate::{self, ScenarioRun};
+use crate::simulate::{self, RunStatus, ScenarioRun};
 use crate::simulate::{not_judged_words, required_words};
 
 /// What a campaign says to programs. Runs are counted from 0; `until` is beyond the last.
@@ -18,7 +18,8 @@ pub(crate) fn body(plan: &Plan, wanted: RequestedRuns, rows: usize, summary: &Su
         .with("from", runs.start)
         .with("until", runs.end)
         .with("rows", rows);
-    let mut statuses: Vec<_> = STATUS_WORDS.into_iter().zip(summary.statuses).collect();
+    let mut statuses: Vec<_> =
+        RunStatus::OF_ROWS.map(RunStatus::key).into_iter().zip(summary.statuses).collect();
     statuses.sort_unstable();
     let statuses = statuses.into_iter().fold(Object::new(), |all, (word, count)| all.with(word, count));
     let bands = Object::new().with("time_s", summary.bands.times_s.as_slice()).each(
@@ -43,7 +44,7 @@ pub(crate) fn body(plan: &Plan, wanted: RequestedRuns, rows: usize, summary: &Su
             Object::new().with("run", *run).with("reason", reason.as_str())
         })
         .each("ended", &summary.ended, |(run, status, time_s)| {
-            Object::new().with("run", *run).with("status", *status).with("time_s", *time_s)
+            Object::new().with("run", *run).with("status", status.key()).with("time_s", *time_s)
         })
         .each("occurrences", &summary.occurrences, |(kind, runs, first_run)| {
             Object::new().with("kind", *kind).with("runs", *runs).with("first_run", *first_run)

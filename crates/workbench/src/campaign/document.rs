@@ -3,13 +3,13 @@
 use super::Summary;
 use super::{CampaignRequirement, FamilyBox, RequestedRuns};
 use super::{Draw, Plan};
-use super::{LUMP_NAMES, STATUS_WORDS, meaningful};
+use super::{LUMP_NAMES, meaningful};
 use super::{QUANTILES, Spread};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::Loaded;
 use crate::quantity::DisplayUnit;
-use crate::simulate::{self, Metric, ScenarioRun, cause_words, shown_in};
+use crate::simulate::{self, Metric, RunStatus, ScenarioRun, cause_words, shown_in, status_words};
 use crate::simulate::{not_judged_words, reached_words, required_words};
 
 /// Largest number of rejected and ended runs that are listed.
@@ -79,11 +79,11 @@ pub(crate) fn document(
         };
         out.line(format!("Stopped after {rows} of {asked} runs; {next}."));
     }
-    let statuses = STATUS_WORDS.iter().zip(summary.statuses).filter(|(_, count)| *count > 0);
-    out.sentences(statuses.map(|(word, count)| format!("{count} {}", word.replace('_', " "))));
+    let statuses = RunStatus::OF_ROWS.into_iter().zip(summary.statuses).filter(|(_, count)| *count > 0);
+    out.sentences(statuses.map(|(status, count)| format!("{count} {}", status_words(status))));
     out.sentences(summary.refused.iter().take(TOLD).map(|(run, reason)| format!("run {run}: {reason}")));
-    let ended = summary.ended.iter().take(TOLD).map(|(run, word, time_s)| {
-        format!("run {run}: {} at {} s", word.replace('_', " "), significant(*time_s, 4))
+    let ended = summary.ended.iter().take(TOLD).map(|(run, status, time_s)| {
+        format!("run {run}: {} at {} s", status_words(*status), significant(*time_s, 4))
     });
     out.sentences(ended);
     out.sentences(summary.occurrences.iter().map(|(kind, count, first)| {

@@ -14,7 +14,7 @@ use crate::error::CommandError;
 use crate::figure::Figure;
 use crate::grouped::grouped;
 use crate::project::{Distribution, Loaded};
-use crate::simulate::{Cause, Metric, PerMetric, Window, cause_words, shown_in};
+use crate::simulate::{Cause, Metric, PerMetric, Window, cause_words, shown_in, status_words};
 use crate::source::Source;
 
 /// Number of runs where the project states none, and their seed.
@@ -166,8 +166,8 @@ fn document([runs, asked]: [u64; 2], plan: &Plan, summary: &Summary, figures: Ve
     let refused = summary.refused.first().map(|(run, reason)| {
         format!("{} draws do not give a machine, the first is run {run}: {reason}.", summary.refused.len())
     });
-    let ended = summary.ended.iter().take(WORST).map(|(run, word, time_s)| {
-        format!("Run {run} ended at {} s: {}.", significant(*time_s, 4), word.replace('_', " "))
+    let ended = summary.ended.iter().take(WORST).map(|(run, status, time_s)| {
+        format!("Run {run} ended at {} s: {}.", significant(*time_s, 4), status_words(*status))
     });
     let occurred = summary.occurrences.iter().map(|(kind, count, first)| {
         format!("{} in {}, the first is run {first}.", kind.replace('_', " "), counted(*count))

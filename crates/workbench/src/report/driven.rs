@@ -5,8 +5,8 @@ use crate::error::CommandError;
 use crate::project::Project;
 use crate::setup::Setup;
 use crate::simulate::{
-    Cause, DIVERGED, Metric, NamedRun, ScenarioRun, SimulateError, TimeRequirement, TrackingWish, Window,
-    cause_words, cells_of, concerns, simulate_project, time_requirements,
+    Cause, Metric, NamedRun, RunStatus, ScenarioRun, SimulateError, TimeRequirement, TrackingWish, Window,
+    cause_words, cells_of, concerns, simulate_project, status_words, time_requirements,
 };
 use crate::source::Source;
 use phea_dynamics::watch::{Stopped, Watch};
@@ -116,9 +116,9 @@ fn run_of(side: &DrivenSide, index: usize) -> Option<&ScenarioRun> {
 /// The first step and the greatest disturbance of these runs.
 fn told(runs: &[ScenarioRun]) -> Option<String> {
     if let Some((run, stopped)) = runs.iter().find_map(|run| Some((run, run.stopped()?))) {
-        let (word, time) = (stopped.word.replace('_', " "), significant(stopped.time_s, 3));
-        return Some(match stopped.word {
-            DIVERGED => format!("{} diverges from {time} s on", run.name),
+        let (word, time) = (status_words(stopped.status), significant(stopped.time_s, 3));
+        return Some(match stopped.status {
+            RunStatus::Diverged => format!("{} diverges from {time} s on", run.name),
             _ => format!("{} ended at {time} s: {word}", run.name),
         });
     }

@@ -94,7 +94,7 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
     let ended_s = StoppedRun::of(run.status).map(|stopped| stopped.time_s);
     Object::new()
         .with("name", run.name.as_str())
-        .with("status", run.status_word())
+        .with("status", run.run_status().key())
         .told("ended_s", ended_s.ok_or("it ran to its end"))
         .told("divergence", divergence.ok_or("it does not diverge"))
         .told("unresolved_mode", mode.ok_or("every mode that grew was resolved"))

@@ -6,9 +6,9 @@ use super::metrics::{cells_of, label_within, metric_cell};
 use super::repetition::{divergence_words, sentences as doubts, work_words};
 use super::required::requirement_sentences;
 use super::{
-    AdjustmentWork, BeyondExpansion, Cause, GasRange, Metric, Metrics, OUTSIDE_MODEL, Occurrence, Overlay,
-    PerMetric, ScenarioComparison, ScenarioRun, StoppedRun, TimeRequirement, TrackingWish, UNDETERMINED,
-    Window, concerns,
+    AdjustmentWork, BeyondExpansion, Cause, GasRange, Metric, Metrics, Occurrence, Overlay, PerMetric,
+    RunStatus, ScenarioComparison, ScenarioRun, StoppedRun, TimeRequirement, TrackingWish, Window, concerns,
+    status_words,
 };
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
@@ -48,10 +48,10 @@ pub(crate) fn headline(run: &ScenarioRun) -> String {
     let loop_words = if run.open_loop { " open loop" } else { "" };
     match StoppedRun::of(run.status) {
         None => {
-            let word = match run.status_word() {
-                OUTSIDE_MODEL => "completed outside its model",
-                UNDETERMINED => "completed without a result",
-                word => word,
+            let word = match run.run_status() {
+                RunStatus::OutsideModel => "completed outside its model",
+                RunStatus::Undetermined => "completed without a result",
+                status => status_words(status),
             };
             let comma = if run.open_loop && !run.is_reliable() { "," } else { "" };
             format!("{}: {word}{comma}{loop_words} ({work})", run.name)
@@ -64,7 +64,7 @@ pub(crate) fn headline(run: &ScenarioRun) -> String {
 }
 
 fn why(stopped: &StoppedRun) -> String {
-    let told = match (stopped.word, stopped.mode) {
+    let told = match (stopped.status, stopped.mode) {
         (_, Some(mode)) => {
             return format!(
                 "an oscillation at {} rad/s that grows by {} 1/s would take more steps than `simulation.maximum_steps` allows",
@@ -72,9 +72,9 @@ fn why(stopped: &StoppedRun) -> String {
                 significant(mode.growth_per_s, 3)
             );
         }
-        ("cancelled", _) => "stopped",
-        ("step_too_small", _) => "no step is short enough for the tolerance",
-        ("not_finite", _) => "a rate is no longer a number",
+        (RunStatus::Cancelled, _) => "stopped",
+        (RunStatus::StepTooSmall, _) => "no step is short enough for the tolerance",
+        (RunStatus::NotFinite, _) => "a rate is no longer a number",
         _ => "the steps it may take are used up",
     };
     told.to_string()

@@ -1,6 +1,23 @@
 //! Reasons for which a run lacks a number, a saved end, accounts or a closed loop.
 
-use super::{NoClosedLoop, NoLedger, NotSaved, Unmeasured};
+use super::{NoClosedLoop, NoLedger, NotSaved, RunStatus, Unmeasured};
+
+/// Status of a run.
+pub(crate) fn status_words(status: RunStatus) -> &'static str {
+    match status {
+        RunStatus::Completed => "completed",
+        RunStatus::Refused => "refused",
+        RunStatus::StepTooSmall => "step too small",
+        RunStatus::NotFinite => "not finite",
+        RunStatus::TooManySteps => "too many steps",
+        RunStatus::UnresolvedOscillation => "unresolved oscillation",
+        RunStatus::Diverged => "diverged",
+        RunStatus::OutsideModel => "outside model",
+        RunStatus::Undetermined => "undetermined",
+        RunStatus::Cancelled => "cancelled",
+        RunStatus::NotStarted => "not started",
+    }
+}
 
 /// Reason why a number of a run is absent.
 pub(crate) fn unmeasured_words(reason: Unmeasured) -> &'static str {

@@ -1,8 +1,8 @@
 //! Runs that were repeated, and runs that diverge, in an answer and for people.
 
 use super::{
-    Divergence, Measured, Pass, PassAgreement, PassSpread, Repetition, ScenarioRun, shown_in,
-    unmeasured_words,
+    Divergence, Measured, Pass, PassAgreement, PassSpread, Repetition, RunStatus, ScenarioRun, shown_in,
+    status_words, unmeasured_words,
 };
 use crate::answer::{Object, significant};
 use crate::quantity::{DisplayUnit, Units, VOLTAGE, display};
@@ -30,7 +30,7 @@ fn pass(pass: &Pass) -> Object {
     Object::new()
         .with("tolerance", pass.plan.tolerance)
         .with("moved_start", pass.plan.moved)
-        .with("status", pass.stopped.map_or("completed", |stopped| stopped.word))
+        .with("status", pass.stopped.map_or(RunStatus::Completed, |stopped| stopped.status).key())
         .with("steps", pass.work.steps)
         .with("rejected", pass.work.rejected)
         .with("evaluations", pass.work.evaluations)
@@ -160,7 +160,7 @@ fn agreement_words(run: &ScenarioRun, repetition: &Repetition) -> String {
                 format!(
                     ": a pass at a tolerance of {} ended as {}",
                     significant(plan.tolerance, 2),
-                    stopped.word.replace('_', " ")
+                    status_words(stopped.status)
                 )
             });
             format!("the result at a tolerance of {tolerance} could not be confirmed{why}")

@@ -19,7 +19,7 @@ fn row(run: &TrialRun) -> Object {
     Object::new()
         .with("what", run_name(run))
         .maybe("plant", run.plant.clone())
-        .with("status", run.status)
+        .with("status", run.status.key())
         .with("agrees", run.agreement <= Agreement::AgreesButForSettling)
         .with("agreement", agreement_key(run.agreement))
         .with("reason", reason_words(&run.reason, run.units))

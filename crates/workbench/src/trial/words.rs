@@ -131,7 +131,7 @@ pub(crate) fn finding_words(finding: &TrialFinding, units: Units) -> String {
             format!("the nonlinear simulation diverges from {} on", milliseconds(*time))
         }
         TrialFinding::Ended { time, status } => {
-            format!("the run ended after {} as {status}", milliseconds(*time))
+            format!("the run ended after {} as {}", milliseconds(*time), status.key())
         }
         TrialFinding::Unsettled { leg, end } => {
             let words = end.map_or(String::new(), |end| format!(": {}", end_words(end, units)));

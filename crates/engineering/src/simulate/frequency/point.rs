@@ -8,6 +8,7 @@ use phea_dynamics::simulation::{Input, Sampler, SimulationSettings, SinePlan, Si
 use phea_hydraulics::machine::INDICATORS;
 use phea_machine::{Control, Shaken};
 
+use crate::simulate::RunStatus;
 use crate::simulate::SimulateError;
 use crate::simulate::run::{COMMAND_LIMIT, StoppedRun};
 
@@ -47,7 +48,7 @@ pub struct ResponsePoint {
     /// Events on the way, which lie outside the neighbourhood of the equilibrium.
     pub reached: Vec<&'static str>,
     /// In a word, why the simulation ended if it did not settle.
-    pub ended: Option<&'static str>,
+    pub ended: Option<RunStatus>,
 }
 
 impl ResponsePoint {
@@ -129,6 +130,6 @@ pub(super) fn point(
         periods: found.periods,
         steps: found.work.steps,
         reached: found.indicators.iter().map(name).collect(),
-        ended: found.ended.and_then(|status| Some(StoppedRun::of(status)?.word)),
+        ended: found.ended.and_then(|status| Some(StoppedRun::of(status)?.status)),
     }
 }

@@ -11,7 +11,7 @@ use crate::audit::position_words;
 use crate::document::{Cell, StatusMark, Table};
 use crate::quantity::DisplayUnit;
 use crate::report::specifications::demand;
-use crate::simulate::{ScenarioRun, UNDETERMINED, required_overshoot, required_rise, required_settling};
+use crate::simulate::{RunStatus, ScenarioRun, required_overshoot, required_rise, required_settling};
 use crate::specification::numbered;
 use crate::trial;
 use crate::verdict_words::frequency_words;
@@ -152,7 +152,7 @@ fn driven(runs: &[ScenarioRun]) -> Cell {
     if ended < runs.len() {
         return Cell::from("no").marked(false).then(format!(": {ended} of {}", runs.len()));
     }
-    let undetermined = runs.iter().filter(|run| run.status_word() == UNDETERMINED).count();
+    let undetermined = runs.iter().filter(|run| run.run_status() == RunStatus::Undetermined).count();
     match (undetermined, outside) {
         (0, 0) => Cell::from("yes").marked(true),
         (1.., _) => Cell::from("yes")

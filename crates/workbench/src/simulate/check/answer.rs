@@ -3,14 +3,14 @@
 use super::{Difference, Metric, ToleranceCheck};
 use crate::answer::{Object, significant};
 use crate::quantity::Units;
-use crate::simulate::unmeasured_words;
+use crate::simulate::{RunStatus, unmeasured_words};
 
 /// The object `check` of a scenario.
 pub(crate) fn row(check: &ToleranceCheck) -> Object {
     let force = check.force.as_ref().ok_or("the two runs have no sample in common");
     Object::new()
         .with("tolerance", check.tolerance)
-        .with("status", check.stopped.map_or("completed", |stopped| stopped.word))
+        .with("status", check.stopped.map_or(RunStatus::Completed, |stopped| stopped.status).key())
         .with("look_s", check.look_s)
         .told("force_difference_n", force.map(|force| force.difference))
         .told("part_of_peak", force.map(Difference::part_of_peak))

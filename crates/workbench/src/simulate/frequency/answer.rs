@@ -7,6 +7,7 @@ use phea_dynamics::portable;
 
 use super::{MachineResponse, MachineResponses, ResponsePoint};
 use crate::answer::{NumberTable, Object, OutputFile, TableFormat};
+use crate::simulate::RunStatus;
 use crate::simulate::reasons::no_closed_loop_words;
 
 const NO_WINDOW: &str = "the simulation ended before a window did";
@@ -55,7 +56,7 @@ fn row(point: &ResponsePoint, amplitude: &str) -> Object {
         .with("periods", point.periods)
         .with("steps", point.steps)
         .with("reached", point.reached.as_slice())
-        .told("ended", point.ended.ok_or("it did not end early"))
+        .told("ended", point.ended.map(RunStatus::key).ok_or("it did not end early"))
 }
 
 /// A table for each loop.

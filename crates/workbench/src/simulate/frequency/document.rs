@@ -75,7 +75,8 @@ pub(super) fn own(point: &ResponsePoint) -> [f64; 2] {
 /// A remark on a point.
 fn remark(point: &ResponsePoint) -> Option<String> {
     let at = significant(point.frequency_rad_per_s, 4);
-    if let Some(word) = point.ended {
+    if let Some(status) = point.ended {
+        let word = status.key();
         return Some(format!("{at} rad/s: the simulation ended before the force settled ({word})"));
     }
     if !point.settled {
