@@ -8,6 +8,7 @@
 mod formulae;
 mod names;
 mod vocabulary;
+mod words;
 
 use std::borrow::Cow;
 
@@ -15,6 +16,7 @@ use crate::dimension::*;
 use crate::display_unit::DisplayUnit;
 
 pub use vocabulary::Vocabulary;
+pub use words::{MotionSymbols, MotionWords};
 
 /// The motion of a rig.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

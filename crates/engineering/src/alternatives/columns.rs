@@ -48,7 +48,9 @@ impl AlternativeColumns {
     /// force does not settle in one of them.
     pub fn worst(&self, key: &str) -> Option<f64> {
         let columns = || self.0.iter().filter(|(_, column)| column.key == key);
-        if columns().any(|(_, column)| column.value == Err(NoNumber::NoMetric(Unmeasured::NotSettled))) {
+        if columns()
+            .any(|(_, column)| matches!(column.value, Err(NoNumber::NoMetric(Unmeasured::NotSettled, _))))
+        {
             return None;
         }
         let worse = match sense_of(key) {
@@ -194,10 +196,12 @@ fn greatest(run: &ScenarioRun, metric: fn(&Metrics) -> crate::simulate::Measured
     if let Some(reason) = without_result(run) {
         return Err(reason);
     }
+    let motion = run.record.units.motion;
     let values = || run.windows.iter().map(|(_, metrics)| metric(metrics));
     if values().any(|value| value == Err(Unmeasured::NotSettled)) {
-        return Err(NoNumber::NoMetric(Unmeasured::NotSettled));
+        return Err(NoNumber::NoMetric(Unmeasured::NotSettled, motion));
     }
-    let reason = || values().find_map(Result::err).map_or(NoNumber::NoEvent, NoNumber::NoMetric);
+    let reason =
+        || values().find_map(Result::err).map_or(NoNumber::NoEvent, |why| NoNumber::NoMetric(why, motion));
     values().filter_map(Result::ok).reduce(f64::max).ok_or_else(reason)
 }

@@ -46,6 +46,8 @@ pub struct FrontColumn {
 /// Alternatives over a swept number.
 #[derive(Clone, Debug)]
 pub struct Front {
+    /// The motion of all alternatives.
+    pub motion: MotionKind,
     /// The swept key.
     pub path: String,
     /// What people read it in.
@@ -128,6 +130,7 @@ impl FrontPoint {
 
 /// A request that was read.
 pub(super) struct FrontPlan {
+    motion: MotionKind,
     columns: Vec<FrontColumn>,
     path: String,
     unit: DisplayUnit,
@@ -182,7 +185,7 @@ pub(super) fn plan(request: &FrontRequest, motions: Motions) -> Result<FrontPlan
     let count = points(request.sweep.points.or(Some(POINTS)))?;
     let values = values(asked.ends, count, asked.by_ratio());
     let unit = quantity::fitting(asked.ends[0].abs().max(asked.ends[1].abs()), asked.key.dimension);
-    Ok(FrontPlan { columns, path: asked.path, unit, si: asked.key.dimension.si, values })
+    Ok(FrontPlan { motion: motions.rig, columns, path: asked.path, unit, si: asked.key.dimension.si, values })
 }
 
 /// A column by its name in a rig of this motion, or the nearest spelling.
@@ -236,6 +239,7 @@ pub(super) fn swept(
     }
     compare(&mut found, &plan.columns);
     Front {
+        motion: plan.motion,
         path: plan.path.clone(),
         unit: plan.unit,
         si: plan.si,

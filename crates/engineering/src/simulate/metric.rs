@@ -2,7 +2,7 @@
 
 use std::ops::{Index, IndexMut};
 
-use phea_quantity::{Dimension, FORCE, PERCENT, TIME, VOLTAGE};
+use phea_quantity::{Dimension, FORCE, MotionKind, PERCENT, TIME, VOLTAGE};
 
 /// A number that is computed of each event of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,9 +75,12 @@ impl Metric {
         self.row().name
     }
 
-    /// Its heading.
-    pub fn label(self) -> &'static str {
-        self.row().label
+    /// Its heading, of a rig that moves so.
+    pub fn label(self, motion: MotionKind) -> &'static str {
+        match self {
+            Metric::ForcePeak => motion.either("force peak", "torque peak"),
+            _ => self.row().label,
+        }
     }
 
     /// Its dimension.

@@ -1,6 +1,7 @@
 //! The names of limits on closed loops.
 
 use phea_qft::specification::ClosedLoop;
+use phea_quantity::MotionKind;
 
 use super::kind::closed_loop_words;
 
@@ -9,8 +10,8 @@ use super::kind::closed_loop_words;
 pub enum SpecificationName {
     /// The closed loop that a specification of the project limits.
     ClosedLoop(ClosedLoop),
-    /// The effect on the force of rounding the command.
-    RoundedCommand,
+    /// The effect of rounding the command on the force, or the torque of a rig that turns.
+    RoundedCommand(MotionKind),
     /// The effect on the command of rounding the measurement.
     RoundedMeasurement,
 }
@@ -20,7 +21,9 @@ impl SpecificationName {
     pub fn words(self) -> &'static str {
         match self {
             SpecificationName::ClosedLoop(closed_loop) => closed_loop_words(closed_loop),
-            SpecificationName::RoundedCommand => "force error of the rounded command",
+            SpecificationName::RoundedCommand(motion) => {
+                motion.either("force error of the rounded command", "torque error of the rounded command")
+            }
             SpecificationName::RoundedMeasurement => "command error of the rounded measurement",
         }
     }

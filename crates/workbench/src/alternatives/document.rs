@@ -2,7 +2,7 @@
 
 use super::findings::findings;
 use super::front;
-use super::summary::{self, machine};
+use super::summary::{self, machine, motion_of};
 use super::words::{NOT_STATED, column_name, is_unstated, no_number_words};
 use super::{AlternativeColumn, AlternativeColumns, Alternatives, ColumnPart, JudgedAlternative, NoNumber};
 use crate::caveat::outside_parameters;
@@ -74,6 +74,7 @@ fn table(found: &Alternatives) -> Table {
     let names = found.judged.iter().map(|one| one.name.clone());
     let mut rows = Table::grouped_by("", std::iter::once(String::new()).chain(names));
     let all: Vec<AlternativeColumns> = found.judged.iter().map(JudgedAlternative::columns).collect();
+    let motion = motion_of(found);
     let has_rig = found.judged.iter().any(|one| one.linearization.is_ok());
     for part in parts(&all) {
         let keys = keys(&all, &part);
@@ -89,7 +90,7 @@ fn table(found: &Alternatives) -> Table {
         }
         let settling = summary::settling(found.judged.iter(), |run| is_of(run, &part));
         for key in keys {
-            let name = if key == "settling_time_s" { settling.as_str() } else { column_name(key) };
+            let name = if key == "settling_time_s" { settling.as_str() } else { column_name(key, motion) };
             let cells = all.iter().map(|columns| cell(columns, &part, key));
             rows.row(std::iter::once(Cell::from(name)).chain(cells));
         }

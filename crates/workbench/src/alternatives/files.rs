@@ -5,9 +5,10 @@ use phea_engineering::simulate::file_names;
 
 use super::document::{at, parts, port, stable};
 use super::front;
-use super::summary::{groups, machine};
+use super::summary::{groups, machine, motion_of};
 use super::{AlternativeColumns, Alternatives, ColumnPart, JudgedAlternative};
 use crate::answer::{Csv, OutputFile, picture_files, quoted};
+use crate::document::capital;
 use crate::figure::{Figure, FrequencySeries, ImpedanceDiagram, Words};
 use crate::linearize::frequency_grid;
 use crate::project::{IdentifiedUse, Project, print};
@@ -58,10 +59,12 @@ fn forces(file: &str, case: &str, judged: &[JudgedAlternative]) -> Vec<Figure> {
     let driven = |one: &JudgedAlternative| Some((one.name.clone(), one.runs.as_ref().ok()?.first()?.clone()));
     let (names, runs): (Vec<String>, Vec<ScenarioRun>) = judged.iter().filter_map(driven).unzip();
     let Some(first) = runs.first() else { return vec![] };
-    let caption =
-        "Force, command and load pressure of each alternative under the controller designed for it.";
+    let caption = format!(
+        "{}, command and load pressure of each alternative under the controller designed for it.",
+        capital(first.record.units.motion.words().force)
+    );
     let title = format!("{}{case}", first.name);
-    laid_over((file, &title, caption), &names, &runs.iter().collect::<Vec<_>>())
+    laid_over((file, &title, &caption), &names, &runs.iter().collect::<Vec<_>>())
 }
 
 /// The impedance at the load of each alternative, under its controller where that is continuous.
@@ -75,11 +78,18 @@ fn impedances(found: &Alternatives) -> Option<Figure> {
         let grid = frequency_grid(&port.impedance).ok()?;
         Some(FrequencySeries::new(words, &grid, |frequency| port.impedance.at_frequency(frequency)))
     });
-    let chart = ImpedanceDiagram { series: series.collect(), ..ImpedanceDiagram::default() };
+    let chart = ImpedanceDiagram {
+        motion: motion_of(found),
+        series: series.collect(),
+        ..ImpedanceDiagram::default()
+    };
     let words = Words::new(
         "alternatives-impedance",
         "The impedance at the load",
-        "Z = -F_e/(s X_L) of the nominal rig of each alternative under the controller designed for it: how hard it resists a load that moves.",
+        format!(
+            "Z = {} of the nominal rig of each alternative under the controller designed for it: how hard it resists a load that moves.",
+            motion_of(found).symbols().impedance
+        ),
     );
     (!chart.series.is_empty()).then(|| chart.draw(&words))
 }

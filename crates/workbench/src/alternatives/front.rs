@@ -43,7 +43,7 @@ fn column_words(front: &Front, index: usize) -> &str {
     let is_known = front.points.iter().any(|point| matches!(point.values.get(index), Some(Ok(_))));
     match front.columns.get(index) {
         Some(column) if is_known && column.key == SWEPT => &front.path,
-        Some(column) if is_known => column_name(column.key),
+        Some(column) if is_known => column_name(column.key, front.motion),
         Some(column) => column.key,
         None => "",
     }
@@ -128,7 +128,7 @@ pub(super) fn json(front: &Front) -> Object {
 }
 
 fn row(front: &Front, point: &FrontPoint) -> Object {
-    let reason = point.feasible.as_ref().err().map_or(String::new(), unknown_words);
+    let reason = point.feasible.as_ref().err().map_or(String::new(), |why| unknown_words(why, front.motion));
     let mut object = Object::new()
         .with("alternative", point.alternative.as_str())
         .with("value", point.value)

@@ -3,7 +3,7 @@
 
 use super::{AlternativeColumns, Alternatives, JudgedAlternative};
 use crate::document::{Cell, Table};
-use crate::quantity::significant;
+use crate::quantity::{MotionKind, significant};
 use crate::simulate::{ScenarioRun, settling_within};
 use crate::trial::agreement_word;
 
@@ -23,6 +23,11 @@ const COMPARED_AT_A_GLANCE: [(&str, &str); 9] = [
     ("parts_price", "price"),
     ("parts_mass_kg", "mass"),
 ];
+
+/// The motion of all alternatives: none replaces its cylinder by a motor.
+pub(super) fn motion_of(found: &Alternatives) -> MotionKind {
+    found.judged.first().map(|one| one.loaded.project.motion()).unwrap_or_default()
+}
 
 /// The table.
 pub(super) fn table(found: &Alternatives) -> Table {

@@ -4,6 +4,7 @@ use super::{FeasibilityUnknown, JudgeError, JudgedAlternative, LengthUnknown, No
 use crate::design::verdict_sentence;
 use crate::error::design_error_words;
 use crate::linearize::no_closed_impedance_words;
+use crate::quantity::MotionKind;
 use crate::simulate::{DIVERGED, unmeasured_words};
 use phea_engineering::parts::{PartKind, PartsUnknown, UnstatedPart};
 
@@ -43,18 +44,26 @@ const COLUMN_NAMES: [(&str, &str); 32] = [
     ("energy_from_supply_j", "energy from supply"),
 ];
 
+/// Those of a motor that are called otherwise.
+const OF_A_MOTOR: [(&str, &str); 3] = [
+    ("stiffness_minimum_n_per_m", "least K_θ"),
+    ("stiffness_maximum_n_per_m", "greatest K_θ"),
+    ("moving_mass_kg", "inertia"),
+];
+
 /// The name of a column for people.
-pub(super) fn column_name(key: &'static str) -> &'static str {
-    COLUMN_NAMES.iter().find(|(known, _)| *known == key).map_or(key, |(_, name)| name)
+pub(super) fn column_name(key: &'static str, motion: MotionKind) -> &'static str {
+    let of_a_motor = OF_A_MOTOR.iter().filter(|_| motion.is_rotary());
+    of_a_motor.chain(&COLUMN_NAMES).find(|(known, _)| *known == key).map_or(key, |(_, name)| name)
 }
 
 /// The name of a measure of dominance for people.
-pub(super) fn measure_name(key: &'static str) -> &'static str {
+pub(super) fn measure_name(key: &'static str, motion: MotionKind) -> &'static str {
     match key {
         "parts_price" => "price",
         "parts_mass_kg" => "mass",
         "order" => "order",
-        key => column_name(key),
+        key => column_name(key, motion),
     }
 }
 
@@ -85,7 +94,7 @@ pub(super) fn no_number_words(reason: &NoNumber) -> String {
         NoNumber::NotKnownStable => "not known of a family that is not known to be stable",
         NoNumber::NothingToJudgeBy => "there is nothing by which to judge it",
         NoNumber::Undetermined => "no solver determines the result of the run",
-        NoNumber::NoMetric(reason) => unmeasured_words(*reason),
+        NoNumber::NoMetric(reason, motion) => unmeasured_words(*reason, *motion),
         NoNumber::NoEvent => "no event begins in the scenario",
         NoNumber::NoHose => "no hose of the catalogue is accepted",
         NoNumber::Length(reason) => length_unknown_words(*reason),
@@ -154,17 +163,17 @@ fn part_name(part: &UnstatedPart) -> String {
 /// Why it is not known whether an alternative satisfies every specification.
 pub(super) fn undecided_words(one: &JudgedAlternative) -> String {
     match &one.design {
-        Ok(view) => verdict_sentence(&view.verdict()),
+        Ok(view) => verdict_sentence(&view.verdict(), one.loaded.project.motion()),
         Err(reason) => judge_error_words(reason),
     }
 }
 
 /// The same of a point of a front.
-pub(super) fn unknown_words(reason: &FeasibilityUnknown) -> String {
+pub(super) fn unknown_words(reason: &FeasibilityUnknown, motion: MotionKind) -> String {
     match reason {
         FeasibilityUnknown::NotPrepared(error) => error.to_string(),
         FeasibilityUnknown::NotDesigned(error) => judge_error_words(error),
-        FeasibilityUnknown::Undecided(verdict) => verdict_sentence(verdict),
+        FeasibilityUnknown::Undecided(verdict) => verdict_sentence(verdict, motion),
     }
 }
 

@@ -59,8 +59,11 @@ fn at_settings(
         [("stiffness.at_setting_0", 0.0), ("stiffness.at_setting_half", 0.5), ("stiffness.at_setting_1", 1.0)]
     {
         let there = components_at_setting(components, setting);
-        let equation = "K_H = A_A^2/C_A + A_B^2/C_B, slow, at this setting";
-        list.add(name, "K_H", stiffness(&there, point), "N/m", equation);
+        let equation = list.motion.either(
+            "K_H = A_A^2/C_A + A_B^2/C_B, slow, at this setting",
+            "K_θ = D^2 (1/C_A + 1/C_B), slow, at this setting",
+        );
+        list.add(name, list.motion.symbols().stiffness, stiffness(&there, point), "N/m", equation);
     }
 }
 
@@ -100,10 +103,17 @@ pub(super) fn accumulators(project: &Project, rig: &Rig, list: &mut List) {
         let chambers = components.chamber_compliance(pressures, StiffeningMember::Nominal);
         hydraulic_stiffness(&chambers, point.position)
     };
-    let with = "K_H = A_A^2/C_A + A_B^2/C_B, C_A and C_B with C_acc";
-    list.add("stiffness.with_accumulators", "K_H", at(components, &rig.point), "N/m", with);
-    let without = "K_H = A_A^2/C_A + A_B^2/C_B, C_A and C_B without C_acc";
-    list.add("stiffness.without_accumulators", "K_H", at(&bare, &rig.point), "N/m", without);
+    let symbols = list.motion.symbols();
+    let with = list.motion.either(
+        "K_H = A_A^2/C_A + A_B^2/C_B, C_A and C_B with C_acc",
+        "K_θ = D^2 (1/C_A + 1/C_B), C_A and C_B with C_acc",
+    );
+    list.add("stiffness.with_accumulators", symbols.stiffness, at(components, &rig.point), "N/m", with);
+    let without = list.motion.either(
+        "K_H = A_A^2/C_A + A_B^2/C_B, C_A and C_B without C_acc",
+        "K_θ = D^2 (1/C_A + 1/C_B), C_A and C_B without C_acc",
+    );
+    list.add("stiffness.without_accumulators", symbols.stiffness, at(&bare, &rig.point), "N/m", without);
     at_settings(components, &at, &rig.point, list);
     let Some(ChargedRange { least, greatest }) = charged_range(rig) else { return };
     let ends = [
@@ -115,9 +125,10 @@ pub(super) fn accumulators(project: &Project, rig: &Rig, list: &mut List) {
             greatest,
         ),
     ];
+    let there = list.motion.either("K_H = A_A^2/C_A + A_B^2/C_B there", "K_θ = D^2 (1/C_A + 1/C_B) there");
     for (force, stiffness, equation, point) in ends {
         let Some(point) = point else { continue };
-        list.add(force, "F_H", point.hydraulic_force, "N", equation);
-        list.add(stiffness, "K_H", at(components, &point), "N/m", "K_H = A_A^2/C_A + A_B^2/C_B there");
+        list.add(force, symbols.hydraulic, point.hydraulic_force, "N", equation);
+        list.add(stiffness, symbols.stiffness, at(components, &point), "N/m", there);
     }
 }

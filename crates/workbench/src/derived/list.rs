@@ -37,7 +37,6 @@ impl List {
         unit: &'static str,
         equation: &'static str,
     ) {
-        let [symbol, equation] = [symbol, equation].map(|of| self.motion.formula(of));
         // a length, a speed, an area or a mass may be that of oil and hoses: who adds it knows
         let unit = if unit.contains('N') { self.motion.symbol(unit) } else { unit };
         let name = if self.motion.is_rotary() { renamed(name) } else { name };

@@ -41,13 +41,19 @@ pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
             "extending",
             SpoolDirection::Extending,
             areas[0],
-            "K_{qU} = A_A v/U unloaded, edges 3 and 6 carrying one flow",
+            list.motion.either(
+                "K_{qU} = A_A v/U unloaded, edges 3 and 6 carrying one flow",
+                "K_{qU} = D ω/U unloaded, edges 3 and 6 carrying one flow",
+            ),
         ),
         (
             "retracting",
             SpoolDirection::Retracting,
             areas[1],
-            "K_{qU} = A_B v/U unloaded, edges 5 and 4 carrying one flow",
+            list.motion.either(
+                "K_{qU} = A_B v/U unloaded, edges 5 and 4 carrying one flow",
+                "K_{qU} = D ω/U unloaded, edges 5 and 4 carrying one flow",
+            ),
         ),
     ] {
         match velocity_gain(valve, supply, areas, 0.0, direction) {
@@ -59,7 +65,10 @@ pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
                 "K_qU",
                 "m3/(s.V)",
                 equation,
-                "the supply cannot move the unloaded piston this way",
+                list.motion.either(
+                    "the supply cannot move the unloaded piston this way",
+                    "the supply cannot move the unloaded shaft this way",
+                ),
             ),
         }
     }
@@ -68,12 +77,18 @@ pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
         (
             "extending",
             SpoolDirection::Extending,
-            "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U to 0 from above",
+            list.motion.either(
+                "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U to 0 from above",
+                "1/K_c = 1/K_{cA} + 1/K_{cB}, U to 0 from above",
+            ),
         ),
         (
             "retracting",
             SpoolDirection::Retracting,
-            "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U to 0 from below",
+            list.motion.either(
+                "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U to 0 from below",
+                "1/K_c = 1/K_{cA} + 1/K_{cB}, U to 0 from below",
+            ),
         ),
     ] {
         let parameters = reduced(&two_pressures(&own, &rig.point, direction));
@@ -105,12 +120,18 @@ fn null_flow_gains(rig: &Rig, list: &mut List) {
         (
             "valve.flow_gain_above_null",
             SpoolDirection::Extending,
-            "K_{qU} = A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)/K_H, U to 0 from above",
+            list.motion.either(
+                "K_{qU} = A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)/K_H, U to 0 from above",
+                "K_{qU} = D^2 (K_{qA}/C_A + K_{qB}/C_B)/K_θ, U to 0 from above",
+            ),
         ),
         (
             "valve.flow_gain_below_null",
             SpoolDirection::Retracting,
-            "K_{qU} = A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)/K_H, U to 0 from below",
+            list.motion.either(
+                "K_{qU} = A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)/K_H, U to 0 from below",
+                "K_{qU} = D^2 (K_{qA}/C_A + K_{qB}/C_B)/K_θ, U to 0 from below",
+            ),
         ),
     ];
     for (name, direction, equation) in sides {

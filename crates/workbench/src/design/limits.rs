@@ -12,7 +12,7 @@ use crate::answer::{Object, significant};
 use crate::audit::PrefilterGain;
 use crate::document::{Cell, Document, Table};
 use crate::limit_kind::{limit_words, origin_words};
-use crate::quantity::DisplayUnit;
+use crate::quantity::{DisplayUnit, MotionWords};
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::portable::magnitude;
 
@@ -70,6 +70,7 @@ fn command_sentence(view: &ProjectDesign, command: &CommandOfSteps) -> String {
     let unit = view.gain_per.unwrap_or(DisplayUnit::NEWTON);
     let force = |newton: f64| unit.text(newton, 3);
     let volts = |value: f64| format!("{} V", significant(value, 3));
+    let MotionWords { force: quantity, piston, .. } = view.designed.problem.units.motion.words();
     let step = &command.step;
     let [from, to] = [step.from_n, step.to_n].map(force);
     let place = match command.is_at_rest() {
@@ -86,7 +87,9 @@ fn command_sentence(view: &ProjectDesign, command: &CommandOfSteps) -> String {
         StepLimit::Command => format!("keeps within {}", volts(command.limit_v)),
         StepLimit::Force(limit) => {
             let end = match limit {
-                ForceLimit::Supply => "the force at which the lowest supply pressure stalls the piston",
+                ForceLimit::Supply => {
+                    &*format!("the {quantity} at which the lowest supply pressure stalls the {piston}")
+                }
                 ForceLimit::Sensor => "the declared capacity of the sensor",
             };
             format!("reaches {end}, and the valve would do more within {}", volts(command.limit_v))
@@ -96,7 +99,7 @@ fn command_sentence(view: &ProjectDesign, command: &CommandOfSteps) -> String {
         true => String::new(),
         false => {
             format!(
-                "under any controller at most {} hold the force between these steps; ",
+                "under any controller at most {} hold the {quantity} between these steps; ",
                 volts(command.at_rest_v)
             )
         }

@@ -148,7 +148,9 @@ fn asked(asked: &AskedImpedance) -> Object {
 }
 
 fn final_force(linearization: &Linearization) -> Object {
-    let unstable = "unstable: the force has no final value";
+    let unstable = linearization
+        .motion
+        .either("unstable: the force has no final value", "unstable: the torque has no final value");
     let closed_loop = linearization.closed_loop.as_ref().and_then(|view| view.final_force_n);
     let reason = linearization.closed_loop_absent.map_or(unstable, no_closed_impedance_words);
     Object::new().known("open_loop", linearization.open_loop.final_force_n, unstable).known(

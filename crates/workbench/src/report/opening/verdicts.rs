@@ -52,7 +52,8 @@ fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
         let verdict = Cell::verdict(view.verdict()).then(missed);
         Some(verdict.then(proven(side.is_proven().unwrap_or(false))).strong())
     }));
-    rows.extend(row("position of every plant", sides, |side| {
+    let position = contents.setup.project.motion().words().position;
+    rows.extend(row(format!("{position} of every plant"), sides, |side| {
         Some(Cell::from(position_words(side.view?.position.as_ref()?)))
     }));
     rows.extend(row("every plant stable", sides, |side| {

@@ -2,11 +2,11 @@
 
 use super::{Difference, Metric, ToleranceCheck};
 use crate::answer::{Object, significant};
-use crate::quantity::Units;
+use crate::quantity::{MotionKind, Units};
 use crate::simulate::unmeasured_words;
 
 /// The object `check` of a scenario.
-pub(crate) fn row(check: &ToleranceCheck) -> Object {
+pub(crate) fn row(check: &ToleranceCheck, motion: MotionKind) -> Object {
     let force = check.force.as_ref().ok_or("the two runs have no sample in common");
     Object::new()
         .with("tolerance", check.tolerance)
@@ -27,9 +27,10 @@ pub(crate) fn row(check: &ToleranceCheck) -> Object {
                 "metrics",
                 Metric::ALL,
                 |metric| {
-                    Object::new()
-                        .with("name", metric.name())
-                        .told("difference", found.differences[metric].map_err(unmeasured_words))
+                    Object::new().with("name", metric.name()).told(
+                        "difference",
+                        found.differences[metric].map_err(|why| unmeasured_words(why, motion)),
+                    )
                 },
             )
         })
@@ -47,7 +48,8 @@ pub(crate) fn sentences(check: &ToleranceCheck, units: Units) -> Vec<String> {
     }
     let Some(force) = &check.force else { return told };
     told.push(format!(
-        "checked at the tolerance {tolerance}: the force differs by {} at {} s, {} of its peak{}",
+        "checked at the tolerance {tolerance}: the {} differs by {} at {} s, {} of its peak{}",
+        units.motion.words().force,
         units.force.text(force.difference, 2),
         significant(force.time_s, 6),
         significant(force.part_of_peak(), 2),

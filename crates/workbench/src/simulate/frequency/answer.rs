@@ -25,7 +25,7 @@ pub(crate) fn body(found: &MachineResponses) -> Object {
         .with("command_v", found.command_v)
         .with("stopped", found.stopped)
         .with("open_loop", points(&found.open_loop, "amplitude_v"))
-        .told("closed_loop", closed_loop.map_err(|why| no_closed_loop_words(*why)))
+        .told("closed_loop", closed_loop.map_err(|why| no_closed_loop_words(*why, found.units.motion)))
 }
 
 /// `reason` is that of the five numbers above it, where one is missing.
