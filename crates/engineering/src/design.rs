@@ -375,7 +375,7 @@ fn designed(
         return Err(DesignError::NoSpecification);
     }
     if is_of_position(project) {
-        return Err(DesignError::Admittance);
+        return Err(DesignError::Admittance(project.motion()));
     }
     let given = robust_problem(source, as_given)?;
     let as_designed = match std::ptr::eq(as_given, setup) {

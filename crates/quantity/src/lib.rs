@@ -25,7 +25,7 @@ pub use celsius::ZERO_CELSIUS;
 pub use dimension::*;
 pub use display_unit::DisplayUnit;
 pub use error::QuantityError;
-pub use motion::{MotionKind, MotionSymbols, MotionWords, Vocabulary};
+pub use motion::{MotionKind, MotionSymbols, MotionWords};
 pub use parse::parse;
 pub use pattern::{any_quantity_pattern, compound_unit_pattern, single_unit_pattern};
 pub use price::{Currency, Price, PricedBy, parse_price, price_pattern, print_price};

@@ -5,9 +5,7 @@
 //! is its position, its torque its force and its inertia its mass. Programs and equations therefore
 //! use one set of names inside; what is read and written asks here.
 
-mod formulae;
 mod names;
-mod vocabulary;
 mod words;
 
 use std::borrow::Cow;
@@ -15,7 +13,6 @@ use std::borrow::Cow;
 use crate::dimension::*;
 use crate::display_unit::DisplayUnit;
 
-pub use vocabulary::Vocabulary;
 pub use words::{MotionSymbols, MotionWords};
 
 /// The motion of a rig.
@@ -113,20 +110,5 @@ impl MotionKind {
     /// ```
     pub fn name(self, of: &str) -> Cow<'_, str> {
         if self.is_rotary() { names::name(of) } else { Cow::Borrowed(of) }
-    }
-
-    /// A formula or a symbol, stated as that of linear motion.
-    ///
-    /// # Example
-    /// ```
-    /// use phea_quantity::MotionKind;
-    /// let stiffness = "K_H = A_A^2/C_A + A_B^2/C_B";
-    /// assert_eq!(MotionKind::Rotary.formula(stiffness), "K_θ = D^2 (1/C_A + 1/C_B)");
-    /// assert_eq!(MotionKind::Rotary.formula("F_H = A_A p_A - A_B p_B"), "T_H = D (p_A - p_B)");
-    /// assert_eq!(MotionKind::Rotary.formula("max(x, M v^2)"), "max(θ, J ω^2)");
-    /// assert_eq!(MotionKind::Linear.formula(stiffness), stiffness);
-    /// ```
-    pub fn formula(self, of: &str) -> Cow<'_, str> {
-        if self.is_rotary() { formulae::of_a_motor(of) } else { Cow::Borrowed(of) }
     }
 }

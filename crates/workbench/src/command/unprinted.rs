@@ -28,7 +28,7 @@ impl Unprinted {
         self
     }
 
-    /// Below what recordings gave, in the envelope of the first project and the words of their
+    /// Below what recordings gave, in the envelope of the first project, with names of their
     /// motion.
     pub(super) fn print(self, command: &'static str, projects: &[Loaded]) -> Answer {
         let mut document = Document::default();
@@ -38,11 +38,11 @@ impl Unprinted {
         }
         document.append(self.document);
         let envelope = projects.first().map_or(Object::new(), |first| envelope(command, first));
-        let words = motion::vocabulary_of(projects);
+        let motion = projects.first().map(|loaded| loaded.project.motion()).unwrap_or_default();
         Answer {
-            text: document.text_in(&words),
-            json: motion::object(envelope.and(self.body), &words).print(),
-            files: motion::files(self.files, &words),
+            text: document.text(),
+            json: motion::object(envelope.and(self.body), motion).print(),
+            files: motion::files(self.files, motion),
             affirmative: self.affirmative,
         }
     }

@@ -1,23 +1,21 @@
-//! JSON: keys get the names of the motion, texts its words.
+//! JSON: keys, and texts that name a quantity, get the names of the motion.
 
 use crate::answer::{Json, Object};
-use crate::quantity::{MotionKind, Vocabulary};
+use crate::quantity::MotionKind;
 
-/// The same object for a rig that turns. What hashes, versions and settings say stays.
-pub(super) fn said(object: Object, words: &Vocabulary) -> Object {
+/// The same object for a rig that turns.
+pub(super) fn said(object: Object) -> Object {
     object.entries().fold(Object::new(), |all, (key, value)| {
-        let value = value_said(&key, value, words);
+        let value = value_said(&key, value);
         all.with(MotionKind::Rotary.name(&key), value)
     })
 }
 
-fn value_said(key: &str, value: Json, words: &Vocabulary) -> Json {
+fn value_said(key: &str, value: Json) -> Json {
     match value {
         Json::Text(text) if is_quantity(key) => MotionKind::Rotary.name(&text).into_owned().into(),
-        Json::Text(text) if key == "symbol" => MotionKind::Rotary.formula(&text).into_owned().into(),
-        Json::Text(text) if !is_kept(key) => words.of(&text).into(),
-        Json::List(items) => Json::List(items.into_iter().map(|item| value_said(key, item, words)).collect()),
-        Json::Object(object) => said(object, words).into(),
+        Json::List(items) => Json::List(items.into_iter().map(|item| value_said(key, item)).collect()),
+        Json::Object(object) => said(object).into(),
         other => other,
     }
 }
@@ -25,23 +23,4 @@ fn value_said(key: &str, value: Json, words: &Vocabulary) -> Json {
 /// Keys whose text is the name of a quantity.
 fn is_quantity(key: &str) -> bool {
     ["metric", "signal", "column", "quantity"].contains(&key)
-}
-
-/// Keys whose text is not a sentence.
-fn is_kept(key: &str) -> bool {
-    [
-        "version",
-        "command",
-        "title",
-        "project_sha256",
-        "settings",
-        "catalogue_files",
-        "verdict",
-        "status",
-        "kind",
-        "hose",
-        "file",
-        "cause",
-    ]
-    .contains(&key)
 }

@@ -397,8 +397,9 @@ fn compared(comparison: &ScenarioComparison<'_>, name: &str, number: usize) -> V
     let titles = comparison.projects.iter().map(|(loaded, _)| loaded.project.title.clone());
     let (titles, runs): (Vec<String>, Vec<&ScenarioRun>) =
         titles.zip(comparison.runs_of(name)).filter_map(|(title, run)| Some((title, run?))).unzip();
-    let caption = "Force, command and load pressure of each project.";
-    laid_over((&format!("compare-{number}"), name, caption), &titles, &runs)
+    let force = capital(units_of(&runs).motion.words().force);
+    let caption = format!("{force}, command and load pressure of each project.");
+    laid_over((&format!("compare-{number}"), name, &caption), &titles, &runs)
 }
 
 /// One scenario of several rigs: the whole, and each event of the first of them enlarged.
