@@ -106,9 +106,9 @@ mod tests {
         assert_eq!(unfinished, [DesignPart::Trial, DesignPart::Proof]);
         assert_eq!(
             unless_stopped(&mut vec![], DesignPart::Proof, || Err::<Option<i32>, _>(
-                DesignError::Admittance(MotionKind::Linear)
+                DesignError::NoSpecification
             )),
-            Err(DesignError::Admittance(MotionKind::Linear))
+            Err(DesignError::NoSpecification)
         );
     }
 }

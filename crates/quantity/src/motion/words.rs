@@ -2,28 +2,28 @@
 
 use super::MotionKind;
 
-/// What sentences, headings and axes call the quantities and parts of a rig.
+/// Words for the quantities and parts of a rig, in sentences, headings and axes.
 #[derive(Clone, Copy, Debug)]
 pub struct MotionWords {
-    /// What acts on the load.
+    /// Force or torque.
     pub force: &'static str,
-    /// Several of them.
+    /// Its plural.
     pub forces: &'static str,
-    /// Where the actuator is.
+    /// Position or angle.
     pub position: &'static str,
-    /// Several of them.
+    /// Its plural.
     pub positions: &'static str,
-    /// What resists acceleration.
+    /// Mass or inertia.
     pub mass: &'static str,
-    /// What moves in the actuator.
+    /// Piston or shaft, as the moving part of the actuator.
     pub piston: &'static str,
-    /// What it drives.
+    /// Rod or shaft, as the end that the load is on.
     pub rod: &'static str,
-    /// The actuator.
+    /// Cylinder or motor.
     pub cylinder: &'static str,
-    /// The instrument in the loop, as a product.
+    /// Load cell or torque sensor, as a product.
     pub load_cell: &'static str,
-    /// The same as part of the rig.
+    /// Force sensor or torque sensor, as the declared part of the rig.
     pub force_sensor: &'static str,
 }
 
@@ -36,16 +36,12 @@ pub struct MotionSymbols {
     pub hydraulic: &'static str,
     /// Reference of force or torque.
     pub reference: &'static str,
-    /// External force or torque.
-    pub external: &'static str,
     /// Hydraulic stiffness.
     pub stiffness: &'static str,
     /// Mass or inertia.
     pub mass: &'static str,
     /// Position of the piston, angle of the shaft.
     pub position: &'static str,
-    /// Position or angle of the load.
-    pub load: &'static str,
     /// Driving-point impedance.
     pub impedance: &'static str,
 }
@@ -80,11 +76,9 @@ static LINEAR_SYMBOLS: MotionSymbols = MotionSymbols {
     measured: "F_e",
     hydraulic: "F_H",
     reference: "F_ref",
-    external: "F_x",
     stiffness: "K_H",
     mass: "M",
     position: "x_p",
-    load: "x_L",
     impedance: "-F_e/(s X_L)",
 };
 
@@ -92,11 +86,9 @@ static ROTARY_SYMBOLS: MotionSymbols = MotionSymbols {
     measured: "T_e",
     hydraulic: "T_H",
     reference: "T_ref",
-    external: "T_x",
     stiffness: "K_θ",
     mass: "J",
     position: "θ",
-    load: "θ_L",
     impedance: "-T_e/(s Θ_L)",
 };
 
@@ -113,7 +105,7 @@ impl MotionKind {
         if self.is_rotary() { rotary } else { linear }
     }
 
-    /// What sentences call its quantities and parts.
+    /// Words for its quantities and parts.
     ///
     /// # Example
     /// ```

@@ -53,8 +53,8 @@ pub(super) fn impedance_unmeasured(yields: bool, motion: MotionKind) -> String {
 }
 
 pub(super) fn impedance(yields: bool, motion: MotionKind) -> String {
-    let (force, symbols) = (motion.words().force, motion.symbols());
-    let output = format!("y = {} + Z_v ({} - x_0)", symbols.measured, symbols.load);
+    let force = motion.words().force;
+    let output = motion.either("y = F_e + Z_v (x_L - x_0)", "y = T_e + Z_v (θ_L - θ_0)");
     match yields {
         true => format!(
             "controller.impedance is counted, and the load can move under {force}: loop and specifications are of {output}, \

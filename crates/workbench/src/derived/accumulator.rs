@@ -67,6 +67,19 @@ fn at_settings(
     }
 }
 
+/// Equations of the stiffness with the gas, without it, and at another operating point: of a
+/// cylinder, and of a motor.
+const WITH_GAS: [&str; 3] = [
+    "K_H = A_A^2/C_A + A_B^2/C_B, C_A and C_B with C_acc",
+    "K_H = A_A^2/C_A + A_B^2/C_B, C_A and C_B without C_acc",
+    "K_H = A_A^2/C_A + A_B^2/C_B there",
+];
+const WITH_GAS_OF_A_MOTOR: [&str; 3] = [
+    "K_θ = D^2 (1/C_A + 1/C_B), C_A and C_B with C_acc",
+    "K_θ = D^2 (1/C_A + 1/C_B), C_A and C_B without C_acc",
+    "K_θ = D^2 (1/C_A + 1/C_B) there",
+];
+
 /// The gas at the chambers, and the stiffness of the actuator without it.
 pub(super) fn accumulators(project: &Project, rig: &Rig, list: &mut List) {
     let components = rig.actuator.components();
@@ -104,15 +117,8 @@ pub(super) fn accumulators(project: &Project, rig: &Rig, list: &mut List) {
         hydraulic_stiffness(&chambers, point.position)
     };
     let symbols = list.motion.symbols();
-    let with = list.motion.either(
-        "K_H = A_A^2/C_A + A_B^2/C_B, C_A and C_B with C_acc",
-        "K_θ = D^2 (1/C_A + 1/C_B), C_A and C_B with C_acc",
-    );
+    let [with, without, there] = list.motion.either(WITH_GAS, WITH_GAS_OF_A_MOTOR);
     list.add("stiffness.with_accumulators", symbols.stiffness, at(components, &rig.point), "N/m", with);
-    let without = list.motion.either(
-        "K_H = A_A^2/C_A + A_B^2/C_B, C_A and C_B without C_acc",
-        "K_θ = D^2 (1/C_A + 1/C_B), C_A and C_B without C_acc",
-    );
     list.add("stiffness.without_accumulators", symbols.stiffness, at(&bare, &rig.point), "N/m", without);
     at_settings(components, &at, &rig.point, list);
     let Some(ChargedRange { least, greatest }) = charged_range(rig) else { return };
@@ -125,7 +131,6 @@ pub(super) fn accumulators(project: &Project, rig: &Rig, list: &mut List) {
             greatest,
         ),
     ];
-    let there = list.motion.either("K_H = A_A^2/C_A + A_B^2/C_B there", "K_θ = D^2 (1/C_A + 1/C_B) there");
     for (force, stiffness, equation, point) in ends {
         let Some(point) = point else { continue };
         list.add(force, symbols.hydraulic, point.hydraulic_force, "N", equation);

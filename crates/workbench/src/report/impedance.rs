@@ -28,8 +28,8 @@ pub(super) fn chapter(
     let units = project.units;
     let mut out = Document::default();
     let motion = linearization.motion;
-    let (words, symbols) = (motion.words(), motion.symbols());
-    out.equations(vec![format!("Z = {}", symbols.impedance)]);
+    let words = motion.words();
+    out.equations(vec![format!("Z = {}", motion.symbols().impedance)]);
     let met = match project.actuator.as_ref().and_then(|actuator| actuator.series.as_ref()) {
         None => "the sensor's stiffness alone",
         Some(DeclaredSeries::Transmission(_)) => {
@@ -58,20 +58,7 @@ pub(super) fn chapter(
             .closed_loop_absent
             .map(|reason| format!("closed loop: {}", no_closed_impedance_words(reason))),
     );
-    if let Some(asked) = &linearization.asked {
-        out.heading("The virtual impedance");
-        let equations = motion.either(
-            ["U_C = G (F F_{ref} - y)", "y = F_e + (M_v s^2 + B_v s + K_v)/(τ s + 1)^n (X_L - X_0)"],
-            ["U_C = G (F T_{ref} - y)", "y = T_e + (M_v s^2 + B_v s + K_v)/(τ s + 1)^n (Θ_L - Θ_0)"],
-        );
-        out.equations(equations.map(str::to_string).to_vec());
-        out.explanation(format!(
-            "The impedance that the loop is required to show to a load that moves its port, and the one that it shows: Z = M_v s + B_v + K_v/s against {} of the nominal plant, waves, samples and delay included.",
-            symbols.impedance
-        ));
-        out.table(asked_table(asked, motion));
-        out.sentences([format!("closed loop: {}", asked_sentence(asked))]);
-    }
+    out.append(required(linearization));
     out.heading("The load moves");
     out.figures([load_motion::figure(project, &forces)]);
     out.explanation(format!("Largest change of the {}: {}.", words.force, peaks(&forces, units.force)));
@@ -85,6 +72,26 @@ pub(super) fn chapter(
     out.heading("Asymptotes");
     out.table(asymptotes(linearization));
     Ok(Chapter::of("impedance", "The impedance at the load", out))
+}
+
+/// The virtual impedance; empty where the project states none.
+fn required(linearization: &Linearization) -> Document {
+    let mut out = Document::default();
+    let Some(asked) = &linearization.asked else { return out };
+    let motion = linearization.motion;
+    out.heading("The virtual impedance");
+    let equations = motion.either(
+        ["U_C = G (F F_{ref} - y)", "y = F_e + (M_v s^2 + B_v s + K_v)/(τ s + 1)^n (X_L - X_0)"],
+        ["U_C = G (F T_{ref} - y)", "y = T_e + (M_v s^2 + B_v s + K_v)/(τ s + 1)^n (Θ_L - Θ_0)"],
+    );
+    out.equations(equations.map(str::to_string).to_vec());
+    out.explanation(format!(
+        "The impedance that the loop is required to show to a load that moves its port, and the one that it shows: Z = M_v s + B_v + K_v/s against {} of the nominal plant, waves, samples and delay included.",
+        motion.symbols().impedance
+    ));
+    out.table(asked_table(asked, motion));
+    out.sentences([format!("closed loop: {}", asked_sentence(asked))]);
+    out
 }
 
 fn peaks(forces: &[Moved], unit: DisplayUnit) -> String {

@@ -125,7 +125,10 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
                 .with("stated_pressure_pa", beyond.stated_pa)
         })
         .and(adjustment(run))
-        .told("ledgers", run.ledger.as_ref().map(ledger).map_err(|why| no_ledger_words(*why)))
+        .told(
+            "ledgers",
+            run.ledger.as_ref().map(|one| ledger(one, motion)).map_err(|why| no_ledger_words(*why)),
+        )
         .each("exceeded", &run.exceeded, exceeded)
 }
 
@@ -159,10 +162,11 @@ fn exceeded(exceeded: &Exceeded) -> Object {
 }
 
 /// The accounts of oil and energy, each with how far it is from closing.
-fn ledger(ledger: &RunLedger) -> Object {
+fn ledger(ledger: &RunLedger, motion: MotionKind) -> Object {
     let account = |sum: &AccountSum| {
+        let part = if sum.part == "piston" { motion.words().piston } else { sum.part };
         Object::new()
-            .with("part", sum.part)
+            .with("part", part)
             .with("stored", sum.stored)
             .with("inflow", sum.inflow)
             .with("lost", sum.lost)

@@ -353,12 +353,10 @@ fn occurrence_words(occurrence: &Occurrence, motion: MotionKind) -> String {
         _ => ["the command reaches its limit", "the command leaves its limit"],
     };
     let first = match (kind, time_s) {
-        ("load_contact", 0.0) => {
-            motion.either(
-                "the load touches the wall from the start: the force or weight that it carries there closes its gap",
-                "the load touches the wall from the start: the torque or weight that it carries there closes its gap",
-            )
-        }
+        ("load_contact", 0.0) => motion.either(
+            "the load touches the wall from the start: the force or weight that it carries there closes its gap",
+            "the load touches the wall from the start: the torque or weight that it carries there closes its gap",
+        ),
         _ => first,
     };
     let what = if begins { first } else { then }.replace('#', chamber);
