@@ -13,6 +13,7 @@ mod parse;
 mod pattern;
 mod price;
 mod print;
+mod quantity_name;
 mod scale;
 mod separators;
 mod shortest;
@@ -31,6 +32,7 @@ pub use pattern::{any_quantity_pattern, compound_unit_pattern, single_unit_patte
 pub use price::{Currency, Price, PricedBy, parse_price, price_pattern, print_price};
 pub use print::print_bare;
 pub use print::{display, fitting, print};
+pub use quantity_name::QuantityName;
 pub use scale::UnitScale;
 pub use significant::significant;
 pub use units::Units;

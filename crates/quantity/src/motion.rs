@@ -1,14 +1,11 @@
 //! Whether a rig moves along a line or turns: the one place that knows what this makes of
-//! dimensions, units, names for programs and words.
+//! dimensions, units and words.
 //!
 //! The equations of both are the same: with its displacement in place of the areas, a motor's angle
 //! is its position, its torque its force and its inertia its mass. Programs and equations therefore
 //! use one set of names inside; what is read and written asks here.
 
-mod names;
 mod words;
-
-use std::borrow::Cow;
 
 use crate::dimension::*;
 use crate::display_unit::DisplayUnit;
@@ -26,7 +23,7 @@ pub enum MotionKind {
 }
 
 /// Quantities of linear motion and those of rotary motion in their place.
-static DIMENSIONS_OF_MOTION: [(&Dimension, &Dimension); 9] = [
+static DIMENSIONS_OF_MOTION: [(&Dimension, &Dimension); 10] = [
     (&FORCE, &TORQUE),
     (&LENGTH, &ANGLE),
     (&VELOCITY, &ANGULAR_VELOCITY),
@@ -35,6 +32,7 @@ static DIMENSIONS_OF_MOTION: [(&Dimension, &Dimension); 9] = [
     (&DAMPING, &TORSIONAL_DAMPING),
     (&AREA, &DISPLACEMENT),
     (&INVERSE_VELOCITY, &INVERSE_ANGULAR_VELOCITY),
+    (&VOLTAGE_PER_FORCE, &VOLTAGE_PER_TORQUE),
     (&VOLTAGE_PER_VELOCITY, &VOLTAGE_PER_ANGULAR_VELOCITY),
 ];
 
@@ -83,32 +81,5 @@ impl MotionKind {
     pub fn unit(self, of: DisplayUnit) -> DisplayUnit {
         let pair = UNITS_OF_MOTION.iter().find(|(linear, _)| self.is_rotary() && *linear == of);
         pair.map_or(of, |(_, rotary)| *rotary)
-    }
-
-    /// An SI unit of a quantity of the motion, stated as that of linear motion.
-    ///
-    /// # Example
-    /// ```
-    /// use phea_quantity::MotionKind;
-    /// assert_eq!(MotionKind::Rotary.symbol("N/m"), "N.m/rad");
-    /// assert_eq!(MotionKind::Rotary.symbol("Pa"), "Pa");
-    /// ```
-    pub fn symbol(self, of: &'static str) -> &'static str {
-        if self.is_rotary() { names::symbol(of) } else { of }
-    }
-
-    /// The name of a quantity for programs, stated as that of linear motion: a key of JSON, a
-    /// column of a table.
-    ///
-    /// # Example
-    /// ```
-    /// use phea_quantity::MotionKind;
-    /// assert_eq!(MotionKind::Rotary.name("force_n"), "torque_n_m");
-    /// assert_eq!(MotionKind::Rotary.name("load_position_m"), "load_angle_rad");
-    /// assert_eq!(MotionKind::Rotary.name("bore_m"), "bore_m");
-    /// assert_eq!(MotionKind::Linear.name("force_n"), "force_n");
-    /// ```
-    pub fn name(self, of: &str) -> Cow<'_, str> {
-        if self.is_rotary() { names::name(of) } else { Cow::Borrowed(of) }
     }
 }

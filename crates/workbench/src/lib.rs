@@ -44,7 +44,6 @@ mod limit_kind;
 mod line_choice;
 pub mod line_test;
 pub mod linearize;
-pub(crate) mod motion;
 pub(crate) mod over_time;
 pub mod report;
 pub mod response;

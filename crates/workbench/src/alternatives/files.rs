@@ -6,7 +6,7 @@ use phea_engineering::simulate::file_names;
 use super::document::{at, parts, port, stable};
 use super::front;
 use super::summary::{groups, machine, motion_of};
-use super::{AlternativeColumns, Alternatives, ColumnPart, JudgedAlternative};
+use super::{AlternativeColumns, Alternatives, ColumnKey, ColumnPart, JudgedAlternative};
 use crate::answer::{Csv, OutputFile, picture_files, quoted};
 use crate::document::capital;
 use crate::figure::{Figure, FrequencySeries, ImpedanceDiagram, Words};
@@ -102,7 +102,7 @@ fn table(file: &str, groups: &[(&str, &[JudgedAlternative])]) -> OutputFile {
     // all alternatives of a project move alike: none replaces its cylinder by a motor
     let mut judged = groups.iter().flat_map(|(_, judged)| judged.iter());
     let motion = judged.next().map(|one| one.loaded.project.motion()).unwrap_or_default();
-    let mut named: Vec<(ColumnPart, &str)> = Vec::new();
+    let mut named: Vec<(ColumnPart, ColumnKey)> = Vec::new();
     for part in parts(&all) {
         for (own, column) in all.iter().flat_map(|columns| &columns.0) {
             let heading = (part.clone(), column.key);
@@ -111,15 +111,16 @@ fn table(file: &str, groups: &[(&str, &[JudgedAlternative])]) -> OutputFile {
             }
         }
     }
-    let headings: Vec<String> = named.iter().map(|(part, key)| heading(part, &motion.name(key))).collect();
+    let headings: Vec<String> =
+        named.iter().map(|(part, key)| heading(part, &key.quantity().text(motion))).collect();
     let case = if groups.len() > 1 { "load_case," } else { "" };
     let words = "stable_with_its_load,machine,passive_open_loop,passive_closed_loop";
     let mut csv = Csv::new(&format!("{case}name,feasible,{},{words}", headings.join(",")));
     let rows = groups.iter().flat_map(|(case, judged)| judged.iter().map(move |one| (*case, one)));
     for ((case, one), columns) in rows.zip(&all) {
         let feasible = one.feasible().map_or(String::new(), |feasible| feasible.to_string());
-        let value = |(part, key): &(ColumnPart, &str)| {
-            let value = at(columns, part, key).and_then(|column| column.value.clone().ok());
+        let value = |(part, key): &(ColumnPart, ColumnKey)| {
+            let value = at(columns, part, *key).and_then(|column| column.value.clone().ok());
             value.map_or(String::new(), |value| value.to_string())
         };
         if groups.len() > 1 {

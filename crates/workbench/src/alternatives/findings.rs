@@ -6,8 +6,8 @@ use phea_qft::design::DesignStatus;
 
 use super::words::{judge_error_words, measure_name};
 use super::{
-    AlternativeColumns, Alternatives, ComparedMeasure, ComparedMeasures, JudgedAlternative, JudgedCase,
-    MovedRange,
+    AlternativeColumns, Alternatives, ColumnKey, ComparedMeasure, ComparedMeasures, JudgedAlternative,
+    JudgedCase, MovedRange,
 };
 use crate::caveat;
 use crate::design::verdict_sentence;
@@ -315,11 +315,11 @@ fn cost(
 
 fn words_of(measure: &ComparedMeasure, value: f64) -> String {
     match measure.key {
-        "disturbance_peak_n" => measure.unit.text(value, 3),
-        "control_rms_v" => DisplayUnit::VOLT.text(value, 3),
-        "delay_margin_s" => DisplayUnit::MILLISECOND.text(value, 3),
-        "parts_price" => measure.unit.text(value, 4),
-        "parts_mass_kg" => measure.unit.text(value, 3),
+        ColumnKey::DisturbancePeak => measure.unit.text(value, 3),
+        ColumnKey::ControlRms => DisplayUnit::VOLT.text(value, 3),
+        ColumnKey::DelayMargin => DisplayUnit::MILLISECOND.text(value, 3),
+        ColumnKey::PartsPrice => measure.unit.text(value, 4),
+        ColumnKey::PartsMass => measure.unit.text(value, 3),
         _ => significant(value, 1),
     }
 }

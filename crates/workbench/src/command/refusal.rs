@@ -3,6 +3,7 @@
 use super::{CommandError, Request};
 use crate::answer::{Object, SCHEMA};
 use crate::project::{Diagnostic, Loaded, Refusal, Severity, sha256};
+use crate::quantity::MotionKind;
 use crate::source::Source;
 
 /// The JSON object of a command whose project, at `path`, was rejected.
@@ -84,5 +85,5 @@ fn refusal_body(command: Option<&str>, project_sha256: Option<&str>, errors: Vec
         .with("command", command)
         .with("project_sha256", project_sha256)
         .with("errors", errors);
-    body.print()
+    body.print(MotionKind::default())
 }

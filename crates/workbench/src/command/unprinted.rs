@@ -5,7 +5,6 @@ use crate::caveat::misfits_in_runs;
 use crate::document::Document;
 use crate::identify::in_use_above;
 use crate::line_choice::chosen_above;
-use crate::motion;
 use crate::project::{Loaded, Project};
 
 /// An [`Answer`] whose text and JSON are not printed yet.
@@ -38,11 +37,12 @@ impl Unprinted {
         }
         document.append(self.document);
         let envelope = projects.first().map_or(Object::new(), |first| envelope(command, first));
+        // projects of both motions are not printed together
         let motion = projects.first().map(|loaded| loaded.project.motion()).unwrap_or_default();
         Answer {
             text: document.text(),
-            json: motion::object(envelope.and(self.body), motion).print(),
-            files: motion::files(self.files, motion),
+            json: envelope.and(self.body).print(motion),
+            files: self.files,
             affirmative: self.affirmative,
         }
     }

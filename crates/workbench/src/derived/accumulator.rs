@@ -6,6 +6,7 @@ use phea_hydraulics::stiffness::hydraulic_stiffness;
 
 use super::list::List;
 use crate::project::{DeclaredAccumulator, Project};
+use crate::quantity::{FORCE, STIFFNESS};
 use crate::rig::{ChargedRange, Rig, charged_range, components_at_setting};
 
 /// The precharge at the temperature in operation, and the one that is stated.
@@ -63,7 +64,13 @@ fn at_settings(
             "K_H = A_A^2/C_A + A_B^2/C_B, slow, at this setting",
             "K_θ = D^2 (1/C_A + 1/C_B), slow, at this setting",
         );
-        list.add(name, list.motion.symbols().stiffness, stiffness(&there, point), "N/m", equation);
+        list.add(
+            name,
+            list.motion.symbols().stiffness,
+            stiffness(&there, point),
+            list.si(&STIFFNESS),
+            equation,
+        );
     }
 }
 
@@ -118,8 +125,9 @@ pub(super) fn accumulators(project: &Project, rig: &Rig, list: &mut List) {
     };
     let symbols = list.motion.symbols();
     let [with, without, there] = list.motion.either(WITH_GAS, WITH_GAS_OF_A_MOTOR);
-    list.add("stiffness.with_accumulators", symbols.stiffness, at(components, &rig.point), "N/m", with);
-    list.add("stiffness.without_accumulators", symbols.stiffness, at(&bare, &rig.point), "N/m", without);
+    let unit = list.si(&STIFFNESS);
+    list.add("stiffness.with_accumulators", symbols.stiffness, at(components, &rig.point), unit, with);
+    list.add("stiffness.without_accumulators", symbols.stiffness, at(&bare, &rig.point), unit, without);
     at_settings(components, &at, &rig.point, list);
     let Some(ChargedRange { least, greatest }) = charged_range(rig) else { return };
     let ends = [
@@ -133,7 +141,7 @@ pub(super) fn accumulators(project: &Project, rig: &Rig, list: &mut List) {
     ];
     for (force, stiffness, equation, point) in ends {
         let Some(point) = point else { continue };
-        list.add(force, symbols.hydraulic, point.hydraulic_force, "N", equation);
-        list.add(stiffness, symbols.stiffness, at(components, &point), "N/m", there);
+        list.add(force, symbols.hydraulic, point.hydraulic_force, list.si(&FORCE), equation);
+        list.add(stiffness, symbols.stiffness, at(components, &point), unit, there);
     }
 }

@@ -3,6 +3,7 @@ use phea_hydraulics::linear::{MechanicalDamping, decompose, transfer_functions};
 
 use super::list::List;
 use crate::linearize::{HidingMass, hidden_above};
+use crate::quantity::STIFFNESS;
 use crate::rig::Rig;
 
 /// Of the rig against its load; what is inherently that of the actuator is named so where the load
@@ -26,7 +27,13 @@ pub(super) fn dynamics(rig: &Rig, list: &mut List) {
         }
         (false, _) => "Dynamics, with the values in use",
     });
-    list.add("dynamics.equivalent_stiffness", "K_eq", linear.equivalent_stiffness(), "N/m", springs);
+    list.add(
+        "dynamics.equivalent_stiffness",
+        "K_eq",
+        linear.equivalent_stiffness(),
+        list.si(&STIFFNESS),
+        springs,
+    );
     let equation = match factors.hydraulic_rate == 0.0 {
         true => list.motion.either(
             "s_1 = -(K_c + G) K_{eq}/A_u^2, nothing leaks: an infinite time constant",
@@ -38,7 +45,10 @@ pub(super) fn dynamics(rig: &Rig, list: &mut List) {
     let equation =
         list.motion.either("dF_e/dt per volt = K_{qU} K_{eq}/A_u", "dT_e/dt per volt = K_{qU} K_{eq}/D");
     let symbol = list.motion.either("K_qU K_eq/A_u", "K_qU K_eq/D");
-    list.add("dynamics.force_rate_gain", symbol, factors.hydraulic_gain, "N/(s.V)", equation);
+    let (name, unit) = list
+        .motion
+        .either(("dynamics.force_rate_gain", "N/(s.V)"), ("dynamics.torque_rate_gain", "N.m/(s.V)"));
+    list.add(name, symbol, factors.hydraulic_gain, unit, equation);
     if rig.load.is_some() {
         list.group("Dynamics with the load held still, with the values in use");
     }

@@ -1,5 +1,5 @@
 use super::{Derived, Stated};
-use crate::quantity::MotionKind;
+use crate::quantity::{Dimension, MotionKind};
 
 /// A growing list of derived quantities; each chapter names its group once.
 pub(super) struct List {
@@ -12,6 +12,11 @@ pub(super) struct List {
 impl List {
     pub(super) fn new(motion: MotionKind) -> List {
         List { entries: Vec::new(), group: "", motion }
+    }
+
+    /// SI unit of a quantity of the motion, whose dimension is that in linear motion.
+    pub(super) fn si(&self, of: &'static Dimension) -> &'static str {
+        self.motion.dimension(of).si
     }
 
     pub(super) fn group(&mut self, group: &'static str) {
@@ -37,9 +42,6 @@ impl List {
         unit: &'static str,
         equation: &'static str,
     ) {
-        // a length, a speed, an area or a mass may be that of oil and hoses: who adds it knows
-        let unit = if unit.contains('N') { self.motion.symbol(unit) } else { unit };
-        let name = if self.motion.is_rotary() { renamed(name) } else { name };
         let words = words(&name, self.motion);
         self.entries.push(Derived {
             group: self.group,
@@ -75,20 +77,6 @@ impl List {
     pub(super) fn into_entries(self) -> Vec<Derived> {
         self.entries
     }
-}
-
-/// Names of quantities of linear motion that are not keys of the project file, and those of a
-/// motor.
-const OF_A_MOTOR: [(&str, &str); 4] = [
-    ("stiffness.minimum_position", "stiffness.minimum_angle"),
-    ("operating_point.hydraulic_force", "operating_point.hydraulic_torque"),
-    ("dynamics.force_rate_gain", "dynamics.torque_rate_gain"),
-    ("supply.piston_speed", "supply.shaft_speed"),
-];
-
-fn renamed(name: String) -> String {
-    let other = OF_A_MOTOR.iter().find(|(linear, _)| *linear == name);
-    other.map_or(name, |(_, rotary)| (*rotary).to_string())
 }
 
 /// Words of quantities of a motor whose names have words of linear motion.

@@ -15,7 +15,7 @@ use super::series::series;
 use super::valve::valve;
 use crate::linearize::{stiffness_models, stroke_stiffness};
 use crate::project::Project;
-use crate::quantity::MotionKind;
+use crate::quantity::{DAMPING, FORCE, LENGTH, MASS, MotionKind, STIFFNESS, VELOCITY};
 use crate::rig::{FlowLimit, ParameterOrigin, Rig, RigError, largest_flow};
 use crate::setup::Setup;
 
@@ -68,7 +68,7 @@ fn motor(rig: &Rig, motor: &Cylinder, list: &mut List) {
     }
     let supply = &rig.actuator.components().supply;
     let stall = motor.area_a * (supply.pressure - supply.tank_pressure);
-    list.add("motor.stall_torque", "T_max", stall, "N", "T_{max} = D (p_S - p_T)");
+    list.add("motor.stall_torque", "T_max", stall, "N.m", "T_{max} = D (p_S - p_T)");
 }
 
 fn cylinder(rig: &Rig, cylinder: &Cylinder, list: &mut List) {
@@ -185,36 +185,39 @@ fn stiffness(rig: &Rig, list: &mut List) {
     let declared = stroke_stiffness(rig, StiffeningMember::Nominal);
     list.group("Stiffness");
     let motion = list.motion;
-    let symbol = motion.symbols().stiffness;
+    let (symbol, unit) = (motion.symbols().stiffness, list.si(&STIFFNESS));
     let [least, greatest] = motion.either(
         ["K_H = min over x of A_A^2/C_A + A_B^2/C_B", "K_H = max over x of A_A^2/C_A + A_B^2/C_B"],
         ["K_θ = min over θ of D^2 (1/C_A + 1/C_B)", "K_θ = max over θ of D^2 (1/C_A + 1/C_B)"],
     );
-    list.add("stiffness.minimum", symbol, declared.minimum, "N/m", least);
+    list.add("stiffness.minimum", symbol, declared.minimum, unit, least);
     if components.cylinder.stroke.length().is_some() {
-        let (place, unit) = (motion.symbols().position, motion.symbol("m"));
-        let flat = motion.either("dK_H/dx = 0", "dK_θ/dθ = 0");
-        list.add("stiffness.minimum_position", place, declared.minimum_position, unit, flat);
+        let (name, flat) = motion.either(
+            ("stiffness.minimum_position", "dK_H/dx = 0"),
+            ("stiffness.minimum_angle", "dK_θ/dθ = 0"),
+        );
+        let place = motion.symbols().position;
+        list.add(name, place, declared.minimum_position, list.si(&LENGTH), flat);
     }
-    list.add("stiffness.maximum", symbol, declared.maximum, "N/m", greatest);
+    list.add("stiffness.maximum", symbol, declared.maximum, unit, greatest);
     let models = stiffness_models(rig);
     let uniform = motion.either("C_A = (V_{ho} + V_{A0} + A_A x)/β_e", "C_A = (V_{ho} + V_{A0} + D θ)/β_e");
-    list.add("stiffness.uniform.minimum", symbol, models.uniform.minimum, "N/m", uniform);
-    list.add("stiffness.uniform.maximum", symbol, models.uniform.maximum, "N/m", uniform);
+    list.add("stiffness.uniform.minimum", symbol, models.uniform.minimum, unit, uniform);
+    list.add("stiffness.uniform.maximum", symbol, models.uniform.maximum, unit, uniform);
     let by_volume = motion.either("C_A = C_{ho} + (V_{A0} + A_A x)/β_0", "C_A = C_{ho} + (V_{A0} + D θ)/β_0");
-    list.add("stiffness.by_volume.minimum", symbol, models.by_volume.minimum, "N/m", by_volume);
-    list.add("stiffness.by_volume.maximum", symbol, models.by_volume.maximum, "N/m", by_volume);
+    list.add("stiffness.by_volume.minimum", symbol, models.by_volume.minimum, unit, by_volume);
+    list.add("stiffness.by_volume.maximum", symbol, models.by_volume.maximum, unit, by_volume);
     if let Line::Hose { .. } = components.line_a {
         let soft = stroke_stiffness(rig, StiffeningMember::Minimum).minimum;
         let equation =
             motion.either("least K_H at the least stiffening r_β", "least K_θ at the least stiffening r_β");
-        list.add("stiffness.minimum_softest_wall", symbol, soft, "N/m", equation);
+        list.add("stiffness.minimum_softest_wall", symbol, soft, unit, equation);
         let stiff = stroke_stiffness(rig, StiffeningMember::Maximum).maximum;
         let equation = motion.either(
             "greatest K_H at the greatest stiffening r_β",
             "greatest K_θ at the greatest stiffening r_β",
         );
-        list.add("stiffness.maximum_stiffest_wall", symbol, stiff, "N/m", equation);
+        list.add("stiffness.maximum_stiffest_wall", symbol, stiff, unit, equation);
     }
 }
 
@@ -237,7 +240,7 @@ fn equilibrium(rig: &Rig, list: &mut List) {
         Condition::Matched(..) => ["declared", "p_A = (p_S + p_T + p_L)/2", "p_B = (p_S + p_T - p_L)/2"],
     };
     list.group("Operating point");
-    let [place, speed] = ["m", "m/s"].map(|unit| motion.symbol(unit));
+    let [place, speed] = [&LENGTH, &VELOCITY].map(|dimension| list.si(dimension));
     let position = match rig.actuator.components().cylinder.stroke.length() {
         Some(_) => "declared, or mid stroke",
         None => "declared, or zero",
@@ -254,9 +257,11 @@ fn equilibrium(rig: &Rig, list: &mut List) {
     list.add("operating_point.pressure_a", "p_A", point.pressure_a, "Pa", pressure_a);
     list.add("operating_point.pressure_b", "p_B", point.pressure_b, "Pa", pressure_b);
     list.add("operating_point.load_pressure", "p_L", point.load_pressure(), "Pa", "p_L = p_A - p_B");
-    let (symbol, equation) =
-        motion.either(("F_H", "F_H = A_A p_A - A_B p_B"), ("T_H", "T_H = D (p_A - p_B)"));
-    list.add("operating_point.hydraulic_force", symbol, point.hydraulic_force, "N", equation);
+    let (name, symbol, equation) = motion.either(
+        ("operating_point.hydraulic_force", "F_H", "F_H = A_A p_A - A_B p_B"),
+        ("operating_point.hydraulic_torque", "T_H", "T_H = D (p_A - p_B)"),
+    );
+    list.add(name, symbol, point.hydraulic_force, list.si(&FORCE), equation);
 }
 
 fn linear_parameters(rig: &Rig, list: &mut List) {
@@ -273,22 +278,22 @@ fn linear_parameters(rig: &Rig, list: &mut List) {
     );
     for parameter in &rig.parameters {
         let (symbol, unit, equation) = match parameter.name {
-            "viscous_friction" => ("f_v", "N.s/m", "f_v = slope of the viscous part"),
+            "viscous_friction" => ("f_v", list.si(&DAMPING), "f_v = slope of the viscous part"),
             "flow_gain" => ("K_qU", "m3/(s.V)", flow_gain),
             "flow_pressure_coefficient" => ("K_c", "m3/(s.Pa)", slopes),
-            "hydraulic_stiffness" => (symbols.stiffness, "N/m", stiffness),
+            "hydraulic_stiffness" => (symbols.stiffness, list.si(&STIFFNESS), stiffness),
             "valve_natural_frequency" => ("ω_nv", "rad/s", "declared for the valve"),
             "valve_damping_ratio" => ("ξ_v", "1", "declared for the valve"),
             "moving_mass" => (
                 symbols.mass,
-                motion.symbol("kg"),
+                list.si(&MASS),
                 motion.either("declared for the cylinder", "declared for the motor"),
             ),
             "piston_area" if motion.is_rotary() => ("D", "m3/rad", "declared for the motor"),
             "piston_area" => ("A_u", "m2", "A_u = (A_A + A_B)/2"),
             _ => (
                 "K_S",
-                "N/m",
+                list.si(&STIFFNESS),
                 motion.either("declared for the force sensor", "declared for the torque sensor"),
             ),
         };
@@ -310,19 +315,21 @@ fn friction(rig: &Rig, list: &mut List) {
     let equation = list
         .motion
         .either("σ_2 >= σ_1 (F_S - F_C)/F_C for passivity", "σ_2 >= σ_1 (T_S - T_C)/T_C for passivity");
-    list.add("friction.passive_viscous_minimum", "σ_2", least, "N.s/m", equation);
+    list.add("friction.passive_viscous_minimum", "σ_2", least, list.si(&DAMPING), equation);
 }
 
 /// The speed at which the flow of the pump drives the piston, in each direction where they differ.
 fn piston_speed(flow: f64, [area_a, area_b]: [f64; 2], list: &mut List) {
-    let unit = list.motion.symbol("m/s");
+    let unit = list.si(&VELOCITY);
     let differs = area_a.total_cmp(&area_b).is_ne();
     let equation = match (list.motion.is_rotary(), differs) {
         (true, _) => "ω_{max} = q_{pump}/D",
         (false, false) => "v_{max} = q_{pump}/A, in both directions",
         (false, true) => "v_{max} = q_{pump}/A_A, extending",
     };
-    list.add("supply.piston_speed", list.motion.either("v_max", "ω_max"), flow / area_a, unit, equation);
+    let (name, symbol) =
+        list.motion.either(("supply.piston_speed", "v_max"), ("supply.shaft_speed", "ω_max"));
+    list.add(name, symbol, flow / area_a, unit, equation);
     if differs {
         let equation = "v_{max} = q_{pump}/A_B, retracting";
         list.add("supply.piston_speed_retracting", "v_max", flow / area_b, unit, equation);

@@ -12,7 +12,7 @@ use crate::answer::{Object, significant};
 use crate::audit::PrefilterGain;
 use crate::document::{Cell, Document, Table};
 use crate::limit_kind::{limit_words, origin_words};
-use crate::quantity::{DisplayUnit, MotionWords};
+use crate::quantity::{DisplayUnit, FORCE, MotionWords, QuantityName};
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::portable::magnitude;
 
@@ -139,14 +139,14 @@ fn command_object(view: &ProjectDesign, command: &CommandOfSteps) -> Object {
     };
     Object::new()
         .with("scenario", command.scenario.as_str())
-        .with("from_n", command.step.from_n)
-        .with("to_n", command.step.to_n)
+        .with(QuantityName::moving("from", &FORCE), command.step.from_n)
+        .with(QuantityName::moving("to", &FORCE), command.step.to_n)
         .with("at_s", command.at_s)
         .with("peak", if command.is_at_rest() { "at_rest" } else { "transient" })
         .with("largest_v", command.largest_v)
         .with("at_rest_v", command.at_rest_v)
         .with("limit_v", command.limit_v)
-        .with("largest_step_n", command.largest_step_n)
+        .with(QuantityName::moving("largest_step", &FORCE), command.largest_step_n)
         .with("step_limit", step_limit)
         .with("evidence", "search")
         .with("plants", command.plants)

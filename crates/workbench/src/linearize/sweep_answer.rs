@@ -7,7 +7,7 @@ use crate::answer::{Csv, Object, OutputFile, significant};
 use crate::caveat;
 use crate::document::{Document, Table};
 use crate::figure::{Figure, PoleSweep, PoleSweepPoint, Words};
-use crate::quantity::{DisplayUnit, MotionKind};
+use crate::quantity::{DisplayUnit, MotionKind, QuantityName, STIFFNESS};
 
 /// The swept number, in the JSON of `linearize`.
 pub(super) fn head(sweep: &Sweep) -> Object {
@@ -29,8 +29,8 @@ fn row(point: &SweepPoint, motion: MotionKind) -> Object {
     let models = found.map(|found| &found.linearization);
     let stiffness = models.map(|models| {
         Object::new()
-            .with("minimum_n_per_m", models.stiffness[0].minimum)
-            .with("maximum_n_per_m", models.stiffness[0].maximum)
+            .with(QuantityName::moving("minimum", &STIFFNESS), models.stiffness[0].minimum)
+            .with(QuantityName::moving("maximum", &STIFFNESS), models.stiffness[0].maximum)
     });
     let poles = models.map(|models| {
         Object::new()

@@ -13,7 +13,7 @@ use super::{
 use super::{repetition, required, required_of_run};
 use crate::answer::{Object, body_in_use};
 use crate::project::Loaded;
-use crate::quantity::MotionKind;
+use crate::quantity::{FORCE, MotionKind, QuantityName};
 use phea_dynamics::simulation::{Amplification, GrowthCause};
 
 /// What `simulate` says to programs if a frequency response is requested: no scenario is run.
@@ -142,7 +142,7 @@ fn overlay(overlay: &Overlay, motion: MotionKind) -> Object {
     Object::new()
         .with("file", overlay.file.as_str())
         .with("column", overlay.column.as_str())
-        .with("signal", overlay.signal.name())
+        .with("signal", overlay.signal.quantity())
         .with("rows", overlay.times_s.len())
         .with("rows_outside", overlay.rows_outside)
         .told("rmse", overlay.rmse.map_err(|why| unmeasured_words(why, motion)))
@@ -189,7 +189,7 @@ fn event((window, metrics): &(Window, Metrics), motion: MotionKind) -> Object {
         .with("kind", window.cause.word())
         .with("time_s", window.start_s)
         .with("until_s", window.end_s)
-        .told("reference_n", reference_n)
+        .told(QuantityName::moving("reference", &FORCE), reference_n)
         .told("command_v", command_v)
         .with("metrics", metrics_row(metrics, motion))
 }

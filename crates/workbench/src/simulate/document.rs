@@ -195,7 +195,7 @@ fn measured_cells(overlay: &Overlay, units: Units) -> [Cell; 5] {
         outside => format!("{}, {outside} more outside", overlay.times_s.len()),
     };
     [
-        overlay.signal.name().into(),
+        overlay.signal.quantity().text(units.motion).into_owned().into(),
         format!("{} `{}`", overlay.file, overlay.column).into(),
         overlay.nrmse.map_or(Cell::Missing, percent),
         overlay.rmse.map_or(Cell::Missing, |rmse| Cell::quantity(rmse, 3, overlay.display_unit(units))),

@@ -62,7 +62,9 @@ fn overlaid(run: &ScenarioRun, number: usize, span_s: [f64; 2]) -> Option<Figure
     let panels = run.measured.iter().map(|overlay| {
         let simulated = over_time(&run.record, run.record.signal(overlay.signal));
         let measured = trace(&overlay.times_s, &overlay.measured);
-        panel(&overlay.quantity(), overlay.display_unit(run.record.units), height, vec![simulated, measured])
+        let units = run.record.units;
+        let title = overlay.signal.words(units.motion);
+        panel(&title, overlay.display_unit(units), height, vec![simulated, measured])
     });
     let panels: Vec<CurvePanel> = panels.collect();
     let words = Words::new(

@@ -60,7 +60,7 @@ fn small_as_zero(error_n: f64) -> f64 {
 pub(crate) fn metrics_row(metrics: &Metrics, motion: MotionKind) -> Object {
     Metric::ALL.into_iter().fold(Object::new(), |row, metric| {
         let band = (metric == Metric::SettlingTime).then_some(metrics.settling_band_percent);
-        row.told(metric.name(), metrics.get(metric).map_err(|why| unmeasured_words(why, motion)))
+        row.told(metric.quantity(), metrics.get(metric).map_err(|why| unmeasured_words(why, motion)))
             .maybe("settling_band_percent", band)
     })
 }

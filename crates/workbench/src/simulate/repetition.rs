@@ -44,7 +44,7 @@ fn spread(spread: &PassSpread, motion: MotionKind) -> Object {
     let [before, after] = spread.values.map(|value| value.map_err(|why| unmeasured_words(why, motion)));
     Object::new()
         .told("event", spread.of.map(|(window, _)| window + 1).ok_or("no event has a metric"))
-        .with("metric", spread.of.map_or(Signal::Force.name(), |(_, metric)| metric.name()))
+        .with("metric", spread.of.map_or(Signal::Force.quantity(), |(_, metric)| metric.quantity()))
         .told("before", before)
         .told("after", after)
         .with("part", spread.part)
@@ -69,9 +69,9 @@ pub(super) fn divergence_row(divergence: &Divergence) -> Object {
         Divergence::CommandSwings { range_v, swings, .. } => {
             row("command_swings").with("range_v", range_v).with("swings", swings)
         }
-        Divergence::ForceBeyondReference { force_n, reference_n, .. } => {
-            row("force_beyond_reference").with("force_n", force_n).with("reference_n", reference_n)
-        }
+        Divergence::ForceBeyondReference { force_n, reference_n, .. } => row("force_beyond_reference")
+            .with(Signal::Force.quantity(), force_n)
+            .with(Signal::Reference.quantity(), reference_n),
     }
 }
 

@@ -110,8 +110,9 @@ pub(crate) fn measured_together(runs: &[NamedRun<'_>], number: usize) -> Option<
         let measured = trace(&overlay.times_s, &overlay.measured);
         let series = simulated.chain([measured]).collect();
         let reference = asked_for(&first.run.record).filter(|_| overlay.signal == Signal::Force);
-        let unit = overlay.display_unit(first.run.record.units);
-        behind(panel(&overlay.quantity(), unit, height, series), unit, CurveStyle::Reference, reference)
+        let units = first.run.record.units;
+        let (title, unit) = (overlay.signal.words(units.motion), overlay.display_unit(units));
+        behind(panel(&title, unit, height, series), unit, CurveStyle::Reference, reference)
     });
     let panels: Vec<CurvePanel> = panels.collect();
     let words = Words::new(

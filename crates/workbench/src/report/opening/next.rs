@@ -353,7 +353,7 @@ fn undeclared(contents: &Contents<'_>, taken: Option<&Side<'_>>) -> Vec<String> 
     match farthest.max_by(|one, other| one.0.total_cmp(&other.0)) {
         Some((nrmse, overlay)) if nrmse > NEAR => steps.push(format!(
             "Bring the model nearer to the rig before relying on its numbers: {} lies {} % of its range from what was measured; friction, leakage and the stiffness of the {} are the first to check.",
-            overlay.quantity(),
+            overlay.signal.words(project.motion()),
             significant(100.0 * nrmse, 3),
             project.motion().words().load_cell
         )),

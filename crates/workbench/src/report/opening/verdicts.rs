@@ -11,7 +11,9 @@ use crate::audit::{frequency_words, position_words};
 use crate::document::{Cell, StatusMark, Table};
 use crate::quantity::DisplayUnit;
 use crate::report::specifications::demand;
-use crate::simulate::{ScenarioRun, UNDETERMINED, required_overshoot, required_rise, required_settling};
+use crate::simulate::{
+    Overlay, ScenarioRun, UNDETERMINED, required_overshoot, required_rise, required_settling,
+};
 use crate::trial;
 
 type Rows = Vec<Vec<Cell>>;
@@ -184,11 +186,11 @@ fn numbers(sides: &[Side<'_>]) -> Rows {
 
 /// The measured signals with their deviations.
 fn measured(side: &Side<'_>) -> Option<Cell> {
-    let overlays = side.runs?.iter().flat_map(|run| &run.measured);
-    let told: Vec<String> = overlays
-        .filter_map(|overlay| {
-            Some(format!("{} {} %", overlay.quantity(), significant(100.0 * overlay.nrmse.ok()?, 3)))
-        })
-        .collect();
+    let words = |run: &ScenarioRun, overlay: &Overlay| {
+        let signal = overlay.signal.words(run.record.units.motion);
+        Some(format!("{signal} {} %", significant(100.0 * overlay.nrmse.ok()?, 3)))
+    };
+    let overlays = side.runs?.iter().flat_map(|run| run.measured.iter().map(move |overlay| (run, overlay)));
+    let told: Vec<String> = overlays.filter_map(|(run, overlay)| words(run, overlay)).collect();
     (!told.is_empty()).then(|| told.join(", ").into())
 }

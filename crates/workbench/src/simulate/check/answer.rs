@@ -2,7 +2,7 @@
 
 use super::{Difference, Metric, ToleranceCheck};
 use crate::answer::{Object, significant};
-use crate::quantity::{MotionKind, Units};
+use crate::quantity::{FORCE, MotionKind, QuantityName, Units};
 use crate::simulate::unmeasured_words;
 
 /// The object `check` of a scenario.
@@ -12,11 +12,14 @@ pub(crate) fn row(check: &ToleranceCheck, motion: MotionKind) -> Object {
         .with("tolerance", check.tolerance)
         .with("status", check.stopped.map_or("completed", |stopped| stopped.word))
         .with("look_s", check.look_s)
-        .told("force_difference_n", force.map(|force| force.difference))
+        .told(
+            QuantityName::OfMotion(["force_difference", "torque_difference"], &FORCE),
+            force.map(|force| force.difference),
+        )
         .told("part_of_peak", force.map(Difference::part_of_peak))
         .each("signals", &check.signals, |found| {
             Object::new()
-                .with("name", found.signal.name())
+                .with("name", found.signal.quantity())
                 .with("difference", found.difference)
                 .with("time_s", found.time_s)
                 .with("peak", found.peak)
@@ -27,7 +30,7 @@ pub(crate) fn row(check: &ToleranceCheck, motion: MotionKind) -> Object {
                 "metrics",
                 Metric::ALL,
                 |metric| {
-                    Object::new().with("name", metric.name()).told(
+                    Object::new().with("name", metric.quantity()).told(
                         "difference",
                         found.differences[metric].map_err(|why| unmeasured_words(why, motion)),
                     )
