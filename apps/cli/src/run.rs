@@ -191,7 +191,7 @@ fn checked(Certified { file, project, settings, .. }: &Certified) -> Result<(Ans
         Some(project) => {
             let loaded = load(&project.to_string_lossy(), settings, &[], "check-certificate")?;
             let problem = command::robust_problem_of(&FileSystem, &loaded, &mut |_| true)
-                .map_err(|error| explain(command::error_text(&loaded, &error)))?;
+                .map_err(|error| explain(error.to_string()))?;
             check_certificate_of(&text, &problem)
         }
     };
@@ -327,7 +327,7 @@ fn refused(loaded: &Loaded, request: &Request, (error, stage): (&CommandError, O
     let failure = match error.refusal() {
         _ if error.is_of_files() => Failure::not_written(&error.to_string()),
         Some(report) => Failure::wrong_input(report.render(styled())),
-        None => Failure::wrong_input(format!("error: {}", command::error_text(loaded, error))),
+        None => Failure::wrong_input(format!("error: {error}")),
     };
     failure.with_json(command::error_json(loaded, request, error))
 }

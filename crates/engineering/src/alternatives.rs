@@ -8,6 +8,7 @@
 mod asked;
 mod by_other_means;
 mod cases;
+mod column_key;
 mod columns;
 mod comparison;
 mod error;
@@ -19,14 +20,13 @@ mod recentred;
 
 pub use asked::{AskedAlternative, asked};
 pub use cases::{AskedCase, JudgedCase, asked_cases};
+pub use column_key::ColumnKey;
 pub use columns::{AlternativeColumn, AlternativeColumns, ColumnPart};
 pub use comparison::{
-    COLUMN_SENSES, ColumnSense, ComparedMeasure, ComparedMeasures, MEASURES, MEASURES_IF_STATED, dominates,
+    ColumnSense, ComparedMeasure, ComparedMeasures, MEASURES, MEASURES_IF_STATED, dominates,
 };
 pub use error::{AlternativesError, JudgeError, NoHose, PrepareError};
-pub use front::{
-    FeasibilityUnknown, Front, FrontColumn, FrontPoint, FrontRequest, FrontValue, NoFrontValue, SWEPT,
-};
+pub use front::{FeasibilityUnknown, Front, FrontColumn, FrontPoint, FrontRequest, FrontValue, NoFrontValue};
 pub use hardware::retracted_length;
 pub use no_number::{LengthUnknown, NoNumber};
 pub use port::IMPEDANCE_AT;

@@ -60,7 +60,7 @@ use self::deployable::{limited, split};
 use self::driven::found_and_tried;
 use crate::audit::{ProjectAudit, audit_problem, audit_request, caveat_of_rig, try_to_prove, unexamined_rig};
 use crate::project::{self, Project};
-use crate::quantity::DisplayUnit;
+use crate::quantity::{DisplayUnit, FORCE};
 use crate::robust::{RobustProblem, robust_problem};
 use crate::setup::{Setup, is_of_position};
 use crate::side_by_side::{all_cores, both};
@@ -262,7 +262,7 @@ impl ProjectDesign {
 
     /// The SI unit of what is controlled; `None` for a plant without units.
     pub fn controlled_unit(&self) -> Option<&'static str> {
-        self.gain_per.map(|_| self.designed.problem.units.motion.symbol("N"))
+        self.gain_per.map(|_| self.designed.problem.units.motion.dimension(&FORCE).si)
     }
 
     /// How the machine agrees with the linear loop, as far as it was simulated.
@@ -375,7 +375,7 @@ fn designed(
         return Err(DesignError::NoSpecification);
     }
     if is_of_position(project) {
-        return Err(DesignError::Admittance);
+        return Err(DesignError::Admittance(project.motion()));
     }
     let given = robust_problem(source, as_given)?;
     let as_designed = match std::ptr::eq(as_given, setup) {

@@ -26,7 +26,7 @@ use phea_qft::family::{Family, MeasurementError};
 
 use crate::project::{FormulaError, Project, Refusal};
 use crate::quantity::significant;
-use crate::rig::RigError;
+use crate::rig::{OfMotion, RigError};
 use crate::setup::Setup;
 use crate::source::Source;
 
@@ -137,8 +137,8 @@ pub enum NoOperatingPoint {
     #[error(transparent)]
     Actuator(#[from] ActuatorError),
     /// Nothing balances its pressures.
-    #[error(transparent)]
-    Unbalanced(#[from] OperatingPointError),
+    #[error("{0}")]
+    Unbalanced(OfMotion<OperatingPointError>),
     /// The recorded pressures are not those that balance.
     #[error(
         "the pressures recorded for it miss those that balance by {} % of the supply's",

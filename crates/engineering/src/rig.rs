@@ -10,6 +10,7 @@ mod in_loop;
 mod largest_flow;
 mod lines;
 mod numbers;
+mod of_motion;
 mod outside;
 mod parameters;
 mod place;
@@ -52,6 +53,7 @@ pub use largest_flow::{FlowLimit, LargestFlow, largest_flow};
 pub use lines::{in_motion, line_model, lines};
 pub(crate) use lines::{quarter_wave, quarter_wave_of};
 pub use numbers::Numbers;
+pub use of_motion::OfMotion;
 pub use outside::OutsideParameter;
 pub(crate) use outside::outside;
 pub use parameters::{ParameterOrigin, ResolvedParameter};
@@ -124,7 +126,7 @@ pub enum RigError {
     Actuator(#[from] ActuatorError),
     /// No equilibrium at the declared operating point.
     #[error("[operating_point]: {0}")]
-    OperatingPoint(#[from] OperatingPointError),
+    OperatingPoint(OfMotion<OperatingPointError>),
     /// A line that its model cannot describe.
     #[error("[line] model: {0}")]
     Line(#[from] LineError),
@@ -238,7 +240,8 @@ impl Rig {
         // the valve at the pressure of the pump, lines and stall forces at the stated one
         let settled = supply.map_or(components.supply, |found| found.supply);
         let at_valve = Actuator::new(Components { supply: settled, ..*components })?;
-        let point = operating_point(&at_valve, position, steady.into())?;
+        let unbalanced = |error| RigError::OperatingPoint(OfMotion { motion: project.motion(), error });
+        let point = operating_point(&at_valve, position, steady.into()).map_err(unbalanced)?;
         accumulator::charged(declared, &components.accumulators, &point)?;
         let pressures = [point.pressure_a, point.pressure_b];
         let supply = supply

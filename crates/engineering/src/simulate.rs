@@ -98,8 +98,8 @@ use phea_hydraulics::operating_point::OperatingPointError;
 use crate::linear_loop::LoopError;
 use crate::number_table::TableFormat;
 use crate::project::{Refusal, Scenario};
-use crate::quantity::{FORCE, LENGTH, RATIO, TIME, VOLTAGE, display};
-use crate::rig::RigError;
+use crate::quantity::{FORCE, LENGTH, MotionKind, RATIO, TIME, VOLTAGE, display};
+use crate::rig::{OfMotion, RigError};
 use crate::setup::ControlError;
 use crate::setup::Setup;
 use crate::source::{Destination, Source, WriteError};
@@ -135,40 +135,45 @@ pub enum SimulateError {
     LinearLoop(#[from] LoopError),
     /// A load in front of a wall without a mass.
     #[error(
-        "[load] model \"wall\" is simulated with the `mass` of what moves beyond the load cell: none is stated"
+        "[load] model \"wall\" is simulated with the `mass` of what moves beyond the {}: none is stated",
+        .0.words().load_cell
     )]
-    LoadMass,
+    LoadMass(MotionKind),
     /// A line that its model cannot describe.
     #[error("[line] model: {0}")]
     Line(#[from] LineError),
     /// The machine is impossible.
     #[error("{0}")]
-    Machine(MachineError),
+    Machine(OfMotion<MachineError>),
     /// A scenario does not begin.
     #[error("scenario \"{name}\": {error}")]
     Start {
         /// Name of the scenario.
         name: String,
         /// What is wrong with its start.
-        error: MachineError,
+        error: OfMotion<MachineError>,
     },
     /// There is no operating point from which to search for an equilibrium.
     #[error(
-        "scenario \"{name}\" states no `start`, and there is no operating point without force at mid stroke: {error}"
+        "scenario \"{name}\" states no `start`, and there is no operating point without {} at mid stroke: {error}",
+        .error.motion.words().force
     )]
     Equilibrium {
         /// Name of the scenario.
         name: String,
         /// Why not.
-        error: OperatingPointError,
+        error: OfMotion<OperatingPointError>,
     },
     /// There is no equilibrium to start from.
     #[error(
         "scenario \"{name}\" states no `start`, and the closed loop has no equilibrium at its reference of {}: where \
-         all moves least, {what} still moves by {rate:.2e} of its typical magnitude a second",
-        display(*reference_n, &FORCE, 6)
+         all moves least, {} still moves by {rate:.2e} of its typical magnitude a second",
+        display(*reference_n, motion.dimension(&FORCE), 6),
+        what.words(*motion)
     )]
     NoRest {
+        /// How the rig moves.
+        motion: MotionKind,
         /// Name of the scenario.
         name: String,
         /// Reference at time zero, N.
@@ -195,9 +200,11 @@ pub enum SimulateError {
     /// The equilibrium needs a command beyond its limit.
     #[error(
         "scenario \"{name}\" states no `start`, and the equilibrium at its reference of {} needs a command of {}, beyond the limit of {}",
-        display(*reference_n, &FORCE, 6), display(*command_v, &VOLTAGE, 4), display(*limit_v, &VOLTAGE, 6)
+        display(*reference_n, motion.dimension(&FORCE), 6), display(*command_v, &VOLTAGE, 4), display(*limit_v, &VOLTAGE, 6)
     )]
     RestBeyondLimit {
+        /// How the rig moves.
+        motion: MotionKind,
         /// Name of the scenario.
         name: String,
         /// Reference at time zero, N.

@@ -3,6 +3,7 @@
 
 use num_complex::Complex64;
 use phea_dynamics::portable::{magnitude, pow};
+use phea_quantity::MotionKind;
 
 use super::axis::{Axis, extent};
 use super::bode::{FrequencySeries, frequency_axis, mark_frequencies, unwrapped_degrees};
@@ -31,6 +32,8 @@ pub struct AsymptoteLine {
 /// Impedances with their straight lines and bands.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImpedanceDiagram {
+    /// How the load moves.
+    pub motion: MotionKind,
     /// Impedances in N.s/m, such as open and closed loop.
     pub series: Vec<FrequencySeries>,
     /// Straight lines.
@@ -52,7 +55,11 @@ impl ImpedanceDiagram {
         marks.extend(self.asymptotes.iter().map(|line| asymptote_line(line, &x)));
         marks.extend(self.curves(|response| response.iter().map(|z| magnitude(*z)).collect()));
         marks.extend(self.asymptotes.iter().map(|line| asymptote_label(line, &x)));
-        let mut panels = vec![Panel::new(Axis::fit_logarithmic("|Z| (N·s/m)", values), 290.0, marks)];
+        let mut panels = vec![Panel::new(
+            Axis::fit_logarithmic(self.motion.either("|Z| (N·s/m)", "|Z| (N·m·s/rad)"), values),
+            290.0,
+            marks,
+        )];
         if self.with_phase {
             panels.push(self.phase_panel());
         }

@@ -9,7 +9,7 @@ use super::legend::LegendEntry;
 use super::plot::{Mark, Marker, MarkerStyle, Panel};
 use super::series::series_stroke;
 use super::{Figure, Words};
-use phea_quantity::DisplayUnit;
+use phea_quantity::{DisplayUnit, MotionKind};
 
 /// What is known at one value.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -31,6 +31,8 @@ pub struct PoleSweep {
     pub quantity: String,
     /// Its unit.
     pub unit: DisplayUnit,
+    /// How the rig moves.
+    pub motion: MotionKind,
     /// The unit of K_H.
     pub stiffness_unit: DisplayUnit,
     /// Whether its axis is logarithmic.
@@ -113,7 +115,7 @@ impl PoleSweep {
             Mark::Line { points, stroke: series_stroke(index) }
         };
         let values = self.points.iter().flat_map(|point| point.stiffness_n_per_m).map(|value| unit.of(value));
-        let y = Axis::fit_linear(unit.title("K_H"), values.chain([0.0]));
+        let y = Axis::fit_linear(unit.title(self.motion.symbols().stiffness), values.chain([0.0]));
         Panel::new(y, 130.0, vec![line(0, LEAST), line(1, GREATEST)])
     }
 
@@ -123,8 +125,9 @@ impl PoleSweep {
         if self.bandwidths().next().is_some() {
             legend.push(LegendEntry::line("bandwidth of the loop", series_stroke(BANDWIDTH)));
         }
-        legend.push(LegendEntry::line("least K_H", series_stroke(LEAST)));
-        legend.push(LegendEntry::line("greatest K_H", series_stroke(GREATEST)));
+        let symbol = self.motion.symbols().stiffness;
+        legend.push(LegendEntry::line(&format!("least {symbol}"), series_stroke(LEAST)));
+        legend.push(LegendEntry::line(&format!("greatest {symbol}"), series_stroke(GREATEST)));
         legend
     }
 }

@@ -56,9 +56,14 @@ impl StiffnessDiagram {
     /// Draws the diagram: linear from zero, or logarithmic when the curves lie more than a factor
     /// of twelve apart.
     pub fn draw(&self, words: &Words) -> Figure {
+        let motion = self.units.motion;
         let (place, title) = match self.over {
-            StiffnessOver::Stroke => (self.units.position, "Piston position x_p"),
-            StiffnessOver::Force => (self.units.force, "Hydraulic force F_H"),
+            StiffnessOver::Stroke => {
+                (self.units.position, motion.either("Piston position x_p", "Shaft angle θ"))
+            }
+            StiffnessOver::Force => {
+                (self.units.force, motion.either("Hydraulic force F_H", "Hydraulic torque T_H"))
+            }
         };
         let places = self.curves.iter().flat_map(|curve| curve.places.iter());
         let (left, right) = extent(places.map(|v| place.of(*v)));
@@ -90,7 +95,8 @@ impl StiffnessDiagram {
             self.curves.iter().flat_map(all).flatten().map(|value| self.unit().of(value))
         };
         let (low, high) = extent(values().filter(|v| v.is_finite()));
-        let title = self.unit().title("Hydraulic stiffness K_H");
+        let title =
+            self.unit().title(&format!("Hydraulic stiffness {}", self.units.motion.symbols().stiffness));
         if high > 12.0 * low && low > 0.0 {
             Axis::fit_logarithmic(title, values())
         } else {

@@ -210,6 +210,7 @@ fn impedances() {
             to_rad_per_s: r.number(),
         };
         let chart = ImpedanceDiagram {
+            motion: if r.unit() < 0.5 { MotionKind::Linear } else { MotionKind::Rotary },
             series: r.many(4, Random::frequency_series),
             asymptotes: r.many(6, asymptote),
             corners: r.many(5, Random::mark),

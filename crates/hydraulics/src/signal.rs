@@ -2,8 +2,8 @@
 //! a rig are compared with.
 
 use phea_quantity::{
-    ANGLE, ANGULAR_VELOCITY, Dimension, FLOW, FORCE, LENGTH, POWER, PRESSURE, RATIO, TEMPERATURE, TIME,
-    TORQUE, VELOCITY, VOLTAGE,
+    ANGLE, ANGULAR_VELOCITY, Dimension, FLOW, FORCE, LENGTH, MotionKind, POWER, PRESSURE, QuantityName,
+    RATIO, TEMPERATURE, TIME, TORQUE, VELOCITY, VOLTAGE,
 };
 
 /// The part of a rig that has a signal; a rig without that part lacks the signal.
@@ -35,7 +35,7 @@ pub enum SignalPart {
 
 /// Declares the signals: one row each, in the order of a table's columns.
 macro_rules! signals {
-    ($($(#[$attribute:meta])* $signal:ident = $name:literal, $dimension:ident, $part:expr;)*) => {
+    ($($(#[$attribute:meta])* $signal:ident = $stem:literal $unit:literal, $dimension:ident, $part:expr;)*) => {
         /// A signal of a rig with its controller. Forces, positions and velocities are positive
         /// towards the B end, flows are positive from the valve into the line, pressures are gauge.
         /// A rig with a motor has torques in N m in place of forces, and angles in rad in place of
@@ -57,10 +57,17 @@ macro_rules! signals {
             /// All signals in the order of a table's columns.
             pub const ALL: &[Signal] = &[$(Signal::$signal),*];
 
-            /// The name of its column, which ends in its SI unit.
+            /// Its name in project files, which ends in its SI unit in linear motion.
             pub const fn name(self) -> &'static str {
                 match self {
-                    $(Signal::$signal => $name,)*
+                    $(Signal::$signal => concat!($stem, "_", $unit),)*
+                }
+            }
+
+            /// That name without the unit.
+            const fn stem(self) -> &'static str {
+                match self {
+                    $(Signal::$signal => $stem,)*
                 }
             }
 
@@ -84,102 +91,159 @@ macro_rules! signals {
 signals! {
     /// Time since the scenario began.
     #[default]
-    Time = "time_s", TIME, SignalPart::Rig;
+    Time = "time" "s", TIME, SignalPart::Rig;
     /// Reference force; at a step, the value from then on.
-    Reference = "reference_n", FORCE, SignalPart::Rig;
+    Reference = "reference" "n", FORCE, SignalPart::Rig;
     /// Force of the rod on the load; with a series element the force that its sensor measures.
-    Force = "force_n", FORCE, SignalPart::Rig;
+    Force = "force" "n", FORCE, SignalPart::Rig;
     /// Command that the controller puts out, or the command of an open loop.
-    Control = "control_v", VOLTAGE, SignalPart::Rig;
+    Control = "control" "v", VOLTAGE, SignalPart::Rig;
     /// Position of the spool.
-    Spool = "spool_v", VOLTAGE, SignalPart::Rig;
+    Spool = "spool" "v", VOLTAGE, SignalPart::Rig;
     /// Pressure of chamber A.
-    PressureA = "pressure_a_pa", PRESSURE, SignalPart::Rig;
+    PressureA = "pressure_a" "pa", PRESSURE, SignalPart::Rig;
     /// Pressure of chamber B.
-    PressureB = "pressure_b_pa", PRESSURE, SignalPart::Rig;
+    PressureB = "pressure_b" "pa", PRESSURE, SignalPart::Rig;
     /// Position of the piston from the A end.
-    Position = "position_m", LENGTH, SignalPart::Rig;
+    Position = "position" "m", LENGTH, SignalPart::Rig;
     /// Velocity of the piston.
-    Velocity = "velocity_m_per_s", VELOCITY, SignalPart::Rig;
+    Velocity = "velocity" "m_per_s", VELOCITY, SignalPart::Rig;
     /// Supply pressure at the valve.
-    SupplyPressure = "supply_pressure_pa", PRESSURE, SignalPart::Rig;
+    SupplyPressure = "supply_pressure" "pa", PRESSURE, SignalPart::Rig;
     /// Deflection of the force sensor.
-    Deflection = "deflection_m", LENGTH, SignalPart::Rig;
+    Deflection = "deflection" "m", LENGTH, SignalPart::Rig;
     /// Friction of the piston.
-    Friction = "friction_n", FORCE, SignalPart::Rig;
+    Friction = "friction" "n", FORCE, SignalPart::Rig;
     /// Force of the end stops on the piston.
-    EndStops = "end_stops_n", FORCE, SignalPart::Rig;
+    EndStops = "end_stops" "n", FORCE, SignalPart::Rig;
     /// Flow from the valve into the line to chamber A.
-    FlowA = "flow_a_m3_per_s", FLOW, SignalPart::Rig;
+    FlowA = "flow_a" "m3_per_s", FLOW, SignalPart::Rig;
     /// Flow from the valve into the line to chamber B.
-    FlowB = "flow_b_m3_per_s", FLOW, SignalPart::Rig;
+    FlowB = "flow_b" "m3_per_s", FLOW, SignalPart::Rig;
     /// Flow that the valve takes from the supply.
-    SupplyFlow = "supply_flow_m3_per_s", FLOW, SignalPart::Rig;
+    SupplyFlow = "supply_flow" "m3_per_s", FLOW, SignalPart::Rig;
     /// Position of the load; behind a linkage that of the rod's end.
-    LoadPosition = "load_position_m", LENGTH, SignalPart::Rig;
+    LoadPosition = "load_position" "m", LENGTH, SignalPart::Rig;
     /// Velocity of the load; behind a linkage that of the rod's end.
-    LoadVelocity = "load_velocity_m_per_s", VELOCITY, SignalPart::Rig;
+    LoadVelocity = "load_velocity" "m_per_s", VELOCITY, SignalPart::Rig;
     /// Pressure of line A at the valve.
-    PortPressureA = "port_pressure_a_pa", PRESSURE, SignalPart::Rig;
+    PortPressureA = "port_pressure_a" "pa", PRESSURE, SignalPart::Rig;
     /// Pressure of line B at the valve.
-    PortPressureB = "port_pressure_b_pa", PRESSURE, SignalPart::Rig;
+    PortPressureB = "port_pressure_b" "pa", PRESSURE, SignalPart::Rig;
     /// Force of the chambers on the piston.
-    HydraulicForce = "hydraulic_force_n", FORCE, SignalPart::Rig;
+    HydraulicForce = "hydraulic_force" "n", FORCE, SignalPart::Rig;
     /// Reference force after the prefilter.
-    FilteredReference = "filtered_reference_n", FORCE, SignalPart::Rig;
+    FilteredReference = "filtered_reference" "n", FORCE, SignalPart::Rig;
     /// Opening of the valve's edges: the spool less null bias and magnetic lag.
-    Opening = "opening_v", VOLTAGE, SignalPart::Rig;
+    Opening = "opening" "v", VOLTAGE, SignalPart::Rig;
     /// Compression of the series spring, or of the oil of a transmission.
-    SeriesDeflection = "series_deflection_m", LENGTH, SignalPart::SeriesElement;
+    SeriesDeflection = "series_deflection" "m", LENGTH, SignalPart::SeriesElement;
     /// Force on the load behind a series element.
-    LoadForce = "load_force_n", FORCE, SignalPart::SeriesElement;
+    LoadForce = "load_force" "n", FORCE, SignalPart::SeriesElement;
     /// Angle of the joint.
-    JointAngle = "joint_angle_rad", ANGLE, SignalPart::Linkage;
+    JointAngle = "joint_angle" "rad", ANGLE, SignalPart::Linkage;
     /// Angular velocity of the joint.
-    JointVelocity = "joint_velocity_rad_per_s", ANGULAR_VELOCITY, SignalPart::Linkage;
+    JointVelocity = "joint_velocity" "rad_per_s", ANGULAR_VELOCITY, SignalPart::Linkage;
     /// Torque of the rod on the joint.
-    JointTorque = "joint_torque_n_m", TORQUE, SignalPart::Linkage;
+    JointTorque = "joint_torque" "n_m", TORQUE, SignalPart::Linkage;
     /// Pressure of the gas behind a neck at chamber A.
-    GasPressureA = "gas_pressure_a_pa", PRESSURE, SignalPart::GasPressure(0);
+    GasPressureA = "gas_pressure_a" "pa", PRESSURE, SignalPart::GasPressure(0);
     /// Pressure of the gas behind a neck at chamber B.
-    GasPressureB = "gas_pressure_b_pa", PRESSURE, SignalPart::GasPressure(1);
+    GasPressureB = "gas_pressure_b" "pa", PRESSURE, SignalPart::GasPressure(1);
     /// Absolute temperature of the gas at chamber A over that of its wall.
-    GasTemperatureRatioA = "gas_temperature_a_ratio", RATIO, SignalPart::HeatedGas(0);
+    GasTemperatureRatioA = "gas_temperature_a" "ratio", RATIO, SignalPart::HeatedGas(0);
     /// Absolute temperature of the gas at chamber B over that of its wall.
-    GasTemperatureRatioB = "gas_temperature_b_ratio", RATIO, SignalPart::HeatedGas(1);
+    GasTemperatureRatioB = "gas_temperature_b" "ratio", RATIO, SignalPart::HeatedGas(1);
     /// Setting of the accumulator at chamber A.
-    SettingA = "setting_a_ratio", RATIO, SignalPart::Adjustment;
+    SettingA = "setting_a" "ratio", RATIO, SignalPart::Adjustment;
     /// Setting of the accumulator at chamber B.
-    SettingB = "setting_b_ratio", RATIO, SignalPart::Adjustment;
+    SettingB = "setting_b" "ratio", RATIO, SignalPart::Adjustment;
     /// Power of the adjustment of the accumulators.
-    AdjustmentPower = "adjustment_power_w", POWER, SignalPart::Adjustment;
+    AdjustmentPower = "adjustment_power" "w", POWER, SignalPart::Adjustment;
     /// Pressure of the transmission's oil at the piston on the rod.
-    TransmissionPressureRod = "transmission_pressure_rod_pa", PRESSURE, SignalPart::Transmission;
+    TransmissionPressureRod = "transmission_pressure_rod" "pa", PRESSURE, SignalPart::Transmission;
     /// Pressure of the transmission's oil at the piston on the load.
-    TransmissionPressureLoad = "transmission_pressure_load_pa", PRESSURE, SignalPart::Transmission;
+    TransmissionPressureLoad = "transmission_pressure_load" "pa", PRESSURE, SignalPart::Transmission;
     /// Temperature of the gas at chamber A.
-    GasTemperatureA = "gas_temperature_a_degC", TEMPERATURE, SignalPart::GasTemperature(0);
+    GasTemperatureA = "gas_temperature_a" "degC", TEMPERATURE, SignalPart::GasTemperature(0);
     /// Temperature of the gas at chamber B.
-    GasTemperatureB = "gas_temperature_b_degC", TEMPERATURE, SignalPart::GasTemperature(1);
+    GasTemperatureB = "gas_temperature_b" "degC", TEMPERATURE, SignalPart::GasTemperature(1);
     /// Command as it reaches the valve, after the delay of the loop.
-    Command = "command_v", VOLTAGE, SignalPart::Rig;
+    Command = "command" "v", VOLTAGE, SignalPart::Rig;
     /// Command that the controller would put out without its limit.
-    UnlimitedControl = "unlimited_control_v", VOLTAGE, SignalPart::Rig;
+    UnlimitedControl = "unlimited_control" "v", VOLTAGE, SignalPart::Rig;
     /// Part of the command that the controller's integral part holds.
-    Integral = "integral_v", VOLTAGE, SignalPart::Rig;
+    Integral = "integral" "v", VOLTAGE, SignalPart::Rig;
     /// Force as the controller measures it, after the sensor, with what a virtual impedance adds.
-    Measurement = "measurement_n", FORCE, SignalPart::Rig;
+    Measurement = "measurement" "n", FORCE, SignalPart::Rig;
     /// Force that a virtual impedance adds before the sensor: the reference yields by it.
-    VirtualForce = "virtual_force_n", FORCE, SignalPart::VirtualImpedance;
+    VirtualForce = "virtual_force" "n", FORCE, SignalPart::VirtualImpedance;
     /// Force from outside on the load.
-    ExternalForce = "external_force_n", FORCE, SignalPart::ExternalForce;
+    ExternalForce = "external_force" "n", FORCE, SignalPart::ExternalForce;
     /// Torque from outside on a load that turns behind a linkage.
-    ExternalTorque = "external_torque_n_m", TORQUE, SignalPart::ExternalTorque;
+    ExternalTorque = "external_torque" "n_m", TORQUE, SignalPart::ExternalTorque;
 }
 
 impl Signal {
+    /// Name of its column in a table.
+    ///
+    /// # Example
+    /// ```
+    /// use phea_hydraulics::signal::Signal;
+    /// use phea_quantity::MotionKind;
+    /// assert_eq!(Signal::Force.quantity().text(MotionKind::Rotary), "torque_n_m");
+    /// assert_eq!(Signal::Spool.quantity().text(MotionKind::Rotary), "spool_v");
+    /// assert_eq!(Signal::LoadForce.words(MotionKind::Rotary), "load torque");
+    /// ```
+    pub const fn quantity(self) -> QuantityName {
+        let rotary = match self {
+            Signal::Reference => "reference",
+            Signal::Force => "torque",
+            Signal::Position => "angle",
+            Signal::Velocity => "velocity",
+            Signal::Deflection => "deflection",
+            Signal::Friction => "friction",
+            Signal::EndStops => "end_stops",
+            Signal::LoadPosition => "load_angle",
+            Signal::LoadVelocity => "load_velocity",
+            Signal::HydraulicForce => "hydraulic_torque",
+            Signal::FilteredReference => "filtered_reference",
+            Signal::SeriesDeflection => "series_deflection",
+            Signal::LoadForce => "load_torque",
+            Signal::Measurement => "measurement",
+            Signal::VirtualForce => "virtual_torque",
+            Signal::ExternalForce => "external_torque",
+            other => return QuantityName::Fixed(other.name()),
+        };
+        QuantityName::OfMotion([self.stem(), rotary], self.dimension())
+    }
+
+    /// Its name in words, without the unit, for a rig of this motion: `load force`.
+    pub fn words(self, motion: MotionKind) -> String {
+        let stem = match self.quantity() {
+            QuantityName::OfMotion([_, rotary], _) if motion.is_rotary() => rotary,
+            _ => self.stem(),
+        };
+        stem.replace('_', " ")
+    }
+
     /// The signal with this name.
     pub fn named(name: &str) -> Option<Signal> {
         Signal::ALL.iter().copied().find(|signal| signal.name() == name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FORCE, LENGTH, MotionKind, QuantityName, Signal, VELOCITY};
+
+    #[test]
+    fn quantities_of_the_motion_are_those_in_its_dimensions() {
+        for signal in Signal::ALL {
+            let moves = [&FORCE, &LENGTH, &VELOCITY].contains(&signal.dimension());
+            assert_eq!(matches!(signal.quantity(), QuantityName::OfMotion(..)), moves, "{signal:?}");
+            assert_eq!(signal.quantity().text(MotionKind::Linear), signal.name());
+            assert_eq!(signal.name(), format!("{}_{}", signal.stem(), signal.dimension().suffix()));
+        }
     }
 }

@@ -79,14 +79,16 @@ impl Dimension {
     ///
     /// # Example
     /// ```
-    /// use phea_quantity::{FLOW, RATIO, TORQUE};
+    /// use phea_quantity::{FLOW, RATIO, TORQUE, VOLTAGE_PER_TORQUE};
     /// assert_eq!([FLOW.suffix(), TORQUE.suffix(), RATIO.suffix()], ["m3_per_s", "n_m", "ratio"]);
+    /// assert_eq!(VOLTAGE_PER_TORQUE.suffix(), "v_per_n_m");
     /// ```
     pub fn suffix(&self) -> String {
         match self.si {
             "1" => "ratio".to_string(),
+            "%" => "percent".to_string(),
             "degC" => "degC".to_string(),
-            si => si.to_lowercase().replace('/', "_per_").replace('.', "_"),
+            si => si.to_lowercase().replace('/', "_per_").replace('.', "_").replace(['(', ')'], ""),
         }
     }
 }

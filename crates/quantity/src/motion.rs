@@ -1,17 +1,16 @@
 //! Whether a rig moves along a line or turns: the one place that knows what this makes of
-//! dimensions, units and names for programs.
+//! dimensions, units and words.
 //!
 //! The equations of both are the same: with its displacement in place of the areas, a motor's angle
 //! is its position, its torque its force and its inertia its mass. Programs and equations therefore
 //! use one set of names inside; what is read and written asks here.
 
-mod formulae;
-mod names;
-
-use std::borrow::Cow;
+mod words;
 
 use crate::dimension::*;
 use crate::display_unit::DisplayUnit;
+
+pub use words::{MotionSymbols, MotionWords};
 
 /// The motion of a rig.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,7 +23,7 @@ pub enum MotionKind {
 }
 
 /// Quantities of linear motion and those of rotary motion in their place.
-static DIMENSIONS_OF_MOTION: [(&Dimension, &Dimension); 9] = [
+static DIMENSIONS_OF_MOTION: [(&Dimension, &Dimension); 10] = [
     (&FORCE, &TORQUE),
     (&LENGTH, &ANGLE),
     (&VELOCITY, &ANGULAR_VELOCITY),
@@ -33,6 +32,7 @@ static DIMENSIONS_OF_MOTION: [(&Dimension, &Dimension); 9] = [
     (&DAMPING, &TORSIONAL_DAMPING),
     (&AREA, &DISPLACEMENT),
     (&INVERSE_VELOCITY, &INVERSE_ANGULAR_VELOCITY),
+    (&VOLTAGE_PER_FORCE, &VOLTAGE_PER_TORQUE),
     (&VOLTAGE_PER_VELOCITY, &VOLTAGE_PER_ANGULAR_VELOCITY),
 ];
 
@@ -81,47 +81,5 @@ impl MotionKind {
     pub fn unit(self, of: DisplayUnit) -> DisplayUnit {
         let pair = UNITS_OF_MOTION.iter().find(|(linear, _)| self.is_rotary() && *linear == of);
         pair.map_or(of, |(_, rotary)| *rotary)
-    }
-
-    /// An SI unit of a quantity of the motion, stated as that of linear motion.
-    ///
-    /// # Example
-    /// ```
-    /// use phea_quantity::MotionKind;
-    /// assert_eq!(MotionKind::Rotary.symbol("N/m"), "N.m/rad");
-    /// assert_eq!(MotionKind::Rotary.symbol("Pa"), "Pa");
-    /// ```
-    pub fn symbol(self, of: &'static str) -> &'static str {
-        if self.is_rotary() { names::symbol(of) } else { of }
-    }
-
-    /// The name of a quantity for programs, stated as that of linear motion: a key of JSON, a
-    /// column of a table.
-    ///
-    /// # Example
-    /// ```
-    /// use phea_quantity::MotionKind;
-    /// assert_eq!(MotionKind::Rotary.name("force_n"), "torque_n_m");
-    /// assert_eq!(MotionKind::Rotary.name("load_position_m"), "load_angle_rad");
-    /// assert_eq!(MotionKind::Rotary.name("bore_m"), "bore_m");
-    /// assert_eq!(MotionKind::Linear.name("force_n"), "force_n");
-    /// ```
-    pub fn name(self, of: &str) -> Cow<'_, str> {
-        if self.is_rotary() { names::name(of) } else { Cow::Borrowed(of) }
-    }
-
-    /// A formula or a symbol, stated as that of linear motion.
-    ///
-    /// # Example
-    /// ```
-    /// use phea_quantity::MotionKind;
-    /// let stiffness = "K_H = A_A^2/C_A + A_B^2/C_B";
-    /// assert_eq!(MotionKind::Rotary.formula(stiffness), "K_θ = D^2 (1/C_A + 1/C_B)");
-    /// assert_eq!(MotionKind::Rotary.formula("F_H = A_A p_A - A_B p_B"), "T_H = D (p_A - p_B)");
-    /// assert_eq!(MotionKind::Rotary.formula("max(x, M v^2)"), "max(θ, J ω^2)");
-    /// assert_eq!(MotionKind::Linear.formula(stiffness), stiffness);
-    /// ```
-    pub fn formula(self, of: &str) -> Cow<'_, str> {
-        if self.is_rotary() { formulae::of_a_motor(of) } else { Cow::Borrowed(of) }
     }
 }

@@ -56,7 +56,7 @@ pub(crate) fn envelope(command: &'static str, loaded: &Loaded) -> Object {
         // of a rig that turns: its torques are in N m and its angles in rad
         .maybe("motion", loaded.project.motion().is_rotary().then_some("rotary"))
         .maybe("identified", loaded.recorded.as_ref().map(body_in_use))
-        .maybe("line_model", loaded.lines.as_ref().map(body_of_lines))
+        .maybe("line_model", loaded.lines.as_ref().map(|lines| body_of_lines(lines, loaded.project.motion())))
 }
 
 /// A number with this many significant digits as TOML writes it.

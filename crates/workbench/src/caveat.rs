@@ -48,7 +48,7 @@ pub(crate) fn sentence(effect: &UncountedEffect, units: &Units) -> String {
         }
         Effect::ConstantSupply => rig::CONSTANT_SUPPLY.to_string(),
         Effect::FrictionDirections { extending, retracting } => {
-            rig::friction_directions(*extending, *retracting)
+            rig::friction_directions(*extending, *retracting, units.motion)
         }
         Effect::BeyondReach(beyond) => {
             let (sentence, cure) = beyond_reach(beyond, units);
@@ -69,11 +69,11 @@ pub(crate) fn sentence(effect: &UncountedEffect, units: &Units) -> String {
             valve::leakage_humps(*command, *greatest, *least)
         }
         Effect::Overlap { dead_band, gain_ratio } => valve::overlap(*dead_band, *gain_ratio),
-        Effect::NullSides { flow_gains, mean } => valve::null_sides(*flow_gains, *mean),
+        Effect::NullSides { flow_gains, mean } => valve::null_sides(*flow_gains, *mean, units.motion),
         Effect::FeedForward { measured, yields } => controller::feed_forward(*measured, *yields),
         Effect::FeedForwardOutsideModels(obstacle) => controller::feed_forward_outside_models(*obstacle),
-        Effect::ImpedanceUnmeasured { yields } => controller::impedance_unmeasured(*yields),
-        Effect::Impedance { yields } => controller::impedance(*yields).to_string(),
+        Effect::ImpedanceUnmeasured { yields } => controller::impedance_unmeasured(*yields, units.motion),
+        Effect::Impedance { yields } => controller::impedance(*yields, units.motion),
         Effect::PressureFeedbackUnmeasured => controller::PRESSURE_FEEDBACK_UNMEASURED.to_string(),
         Effect::PressureFeedbackOutsideModels => controller::PRESSURE_FEEDBACK_OUTSIDE_MODELS.to_string(),
         Effect::MovedRoot { table, root, discretization } => {

@@ -27,7 +27,7 @@ pub use output_names::OutputNames;
 pub use phea_engineering::identify_error::IdentifyError;
 pub use phea_engineering::response::ResponseSettings;
 pub use phea_hydraulics::servovalve::LeakageModel;
-pub use refusal::{error_json, error_text, failure_json, files_json, refusal_json, stopped_text};
+pub use refusal::{error_json, failure_json, files_json, refusal_json, stopped_text};
 pub use response::{ResponseRequest, response_watched};
 pub use schema::{SCHEMA_FILE, schema};
 pub use simulate::{FrequencyOptions, SimulateRequest};

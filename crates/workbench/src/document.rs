@@ -9,6 +9,7 @@ mod typeset;
 
 pub(crate) use cell::{Cell, StatusMark};
 pub(crate) use table::Table;
+pub(crate) use typeset::capital;
 pub use typeset::{prose, typeset};
 
 use crate::figure::Figure;

@@ -140,9 +140,7 @@ impl CommandError {
     /// that the project has; at the end of the file where all of them are absent.
     pub(crate) fn into_refusal(self, source: &dyn Source, loaded: &Loaded) -> CommandError {
         let mut at_the_end = None;
-        let words = crate::motion::vocabulary(loaded);
-        for mut late in place::late(&self, &loaded.project) {
-            (late.message, late.help) = (words.of(&late.message), words.of(&late.help));
+        for late in place::late(&self, &loaded.project) {
             let mut refusal = refused(source, loaded, &late);
             // the warnings of the project were reported when it was read
             refusal.diagnostics.retain(|found| found.severity == Severity::Error);

@@ -5,7 +5,7 @@ use phea_engineering::impossible::{ImpossibleStep, ImpossibleSteps, SlowStep, St
 
 use crate::plant_names::plant_words;
 use crate::project::LateError;
-use crate::quantity::{DisplayUnit, Units, significant};
+use crate::quantity::{DisplayUnit, MotionKind, Units, significant};
 use crate::simulate::{beyond_reach, force};
 
 /// The steps that end a design, each at its key.
@@ -17,7 +17,7 @@ pub(crate) fn late_of_steps(impossible: &ImpossibleSteps) -> Vec<LateError> {
 pub(crate) fn late_of_step(step: &ImpossibleStep, units: &Units) -> LateError {
     let (message, help) = match step {
         ImpossibleStep::BeforeForceMoves { number, key, settling, still } => {
-            before_force_moves((*number, key), *settling, still)
+            before_force_moves((*number, key), *settling, still, units.motion)
         }
         ImpossibleStep::BeyondReach(beyond) => beyond_reach(beyond, units),
         ImpossibleStep::TooSlow(slow) => too_slow(slow, units),
@@ -29,7 +29,13 @@ fn milliseconds(time_s: f64) -> String {
     DisplayUnit::MILLISECOND.text(time_s, 3)
 }
 
-fn before_force_moves((number, key): (usize, &str), settling: f64, still: &StillTimes) -> (String, String) {
+fn before_force_moves(
+    (number, key): (usize, &str),
+    settling: f64,
+    still: &StillTimes,
+    motion: MotionKind,
+) -> (String, String) {
+    let force = motion.words().force;
     let parts = [
         (still.controller_delay, "the delay of the controller"),
         (still.controller_dead_time, "the dead time of its transfer function"),
@@ -48,7 +54,7 @@ fn before_force_moves((number, key): (usize, &str), settling: f64, still: &Still
     };
     (
         format!(
-            "[[specification]] {number}, `{key}`: no step settles in {}, since the force does not move before {total} ({})",
+            "[[specification]] {number}, `{key}`: no step settles in {}, since the {force} does not move before {total} ({})",
             milliseconds(settling),
             words.join(", ")
         ),

@@ -15,7 +15,7 @@
 //!     X/figures.rs  -> figure::Figure       drawn as SVG, as files and on the page
 //!     report.rs     -> chapters             Documents and Figures, one after another on a page
 //!   command::unprinted::Unprinted { document: Document, body: Object, files, affirmative }
-//!     printed below what recordings gave, of a rig that turns in its words (motion.rs)
+//!     printed below what recordings gave, of a rig that turns with its names for programs (motion.rs)
 //! answer::Answer { text, json, files, affirmative }
 //! ```
 //!
@@ -44,7 +44,6 @@ mod limit_kind;
 mod line_choice;
 pub mod line_test;
 pub mod linearize;
-pub(crate) mod motion;
 pub(crate) mod over_time;
 pub mod plant_names;
 pub mod report;

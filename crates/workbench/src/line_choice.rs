@@ -3,21 +3,27 @@
 use crate::answer::{hindrance_words, significant};
 use crate::document::Document;
 use crate::project::{ChosenLines, Loaded, ReachedBy};
-use crate::quantity::DisplayUnit;
+use crate::quantity::{DisplayUnit, MotionKind};
 use phea_engineering::line_choice::LUMPED_FROM;
 
 /// What precedes the answer of every command; nothing where no model was chosen.
 pub(crate) fn chosen_above(loaded: &Loaded) -> Document {
     let mut out = Document::default();
-    if let Some(lines) = &loaded.lines {
-        out.line(sentence(lines));
+    if let Some(sentence) = sentence(loaded) {
+        out.line(sentence);
         out.gap();
     }
     out
 }
 
-/// The model with what it follows from, and the key that states another.
-pub(crate) fn sentence(lines: &ChosenLines) -> String {
+/// The model with what it follows from, and the key that states another; `None` where none was
+/// chosen.
+pub(crate) fn sentence(loaded: &Loaded) -> Option<String> {
+    let lines = loaded.lines.as_ref()?;
+    Some(chosen_words(lines, loaded.project.motion()))
+}
+
+fn chosen_words(lines: &ChosenLines, motion: MotionKind) -> String {
     let quarter_wave = frequency(lines.quarter_wave_rad_per_s);
     let factor = significant(LUMPED_FROM, 2);
     let of_reach = match &lines.reach {
@@ -37,7 +43,7 @@ pub(crate) fn sentence(lines: &ChosenLines) -> String {
     let stated = |model: &str| format!("`line.model = \"{model}\"` states it otherwise");
     match (&lines.hindrance, lines.with_waves) {
         (Some(hindrance), _) => {
-            let reason = hindrance_words(hindrance);
+            let reason = hindrance_words(hindrance, motion);
             format!("Lines: lumped, although {of_reach}: no model with waves is computed ({reason}).")
         }
         (None, true) => format!("Lines: with waves, since {of_reach}; {}.", stated("lumped")),

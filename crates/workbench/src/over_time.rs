@@ -1,7 +1,9 @@
 //! Charts over time: samples in SI, shown in the units of their panels.
 
+use crate::document::capital;
 use crate::figure::axis::extent;
 use crate::figure::{Curve, CurveChart, CurvePanel, CurveRange, CurveStyle, DisplayUnit, SettlingBand};
+use crate::quantity::{MotionKind, Units};
 
 /// Time in s and value in SI, rising in time.
 pub(crate) type Trace = Vec<(f64, f64)>;
@@ -69,6 +71,11 @@ pub(crate) fn chart(
     CurveChart { x_title: "Time (s)".to_string(), x_range: span_s, panels, legend }
 }
 
+/// The measured force or torque with its symbol, as axes call it.
+pub(crate) fn measured_force(motion: MotionKind) -> String {
+    format!("{} {}", capital(motion.words().force), motion.symbols().measured)
+}
+
 /// Force after a step of the reference, and the command.
 pub(crate) struct ForceStep<'a> {
     pub(crate) times_s: &'a [f64],
@@ -80,8 +87,8 @@ pub(crate) struct ForceStep<'a> {
     pub(crate) filtered_reference: &'a [f64],
     /// V
     pub(crate) command: &'a [f64],
-    /// The unit of forces.
-    pub(crate) unit: DisplayUnit,
+    /// The motion and the unit of forces.
+    pub(crate) units: Units,
     /// Where the force has to settle, N.
     pub(crate) settling_band: Option<SettlingBand>,
     /// When it has settled, s, in words.
@@ -92,17 +99,19 @@ impl ForceStep<'_> {
     /// The chart of it.
     pub(crate) fn chart(self) -> CurveChart {
         let of = |values: &[f64]| trace(self.times_s, values);
-        let forces = panel("Force F_e", self.unit, 250.0, vec![of(self.force), of(self.filtered_reference)]);
-        let level = |band: SettlingBand| SettlingBand { level: self.unit.of(band.level), ..band };
+        let Units { motion, force: unit, .. } = self.units;
+        let quantity = measured_force(motion);
+        let forces = panel(&quantity, unit, 250.0, vec![of(self.force), of(self.filtered_reference)]);
+        let level = |band: SettlingBand| SettlingBand { level: unit.of(band.level), ..band };
         let forces = CurvePanel {
             settling_band: self.settling_band.map(level),
-            ..behind(forces, self.unit, CurveStyle::Reference, [of(self.reference)])
+            ..behind(forces, unit, CurveStyle::Reference, [of(self.reference)])
         };
         let command = CurvePanel {
             range: CurveRange::WithZero,
             ..panel("Control U_C", DisplayUnit::VOLT, 110.0, vec![of(self.command)])
         };
-        let names = ["force", "prefiltered reference"].map(String::from);
+        let names = [motion.words().force, "prefiltered reference"].map(String::from);
         let events: Vec<(f64, String)> = self.settled.into_iter().collect();
         let (start, end) = extent(self.times_s.iter().copied());
         chart(vec![forces, command], names, &events, [start, end])

@@ -7,9 +7,10 @@ use std::sync::OnceLock;
 
 use crate::ask::{HOSE, answer, load, retracted_length, source};
 use crate::json_contract::unexplained;
-use phea_workbench::alternatives::{COLUMN_SENSES, LengthUnknown, asked as asked_of};
+use phea_workbench::alternatives::{ColumnKey, LengthUnknown, asked as asked_of};
 use phea_workbench::answer::Answer;
 use phea_workbench::command::{AlternativesRequest, Request, answer_into};
+use phea_workbench::quantity::MotionKind;
 use serde_json::Value;
 
 fn asked(files: bool) -> Request {
@@ -253,7 +254,8 @@ fn every_column_has_a_sense() {
     }
     let mut found = Vec::new();
     keys(&judged().1["alternatives"][1]["columns"], &mut found);
-    let known = |key: &String| COLUMN_SENSES.iter().any(|(known, _)| known == key);
+    let known =
+        |key: &String| ColumnKey::ALL.iter().any(|known| known.quantity().text(MotionKind::Linear) == *key);
     let unknown: Vec<&String> =
         found.iter().filter(|key| *key != "frequency_rad_per_s" && !known(key)).collect();
     assert!(found.len() > 20 && unknown.is_empty(), "{unknown:?}");
@@ -263,8 +265,8 @@ fn every_column_has_a_sense() {
 #[test]
 fn every_column_has_a_name() {
     let text = &judged().0.text;
-    let keys = COLUMN_SENSES.iter().map(|(key, _)| *key).filter(|key| key.contains('_'));
-    let printed: Vec<&str> = keys.filter(|key| text.contains(key)).collect();
+    let keys = ColumnKey::ALL.iter().map(|key| key.quantity().text(MotionKind::Linear));
+    let printed: Vec<_> = keys.filter(|key| key.contains('_') && text.contains(&**key)).collect();
     assert!(text.contains("oil in both lines") && printed.is_empty(), "{printed:?}");
 }
 

@@ -5,6 +5,7 @@
 use phea_workbench::campaign::{Effort, Plan};
 use phea_workbench::command::{self, CampaignRequest, CampaignRuns, Request};
 use phea_workbench::project;
+use phea_workbench::quantity::MotionKind;
 use phea_workbench::simulate::Metric;
 use phea_workbench::source::Memory;
 use serde_json::Value;
@@ -48,7 +49,10 @@ fn agree_of(text: &str, more: &[&str]) {
         assert_eq!(events.len(), ran.metrics.len());
         for (event, numbers) in events.iter().zip(&ran.metrics) {
             for metric in Metric::ALL {
-                let (own, number) = (event["metrics"][metric.name()].as_f64(), numbers[metric]);
+                let (own, number) = (
+                    event["metrics"][&*metric.quantity().text(MotionKind::Linear)].as_f64(),
+                    numbers[metric],
+                );
                 let bits = |value: Option<f64>| value.map(f64::to_bits);
                 assert_eq!(
                     bits(own),

@@ -25,6 +25,7 @@ use phea_workbench::design::{
 use phea_workbench::project::{
     self, DeclaredQuantization, FeedForward, Loaded, Prefilter, RationalFunction, Transfer,
 };
+use phea_workbench::quantity::MotionKind;
 use phea_workbench::robust::DEFAULT_TOLERANCE_DB;
 use phea_workbench::robust::robust_problem;
 use phea_workbench::setup::Setup;
@@ -163,7 +164,8 @@ fn people_read_the_status_first_and_the_law_as_it_is_pasted() {
 #[test]
 fn programs_read_the_keys_that_stay() {
     let (_, loaded, view) = view(&PROJECT.replace("TIMING\n", ""), infeasible());
-    let object: serde_json::Value = serde_json::from_str(&body(&view).unwrap().print()).unwrap();
+    let object: serde_json::Value =
+        serde_json::from_str(&body(&view).unwrap().print(MotionKind::Linear)).unwrap();
     assert_eq!(object["status"], "infeasible");
     assert_eq!(object["relaxation_db"], 1.25);
     assert_eq!(object["conflicts"][0]["plant"]["k"], 10.0);
@@ -193,7 +195,8 @@ fn programs_read_the_keys_that_stay() {
 fn a_sampled_design_is_written_as_it_was_found_and_told_as_it_is_deployed() {
     let timing = "sample_time = \"2 ms\"\ndelay = \"1 ms\"\ndiscretization = \"matched\"\n";
     let (_, loaded, view) = view(&PROJECT.replace("TIMING\n", timing), DesignStatus::Met);
-    let object: serde_json::Value = serde_json::from_str(&body(&view).unwrap().print()).unwrap();
+    let object: serde_json::Value =
+        serde_json::from_str(&body(&view).unwrap().print(MotionKind::Linear)).unwrap();
     assert_eq!(
         (object["controller"]["domain"].as_str(), object["controller"]["sample_time_s"].as_f64()),
         (Some("z"), Some(0.002))
@@ -307,7 +310,8 @@ fn elements_are_a_published_law() {
 fn what_the_computer_rounds_is_part_of_the_design() {
     let timing = "sample_time = \"2 ms\"\nquantization = { command_bits = 12, command_range = [-10, 10], coefficients = \"f32\" }\n";
     let (_, loaded, view) = view(&PROJECT.replace("TIMING\n", timing), DesignStatus::Met);
-    let object: serde_json::Value = serde_json::from_str(&body(&view).unwrap().print()).unwrap();
+    let object: serde_json::Value =
+        serde_json::from_str(&body(&view).unwrap().print(MotionKind::Linear)).unwrap();
     let pole = object["controller"]["poles"][0][0].as_f64().unwrap();
     assert_eq!(pole, f64::from(pole as f32));
     let effect = &object["rounding"]["effects"][0];
@@ -401,7 +405,8 @@ fn a_structure_whose_steps_alone_miss_is_missed_in_time() {
         structure(StructureEnding::Missed, [5.1, 1.6]),
         ReachedStructure { misses_on_rig: true, ..structure(met, [4.9, 1.4]) },
     ];
-    let object: serde_json::Value = serde_json::from_str(&body(&view).unwrap().print()).unwrap();
+    let object: serde_json::Value =
+        serde_json::from_str(&body(&view).unwrap().print(MotionKind::Linear)).unwrap();
     let found: Vec<&str> =
         object["structures"].as_array().unwrap().iter().map(|one| one["status"].as_str().unwrap()).collect();
     let missed = "missed_in_time";
@@ -466,7 +471,8 @@ fn the_high_frequency_gain_of_a_sampled_loop_is_that_of_the_continuous_law() {
         [("", "33.979 dB"), ("sample_time = \"2 ms\"\n", "33.979 dB, of the continuous law")]
     {
         let (_, loaded, view) = view(&PROJECT.replace("TIMING\n", timing), DesignStatus::Met);
-        let object: serde_json::Value = serde_json::from_str(&body(&view).unwrap().print()).unwrap();
+        let object: serde_json::Value =
+            serde_json::from_str(&body(&view).unwrap().print(MotionKind::Linear)).unwrap();
         let figures = &object["figures"];
         assert!((figures["high_frequency_gain_db"].as_f64().unwrap() - decibels(50.0)).abs() < 1e-9);
         assert_eq!(figures["high_frequency_gain_of"], "continuous_law");
@@ -494,7 +500,7 @@ fn what_led_a_design_is_named_where_it_touches_no_limit() {
         assert!(found.contains(&sentence), "{found}");
     }
     for (led_by, key) in [(LedBy::Frequency, "frequency"), (LedBy::NonlinearRuns, "nonlinear_runs")] {
-        let body = body(&ProjectDesign { led_by, ..view.clone() }).unwrap().print();
+        let body = body(&ProjectDesign { led_by, ..view.clone() }).unwrap().print(MotionKind::Linear);
         assert_eq!(serde_json::from_str::<serde_json::Value>(&body).unwrap()["led_by"], key);
     }
 }

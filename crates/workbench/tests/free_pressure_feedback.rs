@@ -10,6 +10,7 @@ use phea_workbench::design::{
     pressure_feedback_document, pressure_feedback_object, with_free_pressure_feedback,
 };
 use phea_workbench::project::{self, Loaded, Project};
+use phea_workbench::quantity::MotionKind;
 use phea_workbench::robust::robust_problem;
 use phea_workbench::setup::Setup;
 use phea_workbench::source::Memory;
@@ -147,7 +148,7 @@ fn plants_with_waves_that_are_missing_are_stated() {
         let text = pressure_feedback_document(&PressureFeedbackDesign { is_used, ..found.clone() }).text();
         assert!(text.contains(&sentence), "{text}");
     }
-    let json = pressure_feedback_object(&found).print();
+    let json = pressure_feedback_object(&found).print(MotionKind::Linear);
     assert!(json.contains("\"missing_with_waves\""), "{json}");
 }
 
@@ -159,6 +160,6 @@ fn no_plant_with_waves_is_missing_from_the_structural_rig() {
     let found = with_free_pressure_feedback(&Memory::default(), &setup, &mut |_| true).unwrap().unwrap().1;
     assert_eq!(found.missing_with_waves, None);
     assert!(!pressure_feedback_document(&found).text().contains("was found without"));
-    assert!(!pressure_feedback_object(&found).print().contains("missing_with_waves"));
+    assert!(!pressure_feedback_object(&found).print(MotionKind::Linear).contains("missing_with_waves"));
     assert_eq!(found.plants % 2, 0, "{found:?}");
 }

@@ -341,8 +341,8 @@ fn text_of(markup: &str) -> String {
 }
 
 /// Names of lengths and masses, whatever the rig does.
-const OF_ALL_RIGS: [&str; 5] =
-    ["lines_length_m", "sized_length_m", "actuator_length_m", "oil_mass_kg", "parts_mass_kg"];
+const OF_ALL_RIGS: [&str; 6] =
+    ["lines_length_m", "sized_length_m", "actuator_length_m", "oil_mass_kg", "parts_mass_kg", "distance_m"];
 
 /// Keys of JSON that say a unit of linear motion.
 fn keys_of_linear_motion(value: &Value) -> Vec<String> {

@@ -3,8 +3,8 @@
 use phea_hydraulics::signal::Signal;
 use phea_qft::design::DesignStatus;
 
-use super::comparison::{ColumnSense, sense_of};
-use super::{JudgedAlternative, NoNumber, no_rig};
+use super::comparison::ColumnSense;
+use super::{ColumnKey, JudgedAlternative, NoNumber, no_rig};
 use crate::design::LoopFigures;
 use crate::quantity::DisplayUnit;
 use crate::simulate::{Metrics, RunStatus, ScenarioRun, StoppedRun, Unmeasured};
@@ -13,8 +13,8 @@ use crate::specification::SpecificationName;
 /// A number of an alternative.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlternativeColumn {
-    /// Its name for programs, with its unit.
-    pub key: &'static str,
+    /// Its key.
+    pub key: ColumnKey,
     /// The unit for people.
     pub unit: DisplayUnit,
     /// Significant digits for people; 0 for a whole number.
@@ -43,23 +43,25 @@ pub enum ColumnPart {
 pub struct AlternativeColumns(pub Vec<(ColumnPart, AlternativeColumn)>);
 
 impl AlternativeColumns {
-    /// The worst value of the column of that name, of all specifications, scenarios or frequencies:
+    /// The worst value of that column, of all specifications, scenarios or frequencies:
     /// the least where more is better, otherwise the greatest. `None` if there is none, or the
     /// force does not settle in one of them.
-    pub fn worst(&self, key: &str) -> Option<f64> {
+    pub fn worst(&self, key: ColumnKey) -> Option<f64> {
         let columns = || self.0.iter().filter(|(_, column)| column.key == key);
-        if columns().any(|(_, column)| column.value == Err(NoNumber::NoMetric(Unmeasured::NotSettled))) {
+        if columns()
+            .any(|(_, column)| matches!(column.value, Err(NoNumber::NoMetric(Unmeasured::NotSettled, _))))
+        {
             return None;
         }
-        let worse = match sense_of(key) {
-            Some(ColumnSense::More) => f64::min,
-            _ => f64::max,
+        let worse = match key.sense() {
+            ColumnSense::More => f64::min,
+            ColumnSense::Less => f64::max,
         };
         columns().filter_map(|(_, column)| column.value.clone().ok()).reduce(worse)
     }
 
-    /// A column of that name.
-    pub fn first(&self, key: &str) -> Option<&AlternativeColumn> {
+    /// The first column of that key.
+    pub fn first(&self, key: ColumnKey) -> Option<&AlternativeColumn> {
         self.0.iter().map(|(_, column)| column).find(|column| column.key == key)
     }
 }
@@ -95,13 +97,18 @@ impl JudgedAlternative {
         };
         let (one, milliseconds) = (DisplayUnit::ONE, DisplayUnit::MILLISECOND);
         vec![
-            column("relaxation_db", DECIBEL, 3, relaxation),
-            column("order", one, 0, figure(|figures| figures.order as f64)),
-            column("prefilter_order", one, 0, figure(|figures| figures.prefilter_order as f64)),
-            column("relative_degree", one, 0, figure(|figures| figures.relative_degree as f64)),
-            column("high_frequency_gain_db", DECIBEL, 4, figure(|figures| figures.high_frequency_gain_db)),
-            column("modulus_margin", one, 3, of_stable(|figures| figures.modulus_margin)),
-            column("delay_margin_s", milliseconds, 3, of_stable(|figures| figures.delay_margin_s)),
+            column(ColumnKey::Relaxation, DECIBEL, 3, relaxation),
+            column(ColumnKey::Order, one, 0, figure(|figures| figures.order as f64)),
+            column(ColumnKey::PrefilterOrder, one, 0, figure(|figures| figures.prefilter_order as f64)),
+            column(ColumnKey::RelativeDegree, one, 0, figure(|figures| figures.relative_degree as f64)),
+            column(
+                ColumnKey::HighFrequencyGain,
+                DECIBEL,
+                4,
+                figure(|figures| figures.high_frequency_gain_db),
+            ),
+            column(ColumnKey::ModulusMargin, one, 3, of_stable(|figures| figures.modulus_margin)),
+            column(ColumnKey::DelayMargin, milliseconds, 3, of_stable(|figures| figures.delay_margin_s)),
         ]
     }
 
@@ -114,7 +121,7 @@ impl JudgedAlternative {
             let worst = finding.worst.as_ref().map(|worst| worst.margin_db);
             let value = worst.ok_or(NoNumber::NothingToJudgeBy);
             let part = ColumnPart::Specification(index, *name);
-            (part, column("worst_margin_db", DECIBEL, 3, value))
+            (part, column(ColumnKey::WorstMargin, DECIBEL, 3, value))
         });
         each.collect()
     }
@@ -134,7 +141,7 @@ impl JudgedAlternative {
 }
 
 pub(super) fn column(
-    key: &'static str,
+    key: ColumnKey,
     unit: DisplayUnit,
     digits: usize,
     value: Result<f64, NoNumber>,
@@ -151,12 +158,12 @@ fn driven(run: Result<&ScenarioRun, NoNumber>, force: DisplayUnit) -> [Alternati
     let energy = run.as_ref().map_err(Clone::clone).and_then(|run| energy_from_supply(run));
     let (second, volt) = (DisplayUnit::SECOND, DisplayUnit::VOLT);
     [
-        column("overshoot_percent", PERCENT, 3, of(|metrics| metrics.overshoot_percent)),
-        column("settling_time_s", second, 3, of(|metrics| metrics.settling_time_s)),
-        column("disturbance_peak_n", force, 4, of(|metrics| metrics.disturbance_peak_n)),
-        column("control_peak_v", volt, 3, of(|metrics| metrics.control_peak_v)),
-        column("control_rms_v", volt, 3, of(|metrics| metrics.control_rms_v)),
-        column("energy_from_supply_j", DisplayUnit::JOULE, 3, energy),
+        column(ColumnKey::Overshoot, PERCENT, 3, of(|metrics| metrics.overshoot_percent)),
+        column(ColumnKey::SettlingTime, second, 3, of(|metrics| metrics.settling_time_s)),
+        column(ColumnKey::DisturbancePeak, force, 4, of(|metrics| metrics.disturbance_peak_n)),
+        column(ColumnKey::ControlPeak, volt, 3, of(|metrics| metrics.control_peak_v)),
+        column(ColumnKey::ControlRms, volt, 3, of(|metrics| metrics.control_rms_v)),
+        column(ColumnKey::EnergyFromSupply, DisplayUnit::JOULE, 3, energy),
     ]
 }
 
@@ -194,10 +201,12 @@ fn greatest(run: &ScenarioRun, metric: fn(&Metrics) -> crate::simulate::Measured
     if let Some(reason) = without_result(run) {
         return Err(reason);
     }
+    let motion = run.record.units.motion;
     let values = || run.windows.iter().map(|(_, metrics)| metric(metrics));
     if values().any(|value| value == Err(Unmeasured::NotSettled)) {
-        return Err(NoNumber::NoMetric(Unmeasured::NotSettled));
+        return Err(NoNumber::NoMetric(Unmeasured::NotSettled, motion));
     }
-    let reason = || values().find_map(Result::err).map_or(NoNumber::NoEvent, NoNumber::NoMetric);
+    let reason =
+        || values().find_map(Result::err).map_or(NoNumber::NoEvent, |why| NoNumber::NoMetric(why, motion));
     values().filter_map(Result::ok).reduce(f64::max).ok_or_else(reason)
 }

@@ -3,9 +3,8 @@
 use phea_dynamics::watch::{Progress, Watch};
 
 use super::asked::ReadingAgain;
-use super::comparison::sense_of;
 use super::{AlternativesError, JudgeError, NoNumber};
-use super::{AskedAlternative, COLUMN_SENSES, ColumnSense, JudgedAlternative, Judging, dominates};
+use super::{AskedAlternative, ColumnKey, ColumnSense, JudgedAlternative, Judging, dominates};
 use crate::design::DesignVerdict;
 use crate::linearize::{SweepRequest, points, range, values};
 use crate::option::OptionError;
@@ -26,19 +25,15 @@ pub struct FrontRequest {
 /// Values of a sweep whose every point is a design, if none are requested.
 const POINTS: usize = 5;
 
-/// The swept number as a column.
-pub const SWEPT: &str = "swept";
-
-/// How far the specifications are from what can be had, 0 where all are satisfied; and the same by
-/// the name of the column that says yes or no.
-const RELAXATION: &str = "relaxation_db";
+/// Name of the column that says whether the specifications are satisfied, which requests the
+/// relaxation: 0 where they are.
 const FEASIBLE: &str = "feasible";
 
 /// A column of a front.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrontColumn {
-    /// Its name for programs.
-    pub key: &'static str,
+    /// Its key.
+    pub key: ColumnKey,
     /// What is better.
     pub sense: ColumnSense,
 }
@@ -46,6 +41,8 @@ pub struct FrontColumn {
 /// Alternatives over a swept number.
 #[derive(Clone, Debug)]
 pub struct Front {
+    /// The motion of all alternatives.
+    pub motion: MotionKind,
     /// The swept key.
     pub path: String,
     /// What people read it in.
@@ -128,6 +125,7 @@ impl FrontPoint {
 
 /// A request that was read.
 pub(super) struct FrontPlan {
+    motion: MotionKind,
     columns: Vec<FrontColumn>,
     path: String,
     unit: DisplayUnit,
@@ -138,7 +136,7 @@ pub(super) struct FrontPlan {
 impl FrontPlan {
     /// Whether it may dominate others.
     fn compares(&self, judged: &JudgedAlternative) -> bool {
-        let by_relaxation = self.columns.iter().any(|column| column.key == RELAXATION);
+        let by_relaxation = self.columns.iter().any(|column| column.key == ColumnKey::Relaxation);
         judged.is_comparable() || by_relaxation && judged.is_judged() && !judged.is_contradicted()
     }
 }
@@ -149,7 +147,7 @@ enum FrontColumnsError {
     #[error("a front has two or three columns, such as disturbance_peak_n,swept")]
     Count,
     #[error("`{0}` is listed twice")]
-    Twice(&'static str),
+    Twice(String),
     #[error("`{0}` is neither `less` nor `more`")]
     NoSense(String),
     #[error("there is no column `{name}`; did you mean `{near}`?")]
@@ -176,13 +174,13 @@ pub(super) fn plan(request: &FrontRequest, motions: Motions) -> Result<FrontPlan
     let columns = columns.collect::<Result<Vec<_>, _>>()?;
     let twice = |one: &FrontColumn| columns.iter().filter(|other| other.key == one.key).count() > 1;
     if let Some(column) = columns.iter().find(|column| twice(column)) {
-        return Err(refused(FrontColumnsError::Twice(column.key)));
+        return Err(refused(FrontColumnsError::Twice(column.key.quantity().text(motions.rig).into_owned())));
     }
     let asked = range(&request.sweep.range, motions)?;
     let count = points(request.sweep.points.or(Some(POINTS)))?;
     let values = values(asked.ends, count, asked.by_ratio());
     let unit = quantity::fitting(asked.ends[0].abs().max(asked.ends[1].abs()), asked.key.dimension);
-    Ok(FrontPlan { columns, path: asked.path, unit, si: asked.key.dimension.si, values })
+    Ok(FrontPlan { motion: motions.rig, columns, path: asked.path, unit, si: asked.key.dimension.si, values })
 }
 
 /// A column by its name in a rig of this motion, or the nearest spelling.
@@ -193,9 +191,12 @@ fn column_of(text: &str, motion: MotionKind) -> Result<FrontColumn, FrontColumns
         Some((name, "more")) => (name, Some(ColumnSense::More)),
         Some((_, other)) => return Err(FrontColumnsError::NoSense(other.to_string())),
     };
-    let name = if name == FEASIBLE { RELAXATION } else { name };
-    let known = COLUMN_SENSES.iter().find(|(key, _)| motion.name(key) == name);
-    let names: Vec<_> = COLUMN_SENSES.iter().map(|(key, _)| motion.name(key)).collect();
+    let text_of = |key: ColumnKey| key.quantity().text(motion);
+    let known = match name {
+        FEASIBLE => Some(ColumnKey::Relaxation),
+        name => ColumnKey::ALL.into_iter().find(|key| text_of(*key) == name),
+    };
+    let names = ColumnKey::ALL.map(text_of);
     let names = names.iter().map(|name| name.as_ref());
     let unknown = || match nearest(name, names.clone()) {
         Some(near) => FrontColumnsError::Misspelt { name: name.to_string(), near: near.to_string() },
@@ -204,8 +205,8 @@ fn column_of(text: &str, motion: MotionKind) -> Result<FrontColumn, FrontColumns
             FrontColumnsError::NoColumn { name: name.to_string(), names }
         }
     };
-    let (key, _) = known.ok_or_else(unknown)?;
-    Ok(FrontColumn { key, sense: wanted.or(sense_of(key)).unwrap_or(ColumnSense::Less) })
+    let key = known.ok_or_else(unknown)?;
+    Ok(FrontColumn { key, sense: wanted.unwrap_or(key.sense()) })
 }
 
 /// Judges every alternative at every value. The ranges of `[uncertainty]` follow the rig of each.
@@ -236,6 +237,7 @@ pub(super) fn swept(
     }
     compare(&mut found, &plan.columns);
     Front {
+        motion: plan.motion,
         path: plan.path.clone(),
         unit: plan.unit,
         si: plan.si,
@@ -301,7 +303,7 @@ fn values_of(
 ) -> Vec<Result<FrontValue, NoFrontValue>> {
     let columns = judged.columns();
     let of = |column: &FrontColumn| {
-        if column.key == SWEPT {
+        if column.key == ColumnKey::Swept {
             return Ok(FrontValue { value, unit: plan.unit, digits: 3 });
         }
         let found = columns.first(column.key).ok_or(NoFrontValue::NoColumn)?;

@@ -6,7 +6,7 @@ use phea_hydraulics::plant::LinearElement;
 use phea_hydraulics::series::{LEAST_ACTIVE_COILS, SeriesElement};
 
 use super::columns::{AlternativeColumn, column};
-use super::{JudgedAlternative, LengthUnknown, NoNumber, no_rig};
+use super::{ColumnKey, JudgedAlternative, LengthUnknown, NoNumber, no_rig};
 use crate::parts::{self, parts, transmission};
 use crate::project::{DeclaredActuator, DeclaredSeries};
 use crate::quantity::{DisplayUnit, MASS, MotionKind, VOLUME, fitting};
@@ -23,9 +23,9 @@ impl JudgedAlternative {
         let motion = self.loaded.project.motion();
         let stiff = motion.unit(DisplayUnit::MEGANEWTON_PER_METRE);
         let mut columns = vec![
-            column("stiffness_minimum_n_per_m", stiff, 3, stiffness(0)),
-            column("stiffness_maximum_n_per_m", stiff, 3, stiffness(1)),
-            column("equivalent_stiffness_n_per_m", stiff, 3, equivalent),
+            column(ColumnKey::StiffnessMinimum, stiff, 3, stiffness(0)),
+            column(ColumnKey::StiffnessMaximum, stiff, 3, stiffness(1)),
+            column(ColumnKey::EquivalentStiffness, stiff, 3, equivalent),
         ];
         columns.extend(self.made_of(motion));
         columns.extend(self.parts());
@@ -50,14 +50,14 @@ impl JudgedAlternative {
         let length = of(|declared, rig| retracted_length(declared, rig).map_err(NoNumber::Length));
         let power = of(|declared, rig| Ok(power_at_rest(declared, rig)));
         [
-            column("actuator_length_m", metre, 3, length),
-            column("lines_length_m", metre, 3, of(lines_length)),
-            column("moving_mass_kg", inertia, 3, of(moving_mass)),
-            column("lines_volume_m3", litre(&in_lines), 3, in_lines),
-            column("oil_volume_m3", litre(&oil), 3, oil),
-            column("oil_mass_kg", kilogram, 3, oil_mass),
-            column("gas_volume_m3", litre(&gas), 3, gas),
-            column("power_at_rest_w", DisplayUnit::WATT, 3, power),
+            column(ColumnKey::ActuatorLength, metre, 3, length),
+            column(ColumnKey::LinesLength, metre, 3, of(lines_length)),
+            column(ColumnKey::MovingMass, inertia, 3, of(moving_mass)),
+            column(ColumnKey::LinesVolume, litre(&in_lines), 3, in_lines),
+            column(ColumnKey::OilVolume, litre(&oil), 3, oil),
+            column(ColumnKey::OilMass, kilogram, 3, oil_mass),
+            column(ColumnKey::GasVolume, litre(&gas), 3, gas),
+            column(ColumnKey::PowerAtRest, DisplayUnit::WATT, 3, power),
         ]
     }
 
@@ -73,7 +73,7 @@ impl JudgedAlternative {
             .currency
             .map_or(DisplayUnit::ONE, |currency| DisplayUnit { symbol: currency.code(), in_si: 1.0 });
         let kilogram = fitting(1.0, &MASS);
-        [column("parts_price", currency, 4, price), column("parts_mass_kg", kilogram, 3, mass)]
+        [column(ColumnKey::PartsPrice, currency, 4, price), column(ColumnKey::PartsMass, kilogram, 3, mass)]
     }
 
     /// What `[sizing]` finds for it, whether it is asked to take that or not.
@@ -83,8 +83,8 @@ impl JudgedAlternative {
         let length = best.clone().map(|best| best.length_m());
         let gain = best.map(|best| best.branch.gain_v_per_n);
         [
-            column("sized_length_m", DisplayUnit::METRE, 3, length),
-            column("sized_gain_v_per_n", DisplayUnit::MILLIVOLT_PER_NEWTON, 3, gain),
+            column(ColumnKey::SizedLength, DisplayUnit::METRE, 3, length),
+            column(ColumnKey::SizedGain, DisplayUnit::MILLIVOLT_PER_NEWTON, 3, gain),
         ]
     }
 }

@@ -1,3 +1,5 @@
+use phea_quantity::MotionKind;
+
 use super::JudgeError;
 use crate::linearize::NoClosedImpedance;
 use crate::parts::PartsUnknown;
@@ -29,7 +31,7 @@ pub enum NoNumber {
         time_s: f64,
     },
     /// The metric does not exist for one of the events.
-    NoMetric(Unmeasured),
+    NoMetric(Unmeasured, MotionKind),
     /// No event begins in the scenario.
     NoEvent,
     /// No hose of the catalogue is accepted.

@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use phea_dynamics::portable;
 
 use super::columns::{AlternativeColumn, ColumnPart, column};
-use super::{JudgedAlternative, NoNumber};
+use super::{ColumnKey, JudgedAlternative, NoNumber};
 use crate::quantity::{DAMPING, fitting};
 
 /// Frequencies at which the impedance is stated where none are asked for, rad/s.
@@ -32,14 +32,14 @@ impl JudgedAlternative {
         let asked = asked.map(|asked| {
             let s = Complex64::new(0.0, frequency);
             let asked = portable::magnitude(asked.unfiltered().response(s) / s);
-            column("impedance_asked_n_s_per_m", fitting(asked, &DAMPING), 3, Ok(asked))
+            column(ColumnKey::ImpedanceAsked, fitting(asked, &DAMPING), 3, Ok(asked))
         });
         let [open, closed] = [open, closed]
             .map(|view| view.map(|view| portable::magnitude(view.impedance.at_frequency(frequency))));
         let unit = |value: &Result<f64, NoNumber>| fitting(value.clone().unwrap_or_default(), &DAMPING);
         let found = [
-            column("impedance_open_n_s_per_m", unit(&open), 3, open),
-            column("impedance_closed_n_s_per_m", unit(&closed), 3, closed),
+            column(ColumnKey::ImpedanceOpen, unit(&open), 3, open),
+            column(ColumnKey::ImpedanceClosed, unit(&closed), 3, closed),
         ];
         found.into_iter().chain(asked).collect()
     }

@@ -1,9 +1,9 @@
 //! One run as a line of a table: its drawn numbers, its end, and its metrics.
 
 use phea_hydraulics::machine::INDICATORS;
+use phea_hydraulics::signal::Signal;
+use phea_quantity::{QuantityName, STIFFNESS, Units};
 use sha2::{Digest, Sha256};
-
-use phea_quantity::Units;
 
 use super::csv::{Csv, quoted};
 use super::shortest_number;
@@ -28,8 +28,11 @@ pub const ROW_METRICS: [Metric; 9] = [
 /// Parameters of the linear model that a drawn machine visits: K_H, K_qU, K_c.
 pub const LUMP_NAMES: [&str; 3] = ["hydraulic_stiffness", "flow_gain", "flow_pressure_coefficient"];
 
-const LUMP_COLUMNS: [&str; 3] =
-    ["hydraulic_stiffness_n_per_m", "flow_gain_m3_per_s_v", "flow_pressure_coefficient_m3_per_s_pa"];
+const LUMP_COLUMNS: [QuantityName; 3] = [
+    QuantityName::moving("hydraulic_stiffness", &STIFFNESS),
+    QuantityName::Fixed("flow_gain_m3_per_s_v"),
+    QuantityName::Fixed("flow_pressure_coefficient_m3_per_s_pa"),
+];
 
 /// Metrics that compare the force with the reference.
 const OF_A_REFERENCE: [Metric; 6] = [
@@ -161,17 +164,16 @@ impl CampaignColumns {
     pub(super) fn header(&self) -> String {
         let mut csv = Csv::default();
         csv.cells(&[&"run,campaign,status,reason,ended_s,steps,occurrences"]);
-        let paths = self.paths.iter().map(String::as_str);
-        for name in paths.chain(LUMP_COLUMNS) {
-            csv.cells(&[&self.units.motion.name(name)]);
-        }
+        let motion = self.units.motion;
+        self.paths.iter().for_each(|path| csv.cells(&[path]));
+        LUMP_COLUMNS.iter().for_each(|lump| csv.cells(&[&lump.text(motion)]));
         for (number, window) in self.windows.iter().enumerate() {
             for metric in meaningful(window, self.open_loop) {
-                csv.cells(&[&format!("event{}_{}", number + 1, self.units.motion.name(metric.name()))]);
+                csv.cells(&[&format!("event{}_{}", number + 1, metric.quantity().text(motion))]);
             }
         }
         for time_s in &self.times_s {
-            csv.cells(&[&format!("{}_at_{time_s}_s", self.units.motion.name("force_n"))]);
+            csv.cells(&[&format!("{}_at_{time_s}_s", Signal::Force.quantity().text(motion))]);
         }
         csv.row(&[&"check"]);
         csv.text().to_string()

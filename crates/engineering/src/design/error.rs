@@ -5,6 +5,7 @@ use phea_dynamics::watch::Stopped;
 
 use super::Explanation;
 use crate::impossible_steps::{ImpossibleSteps, impossible_steps};
+use crate::quantity::MotionKind;
 use crate::robust::{RobustError, RobustProblem};
 use crate::setup::{ControlError, Setup};
 use crate::trial::TrialError;
@@ -19,10 +20,12 @@ pub enum DesignError {
     NoSpecification,
     /// The given controller is that of a position.
     #[error(
-        "a design finds the controller G of the force, and controller.impedance.form = \"admittance\" states that of the position: design with \
-         form = \"impedance\", which is the same loop, and take C_x = G (M_v s^2 + B_v s + K_v)"
+        "a design finds the controller G of the {}, and controller.impedance.form = \"admittance\" states that of the {}: design with \
+         form = \"impedance\", which is the same loop, and take C_x = G (M_v s^2 + B_v s + K_v)",
+        .0.words().force,
+        .0.words().position
     )]
-    Admittance,
+    Admittance(MotionKind),
     /// The search found no controller; with what was known of the problem.
     #[error("the search ended without a controller")]
     NoController(Vec<Explanation>),

@@ -105,8 +105,10 @@ mod tests {
         assert!(!begun);
         assert_eq!(unfinished, [DesignPart::Trial, DesignPart::Proof]);
         assert_eq!(
-            unless_stopped(&mut vec![], DesignPart::Proof, || Err::<Option<i32>, _>(DesignError::Admittance)),
-            Err(DesignError::Admittance)
+            unless_stopped(&mut vec![], DesignPart::Proof, || Err::<Option<i32>, _>(
+                DesignError::NoSpecification
+            )),
+            Err(DesignError::NoSpecification)
         );
     }
 }

@@ -14,7 +14,9 @@ use super::hydraulic::{Equal, Open};
 use super::moved::{self, MovedNumber};
 use super::{NoOperatingPoint, ProjectFamilyError};
 use crate::project::{DeclaredActuator, Project};
-use crate::rig::{Numbers, Rig, RigError, are_equal, components, has_gas_states, sides, states_one_pressure};
+use crate::rig::{
+    Numbers, OfMotion, Rig, RigError, are_equal, components, has_gas_states, sides, states_one_pressure,
+};
 use crate::setup::Setup;
 
 /// Relative error of a pressure that is negligible.
@@ -107,9 +109,11 @@ impl Visited {
             return None;
         }
         let components = Components { supply: balance.supply, ..components };
-        let afresh = Actuator::new(components)
-            .map_err(NoOperatingPoint::Actuator)
-            .and_then(|actuator| Ok(operating_point(&actuator, position, steady.into())?));
+        let afresh = Actuator::new(components).map_err(NoOperatingPoint::Actuator).and_then(|actuator| {
+            let unbalanced =
+                |error| NoOperatingPoint::Unbalanced(OfMotion { motion: open.declared.motion(), error });
+            operating_point(&actuator, position, steady.into()).map_err(unbalanced)
+        });
         let point = match afresh {
             Err(reason) => return Some(reason),
             Ok(point) => point,

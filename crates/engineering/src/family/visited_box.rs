@@ -5,6 +5,7 @@ use phea_dynamics::expression::Expression;
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::random;
 use phea_qft::family::{Coordinate, Extent, Family, UncertainFamily};
+use phea_quantity::{DAMPING, MotionKind, STIFFNESS};
 
 use super::hill::{Hill, SAME, SEED};
 use super::hydraulic::is_linear;
@@ -40,12 +41,15 @@ pub struct Extreme {
 }
 
 /// Name, symbol and unit of each, in the order of the results.
-const PARAMETERS: [(&str, &str, &str); 4] = [
-    ("flow_gain", "K_qU", "m3/(s.V)"),
-    ("flow_pressure_coefficient", "K_c", "m3/(s.Pa)"),
-    ("hydraulic_stiffness", "K_H", "N/m"),
-    ("viscous_friction", "f_v", "N.s/m"),
-];
+fn enclosed(motion: MotionKind) -> [(&'static str, &'static str, &'static str); 4] {
+    let of_motion = |dimension| motion.dimension(dimension).si;
+    [
+        ("flow_gain", "K_qU", "m3/(s.V)"),
+        ("flow_pressure_coefficient", "K_c", "m3/(s.Pa)"),
+        ("hydraulic_stiffness", motion.symbols().stiffness, of_motion(&STIFFNESS)),
+        ("viscous_friction", "f_v", of_motion(&DAMPING)),
+    ]
+}
 /// What moves the spool most.
 const VELOCITY: &str = "operating_point.velocity";
 /// Plants from which the search for an extreme starts, and how many are drawn in addition to the
@@ -86,7 +90,8 @@ pub fn visited_box(setup: &Setup<'_>) -> Result<Option<Vec<VisitedRange>>, Proje
             all.get(result).copied().into_iter().collect()
         })
     };
-    let expressions: Vec<Expression> = (0..PARAMETERS.len()).map(of).collect();
+    let enclosed = enclosed(setup.project.motion());
+    let expressions: Vec<Expression> = (0..enclosed.len()).map(of).collect();
     let physical = |expression: &Expression| {
         names.iter().enumerate().any(|(index, name)| !is_linear(name) && expression.depends_on(index))
     };
@@ -98,12 +103,12 @@ pub fn visited_box(setup: &Setup<'_>) -> Result<Option<Vec<VisitedRange>>, Proje
         Extent::Members => family.members().to_vec(),
     };
     let range =
-        |((name, symbol, unit), expression): (&(&'static str, &'static str, &'static str), &Expression)| {
+        |((name, symbol, unit), expression): ((&'static str, &'static str, &'static str), &Expression)| {
             let numbers = expression.numbers(&points);
             let extreme = |sign: f64| extreme(&family, expression, sign, points.iter().zip(&numbers));
             VisitedRange { name, symbol, unit, minimum: extreme(-1.0), maximum: extreme(1.0) }
         };
-    let ranges = PARAMETERS.iter().zip(&expressions).map(range);
+    let ranges = enclosed.into_iter().zip(&expressions).map(range);
     let stand_in = setup.rig()?.actuator.components();
     Ok(Some(ranges.map(|range| in_the_limit(range, stand_in_coefficient(stand_in))).collect()))
 }

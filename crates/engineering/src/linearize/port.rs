@@ -149,16 +149,6 @@ pub enum HidingMass {
     Oil,
 }
 
-impl HidingMass {
-    /// Its frequency, as the label of a figure.
-    pub fn label(self) -> &'static str {
-        match self {
-            HidingMass::Piston => "√(K_H/M)",
-            HidingMass::Oil => "√(K_eq/m)",
-        }
-    }
-}
-
 /// Which mass does so, and above which frequency in rad/s: the lower one.
 ///
 /// ```text

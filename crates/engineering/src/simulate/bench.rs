@@ -15,8 +15,8 @@ use phea_machine::{Control, Sampled};
 use super::SimulateError;
 use super::line_limits::LineLimits;
 use crate::project::{self, FrictionLaw, Project, Scenario};
-use crate::quantity::Units;
-use crate::rig::{Numbers, Rig, lines, power_unit, pressure_ratio, velocity_gain};
+use crate::quantity::{MotionKind, Units};
+use crate::rig::{Numbers, OfMotion, Rig, lines, power_unit, pressure_ratio, velocity_gain};
 use crate::setup::Setup;
 
 /// A machine with its controller.
@@ -150,7 +150,8 @@ fn rig_and_machine(
     let rig = setup.rig()?;
     let MachineOptions { external_force, moving_setting, .. } = *driven;
     let options = MachineOptions { external_force, moving_setting, ..options(setup.project, &rig.actuator)? };
-    let machine = Machine::new(&rig.actuator, &options).map_err(SimulateError::Machine)?;
+    let machine = Machine::new(&rig.actuator, &options)
+        .map_err(|error| SimulateError::Machine(OfMotion { motion: rig.motion, error }))?;
     Ok((rig.clone(), Sensed::new(machine, &setup.sensor)?))
 }
 
@@ -247,7 +248,7 @@ pub fn options(project: &Project, actuator: &Actuator) -> Result<MachineOptions,
         tare_reference_drop: declared.valve.tare_pressure,
         friction_regular_velocity,
         power_unit: power_unit(declared, &Numbers::declared()),
-        load: load(&declared.load)?,
+        load: load(&declared.load, declared.motion())?,
         velocity_gain: velocity_gain(declared, &Numbers::declared()).unwrap_or(1.0),
         pressure_ratio: fed_back.map_or(1.0, |fed_back| pressure_ratio(&fed_back, actuator.components())),
         external_force: false,
@@ -278,14 +279,14 @@ fn gas_pressure_limits(declared: &project::DeclaredActuator, actuator: &Actuator
     })
 }
 
-fn load(declared: &project::Load) -> Result<LoadModel, SimulateError> {
+fn load(declared: &project::Load, motion: MotionKind) -> Result<LoadModel, SimulateError> {
     Ok(match *declared {
         project::Load::Prescribed => LoadModel::Prescribed,
         project::Load::SpringMassDamper { mass, stiffness, damping } => {
             LoadModel::SpringMassDamper { mass, stiffness, damping }
         }
         project::Load::Wall { mass, damping, stiffness, gap, relative_damping } => LoadModel::Wall {
-            mass: mass.ok_or(SimulateError::LoadMass)?,
+            mass: mass.ok_or(SimulateError::LoadMass(motion))?,
             damping,
             gap,
             contact: Contact { stiffness, relative_damping },

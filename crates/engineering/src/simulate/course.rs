@@ -15,6 +15,7 @@ use super::motion_file::{self, CHANGES, FORCES, VOLTAGES};
 use super::saved::{self, SavedState};
 use super::{Cause, SimulateError, Window};
 use crate::project::{self, LoadMotion, MotionShape, Project, Scenario};
+use crate::rig::OfMotion;
 use crate::source::Source;
 
 /// A scenario ready to be run.
@@ -135,7 +136,10 @@ pub(crate) fn course_of(
         return Ok(driven.course(bench, saved.ground_m, states, waking));
     }
     if let Some(stated) = &scenario.start {
-        let named = |error| SimulateError::Start { name: scenario.name.clone(), error };
+        let named = |error| SimulateError::Start {
+            name: scenario.name.clone(),
+            error: OfMotion { motion: bench.rig.motion, error },
+        };
         let beginning = bench.machine.start(&stated_start(stated)).map_err(named)?;
         let start = loop_start(bench, &beginning, None);
         return Ok(driven.course(bench, beginning.inputs[0], start, Waking::AtRest));
@@ -254,7 +258,10 @@ fn near_rest(
     let position = bench.rig.point.position;
     let near = |force: f64| -> Result<InitialCondition, SimulateError> {
         let point = operating_point(&bench.rig.actuator, position, Condition::Load(SteadyLoad::Force(force)))
-            .map_err(|error| SimulateError::Equilibrium { name: scenario.name.clone(), error })?;
+            .map_err(|error| SimulateError::Equilibrium {
+                name: scenario.name.clone(),
+                error: OfMotion { motion: bench.rig.motion, error },
+            })?;
         let start = StartValues {
             position: point.position,
             pressure_a: point.pressure_a,
@@ -262,7 +269,10 @@ fn near_rest(
             spool: point.command,
             ..StartValues::default()
         };
-        let named = |error| SimulateError::Start { name: scenario.name.clone(), error };
+        let named = |error| SimulateError::Start {
+            name: scenario.name.clone(),
+            error: OfMotion { motion: bench.rig.motion, error },
+        };
         bench.machine.rest_under_load(&point).or_else(|_| bench.machine.start(&start)).map_err(named)
     };
     near(reference_n).or_else(|_| near(0.0))

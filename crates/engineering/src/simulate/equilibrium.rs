@@ -6,6 +6,7 @@ use phea_machine::{HeldInputs, Rest, at_rest};
 
 use super::SimulateError;
 use super::bench::ControlledMachine;
+use crate::quantity::{MotionKind, MotionWords};
 
 /// A loop in equilibrium.
 pub(super) struct RestedLoop {
@@ -23,10 +24,11 @@ pub(super) fn rest(
     standing: HeldInputs,
     name: &str,
 ) -> Result<RestedLoop, SimulateError> {
-    let reference_n = standing.reference_n;
+    let (motion, reference_n) = (bench.rig.motion, standing.reference_n);
     let named = |error| match error {
         EquilibriumError::NotFound { state, rate } => {
-            SimulateError::NoRest { name: name.to_string(), reference_n, what: MovingState::of(state), rate }
+            let (name, what) = (name.to_string(), MovingState::of(state));
+            SimulateError::NoRest { motion, name, reference_n, what, rate }
         }
         error => SimulateError::Rest { name: name.to_string(), error },
     };
@@ -34,7 +36,7 @@ pub(super) fn rest(
     let (command_v, limit_v) = (rest.command_v, rest.limit_v);
     if command_v.abs() > limit_v {
         let name = name.to_string();
-        return Err(SimulateError::RestBeyondLimit { name, reference_n, command_v, limit_v });
+        return Err(SimulateError::RestBeyondLimit { motion, name, reference_n, command_v, limit_v });
     }
     let position =
         |start: &[f64], inputs: &[f64]| bench.machine.signals::<f64>(start, inputs).piston.position;
@@ -69,26 +71,33 @@ const GROUNDS: usize = 60;
 
 /// A state that moves where none should, by its place in
 /// [`MachineState`](phea_hydraulics::machine::MachineState).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MovingState {
     /// Position or velocity of the spool.
-    #[error("the spool")]
     Spool,
     /// Pressure of a chamber.
-    #[error("the pressure of chamber {0}")]
     ChamberPressure(char),
     /// Force of the load cell.
-    #[error("the force")]
     Force,
     /// Piston.
-    #[error("the piston")]
     Piston,
     /// Another state.
-    #[error("a state other than force, pressures and spool")]
     Other,
 }
 
 impl MovingState {
+    /// What it is called on a rig that moves so.
+    pub fn words(self, motion: MotionKind) -> String {
+        let MotionWords { force, piston, .. } = motion.words();
+        match self {
+            MovingState::Spool => "the spool".to_string(),
+            MovingState::ChamberPressure(side) => format!("the pressure of chamber {side}"),
+            MovingState::Force => format!("the {force}"),
+            MovingState::Piston => format!("the {piston}"),
+            MovingState::Other => format!("a state other than {force}, pressures and spool"),
+        }
+    }
+
     fn of(place: usize) -> MovingState {
         match place {
             0 | 1 => MovingState::Spool,

@@ -42,7 +42,7 @@ impl<'a> RunTable<'a> {
     ) -> Result<RunTable<'a>, WriteError> {
         let parts = SignalParts::of(bench);
         let columns = parts.signals();
-        let names: Vec<_> = columns.iter().map(|signal| bench.units.motion.name(signal.name())).collect();
+        let names: Vec<_> = columns.iter().map(|signal| signal.quantity().text(bench.units.motion)).collect();
         let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
         let path = destination.path_of(name);
         let table = NumberTable::new(destination.begin(name)?, format, &names);

@@ -17,7 +17,7 @@ use phea_hydraulics::machine::{InitialCondition, Machine};
 use super::SimulateError;
 use super::bench::{options, settings};
 use crate::quantity::Units;
-use crate::rig::Rig;
+use crate::rig::{OfMotion, Rig};
 use crate::setup::Setup;
 use phea_dynamics::watch::{Progress, Watch};
 
@@ -141,9 +141,9 @@ pub fn frequency_response(
 
 fn rested(setup: &Setup<'_>) -> Result<RestedMachine, SimulateError> {
     let (project, rig) = (setup.project, setup.rig()?.clone());
-    let machine =
-        Machine::new(&rig.actuator, &options(project, &rig.actuator)?).map_err(SimulateError::Machine)?;
-    let rest = machine.rest(&rig.point).map_err(SimulateError::Machine)?;
+    let impossible = |error| SimulateError::Machine(OfMotion { motion: rig.motion, error });
+    let machine = Machine::new(&rig.actuator, &options(project, &rig.actuator)?).map_err(impossible)?;
+    let rest = machine.rest(&rig.point).map_err(impossible)?;
     let force_n = phea_machine::force(&machine, &rest.state);
     let components = rig.actuator.components();
     let [area_a, area_b] = components.cylinder.areas_at(rig.point.position);

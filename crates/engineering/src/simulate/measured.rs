@@ -61,13 +61,6 @@ impl Overlay {
     pub fn display_unit(&self, units: Units) -> DisplayUnit {
         units.of(self.signal.dimension())
     }
-
-    /// The signal without its unit, in words.
-    pub fn quantity(&self) -> String {
-        let name = self.signal.name();
-        let suffix = self.signal.dimension().suffix();
-        name.strip_suffix(&suffix).map_or(name, |stem| stem.trim_end_matches('_')).replace('_', " ")
-    }
 }
 
 /// Everything that was measured of a scenario.

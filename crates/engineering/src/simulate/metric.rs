@@ -2,7 +2,7 @@
 
 use std::ops::{Index, IndexMut};
 
-use phea_quantity::{Dimension, FORCE, PERCENT, TIME, VOLTAGE};
+use phea_quantity::{Dimension, FORCE, MotionKind, PERCENT, QuantityName, TIME, VOLTAGE};
 
 /// A number that is computed of each event of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +28,7 @@ pub enum Metric {
 }
 
 struct MetricRow {
-    name: &'static str,
+    quantity: QuantityName,
     label: &'static str,
     dimension: &'static Dimension,
     digits: usize,
@@ -49,17 +49,23 @@ impl Metric {
     ];
 
     fn row(self) -> MetricRow {
-        let row = |name, label, dimension, digits| MetricRow { name, label, dimension, digits };
+        let row = |quantity, label, dimension, digits| MetricRow { quantity, label, dimension, digits };
+        let fixed = QuantityName::Fixed;
+        let force = |names| QuantityName::OfMotion(names, &FORCE);
         match self {
-            Metric::Overshoot => row("overshoot_percent", "overshoot", &PERCENT, 3),
-            Metric::RiseTime => row("rise_time_s", "rise", &TIME, 3),
-            Metric::SettlingTime => row("settling_time_s", "settling", &TIME, 3),
-            Metric::DisturbancePeak => row("disturbance_peak_n", "disturbance peak", &FORCE, 4),
-            Metric::TrackingErrorPeak => row("tracking_error_peak_n", "tracking error peak", &FORCE, 4),
-            Metric::ForcePeak => row("force_peak_n", "force peak", &FORCE, 4),
-            Metric::SteadyStateError => row("steady_state_error_n", "steady-state error", &FORCE, 2),
-            Metric::ControlPeak => row("control_peak_v", "control peak", &VOLTAGE, 3),
-            Metric::ControlRms => row("control_rms_v", "control rms", &VOLTAGE, 3),
+            Metric::Overshoot => row(fixed("overshoot_percent"), "overshoot", &PERCENT, 3),
+            Metric::RiseTime => row(fixed("rise_time_s"), "rise", &TIME, 3),
+            Metric::SettlingTime => row(fixed("settling_time_s"), "settling", &TIME, 3),
+            Metric::DisturbancePeak => row(force(["disturbance_peak"; 2]), "disturbance peak", &FORCE, 4),
+            Metric::TrackingErrorPeak => {
+                row(force(["tracking_error_peak"; 2]), "tracking error peak", &FORCE, 4)
+            }
+            Metric::ForcePeak => row(force(["force_peak", "torque_peak"]), "force peak", &FORCE, 4),
+            Metric::SteadyStateError => {
+                row(force(["steady_state_error"; 2]), "steady-state error", &FORCE, 2)
+            }
+            Metric::ControlPeak => row(fixed("control_peak_v"), "control peak", &VOLTAGE, 3),
+            Metric::ControlRms => row(fixed("control_rms_v"), "control rms", &VOLTAGE, 3),
         }
     }
 
@@ -68,16 +74,21 @@ impl Metric {
     /// # Example
     /// ```
     /// use phea_engineering::simulate::Metric;
-    /// assert_eq!(Metric::RiseTime.name(), "rise_time_s");
+    /// use phea_quantity::MotionKind;
+    /// assert_eq!(Metric::RiseTime.quantity().text(MotionKind::Linear), "rise_time_s");
+    /// assert_eq!(Metric::ForcePeak.quantity().text(MotionKind::Rotary), "torque_peak_n_m");
     /// assert_eq!(Metric::RiseTime.dimension().si, "s");
     /// ```
-    pub fn name(self) -> &'static str {
-        self.row().name
+    pub fn quantity(self) -> QuantityName {
+        self.row().quantity
     }
 
-    /// Its heading.
-    pub fn label(self) -> &'static str {
-        self.row().label
+    /// Its heading, of a rig that moves so.
+    pub fn label(self, motion: MotionKind) -> &'static str {
+        match self {
+            Metric::ForcePeak => motion.either("force peak", "torque peak"),
+            _ => self.row().label,
+        }
     }
 
     /// Its dimension.
@@ -113,5 +124,22 @@ impl<T> Index<Metric> for PerMetric<T> {
 impl<T> IndexMut<Metric> for PerMetric<T> {
     fn index_mut(&mut self, metric: Metric) -> &mut T {
         &mut self.0[metric as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Metric;
+    use phea_quantity::MotionKind;
+
+    #[test]
+    fn a_name_ends_in_the_unit() {
+        for motion in [MotionKind::Linear, MotionKind::Rotary] {
+            for metric in Metric::ALL {
+                let name = metric.quantity().text(motion);
+                let unit = motion.dimension(metric.dimension()).suffix();
+                assert!(name.ends_with(&format!("_{unit}")), "{name}");
+            }
+        }
     }
 }

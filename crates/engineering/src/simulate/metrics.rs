@@ -1,5 +1,7 @@
 //! The metrics of a run: one window for each step of the reference and for the motion of the load.
 
+use phea_quantity::MotionKind;
+
 use super::metric::Metric;
 
 /// Part of a run that is evaluated by itself.
@@ -65,13 +67,13 @@ impl Cause {
         }
     }
 
-    /// The label of the moment in a figure.
-    pub fn label(&self) -> &'static str {
+    /// The label of the moment in a figure, of a rig that moves so.
+    pub fn label(&self, motion: MotionKind) -> &'static str {
         match self {
             Cause::ReferenceStep { .. } | Cause::CommandStep { .. } => "step",
             Cause::ReferenceMotion { kind } | Cause::CommandMotion { kind } => kind,
             Cause::LoadMotion => "load moves",
-            Cause::ExternalForce { about_joint: false } => "external force",
+            Cause::ExternalForce { about_joint: false } => motion.either("external force", "external torque"),
             Cause::ExternalForce { about_joint: true } => "external torque",
             Cause::SettingChange => "setting",
         }

@@ -1,14 +1,15 @@
 //! The names of limits on closed loops.
 
 use phea_qft::specification::ClosedLoop;
+use phea_quantity::MotionKind;
 
 /// The subject of a limit on a closed loop, by which the limit is named.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpecificationName {
     /// The closed loop that a specification of the project limits.
     ClosedLoop(ClosedLoop),
-    /// The effect on the force of rounding the command.
-    RoundedCommand,
+    /// The effect of rounding the command on the force, or the torque of a rig that turns.
+    RoundedCommand(MotionKind),
     /// The effect on the command of rounding the measurement.
     RoundedMeasurement,
 }

@@ -19,7 +19,7 @@ pub(crate) fn of_rounding(
     let frequencies = || frequencies_rad_per_s.to_vec();
     let force = declared.allowed_force_error.and_then(|allowed| {
         let found = quantization.force_specification(allowed, frequencies())?;
-        Some((found, SpecificationName::RoundedCommand))
+        Some((found, SpecificationName::RoundedCommand(setup.project.motion())))
     });
     let command = declared.allowed_command_error.and_then(|allowed| {
         let found = quantization.command_specification(allowed, frequencies())?;

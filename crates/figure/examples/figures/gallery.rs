@@ -226,6 +226,7 @@ pub(crate) fn driving_point_impedance() -> Figure {
     let damper = (AREA * AREA + viscous * leak) / leak;
     let equivalent = 1.0 / (1.0 / sensor + 1.0 / hydraulic);
     ImpedanceDiagram {
+        motion: MotionKind::Linear,
         series: vec![
             series("open loop", response(0.0, 0.0)),
             series("closed loop, PI", response(1e-3, 8e-3)),

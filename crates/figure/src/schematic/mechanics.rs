@@ -85,7 +85,7 @@ fn position_arrow(scene: &mut Scene, schematic: &Schematic) {
 pub(super) fn load(scene: &mut Scene, schematic: &Schematic) {
     let heavy = Stroke::solid(Role::Axis, 3.0);
     block(scene, MASS - 20.0, AXIS - 22.0, 40.0, 44.0);
-    word(scene, &schematic.motion.formula("M"), (MASS, AXIS), Role::Text);
+    word(scene, schematic.motion.symbols().mass, (MASS, AXIS), Role::Text);
     let mass = [schematic.mass.clone()];
     // an inertia takes more room than a mass: above what the sensor has
     let (top, wide) = if schematic.motion.is_rotary() { (4.0, 100.0) } else { (AXIS - 41.0, 56.0) };
@@ -94,7 +94,7 @@ pub(super) fn load(scene: &mut Scene, schematic: &Schematic) {
         Some(words) => {
             lines(scene, &[(MASS + 20.0, AXIS), (CELL - 17.0, AXIS)], heavy);
             block(scene, CELL - 17.0, AXIS - 15.0, 34.0, 30.0);
-            word(scene, &schematic.motion.formula("F_e"), (CELL, AXIS), Role::Text);
+            word(scene, schematic.motion.symbols().measured, (CELL, AXIS), Role::Text);
             let top = if words.len() > 1 { AXIS - 41.0 - ROW } else { AXIS - 41.0 };
             rows(scene, words, (CELL, top), Anchor::Middle, 80.0, 2);
             lines(scene, &[(CELL + 17.0, AXIS), (CELL + 26.0, AXIS)], heavy);

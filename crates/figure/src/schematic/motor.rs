@@ -37,5 +37,5 @@ pub(super) fn motor(scene: &mut Scene, schematic: &Schematic) {
     scene.text(Text::new(point(PISTON - 18.0, 4.0), text, SMALL_SIZE).held(Anchor::Middle, Baseline::Top));
     // the angle grows while oil enters chamber A
     turn(scene, (PISTON, AXIS - 24.0));
-    word(scene, &schematic.motion.formula("x_p"), (PISTON + 44.0, AXIS - 30.0), Role::Accent);
+    word(scene, schematic.motion.symbols().position, (PISTON + 44.0, AXIS - 30.0), Role::Accent);
 }

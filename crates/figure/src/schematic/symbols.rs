@@ -182,13 +182,13 @@ pub(super) fn controller(scene: &mut Scene, symbol: &ControllerSymbol, schematic
     } else {
         arrow(scene, (550.0, y), (sum.0 + 9.0, y), SIGNAL);
     }
-    word(scene, &schematic.motion.formula("F_ref"), (526.0, y - 14.0), Role::Text);
+    word(scene, schematic.motion.symbols().reference, (526.0, y - 14.0), Role::Text);
     word(scene, "+", (sum.0 + 16.0, y + 13.0), Role::Text);
     if schematic.load_cell.is_some() {
         lines(scene, &[(CELL, CELL_BOTTOM), (CELL, y - 15.0)], MEASURED);
         head(scene, (CELL, y - 9.0), (0.0, 1.0), SIGNAL.role);
         word(scene, "\u{2212}", (sum.0 - 12.0, y - 17.0), Role::Text);
-        word(scene, &schematic.motion.formula("F_e"), (CELL + 14.0, 172.0), Role::Text);
+        word(scene, schematic.motion.symbols().measured, (CELL + 14.0, 172.0), Role::Text);
     }
     rows(scene, &symbol.rows, (550.0, CONTROLLER_ROWS), Anchor::End, 245.0, 3);
 }

@@ -139,7 +139,7 @@ fn told<'c>(object: Object, columns: impl Iterator<Item = &'c AlternativeColumn>
     columns.fold(object, |object, column| {
         let reason = column.value.as_ref().err().map_or(String::new(), no_number_words);
         object.known(
-            column.key,
+            column.key.quantity(),
             column.value.as_ref().ok().map(|value| number(*value, column.digits)),
             &reason,
         )

@@ -2,9 +2,11 @@
 
 use super::findings::findings;
 use super::front;
-use super::summary::{self, machine};
+use super::summary::{self, machine, motion_of};
 use super::words::{NOT_STATED, column_name, is_unstated, no_number_words};
-use super::{AlternativeColumn, AlternativeColumns, Alternatives, ColumnPart, JudgedAlternative, NoNumber};
+use super::{
+    AlternativeColumn, AlternativeColumns, Alternatives, ColumnKey, ColumnPart, JudgedAlternative, NoNumber,
+};
 use crate::caveat::outside_parameters;
 use crate::document::{Cell, Document, Table};
 use crate::linearize::PortView;
@@ -75,6 +77,7 @@ fn table(found: &Alternatives) -> Table {
     let names = found.judged.iter().map(|one| one.name.clone());
     let mut rows = Table::grouped_by("", std::iter::once(String::new()).chain(names));
     let all: Vec<AlternativeColumns> = found.judged.iter().map(JudgedAlternative::columns).collect();
+    let motion = motion_of(found);
     let has_rig = found.judged.iter().any(|one| one.linearization.is_ok());
     for part in parts(&all) {
         let keys = keys(&all, &part);
@@ -90,7 +93,8 @@ fn table(found: &Alternatives) -> Table {
         }
         let settling = summary::settling(found.judged.iter(), |run| is_of(run, &part));
         for key in keys {
-            let name = if key == "settling_time_s" { settling.as_str() } else { column_name(key) };
+            let name =
+                if key == ColumnKey::SettlingTime { settling.as_str() } else { column_name(key, motion) };
             let cells = all.iter().map(|columns| cell(columns, &part, key));
             rows.row(std::iter::once(Cell::from(name)).chain(cells));
         }
@@ -159,7 +163,7 @@ pub(super) fn parts(all: &[AlternativeColumns]) -> Vec<ColumnPart> {
 }
 
 /// The keys of a part that some alternative has a value for, or should state one for.
-fn keys(all: &[AlternativeColumns], part: &ColumnPart) -> Vec<&'static str> {
+fn keys(all: &[AlternativeColumns], part: &ColumnPart) -> Vec<ColumnKey> {
     let mut keys = Vec::new();
     let columns = all.iter().flat_map(|columns| &columns.0).filter(|(own, _)| own == part);
     for (_, AlternativeColumn { key, .. }) in columns.filter(|(_, column)| is_shown(column)) {
@@ -178,15 +182,15 @@ fn is_shown(column: &AlternativeColumn) -> bool {
 pub(super) fn at<'c>(
     columns: &'c AlternativeColumns,
     part: &ColumnPart,
-    key: &str,
+    key: ColumnKey,
 ) -> Option<&'c AlternativeColumn> {
     columns.0.iter().find(|(own, column)| own == part && column.key == key).map(|(_, column)| column)
 }
 
-fn cell(columns: &AlternativeColumns, part: &ColumnPart, key: &str) -> Cell {
+fn cell(columns: &AlternativeColumns, part: &ColumnPart, key: ColumnKey) -> Cell {
     let Some(column) = at(columns, part, key) else { return Cell::Missing };
     match &column.value {
-        Ok(value) if key == "worst_margin_db" => Cell::margin(*value),
+        Ok(value) if key == ColumnKey::WorstMargin => Cell::margin(*value),
         Ok(value) if column.digits == 0 => value.to_string().into(),
         Ok(value) => Cell::quantity(*value, column.digits, column.unit),
         // what of it is missing is found in the table of its part

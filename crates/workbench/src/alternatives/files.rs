@@ -5,9 +5,10 @@ use phea_engineering::simulate::file_names;
 
 use super::document::{at, parts, port, stable};
 use super::front;
-use super::summary::{groups, machine};
-use super::{AlternativeColumns, Alternatives, ColumnPart, JudgedAlternative};
+use super::summary::{groups, machine, motion_of};
+use super::{AlternativeColumns, Alternatives, ColumnKey, ColumnPart, JudgedAlternative};
 use crate::answer::{Csv, OutputFile, picture_files, quoted};
+use crate::document::capital;
 use crate::figure::{Figure, FrequencySeries, ImpedanceDiagram, Words};
 use crate::linearize::frequency_grid;
 use crate::project::{IdentifiedUse, Project, print};
@@ -59,10 +60,12 @@ fn forces(file: &str, case: &str, judged: &[JudgedAlternative]) -> Vec<Figure> {
     let driven = |one: &JudgedAlternative| Some((one.name.clone(), one.runs.as_ref().ok()?.first()?.clone()));
     let (names, runs): (Vec<String>, Vec<ScenarioRun>) = judged.iter().filter_map(driven).unzip();
     let Some(first) = runs.first() else { return vec![] };
-    let caption =
-        "Force, command and load pressure of each alternative under the controller designed for it.";
+    let caption = format!(
+        "{}, command and load pressure of each alternative under the controller designed for it.",
+        capital(first.record.units.motion.words().force)
+    );
     let title = format!("{}{case}", first.name);
-    laid_over((file, &title, caption), &names, &runs.iter().collect::<Vec<_>>())
+    laid_over((file, &title, &caption), &names, &runs.iter().collect::<Vec<_>>())
 }
 
 /// The impedance at the load of each alternative, under its controller where that is continuous.
@@ -76,11 +79,18 @@ fn impedances(found: &Alternatives) -> Option<Figure> {
         let grid = frequency_grid(&port.impedance).ok()?;
         Some(FrequencySeries::new(words, &grid, |frequency| port.impedance.at_frequency(frequency)))
     });
-    let chart = ImpedanceDiagram { series: series.collect(), ..ImpedanceDiagram::default() };
+    let chart = ImpedanceDiagram {
+        motion: motion_of(found),
+        series: series.collect(),
+        ..ImpedanceDiagram::default()
+    };
     let words = Words::new(
         "alternatives-impedance",
         "The impedance at the load",
-        "Z = -F_e/(s X_L) of the nominal rig of each alternative under the controller designed for it: how hard it resists a load that moves.",
+        format!(
+            "Z = {} of the nominal rig of each alternative under the controller designed for it: how hard it resists a load that moves.",
+            motion_of(found).symbols().impedance
+        ),
     );
     (!chart.series.is_empty()).then(|| chart.draw(&words))
 }
@@ -93,7 +103,7 @@ fn table(file: &str, groups: &[(&str, &[JudgedAlternative])]) -> OutputFile {
     // all alternatives of a project move alike: none replaces its cylinder by a motor
     let mut judged = groups.iter().flat_map(|(_, judged)| judged.iter());
     let motion = judged.next().map(|one| one.loaded.project.motion()).unwrap_or_default();
-    let mut named: Vec<(ColumnPart, &str)> = Vec::new();
+    let mut named: Vec<(ColumnPart, ColumnKey)> = Vec::new();
     for part in parts(&all) {
         for (own, column) in all.iter().flat_map(|columns| &columns.0) {
             let heading = (part.clone(), column.key);
@@ -102,15 +112,16 @@ fn table(file: &str, groups: &[(&str, &[JudgedAlternative])]) -> OutputFile {
             }
         }
     }
-    let headings: Vec<String> = named.iter().map(|(part, key)| heading(part, &motion.name(key))).collect();
+    let headings: Vec<String> =
+        named.iter().map(|(part, key)| heading(part, &key.quantity().text(motion))).collect();
     let case = if groups.len() > 1 { "load_case," } else { "" };
     let words = "stable_with_its_load,machine,passive_open_loop,passive_closed_loop";
     let mut csv = Csv::new(&format!("{case}name,feasible,{},{words}", headings.join(",")));
     let rows = groups.iter().flat_map(|(case, judged)| judged.iter().map(move |one| (*case, one)));
     for ((case, one), columns) in rows.zip(&all) {
         let feasible = one.feasible().map_or(String::new(), |feasible| feasible.to_string());
-        let value = |(part, key): &(ColumnPart, &str)| {
-            let value = at(columns, part, key).and_then(|column| column.value.clone().ok());
+        let value = |(part, key): &(ColumnPart, ColumnKey)| {
+            let value = at(columns, part, *key).and_then(|column| column.value.clone().ok());
             value.map_or(String::new(), |value| value.to_string())
         };
         if groups.len() > 1 {

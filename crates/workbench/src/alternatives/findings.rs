@@ -6,14 +6,14 @@ use phea_qft::design::DesignStatus;
 
 use super::words::{judge_error_words, measure_name};
 use super::{
-    AlternativeColumns, Alternatives, ComparedMeasure, ComparedMeasures, JudgedAlternative, JudgedCase,
-    MovedRange,
+    AlternativeColumns, Alternatives, ColumnKey, ComparedMeasure, ComparedMeasures, JudgedAlternative,
+    JudgedCase, MovedRange,
 };
 use crate::caveat;
 use crate::design::verdict_sentence;
 use crate::grouped::grouped;
 use crate::project::{AS_DECLARED, ImpedanceForm, LINEAR_PARAMETERS};
-use crate::quantity::{DisplayUnit, MotionKind, fitting, significant};
+use crate::quantity::{DisplayUnit, MotionKind, MotionWords, fitting, significant};
 use crate::simulate::{ScenarioRun, required_of_run, requirement_sentence};
 use crate::trial::{Agreement, finding_words, run_name};
 
@@ -47,6 +47,7 @@ fn of_judged(judged: &[JudgedAlternative], not_reached: usize) -> Vec<String> {
 
 /// Alternatives by what can be compared of all of them.
 struct MeasuredAlternatives {
+    motion: MotionKind,
     measures: Vec<ComparedMeasure>,
     all: Vec<(String, ComparedMeasures)>,
 }
@@ -54,6 +55,8 @@ struct MeasuredAlternatives {
 impl MeasuredAlternatives {
     /// Those that have the four measures.
     fn of<'j>(judged: impl Iterator<Item = &'j JudgedAlternative>) -> MeasuredAlternatives {
+        let mut judged = judged.peekable();
+        let motion = judged.peek().map(|one| one.loaded.project.motion()).unwrap_or_default();
         let columns: Vec<_> = judged.map(|one| (one.name.clone(), one.columns())).collect();
         let four = ComparedMeasure::of_all(&[]);
         let has_four = |columns: &AlternativeColumns| ComparedMeasures::of(columns, &four).is_some();
@@ -61,12 +64,13 @@ impl MeasuredAlternatives {
         let (names, columns): (Vec<_>, Vec<_>) = columns.into_iter().unzip();
         let measures = ComparedMeasure::of_all(&columns);
         let measured = columns.iter().filter_map(|columns| ComparedMeasures::of(columns, &measures));
-        MeasuredAlternatives { all: names.into_iter().zip(measured).collect(), measures }
+        MeasuredAlternatives { motion, all: names.into_iter().zip(measured).collect(), measures }
     }
 
     /// The measures in words.
     fn words(&self) -> String {
-        let further = self.measures.iter().skip(FOUR.len()).map(|measure| measure_name(measure.key));
+        let further = self.measures.iter().skip(FOUR.len());
+        let further = further.map(|measure| measure_name(measure.key, self.motion));
         let all: Vec<&str> = FOUR.into_iter().chain(further).collect();
         match all.split_last() {
             Some((last, others)) => format!("{} and {last}", others.join(", ")),
@@ -120,7 +124,9 @@ fn specifications(judged: &[JudgedAlternative], not_reached: usize) -> Vec<Strin
         Err(reason) => Some(format!("{}: not judged: {}", one.name, judge_error_words(reason))),
         Ok(view) if matches!(view.design.status, DesignStatus::Infeasible(_)) => None,
         Ok(_) if one.feasible() == Some(true) => None,
-        Ok(view) => Some(format!("{}: {}", one.name, verdict_sentence(&view.verdict()))),
+        Ok(view) => {
+            Some(format!("{}: {}", one.name, verdict_sentence(&view.verdict(), one.loaded.project.motion())))
+        }
     });
     sentences.extend(otherwise);
     sentences
@@ -190,13 +196,16 @@ fn lacking(one: &JudgedAlternative) -> Vec<(&str, String)> {
 /// What is compared of a loop that shows the load an impedance.
 fn impedance(one: &JudgedAlternative) -> Option<Vec<String>> {
     let declared = one.loaded.project.controller.as_ref()?.impedance?;
+    let MotionWords { force, position, .. } = one.loaded.project.motion().words();
     let form = (declared.form == ImpedanceForm::Admittance).then(|| {
-        "designed as the same loop with form = \"impedance\": of the position it is C_x = G (M_v s^2 + B_v s + K_v)"
-            .to_string()
+        format!(
+            "designed as the same loop with form = \"impedance\": of the {position} it is C_x = G (M_v s^2 + B_v s + K_v)"
+        )
     });
-    let asked = "the disturbance is the whole change of the force, and counts what the virtual impedance asks for: the impedances at the \
-                 load show how near it comes"
-        .to_string();
+    let asked = format!(
+        "the disturbance is the whole change of the {force}, and counts what the virtual impedance asks for: the impedances at the \
+         load show how near it comes"
+    );
     Some(form.into_iter().chain([asked]).collect())
 }
 
@@ -225,7 +234,7 @@ fn moved_words(name: &str, range: &MovedRange, motion: MotionKind) -> String {
 
 /// What is best in each measure, of those that may be compared.
 fn best(comparable: &MeasuredAlternatives) -> Option<String> {
-    let MeasuredAlternatives { measures, all } = comparable;
+    let MeasuredAlternatives { measures, all, motion } = comparable;
     if all.len() < 2 {
         return None;
     }
@@ -235,7 +244,7 @@ fn best(comparable: &MeasuredAlternatives) -> Option<String> {
         let names = all.iter().filter(|(_, measures)| measures.0[index] == best);
         let names: Vec<&str> = names.map(|(name, _)| name.as_str()).collect();
         let most = if measure.is_more() { "most" } else { "least" };
-        let name = measure_name(measure.key);
+        let name = measure_name(measure.key, *motion);
         format!("{most} {name} {} ({})", words_of(measure, best), names.join(", "))
     });
     let each: Vec<String> = each.collect();
@@ -247,7 +256,7 @@ fn best(comparable: &MeasuredAlternatives) -> Option<String> {
 
 /// Among those that satisfy every specification, on the machine too.
 fn dominance(comparable: &MeasuredAlternatives) -> Vec<String> {
-    let MeasuredAlternatives { measures, all } = comparable;
+    let MeasuredAlternatives { measures, all, .. } = comparable;
     if all.len() < 2 {
         return vec![];
     }
@@ -270,13 +279,13 @@ fn costs(found: &MeasuredAlternatives) -> Vec<String> {
     if base != AS_DECLARED {
         return vec![];
     }
-    others.iter().map(|(name, other)| cost(name, (other, given), &found.measures)).collect()
+    others.iter().map(|(name, other)| cost(name, (other, given), found)).collect()
 }
 
 fn cost(
     name: &str,
     (other, base): (&ComparedMeasures, &ComparedMeasures),
-    measures: &[ComparedMeasure],
+    MeasuredAlternatives { motion, measures, .. }: &MeasuredAlternatives,
 ) -> String {
     let (mut better, mut worse) = (Vec::new(), Vec::new());
     for (index, measure) in measures.iter().enumerate() {
@@ -286,7 +295,7 @@ fn cost(
             continue;
         }
         let side = if (own > given) == measure.is_more() { &mut better } else { &mut worse };
-        side.push(format!("{} {shown} instead of {instead}", measure_name(measure.key)));
+        side.push(format!("{} {shown} instead of {instead}", measure_name(measure.key, *motion)));
     }
     let side =
         |word: &str, parts: &[String]| (!parts.is_empty()).then(|| format!("{word} in {}", parts.join(", ")));
@@ -306,11 +315,11 @@ fn cost(
 
 fn words_of(measure: &ComparedMeasure, value: f64) -> String {
     match measure.key {
-        "disturbance_peak_n" => measure.unit.text(value, 3),
-        "control_rms_v" => DisplayUnit::VOLT.text(value, 3),
-        "delay_margin_s" => DisplayUnit::MILLISECOND.text(value, 3),
-        "parts_price" => measure.unit.text(value, 4),
-        "parts_mass_kg" => measure.unit.text(value, 3),
+        ColumnKey::DisturbancePeak => measure.unit.text(value, 3),
+        ColumnKey::ControlRms => DisplayUnit::VOLT.text(value, 3),
+        ColumnKey::DelayMargin => DisplayUnit::MILLISECOND.text(value, 3),
+        ColumnKey::PartsPrice => measure.unit.text(value, 4),
+        ColumnKey::PartsMass => measure.unit.text(value, 3),
         _ => significant(value, 1),
     }
 }

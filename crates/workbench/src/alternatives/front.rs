@@ -1,7 +1,9 @@
 //! Fronts of alternatives over a swept number: table, findings, JSON, CSV and figure.
 
+use std::borrow::Cow;
+
 use super::words::{column_name, no_front_value_words, unknown_words};
-use super::{ColumnSense, Front, FrontPoint, FrontValue, NoFrontValue, SWEPT};
+use super::{ColumnKey, ColumnSense, Front, FrontPoint, FrontValue, NoFrontValue};
 use crate::answer::{Csv, Json, Object, OutputFile, quoted};
 use crate::document::{Cell, Table};
 use crate::figure::{Figure, FrontPlace, ParetoCurve, ParetoFront, ParetoPoint, Words};
@@ -39,13 +41,13 @@ pub(super) fn table(front: &Front) -> Table {
 }
 
 /// What a column is called, as far as a point has it.
-fn column_words(front: &Front, index: usize) -> &str {
+fn column_words(front: &Front, index: usize) -> Cow<'_, str> {
     let is_known = front.points.iter().any(|point| matches!(point.values.get(index), Some(Ok(_))));
     match front.columns.get(index) {
-        Some(column) if is_known && column.key == SWEPT => &front.path,
-        Some(column) if is_known => column_name(column.key),
-        Some(column) => column.key,
-        None => "",
+        Some(column) if is_known && column.key == ColumnKey::Swept => front.path.as_str().into(),
+        Some(column) if is_known => column_name(column.key, front.motion).into(),
+        Some(column) => column.key.quantity().text(front.motion),
+        None => Cow::default(),
     }
 }
 
@@ -116,7 +118,7 @@ fn text(found: &FrontValue) -> String {
 pub(super) fn json(front: &Front) -> Object {
     let column = |column: &super::FrontColumn| {
         let better = if column.sense == ColumnSense::More { "more" } else { "less" };
-        Object::new().with("key", column.key).with("better", better)
+        Object::new().with("key", column.key.quantity()).with("better", better)
     };
     Object::new()
         .with("key", front.path.as_str())
@@ -128,7 +130,7 @@ pub(super) fn json(front: &Front) -> Object {
 }
 
 fn row(front: &Front, point: &FrontPoint) -> Object {
-    let reason = point.feasible.as_ref().err().map_or(String::new(), unknown_words);
+    let reason = point.feasible.as_ref().err().map_or(String::new(), |why| unknown_words(why, front.motion));
     let mut object = Object::new()
         .with("alternative", point.alternative.as_str())
         .with("value", point.value)
@@ -140,14 +142,14 @@ fn row(front: &Front, point: &FrontPoint) -> Object {
             0 => Json::Integer(found.value as i64),
             _ => Json::Number(found.value),
         });
-        object = object.known(column.key, number, &reason);
+        object = object.known(column.key.quantity(), number, &reason);
     }
     object.with("on_front", point.is_on_front()).each("dominated_by", &point.dominated_by, |place| *place)
 }
 
 /// A row for each point, in SI; a value that does not exist is empty.
 pub(super) fn csv(front: &Front) -> OutputFile {
-    let keys: Vec<&str> = front.columns.iter().map(|column| column.key).collect();
+    let keys: Vec<_> = front.columns.iter().map(|column| column.key.quantity().text(front.motion)).collect();
     let mut csv = Csv::new(&format!("name,value,feasible,comparable,{},on_front", keys.join(",")));
     for point in &front.points {
         let feasible = point.feasible.as_ref().map_or(String::new(), |feasible| feasible.to_string());

@@ -1,28 +1,33 @@
 //! A row for each alternative, under the declared load and under each load case: what a decision
 //! needs, before the table of all numbers.
 
-use super::{AlternativeColumns, Alternatives, JudgedAlternative};
+use super::{AlternativeColumns, Alternatives, ColumnKey, JudgedAlternative};
 use crate::document::{Cell, Table};
-use crate::quantity::significant;
+use crate::quantity::{MotionKind, significant};
 use crate::simulate::{ScenarioRun, settling_within};
 use crate::verdict_words::agreement_word;
 
 /// What the group of the project's own load is called, where there are load cases too.
 pub(super) const DECLARED_LOAD: &str = "declared load";
 
-/// Columns for a decision at a glance, by key, with their names for people. The worst value counts
+/// Columns for a decision at a glance, with their names for people. The worst value counts
 /// where a column exists for several scenarios.
-const COMPARED_AT_A_GLANCE: [(&str, &str); 9] = [
-    ("order", "order of G"),
-    ("delay_margin_s", "delay tolerated"),
-    ("settling_time_s", "settling"),
-    ("disturbance_peak_n", "disturbance"),
-    ("control_rms_v", "control rms"),
-    ("control_peak_v", "control peak"),
-    ("actuator_length_m", "length"),
-    ("parts_price", "price"),
-    ("parts_mass_kg", "mass"),
+const COMPARED_AT_A_GLANCE: [(ColumnKey, &str); 9] = [
+    (ColumnKey::Order, "order of G"),
+    (ColumnKey::DelayMargin, "delay tolerated"),
+    (ColumnKey::SettlingTime, "settling"),
+    (ColumnKey::DisturbancePeak, "disturbance"),
+    (ColumnKey::ControlRms, "control rms"),
+    (ColumnKey::ControlPeak, "control peak"),
+    (ColumnKey::ActuatorLength, "length"),
+    (ColumnKey::PartsPrice, "price"),
+    (ColumnKey::PartsMass, "mass"),
 ];
+
+/// The motion of all alternatives: none replaces its cylinder by a motor.
+pub(super) fn motion_of(found: &Alternatives) -> MotionKind {
+    found.judged.first().map(|one| one.loaded.project.motion()).unwrap_or_default()
+}
 
 /// The table.
 pub(super) fn table(found: &Alternatives) -> Table {
@@ -32,7 +37,7 @@ pub(super) fn table(found: &Alternatives) -> Table {
     let shown = shown(all.iter().flatten());
     let settling = settling(groups.iter().flat_map(|(_, judged)| judged.iter()), |_| true);
     let words = shown.iter().map(|(key, words)| match *key {
-        "settling_time_s" => settling.clone(),
+        ColumnKey::SettlingTime => settling.clone(),
         _ => (*words).to_string(),
     });
     let headings = ["alternative", "specifications", "nonlinear simulation"].map(String::from);
@@ -46,7 +51,7 @@ pub(super) fn table(found: &Alternatives) -> Table {
             rows.group(*name);
         }
         for (one, columns) in judged.iter().zip(columns) {
-            let numbers = shown.iter().map(|(key, _)| number(columns, key));
+            let numbers = shown.iter().map(|(key, _)| number(columns, *key));
             let own = [one.name.clone().into(), specifications(one), machine(one)];
             rows.row(own.into_iter().chain(numbers));
         }
@@ -72,13 +77,13 @@ pub(super) fn groups(found: &Alternatives) -> Vec<(&str, &[JudgedAlternative])> 
 }
 
 /// The columns that some alternative has a value for.
-fn shown<'c>(all: impl Iterator<Item = &'c AlternativeColumns> + Clone) -> Vec<(&'static str, &'static str)> {
-    let has = |key: &str| all.clone().any(|columns| columns.worst(key).is_some());
-    COMPARED_AT_A_GLANCE.into_iter().filter(|(key, _)| has(key)).collect()
+fn shown<'c>(all: impl Iterator<Item = &'c AlternativeColumns> + Clone) -> Vec<(ColumnKey, &'static str)> {
+    let has = |key: ColumnKey| all.clone().any(|columns| columns.worst(key).is_some());
+    COMPARED_AT_A_GLANCE.into_iter().filter(|(key, _)| has(*key)).collect()
 }
 
 /// The worst value of a column, as the table of all numbers prints it.
-fn number(columns: &AlternativeColumns, key: &str) -> Cell {
+fn number(columns: &AlternativeColumns, key: ColumnKey) -> Cell {
     let (Some(value), Some(column)) = (columns.worst(key), columns.first(key)) else { return Cell::Missing };
     match column.digits {
         0 => value.to_string().into(),
@@ -89,7 +94,7 @@ fn number(columns: &AlternativeColumns, key: &str) -> Cell {
 /// Whether they are met, or by how much they are missed.
 fn specifications(one: &JudgedAlternative) -> Cell {
     let columns = one.columns();
-    let relaxation = columns.first("relaxation_db").and_then(|column| column.value.clone().ok());
+    let relaxation = columns.first(ColumnKey::Relaxation).and_then(|column| column.value.clone().ok());
     match (one.feasible(), relaxation) {
         (Some(true), _) => Cell::from("met").marked(true),
         (Some(false), Some(relaxation)) => {

@@ -1,60 +1,61 @@
 //! The names of the columns of alternatives, and why there are no numbers in them.
 
-use super::{FeasibilityUnknown, JudgeError, JudgedAlternative, LengthUnknown, NoFrontValue, NoNumber};
+use super::{
+    ColumnKey, FeasibilityUnknown, JudgeError, JudgedAlternative, LengthUnknown, NoFrontValue, NoNumber,
+};
 use crate::design::verdict_sentence;
 use crate::error::design_error_words;
 use crate::linearize::no_closed_impedance_words;
+use crate::quantity::MotionKind;
 use crate::simulate::{RunStatus, unmeasured_words};
 use phea_engineering::parts::{PartKind, PartsUnknown, UnstatedPart};
 
-/// The columns by their keys, with their names for people.
-const COLUMN_NAMES: [(&str, &str); 32] = [
-    ("relaxation_db", "relaxation needed"),
-    ("order", "order of G"),
-    ("prefilter_order", "order of F"),
-    ("relative_degree", "relative degree of G"),
-    ("high_frequency_gain_db", "high-frequency gain"),
-    ("modulus_margin", "modulus margin"),
-    ("delay_margin_s", "delay tolerated"),
-    ("worst_margin_db", "least margin"),
-    ("stiffness_minimum_n_per_m", "least K_H"),
-    ("stiffness_maximum_n_per_m", "greatest K_H"),
-    ("equivalent_stiffness_n_per_m", "K_eq at the point"),
-    ("actuator_length_m", "length, retracted"),
-    ("lines_length_m", "length of both lines"),
-    ("moving_mass_kg", "moving mass"),
-    ("lines_volume_m3", "oil in both lines"),
-    ("oil_volume_m3", "oil in all"),
-    ("oil_mass_kg", "mass of that oil"),
-    ("gas_volume_m3", "gas"),
-    ("power_at_rest_w", "loss at rest"),
-    ("parts_price", "price of its parts"),
-    ("parts_mass_kg", "mass of its parts and of the oil in lines"),
-    ("sized_length_m", "length by [sizing]"),
-    ("sized_gain_v_per_n", "gain by [sizing]"),
-    ("impedance_open_n_s_per_m", "open loop"),
-    ("impedance_closed_n_s_per_m", "closed loop"),
-    ("impedance_asked_n_s_per_m", "asked"),
-    ("overshoot_percent", "overshoot"),
-    ("settling_time_s", "settling"),
-    ("disturbance_peak_n", "disturbance"),
-    ("control_peak_v", "control peak"),
-    ("control_rms_v", "control rms"),
-    ("energy_from_supply_j", "energy from supply"),
-];
-
 /// The name of a column for people.
-pub(super) fn column_name(key: &'static str) -> &'static str {
-    COLUMN_NAMES.iter().find(|(known, _)| *known == key).map_or(key, |(_, name)| name)
+pub(super) fn column_name(key: ColumnKey, motion: MotionKind) -> &'static str {
+    match key {
+        ColumnKey::Relaxation => "relaxation needed",
+        ColumnKey::Order => "order of G",
+        ColumnKey::PrefilterOrder => "order of F",
+        ColumnKey::RelativeDegree => "relative degree of G",
+        ColumnKey::HighFrequencyGain => "high-frequency gain",
+        ColumnKey::ModulusMargin => "modulus margin",
+        ColumnKey::DelayMargin => "delay tolerated",
+        ColumnKey::WorstMargin => "least margin",
+        ColumnKey::StiffnessMinimum => motion.either("least K_H", "least K_θ"),
+        ColumnKey::StiffnessMaximum => motion.either("greatest K_H", "greatest K_θ"),
+        ColumnKey::EquivalentStiffness => "K_eq at the point",
+        ColumnKey::ActuatorLength => "length, retracted",
+        ColumnKey::LinesLength => "length of both lines",
+        ColumnKey::MovingMass => motion.either("moving mass", "inertia"),
+        ColumnKey::LinesVolume => "oil in both lines",
+        ColumnKey::OilVolume => "oil in all",
+        ColumnKey::OilMass => "mass of that oil",
+        ColumnKey::GasVolume => "gas",
+        ColumnKey::PowerAtRest => "loss at rest",
+        ColumnKey::PartsPrice => "price of its parts",
+        ColumnKey::PartsMass => "mass of its parts and of the oil in lines",
+        ColumnKey::SizedLength => "length by [sizing]",
+        ColumnKey::SizedGain => "gain by [sizing]",
+        ColumnKey::ImpedanceOpen => "open loop",
+        ColumnKey::ImpedanceClosed => "closed loop",
+        ColumnKey::ImpedanceAsked => "asked",
+        ColumnKey::Overshoot => "overshoot",
+        ColumnKey::SettlingTime => "settling",
+        ColumnKey::DisturbancePeak => "disturbance",
+        ColumnKey::ControlPeak => "control peak",
+        ColumnKey::ControlRms => "control rms",
+        ColumnKey::EnergyFromSupply => "energy from supply",
+        ColumnKey::Swept => "swept",
+    }
 }
 
 /// The name of a measure of dominance for people.
-pub(super) fn measure_name(key: &'static str) -> &'static str {
+pub(super) fn measure_name(key: ColumnKey, motion: MotionKind) -> &'static str {
     match key {
-        "parts_price" => "price",
-        "parts_mass_kg" => "mass",
-        "order" => "order",
-        key => column_name(key),
+        ColumnKey::PartsPrice => "price",
+        ColumnKey::PartsMass => "mass",
+        ColumnKey::Order => "order",
+        key => column_name(key, motion),
     }
 }
 
@@ -87,7 +88,7 @@ pub(super) fn no_number_words(reason: &NoNumber) -> String {
         NoNumber::NotKnownStable => "not known of a family that is not known to be stable",
         NoNumber::NothingToJudgeBy => "there is nothing by which to judge it",
         NoNumber::Undetermined => "no solver determines the result of the run",
-        NoNumber::NoMetric(reason) => unmeasured_words(*reason),
+        NoNumber::NoMetric(reason, motion) => unmeasured_words(*reason, *motion),
         NoNumber::NoEvent => "no event begins in the scenario",
         NoNumber::NoHose => "no hose of the catalogue is accepted",
         NoNumber::Length(reason) => length_unknown_words(*reason),
@@ -156,17 +157,17 @@ fn part_name(part: &UnstatedPart) -> String {
 /// Why it is not known whether an alternative satisfies every specification.
 pub(super) fn undecided_words(one: &JudgedAlternative) -> String {
     match &one.design {
-        Ok(view) => verdict_sentence(&view.verdict()),
+        Ok(view) => verdict_sentence(&view.verdict(), one.loaded.project.motion()),
         Err(reason) => judge_error_words(reason),
     }
 }
 
 /// The same of a point of a front.
-pub(super) fn unknown_words(reason: &FeasibilityUnknown) -> String {
+pub(super) fn unknown_words(reason: &FeasibilityUnknown, motion: MotionKind) -> String {
     match reason {
         FeasibilityUnknown::NotPrepared(error) => error.to_string(),
         FeasibilityUnknown::NotDesigned(error) => judge_error_words(error),
-        FeasibilityUnknown::Undecided(verdict) => verdict_sentence(verdict),
+        FeasibilityUnknown::Undecided(verdict) => verdict_sentence(verdict, motion),
     }
 }
 

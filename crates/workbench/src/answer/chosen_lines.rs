@@ -4,9 +4,10 @@ use phea_engineering::line_choice::LUMPED_FROM;
 
 use super::Object;
 use crate::project::{ChosenLines, ReachedBy, WavesHindrance};
+use crate::quantity::MotionKind;
 
 /// The model, and what it follows from.
-pub(crate) fn body_of_lines(lines: &ChosenLines) -> Object {
+pub(crate) fn body_of_lines(lines: &ChosenLines, motion: MotionKind) -> Object {
     let by = |(_, by): &(f64, ReachedBy)| match by {
         ReachedBy::Crossover => "crossover",
         ReachedBy::RequiredTime(_) => "required_time",
@@ -26,13 +27,15 @@ pub(crate) fn body_of_lines(lines: &ChosenLines) -> Object {
         .maybe("reached_by", lines.reach.as_ref().map(by))
         .maybe("specification", lines.reach.as_ref().and_then(specification))
         .with("lumped_from", LUMPED_FROM)
-        .maybe("hindrance", lines.hindrance.as_ref().map(hindrance_words))
+        .maybe("hindrance", lines.hindrance.as_ref().map(|one| hindrance_words(one, motion)))
 }
 
 /// Why no model with waves is computed.
-pub(crate) fn hindrance_words(hindrance: &WavesHindrance) -> &str {
+pub(crate) fn hindrance_words(hindrance: &WavesHindrance, motion: MotionKind) -> &str {
     match hindrance {
-        WavesHindrance::FreeLoad => "the load is a mass without stiffness",
+        WavesHindrance::FreeLoad => {
+            motion.either("the load is a mass without stiffness", "the load is an inertia without stiffness")
+        }
         WavesHindrance::Rig(error) => error,
     }
 }

@@ -1,10 +1,13 @@
 //! JSON as a value: what a command says to programs, key by key, and why a number is missing.
 
+use std::borrow::Cow;
+
 use num_complex::Complex64;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::Number;
 use crate::plant_names::{ADDED, NamedPlant, NamedValue};
+use crate::quantity::{MotionKind, QuantityName};
 
 /// A value of JSON. A number that is not finite is printed as [`Number`] does.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,13 +18,49 @@ pub(crate) enum Json {
     Integer(i64),
     Number(f64),
     Text(String),
+    /// Name of a quantity in a rig of the motion in which it is printed.
+    Name(QuantityName),
     List(Vec<Json>),
     Object(Object),
 }
 
+/// A key of an object.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum ObjectKey {
+    /// Key of every rig.
+    Text(String),
+    /// Name of a quantity in a rig of the motion in which it is printed.
+    Name(QuantityName),
+    /// Reason for which that quantity has no value.
+    Reason(QuantityName),
+}
+
+impl ObjectKey {
+    /// Key of the reason for which this one has no value.
+    fn reason(&self) -> ObjectKey {
+        match self {
+            ObjectKey::Text(text) => ObjectKey::Text(reason_key(text)),
+            ObjectKey::Name(name) | ObjectKey::Reason(name) => ObjectKey::Reason(*name),
+        }
+    }
+
+    /// Its text for a rig of this motion.
+    fn text(&self, motion: MotionKind) -> Cow<'_, str> {
+        match self {
+            ObjectKey::Text(text) => text.into(),
+            ObjectKey::Name(name) => name.text(motion),
+            ObjectKey::Reason(name) => reason_key(&name.text(motion)).into(),
+        }
+    }
+}
+
+fn reason_key(key: &str) -> String {
+    format!("{key}_reason")
+}
+
 /// An object of JSON, whose keys are in the order in which they were added.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Object(Vec<(String, Json)>);
+pub struct Object(Vec<(ObjectKey, Json)>);
 
 impl Object {
     /// Without a key.
@@ -30,7 +69,7 @@ impl Object {
     }
 
     /// With one more key.
-    pub(crate) fn with(mut self, key: impl Into<String>, value: impl Into<Json>) -> Object {
+    pub(crate) fn with(mut self, key: impl Into<ObjectKey>, value: impl Into<Json>) -> Object {
         self.0.push((key.into(), value.into()));
         self
     }
@@ -38,7 +77,7 @@ impl Object {
     /// With a list of what each item is.
     pub(crate) fn each<Item, Value: Into<Json>>(
         self,
-        key: &str,
+        key: impl Into<ObjectKey>,
         items: impl IntoIterator<Item = Item>,
         of: impl FnMut(Item) -> Value,
     ) -> Object {
@@ -46,7 +85,7 @@ impl Object {
     }
 
     /// With a key that is left out where it has no value.
-    pub(crate) fn maybe(self, key: &str, value: Option<impl Into<Json>>) -> Object {
+    pub(crate) fn maybe(self, key: impl Into<ObjectKey>, value: Option<impl Into<Json>>) -> Object {
         match value {
             Some(value) => self.with(key, value),
             None => self,
@@ -54,18 +93,30 @@ impl Object {
     }
 
     /// With a key that is `null` where it has no value, and then a second one that says why.
-    pub(crate) fn known(self, key: &str, value: Option<impl Into<Json>>, reason: &str) -> Object {
-        let missing = value.is_none().then_some(reason);
-        self.with(key, value).maybe(&format!("{key}_reason"), missing)
+    pub(crate) fn known(
+        self,
+        key: impl Into<ObjectKey>,
+        value: Option<impl Into<Json>>,
+        reason: &str,
+    ) -> Object {
+        let key = key.into();
+        let (missing, reason_key) = (value.is_none().then_some(reason), key.reason());
+        self.with(key, value).maybe(reason_key, missing)
     }
 
     /// The same, the second key being `null` where there is a value.
-    pub(crate) fn told<Value: Into<Json>>(self, key: &str, value: Result<Value, &str>) -> Object {
+    pub(crate) fn told<Value: Into<Json>>(
+        self,
+        key: impl Into<ObjectKey>,
+        value: Result<Value, &str>,
+    ) -> Object {
         let (value, reason) = match value {
             Ok(value) => (Some(value), None),
             Err(reason) => (None, Some(reason)),
         };
-        self.with(key, value).with(format!("{key}_reason"), reason)
+        let key = key.into();
+        let reason_key = key.reason();
+        self.with(key, value).with(reason_key, reason)
     }
 
     /// With all keys of another object behind its own.
@@ -74,40 +125,70 @@ impl Object {
         self
     }
 
-    /// Its keys with their values, in their order.
-    pub(crate) fn entries(self) -> impl Iterator<Item = (String, Json)> {
-        self.0.into_iter()
-    }
-
-    /// Printed by itself.
-    pub fn print(&self) -> String {
+    /// Printed by itself, for rigs of this motion.
+    pub fn print(&self, motion: MotionKind) -> String {
         // every key is a text and every number is finite, so that nothing can fail
-        serde_json::to_string_pretty(self).unwrap_or_default()
+        serde_json::to_string_pretty(&PrintedObject { object: self, motion }).unwrap_or_default()
     }
 }
 
-impl Serialize for Object {
+/// An object as it is printed for rigs of a motion.
+struct PrintedObject<'o> {
+    object: &'o Object,
+    motion: MotionKind,
+}
+
+impl Serialize for PrintedObject<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(self.0.len()))?;
-        for (key, value) in &self.0 {
-            map.serialize_entry(key, value)?;
+        let PrintedObject { object, motion } = *self;
+        let mut map = serializer.serialize_map(Some(object.0.len()))?;
+        for (key, json) in &object.0 {
+            map.serialize_entry(&key.text(motion), &PrintedJson { json, motion })?;
         }
         map.end()
     }
 }
 
-impl Serialize for Json {
+/// A value as it is printed for rigs of a motion.
+struct PrintedJson<'j> {
+    json: &'j Json,
+    motion: MotionKind,
+}
+
+impl Serialize for PrintedJson<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
+        let motion = self.motion;
+        match self.json {
             Json::Null => serializer.serialize_none(),
             Json::Flag(value) => serializer.serialize_bool(*value),
             Json::Count(value) => serializer.serialize_u64(*value),
             Json::Integer(value) => serializer.serialize_i64(*value),
             Json::Number(value) => Number(*value).serialize(serializer),
             Json::Text(text) => serializer.serialize_str(text),
-            Json::List(items) => serializer.collect_seq(items),
-            Json::Object(object) => object.serialize(serializer),
+            Json::Name(name) => serializer.serialize_str(&name.text(motion)),
+            Json::List(items) => {
+                serializer.collect_seq(items.iter().map(|json| PrintedJson { json, motion }))
+            }
+            Json::Object(object) => PrintedObject { object, motion }.serialize(serializer),
         }
+    }
+}
+
+impl From<&str> for ObjectKey {
+    fn from(text: &str) -> ObjectKey {
+        ObjectKey::Text(text.to_string())
+    }
+}
+
+impl From<String> for ObjectKey {
+    fn from(text: String) -> ObjectKey {
+        ObjectKey::Text(text)
+    }
+}
+
+impl From<QuantityName> for ObjectKey {
+    fn from(name: QuantityName) -> ObjectKey {
+        ObjectKey::Name(name)
     }
 }
 
@@ -133,6 +214,7 @@ from! {
     char => |value: char| Json::Text(value.to_string()),
     &str => |text: &str| Json::Text(text.to_string()),
     String => Json::Text,
+    QuantityName => Json::Name,
     Complex64 => |value: Complex64| Json::from([value.re, value.im]),
     Object => Json::Object,
 }
@@ -164,9 +246,9 @@ impl<Value: Into<Json> + Clone> From<&[Value]> for Json {
 impl From<NamedPlant> for Json {
     fn from(plant: NamedPlant) -> Json {
         let named = plant.0.into_iter().map(|(name, value)| match value {
-            NamedValue::Number(number, _) => (name, Json::Number(number)),
-            NamedValue::Measurement(own) => (name, Json::Text(own)),
-            NamedValue::Added => (name, Json::Text(ADDED.to_string())),
+            NamedValue::Number(number, _) => (ObjectKey::Text(name), Json::Number(number)),
+            NamedValue::Measurement(own) => (ObjectKey::Text(name), Json::Text(own)),
+            NamedValue::Added => (ObjectKey::Text(name), Json::Text(ADDED.to_string())),
         });
         Json::Object(Object(named.collect()))
     }

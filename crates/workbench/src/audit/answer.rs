@@ -17,13 +17,14 @@ use crate::answer::{Csv, Object, OutputFile, envelope};
 use crate::caveat;
 use crate::plant_names::PlantNames;
 use crate::project::Loaded;
+use crate::quantity::{FORCE, LENGTH, QuantityName, VELOCITY};
 use crate::specification::{SpecificationName, kind_key, subject_words};
 use crate::verdict_words::verdict_key;
 use phea_engineering::limit_kind::limit_key;
 
 /// The JSON object of `verify`, as a file.
 pub(crate) fn json(loaded: &Loaded, view: &ProjectAudit) -> String {
-    envelope("verify", loaded).and(body(view)).print()
+    envelope("verify", loaded).and(body(view)).print(loaded.project.motion())
 }
 
 /// An audit in JSON, without the keys of every object.
@@ -54,10 +55,11 @@ pub(crate) fn body(view: &ProjectAudit) -> Object {
     let timing = Object::new()
         .known("sample_time_s", view.sample_time_s, "the controller is continuous")
         .with("delay_s", view.delay_s);
-    let position = view
-        .position
-        .as_ref()
-        .map(|taken| Object::new().with("position_m", taken.position).with("stroke_m", taken.stroke));
+    let position = view.position.as_ref().map(|taken| {
+        Object::new()
+            .with(QuantityName::OfMotion(["position", "angle"], &LENGTH), taken.position)
+            .with(QuantityName::moving("stroke", &LENGTH), taken.stroke)
+    });
     let reduction = view.nominal.map(|margins| margins.gain_reduction_db);
     let no_margin = "no margin: not every plant is known to be stable";
     let own = Object::new()
@@ -126,14 +128,18 @@ fn signal_noise(noise: &SignalNoise, names: &PlantNames) -> Object {
     let effect = noise.effect.as_ref();
     let (of, reason) = (effect.ok(), effect.err().map_or(String::new(), unknown_words));
     let rms = match noise.signal {
-        NoisySignal::LoadVelocity => "rms_m_per_s",
-        NoisySignal::Pressures => "rms_pa",
+        NoisySignal::LoadVelocity => QuantityName::moving("rms", &VELOCITY),
+        NoisySignal::Pressures => QuantityName::Fixed("rms_pa"),
     };
     Object::new()
         .with(rms, noise.rms)
         .known("command_rms_v", of.map(|effect| effect.command_rms_v), &reason)
         .maybe("command_plant", of.map(|effect| names.named(&effect.command_plant)))
-        .known("force_rms_n", of.map(|effect| effect.force_rms_n), &reason)
+        .known(
+            QuantityName::OfMotion(["force_rms", "torque_rms"], &FORCE),
+            of.map(|effect| effect.force_rms_n),
+            &reason,
+        )
         .maybe("force_plant", of.map(|effect| names.named(&effect.force_plant)))
 }
 

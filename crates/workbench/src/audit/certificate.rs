@@ -11,6 +11,7 @@ use super::ProjectAudit;
 use crate::answer::{Answer, Object, OutputFile, SCHEMA};
 use crate::document::Document;
 use crate::project::Loaded;
+use crate::quantity::MotionKind;
 use crate::robust::RobustProblem;
 use crate::specification::closed_loop_key;
 pub use layout::CertificateError;
@@ -121,7 +122,7 @@ fn answer(
         .maybe("reason", rejected.map(|(_, reason)| reason.to_string()));
     Answer {
         text: out.text(),
-        json: body.print(),
+        json: body.print(MotionKind::default()),
         files: vec![],
         affirmative: rejected.is_none() && is_of_project,
     }

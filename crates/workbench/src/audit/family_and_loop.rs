@@ -1,6 +1,7 @@
 //! The plants of an audit, their position and the loop around them, in sentences.
 
 use super::{CommonPosition, LoopDeadTime, ProjectAudit};
+use crate::document::capital;
 use crate::plant_names::PlantNames;
 use crate::quantity::DisplayUnit;
 use crate::robust::NoPolynomials;
@@ -102,7 +103,8 @@ pub(crate) fn position_words(taken: &CommonPosition) -> String {
 /// The same, with what includes other positions.
 pub(super) fn position_sentence(taken: &CommonPosition) -> String {
     format!(
-        "Position: every plant is taken at {}. Elsewhere the oil is stiffer or softer: nothing is said of a loop there, unless `position` in [family.operating_region] includes it.",
+        "{}: every plant is taken at {}. Elsewhere the oil is stiffer or softer: nothing is said of a loop there, unless `position` in [family.operating_region] includes it.",
+        capital(taken.units.motion.words().position),
         position_words(taken)
     )
 }

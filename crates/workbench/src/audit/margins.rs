@@ -42,7 +42,7 @@ const KEYS: [&str; 5] = ["gain_db", "gain_reduction_db", "phase_deg", "modulus",
 fn values(set: Option<&MarginSet>, reason: &str) -> Object {
     match set {
         Some(set) => named(set).iter().fold(Object::new(), |object, (key, one)| object.with(*key, one.value)),
-        None => KEYS.iter().fold(Object::new(), |object, key| object.known(key, None::<f64>, reason)),
+        None => KEYS.iter().fold(Object::new(), |object, key| object.known(*key, None::<f64>, reason)),
     }
 }
 

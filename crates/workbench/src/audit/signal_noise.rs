@@ -22,9 +22,10 @@ pub fn noise_sentence(noise: &SignalNoise, names: &PlantNames) -> String {
                 false => format!(" ({})", plant_text(names, plant)),
             };
             format!(
-                "the noise of the {what}, {rms} rms, moves the command at the valve by {} mV rms{} and the force by {} rms{}",
+                "the noise of the {what}, {rms} rms, moves the command at the valve by {} mV rms{} and the {} by {} rms{}",
                 significant(1e3 * effect.command_rms_v, 3),
                 of(&effect.command_plant),
+                noise.units.motion.words().force,
                 noise.units.force.text(effect.force_rms_n, 3),
                 of(&effect.force_plant),
             )

@@ -9,6 +9,7 @@ use crate::answer::Object;
 use crate::project::Loaded;
 use crate::simulate::{self, RunStatus, ScenarioRun};
 use crate::simulate::{not_judged_words, required_words};
+use phea_hydraulics::signal::Signal;
 
 /// What a campaign says to programs. Runs are counted from 0; `until` is beyond the last.
 pub(crate) fn body(plan: &Plan, wanted: RequestedRuns, rows: usize, summary: &Summary) -> Object {
@@ -23,7 +24,7 @@ pub(crate) fn body(plan: &Plan, wanted: RequestedRuns, rows: usize, summary: &Su
     statuses.sort_unstable();
     let statuses = statuses.into_iter().fold(Object::new(), |all, (word, count)| all.with(word, count));
     let bands = Object::new().with("time_s", summary.bands.times_s.as_slice()).each(
-        "force_n",
+        Signal::Force.quantity(),
         0..QUANTILES.len(),
         |quantile| summary.bands.force_n.iter().map(|forces| forces[quantile]).collect::<Vec<f64>>(),
     );
@@ -86,7 +87,7 @@ fn events(plan: &Plan, summary: &Summary) -> Vec<Object> {
             .with("time_s", window.start_s)
             .with("until_s", window.end_s)
             .each("metrics", meaningful(window, plan.is_open_loop()), |metric| {
-                let name = Object::new().with("name", plan.motion().name(metric.name()).into_owned());
+                let name = Object::new().with("name", metric.quantity());
                 name.and(spread_row(spreads[metric], summary.driven()))
             })
     };
@@ -159,7 +160,7 @@ fn worst_run(plan: &Plan, worst: &WorstRun) -> Object {
     Object::new()
         .with("run", worst.run)
         .each("of", &worst.of, |(window, metric)| {
-            format!("event {} {}", window + 1, plan.motion().name(metric.name()))
+            format!("event {} {}", window + 1, metric.quantity().text(plan.motion()))
         })
         .with("settings", plan.settings(&plan.draw(worst.run)))
 }

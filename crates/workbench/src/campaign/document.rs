@@ -8,27 +8,28 @@ use super::{QUANTILES, Spread};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::Loaded;
-use crate::quantity::DisplayUnit;
+use crate::quantity::{DisplayUnit, MotionKind};
 use crate::simulate::{self, Metric, RunStatus, ScenarioRun, cause_words, shown_in, status_words};
 use crate::simulate::{not_judged_words, reached_words, required_words};
 
 /// Largest number of rejected and ended runs that are listed.
 const TOLD: usize = 6;
 
-const LUMP_WORDS: [&str; 3] = ["K_H (N/m)", "K_qU (m3/(s.V))", "K_c (m3/(s.Pa))"];
-
 /// A metric in words, with its unit.
 fn metric_words(metric: Metric, plan: &Plan) -> String {
     let label = match metric {
-        Metric::SettlingTime => format!("{} to {} %", metric.label(), plan.settling_band_percent()),
-        other => other.label().to_string(),
+        Metric::SettlingTime => {
+            format!("{} to {} %", metric.label(plan.motion()), plan.settling_band_percent())
+        }
+        other => other.label(plan.motion()).to_string(),
     };
     shown_in(metric, plan.units()).title(&label)
 }
 
 /// One of [`LUMP_NAMES`] as it is written in equations, with its unit.
-fn lump_words(lump: usize) -> &'static str {
-    LUMP_WORDS.get(lump).copied().unwrap_or_default()
+fn lump_words(lump: usize, motion: MotionKind) -> &'static str {
+    let stiffness = motion.either("K_H (N/m)", "K_θ (N.m/rad)");
+    [stiffness, "K_qU (m3/(s.V))", "K_c (m3/(s.Pa))"].get(lump).copied().unwrap_or_default()
 }
 
 /// A number of runs.
@@ -165,7 +166,7 @@ pub(crate) fn lumps(plan: &Plan, summary: &Summary) -> Table {
         let bounds =
             plan.bounds(LUMP_NAMES[index]).map(|[low, high]| format!("{} to {}", number(low), number(high)));
         Some([
-            lump_words(index).into(),
+            lump_words(index, plan.motion()).into(),
             Cell::number(spread.extremes[0], 4),
             Cell::number(spread.quantiles[2], 4),
             Cell::number(spread.extremes[1], 4),

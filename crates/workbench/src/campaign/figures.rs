@@ -7,6 +7,7 @@ use super::Summary;
 use super::{CampaignError, Effort, Shard};
 use crate::answer::{OutputFile, part_files};
 use crate::figure::{FanChart, Figure, TimeBand, TimeSeries, Words};
+use crate::over_time::measured_force;
 use crate::simulate::{Cause, Metric, Window, around, cause_words};
 
 /// The bands over the whole scenario, and around each event; empty if no run was driven.
@@ -31,7 +32,7 @@ pub(crate) fn pictures(plan: &Plan, summary: &Summary) -> Result<Vec<Figure>, Ca
             format!("Enlarged: {}", cause_words(window, plan.units())),
             format!(
                 "The bands around what begins it, and the run with the worst {}.",
-                worst_metric(window, plan.is_open_loop()).1
+                worst_metric(window, plan).1
             ),
         );
         let span = around(window, after_s(summary, index), end);
@@ -51,12 +52,13 @@ fn after_s(summary: &Summary, index: usize) -> f64 {
 }
 
 /// The metric by which a window's worst run is chosen, and what it is of.
-fn worst_metric(window: &Window, open_loop: bool) -> (Metric, &'static str) {
+fn worst_metric(window: &Window, plan: &Plan) -> (Metric, &'static str) {
+    let force = plan.motion().words().force;
     match window.cause {
-        _ if open_loop => (Metric::ForcePeak, "force"),
+        _ if plan.is_open_loop() => (Metric::ForcePeak, force),
         Cause::ReferenceStep { .. } => (Metric::Overshoot, "overshoot"),
         Cause::ReferenceMotion { .. } => (Metric::TrackingErrorPeak, "tracking error"),
-        Cause::CommandStep { .. } | Cause::CommandMotion { .. } => (Metric::ForcePeak, "force"),
+        Cause::CommandStep { .. } | Cause::CommandMotion { .. } => (Metric::ForcePeak, force),
         Cause::LoadMotion | Cause::ExternalForce { .. } | Cause::SettingChange => {
             (Metric::DisturbancePeak, "disturbance")
         }
@@ -65,7 +67,7 @@ fn worst_metric(window: &Window, open_loop: bool) -> (Metric, &'static str) {
 
 /// The complete force of a window's worst run.
 fn worst_series(plan: &Plan, summary: &Summary, index: usize) -> Result<Option<TimeSeries>, CampaignError> {
-    let metric = plan.windows().get(index).map(|window| worst_metric(window, plan.is_open_loop()).0);
+    let metric = plan.windows().get(index).map(|window| worst_metric(window, plan).0);
     let spread = metric.and_then(|metric| summary.metrics.get(index)?[metric]);
     let Some((_, run)) = spread.map(|spread| spread.worst) else { return Ok(None) };
     let forces = plan.forces(run..run + 1, Effort { lanes: false, threads: 1 })?;
@@ -92,9 +94,9 @@ fn picture(
         values: plan.reference_n.clone(),
     });
     let inside = |window: &&Window| window.start_s >= span_s[0] && window.start_s <= span_s[1];
-    let event = |window: &Window| (window.start_s, window.cause.label().to_string());
+    let event = |window: &Window| (window.start_s, window.cause.label(plan.motion()).to_string());
     FanChart {
-        quantity: "Force F_e".to_string(),
+        quantity: measured_force(plan.motion()),
         unit: plan.units().force,
         bands: vec![
             TimeBand { name: "90 % of the runs".to_string(), lower: series(0), upper: series(4) },

@@ -5,7 +5,7 @@ use phea_dynamics::linear::{Discretization, MovedRoot};
 use phea_dynamics::portable;
 
 use super::FeedForwardObstacle;
-use crate::quantity::{ANGULAR_FREQUENCY, display, significant};
+use crate::quantity::{ANGULAR_FREQUENCY, MotionKind, display, significant};
 
 pub(super) const PRESSURE_FEEDBACK_UNMEASURED: &str = "controller.pressure_feedback is not counted, as the plants of the family were measured without it: this is the loop without \
      it, and only a simulation is of the loop with it";
@@ -44,24 +44,27 @@ pub(super) fn feed_forward_outside_models(obstacle: FeedForwardObstacle) -> Stri
     )
 }
 
-pub(super) fn impedance_unmeasured(yields: bool) -> String {
+pub(super) fn impedance_unmeasured(yields: bool, motion: MotionKind) -> String {
     format!(
-        "controller.impedance is not counted, as the plants of the family were measured without the position of the load: {}",
+        "controller.impedance is not counted, as the plants of the family were measured without the {} of the load: {}",
+        motion.words().position,
         without_load(yields)
     )
 }
 
-pub(super) fn impedance(yields: bool) -> &'static str {
+pub(super) fn impedance(yields: bool, motion: MotionKind) -> String {
+    let force = motion.words().force;
+    let output = motion.either("y = F_e + Z_v (x_L - x_0)", "y = T_e + Z_v (θ_L - θ_0)");
     match yields {
-        true => {
-            "controller.impedance is counted, and the load can move under force: loop and specifications are of y = F_e + Z_v (x_L - x_0), \
-             which the loop makes follow the reference; load_motion limits by how much y misses it, and only a simulation shows the force \
+        true => format!(
+            "controller.impedance is counted, and the load can move under {force}: loop and specifications are of {output}, \
+             which the loop makes follow the reference; load_motion limits by how much y misses it, and only a simulation shows the {force} \
              itself"
-        }
-        false => {
-            "controller.impedance is counted: load_motion limits y = F_e + Z_v (x_L - x_0) per motion, by which the force misses the impedance \
-             that is asked for; all other specifications are those of the force"
-        }
+        ),
+        false => format!(
+            "controller.impedance is counted: load_motion limits {output} per motion, by which the {force} misses the impedance \
+             that is asked for; all other specifications are those of the {force}"
+        ),
     }
 }
 

@@ -30,9 +30,10 @@ pub(super) fn gas(
             Some(format!("below {} and above {}", newton(least), newton(greatest)))
         }
     };
+    let forces = units.motion.words().forces;
     let declared = beyond.map(|beyond| {
         format!(
-            ": at forces {beyond} a chamber of the declared rig falls below the precharge, its gas is shut off, and only a simulation \
+            ": at {forces} {beyond} a chamber of the declared rig falls below the precharge, its gas is shut off, and only a simulation \
              shows a motion that goes there"
         )
     });

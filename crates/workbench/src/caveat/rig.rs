@@ -3,7 +3,7 @@
 use phea_engineering::caveat::{LoopWithRig, OutsideFamily};
 use phea_hydraulics::series::MOST_SEGMENTS;
 
-use crate::quantity::{DisplayUnit, Units, display, significant};
+use crate::quantity::{DAMPING, DisplayUnit, MotionKind, Units, display, significant};
 use crate::rig::OutsideParameter;
 use crate::specification::{SpecificationName, subject_words};
 
@@ -16,10 +16,14 @@ pub(super) const CONSTANT_SUPPLY: &str = "supply.model = \"pump_limited\" is cou
      constant";
 
 pub(super) fn blocked_piston(force: f64, units: &Units) -> String {
+    let words = units.motion.words();
     format!(
-        "family.operating_region has positions alone: its plants are those of a piston blocked at null, which pushes with {}, and not \
-         of zero force, for which operating_point.load_force = 0 is stated",
-        units.force.short(force, 4)
+        "family.operating_region has {} alone: its plants are those of a {} blocked at null, which pushes with {}, and not \
+         of zero {}, for which operating_point.load_force = 0 is stated",
+        words.positions,
+        words.piston,
+        units.force.short(force, 4),
+        words.force
     )
 }
 
@@ -93,14 +97,15 @@ pub(super) fn limited_pump(pressure: f64, taken: f64, delivered: f64, units: &Un
     }
 }
 
-pub(super) fn friction_directions(extending: f64, retracting: f64) -> String {
+pub(super) fn friction_directions(extending: f64, retracting: f64, motion: MotionKind) -> String {
+    let (rod, unit) = (motion.words().rod, motion.dimension(&DAMPING).si);
     let [low, high] = [extending.min(retracting), extending.max(retracting)];
     let [extending, retracting, low, high] =
         [extending, retracting, low, high].map(|number| significant(number, 4));
     format!(
-        "the viscous friction is {extending} N.s/m while the rod extends and {retracting} N.s/m while it retracts \
+        "the viscous friction is {extending} {unit} while the {rod} extends and {retracting} {unit} while it retracts \
          (cylinder.friction.retracting.viscous), and no plant of the family has one of them: state `viscous_friction` from {low} to {high} \
-         N.s/m in [uncertainty]"
+         {unit} in [uncertainty]"
     )
 }
 

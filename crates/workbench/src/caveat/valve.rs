@@ -1,6 +1,6 @@
 //! Effects of the servovalve and of what connects the chambers.
 
-use crate::quantity::{FLOW, PRESSURE, VOLTAGE, display, significant};
+use crate::quantity::{FLOW, MotionKind, PRESSURE, VOLTAGE, display, significant};
 
 pub(super) const DYNAMIC_PRESSURE_FEEDBACK: &str = "cross_port.kind = \"dynamic_pressure_feedback\" is counted in the plant and the impedance at the load: the other models and the \
      asymptotes of the impedance are without it";
@@ -24,11 +24,12 @@ pub(super) fn overlap(dead_band: [f64; 2], gain_ratio: f64) -> String {
     )
 }
 
-pub(super) fn null_sides(flow_gains: [f64; 2], mean: f64) -> String {
+pub(super) fn null_sides(flow_gains: [f64; 2], mean: f64, motion: MotionKind) -> String {
+    let piston = motion.words().piston;
     let [below, above] = flow_gains.map(|gain| significant(gain, 3));
     let mean = significant(mean, 3);
     format!(
-        "at null K_qU is {below} m3/(s.V) where the piston retracts and {above} where it extends: these models have the mean, {mean}, \
+        "at null K_qU is {below} m3/(s.V) where the {piston} retracts and {above} where it extends: these models have the mean, {mean}, \
          unless it is stated; verify and design have both sides, and operating_point.spool_side = -1 or 1 takes one"
     )
 }

@@ -3,6 +3,7 @@
 use super::{CommandError, Request};
 use crate::answer::{Object, SCHEMA};
 use crate::project::{Diagnostic, Loaded, Refusal, Severity, sha256};
+use crate::quantity::MotionKind;
 use crate::source::Source;
 
 /// The JSON object of a command whose project, at `path`, was rejected.
@@ -11,18 +12,13 @@ pub fn refusal_json(source: &dyn Source, path: &str, command: &str, refusal: &Re
     refusal_body(Some(command), hash.as_deref(), refusal_rows(refusal))
 }
 
-/// Why a command has no answer on a valid project, in the words of its motion.
-pub fn error_text(loaded: &Loaded, error: &CommandError) -> String {
-    crate::motion::vocabulary(loaded).of(&error.to_string())
-}
-
 /// The JSON object of a command that has no answer on a valid project: a row for every finding in
 /// its files, or one for the error itself.
 pub fn error_json(loaded: &Loaded, request: &Request, error: &CommandError) -> String {
     let (command, hash) = (Some(request.name()), Some(loaded.sha256.as_str()));
     match error.refusal() {
         Some(refusal) => refusal_body(command, hash, refusal_rows(refusal)),
-        None => failure_json(command, hash, &error_text(loaded, error)),
+        None => failure_json(command, hash, &error.to_string()),
     }
 }
 
@@ -89,5 +85,5 @@ fn refusal_body(command: Option<&str>, project_sha256: Option<&str>, errors: Vec
         .with("command", command)
         .with("project_sha256", project_sha256)
         .with("errors", errors);
-    body.print()
+    body.print(MotionKind::default())
 }

@@ -116,7 +116,8 @@ fn frequency_answer(
 ) -> Result<Unprinted, CommandError> {
     let found = frequency_response(&Setup::new(&loaded.project)?, request, watch)?;
     // writing to memory cannot fail
-    let mut written: Vec<OutputFile> = frequency_files(&found, asked.table).unwrap_or_default();
+    let mut written: Vec<OutputFile> =
+        frequency_files(&found, asked.table, loaded.project.motion()).unwrap_or_default();
     if asked.figures {
         written.extend(picture_files(&frequency_pictures(&found)));
     }

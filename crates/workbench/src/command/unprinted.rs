@@ -5,7 +5,6 @@ use crate::caveat::misfits_in_runs;
 use crate::document::Document;
 use crate::identify::in_use_above;
 use crate::line_choice::chosen_above;
-use crate::motion;
 use crate::project::{Loaded, Project};
 
 /// An [`Answer`] whose text and JSON are not printed yet.
@@ -28,7 +27,7 @@ impl Unprinted {
         self
     }
 
-    /// Below what recordings gave, in the envelope of the first project and the words of their
+    /// Below what recordings gave, in the envelope of the first project, with names of their
     /// motion.
     pub(super) fn print(self, command: &'static str, projects: &[Loaded]) -> Answer {
         let mut document = Document::default();
@@ -38,11 +37,12 @@ impl Unprinted {
         }
         document.append(self.document);
         let envelope = projects.first().map_or(Object::new(), |first| envelope(command, first));
-        let words = motion::vocabulary_of(projects);
+        // projects of both motions are not printed together
+        let motion = projects.first().map(|loaded| loaded.project.motion()).unwrap_or_default();
         Answer {
-            text: document.text_in(&words),
-            json: motion::object(envelope.and(self.body), &words).print(),
-            files: motion::files(self.files, &words),
+            text: document.text(),
+            json: envelope.and(self.body).print(motion),
+            files: self.files,
             affirmative: self.affirmative,
         }
     }

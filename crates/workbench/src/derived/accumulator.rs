@@ -6,6 +6,7 @@ use phea_hydraulics::stiffness::hydraulic_stiffness;
 
 use super::list::List;
 use crate::project::{DeclaredAccumulator, Project};
+use crate::quantity::{FORCE, STIFFNESS};
 use crate::rig::{ChargedRange, Rig, charged_range, components_at_setting};
 
 /// The precharge at the temperature in operation, and the one that is stated.
@@ -59,10 +60,32 @@ fn at_settings(
         [("stiffness.at_setting_0", 0.0), ("stiffness.at_setting_half", 0.5), ("stiffness.at_setting_1", 1.0)]
     {
         let there = components_at_setting(components, setting);
-        let equation = "K_H = A_A^2/C_A + A_B^2/C_B, slow, at this setting";
-        list.add(name, "K_H", stiffness(&there, point), "N/m", equation);
+        let equation = list.motion.either(
+            "K_H = A_A^2/C_A + A_B^2/C_B, slow, at this setting",
+            "K_θ = D^2 (1/C_A + 1/C_B), slow, at this setting",
+        );
+        list.add(
+            name,
+            list.motion.symbols().stiffness,
+            stiffness(&there, point),
+            list.si(&STIFFNESS),
+            equation,
+        );
     }
 }
+
+/// Equations of the stiffness with the gas, without it, and at another operating point: of a
+/// cylinder, and of a motor.
+const WITH_GAS: [&str; 3] = [
+    "K_H = A_A^2/C_A + A_B^2/C_B, C_A and C_B with C_acc",
+    "K_H = A_A^2/C_A + A_B^2/C_B, C_A and C_B without C_acc",
+    "K_H = A_A^2/C_A + A_B^2/C_B there",
+];
+const WITH_GAS_OF_A_MOTOR: [&str; 3] = [
+    "K_θ = D^2 (1/C_A + 1/C_B), C_A and C_B with C_acc",
+    "K_θ = D^2 (1/C_A + 1/C_B), C_A and C_B without C_acc",
+    "K_θ = D^2 (1/C_A + 1/C_B) there",
+];
 
 /// The gas at the chambers, and the stiffness of the actuator without it.
 pub(super) fn accumulators(project: &Project, rig: &Rig, list: &mut List) {
@@ -100,10 +123,11 @@ pub(super) fn accumulators(project: &Project, rig: &Rig, list: &mut List) {
         let chambers = components.chamber_compliance(pressures, StiffeningMember::Nominal);
         hydraulic_stiffness(&chambers, point.position)
     };
-    let with = "K_H = A_A^2/C_A + A_B^2/C_B, C_A and C_B with C_acc";
-    list.add("stiffness.with_accumulators", "K_H", at(components, &rig.point), "N/m", with);
-    let without = "K_H = A_A^2/C_A + A_B^2/C_B, C_A and C_B without C_acc";
-    list.add("stiffness.without_accumulators", "K_H", at(&bare, &rig.point), "N/m", without);
+    let symbols = list.motion.symbols();
+    let [with, without, there] = list.motion.either(WITH_GAS, WITH_GAS_OF_A_MOTOR);
+    let unit = list.si(&STIFFNESS);
+    list.add("stiffness.with_accumulators", symbols.stiffness, at(components, &rig.point), unit, with);
+    list.add("stiffness.without_accumulators", symbols.stiffness, at(&bare, &rig.point), unit, without);
     at_settings(components, &at, &rig.point, list);
     let Some(ChargedRange { least, greatest }) = charged_range(rig) else { return };
     let ends = [
@@ -117,7 +141,7 @@ pub(super) fn accumulators(project: &Project, rig: &Rig, list: &mut List) {
     ];
     for (force, stiffness, equation, point) in ends {
         let Some(point) = point else { continue };
-        list.add(force, "F_H", point.hydraulic_force, "N", equation);
-        list.add(stiffness, "K_H", at(components, &point), "N/m", "K_H = A_A^2/C_A + A_B^2/C_B there");
+        list.add(force, symbols.hydraulic, point.hydraulic_force, list.si(&FORCE), equation);
+        list.add(stiffness, symbols.stiffness, at(components, &point), unit, there);
     }
 }

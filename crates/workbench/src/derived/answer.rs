@@ -45,10 +45,10 @@ fn row(quantity: &Derived) -> Object {
     Object::new()
         .with("name", quantity.name.as_str())
         .with("group", quantity.group)
-        .with("symbol", &*quantity.symbol)
+        .with("symbol", quantity.symbol)
         .with("value", quantity.value.ok())
         .with("unit", quantity.unit)
-        .with("equation", &*quantity.equation)
+        .with("equation", quantity.equation)
         .maybe("declared", declared)
         .maybe("reason", quantity.value.err())
 }

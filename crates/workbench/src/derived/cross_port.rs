@@ -47,8 +47,10 @@ pub(super) fn cross_port(setup: &Setup<'_>, rig: &Rig, list: &mut List) {
 /// given controller where it does not integrate.
 fn static_error(setup: &Setup<'_>, found: &CrossPortAtPoint, list: &mut List) {
     let [with, without] = found.static_gains;
-    list.add("cross_port.static_gain", "P(0)", with, "N/V", "P(0) = F_e/U_C at rest");
-    list.add("cross_port.static_gain_without", "P(0)", without, "N/V", "P(0) with q_{cp} = 0");
+    let (equation, unit) =
+        list.motion.either(("P(0) = F_e/U_C at rest", "N/V"), ("P(0) = T_e/U_C at rest", "N.m/V"));
+    list.add("cross_port.static_gain", "P(0)", with, unit, equation);
+    list.add("cross_port.static_gain_without", "P(0)", without, unit, "P(0) with q_{cp} = 0");
     let given = setup.controller.as_ref();
     let Some(feedback) = given.and_then(|given| given.feedback.transfer_function().ok()) else { return };
     let origin = if feedback.domain() == phea_dynamics::linear::TimeDomain::Continuous { 0.0 } else { 1.0 };

@@ -38,7 +38,11 @@ fn cells(quantity: &Derived, units: &WrittenUnits) -> [Cell; 4] {
     let shown = |value: f64| units.shown(&quantity.name, value, quantity.unit);
     let (_, unit) = shown(quantity.value.unwrap_or_default());
     [
-        Cell::Name { name: quantity.name.clone(), symbol: quantity.symbol.to_string() },
+        Cell::Name {
+            name: quantity.name.clone(),
+            words: quantity.words.clone(),
+            symbol: quantity.symbol.to_string(),
+        },
         quantity.value.map_or(Cell::Missing, |value| Cell::number(shown(value).0, 5)),
         Cell::unit(unit),
         Cell::Equation(quantity.equation.to_string()),

@@ -3,6 +3,7 @@ use phea_hydraulics::linear::{MechanicalDamping, decompose, transfer_functions};
 
 use super::list::List;
 use crate::linearize::{HidingMass, hidden_above};
+use crate::quantity::STIFFNESS;
 use crate::rig::Rig;
 
 /// Of the rig against its load; what is inherently that of the actuator is named so where the load
@@ -11,10 +12,13 @@ pub(super) fn dynamics(rig: &Rig, list: &mut List) {
     let linear = &rig.against_load();
     let factors = decompose(linear, MechanicalDamping::Corrected);
     let springs = match (rig.load_stiffness().is_some(), rig.plant.series.is_some()) {
+        // a spring or transmission is for a cylinder
         (true, true) => "1/K_{eq} = 1/K_H + 1/K_S + 1/k_t + 1/k_L",
-        (true, false) => "1/K_{eq} = 1/K_H + 1/K_S + 1/k_L",
         (false, true) => "1/K_{eq} = 1/K_H + 1/K_S + 1/k_t",
-        (false, false) => "K_{eq} = K_H K_S/(K_H + K_S)",
+        (true, false) => {
+            list.motion.either("1/K_{eq} = 1/K_H + 1/K_S + 1/k_L", "1/K_{eq} = 1/K_θ + 1/K_S + 1/k_L")
+        }
+        (false, false) => list.motion.either("K_{eq} = K_H K_S/(K_H + K_S)", "K_{eq} = K_θ K_S/(K_θ + K_S)"),
     };
     list.group(match (rig.load.is_some(), rig.load_stiffness().is_some()) {
         (true, true) => "Dynamics against the load, with the values in use",
@@ -23,14 +27,28 @@ pub(super) fn dynamics(rig: &Rig, list: &mut List) {
         }
         (false, _) => "Dynamics, with the values in use",
     });
-    list.add("dynamics.equivalent_stiffness", "K_eq", linear.equivalent_stiffness(), "N/m", springs);
+    list.add(
+        "dynamics.equivalent_stiffness",
+        "K_eq",
+        linear.equivalent_stiffness(),
+        list.si(&STIFFNESS),
+        springs,
+    );
     let equation = match factors.hydraulic_rate == 0.0 {
-        true => "s_1 = -(K_c + G) K_{eq}/A_u^2, nothing leaks: an infinite time constant",
-        false => "s_1 = -(K_c + G) K_{eq}/A_u^2",
+        true => list.motion.either(
+            "s_1 = -(K_c + G) K_{eq}/A_u^2, nothing leaks: an infinite time constant",
+            "s_1 = -(K_c + G) K_{eq}/D^2, nothing leaks: an infinite time constant",
+        ),
+        false => list.motion.either("s_1 = -(K_c + G) K_{eq}/A_u^2", "s_1 = -(K_c + G) K_{eq}/D^2"),
     };
     list.add("dynamics.hydraulic_pole", "s_1", -factors.hydraulic_rate, "rad/s", equation);
-    let equation = "dF_e/dt per volt = K_{qU} K_{eq}/A_u";
-    list.add("dynamics.force_rate_gain", "K_qU K_eq/A_u", factors.hydraulic_gain, "N/(s.V)", equation);
+    let equation =
+        list.motion.either("dF_e/dt per volt = K_{qU} K_{eq}/A_u", "dT_e/dt per volt = K_{qU} K_{eq}/D");
+    let symbol = list.motion.either("K_qU K_eq/A_u", "K_qU K_eq/D");
+    let (name, unit) = list
+        .motion
+        .either(("dynamics.force_rate_gain", "N/(s.V)"), ("dynamics.torque_rate_gain", "N.m/(s.V)"));
+    list.add(name, symbol, factors.hydraulic_gain, unit, equation);
     if rig.load.is_some() {
         list.group("Dynamics with the load held still, with the values in use");
     }
@@ -46,19 +64,22 @@ fn held_still(rig: &Rig, list: &mut List) {
     let factors = decompose(&rig.leaking(), MechanicalDamping::Corrected);
     let frequency = factors.mechanical_square.sqrt();
     let equation = match rig.plant.series {
-        None => "ω_m = sqrt((K_H + K_S)/M)",
+        None => list.motion.either("ω_m = sqrt((K_H + K_S)/M)", "ω_m = sqrt((K_θ + K_S)/J)"),
         Some(_) => "ω_m = sqrt((K_H + K_S k_t/(K_S + k_t))/M)",
     };
     list.add("dynamics.mechanical_frequency", "ω_m", frequency, "rad/s", equation);
     let damping_ratio = factors.mechanical_damping / (2.0 * frequency);
     let equation = match rig.plant.series {
-        None => "2 ξ_m ω_m = f_v/M + (K_c + G) K_H^2/(A_u^2 (K_H + K_S))",
+        None => list.motion.either(
+            "2 ξ_m ω_m = f_v/M + (K_c + G) K_H^2/(A_u^2 (K_H + K_S))",
+            "2 ξ_m ω_m = f_v/J + (K_c + G) K_θ^2/(D^2 (K_θ + K_S))",
+        ),
         Some(_) => "2 ξ_m ω_m = f_v/M + (K_c + G) K_H^2/(A_u^2 (K_H + K_S k_t/(K_S + k_t)))",
     };
     list.add("dynamics.mechanical_damping_ratio", "ξ_m", damping_ratio, "1", equation);
     let (mass, hidden) = hidden_above(rig);
     let equation = match mass {
-        HidingMass::Piston => "ω = sqrt(K_H/M)",
+        HidingMass::Piston => list.motion.either("ω = sqrt(K_H/M)", "ω = sqrt(K_θ/J)"),
         HidingMass::Oil => "ω = sqrt(K_{eq}/m)",
     };
     list.add("dynamics.compliance_hidden_above", "ω", hidden, "rad/s", equation);

@@ -1,5 +1,5 @@
 use super::{Derived, Stated};
-use crate::quantity::MotionKind;
+use crate::quantity::{Dimension, MotionKind};
 
 /// A growing list of derived quantities; each chapter names its group once.
 pub(super) struct List {
@@ -12,6 +12,11 @@ pub(super) struct List {
 impl List {
     pub(super) fn new(motion: MotionKind) -> List {
         List { entries: Vec::new(), group: "", motion }
+    }
+
+    /// SI unit of a quantity of the motion, whose dimension is that in linear motion.
+    pub(super) fn si(&self, of: &'static Dimension) -> &'static str {
+        self.motion.dimension(of).si
     }
 
     pub(super) fn group(&mut self, group: &'static str) {
@@ -37,11 +42,17 @@ impl List {
         unit: &'static str,
         equation: &'static str,
     ) {
-        let [symbol, equation] = [symbol, equation].map(|of| self.motion.formula(of));
-        // a length, a speed, an area or a mass may be that of oil and hoses: who adds it knows
-        let unit = if unit.contains('N') { self.motion.symbol(unit) } else { unit };
-        let name = if self.motion.is_rotary() { renamed(name) } else { name };
-        self.entries.push(Derived { group: self.group, name, symbol, value, unit, equation, stated: None });
+        let words = words(&name, self.motion);
+        self.entries.push(Derived {
+            group: self.group,
+            name,
+            words,
+            symbol,
+            value,
+            unit,
+            equation,
+            stated: None,
+        });
     }
 
     /// Adds to the last quantity the value that the project states for it.
@@ -68,16 +79,34 @@ impl List {
     }
 }
 
-/// Names of quantities of linear motion that are not keys of the project file, and those of a
-/// motor.
-const OF_A_MOTOR: [(&str, &str); 4] = [
-    ("stiffness.minimum_position", "stiffness.minimum_angle"),
-    ("operating_point.hydraulic_force", "operating_point.hydraulic_torque"),
-    ("dynamics.force_rate_gain", "dynamics.torque_rate_gain"),
-    ("supply.piston_speed", "supply.shaft_speed"),
+/// Words of quantities of a motor whose names have words of linear motion.
+const WORDS_OF_A_MOTOR: [(&str, &str); 13] = [
+    ("stiffness.at_least_force", "at least torque"),
+    ("stiffness.at_greatest_force", "at greatest torque"),
+    ("line.a.accumulator.least_force", "accumulator.least torque, line A"),
+    ("line.b.accumulator.greatest_force", "accumulator.greatest torque, line B"),
+    ("valve.flow_gain_extending", "flow gain forward"),
+    ("valve.flow_gain_retracting", "flow gain reverse"),
+    ("valve.flow_pressure_coefficient_extending", "flow pressure coefficient forward"),
+    ("valve.flow_pressure_coefficient_retracting", "flow pressure coefficient reverse"),
+    ("valve.flow_pressure_coefficient_extending_maximum", "flow pressure coefficient forward maximum"),
+    ("valve.flow_pressure_coefficient_retracting_maximum", "flow pressure coefficient reverse maximum"),
+    ("operating_point.position", "angle"),
+    ("linear.moving_mass", "inertia"),
+    ("linear.piston_area", "displacement"),
 ];
 
-fn renamed(name: String) -> String {
-    let other = OF_A_MOTOR.iter().find(|(linear, _)| *linear == name);
-    other.map_or(name, |(_, rotary)| (*rotary).to_string())
+/// `line.a.wave_speed` as "wave speed, line A": the word of the group is not repeated.
+fn words(name: &str, motion: MotionKind) -> String {
+    let of_a_motor = WORDS_OF_A_MOTOR.iter().filter(|_| motion.is_rotary());
+    if let Some((_, words)) = of_a_motor.into_iter().find(|(known, _)| *known == name) {
+        return (*words).to_string();
+    }
+    let (group, quantity) = name.split_once('.').unwrap_or(("", name));
+    match (group, quantity.split_once('.')) {
+        ("line", Some((side, quantity))) => {
+            format!("{}, line {}", quantity.replace('_', " "), side.to_uppercase())
+        }
+        _ => quantity.replace(['_', '.'], " "),
+    }
 }

@@ -1,5 +1,3 @@
-use std::borrow::Cow;
-
 /// A quantity that follows from the project.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Derived {
@@ -7,14 +5,16 @@ pub struct Derived {
     pub group: &'static str,
     /// Name, unique, with dots between its parts.
     pub name: String,
+    /// The same in words, without its group.
+    pub words: String,
     /// Symbol as in the notation, such as `K_H`.
-    pub symbol: Cow<'static, str>,
+    pub symbol: &'static str,
     /// Value, SI, or why it does not exist.
     pub value: Result<f64, &'static str>,
     /// SI unit.
     pub unit: &'static str,
     /// Equation it follows from.
-    pub equation: Cow<'static, str>,
+    pub equation: &'static str,
     /// The value in use instead, where the project states one.
     pub stated: Option<Stated>,
 }

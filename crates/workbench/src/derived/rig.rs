@@ -15,9 +15,15 @@ use super::series::series;
 use super::valve::valve;
 use crate::linearize::{stiffness_models, stroke_stiffness};
 use crate::project::Project;
-use crate::quantity::MotionKind;
+use crate::quantity::{DAMPING, FORCE, LENGTH, MASS, MotionKind, STIFFNESS, VELOCITY};
 use crate::rig::{FlowLimit, ParameterOrigin, Rig, RigError, largest_flow};
 use crate::setup::Setup;
+
+/// Equations of the flow gain and of the flow-pressure coefficient, of a cylinder and of a motor.
+const FLOW_GAIN: &str = "K_{qU} = A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)/K_H";
+const FLOW_GAIN_OF_A_MOTOR: &str = "K_{qU} = D^2 (K_{qA}/C_A + K_{qB}/C_B)/K_θ";
+const SLOPES: &str = "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}";
+const SLOPES_OF_A_MOTOR: &str = "1/K_c = 1/K_{cA} + 1/K_{cB}";
 
 /// Every derived quantity of a rig, in the order in which they follow from each other.
 ///
@@ -62,7 +68,7 @@ fn motor(rig: &Rig, motor: &Cylinder, list: &mut List) {
     }
     let supply = &rig.actuator.components().supply;
     let stall = motor.area_a * (supply.pressure - supply.tank_pressure);
-    list.add("motor.stall_torque", "T_max", stall, "N", "T_{max} = D (p_S - p_T)");
+    list.add("motor.stall_torque", "T_max", stall, "N.m", "T_{max} = D (p_S - p_T)");
 }
 
 fn cylinder(rig: &Rig, cylinder: &Cylinder, list: &mut List) {
@@ -178,91 +184,118 @@ fn stiffness(rig: &Rig, list: &mut List) {
     let components = rig.actuator.components();
     let declared = stroke_stiffness(rig, StiffeningMember::Nominal);
     list.group("Stiffness");
-    let least = "K_H = min over x of A_A^2/C_A + A_B^2/C_B";
-    let greatest = "K_H = max over x of A_A^2/C_A + A_B^2/C_B";
-    list.add("stiffness.minimum", "K_H", declared.minimum, "N/m", least);
+    let motion = list.motion;
+    let (symbol, unit) = (motion.symbols().stiffness, list.si(&STIFFNESS));
+    let [least, greatest] = motion.either(
+        ["K_H = min over x of A_A^2/C_A + A_B^2/C_B", "K_H = max over x of A_A^2/C_A + A_B^2/C_B"],
+        ["K_θ = min over θ of D^2 (1/C_A + 1/C_B)", "K_θ = max over θ of D^2 (1/C_A + 1/C_B)"],
+    );
+    list.add("stiffness.minimum", symbol, declared.minimum, unit, least);
     if components.cylinder.stroke.length().is_some() {
-        let angle = list.motion.symbol("m");
-        list.add("stiffness.minimum_position", "x_p", declared.minimum_position, angle, "dK_H/dx = 0");
+        let (name, flat) = motion.either(
+            ("stiffness.minimum_position", "dK_H/dx = 0"),
+            ("stiffness.minimum_angle", "dK_θ/dθ = 0"),
+        );
+        let place = motion.symbols().position;
+        list.add(name, place, declared.minimum_position, list.si(&LENGTH), flat);
     }
-    list.add("stiffness.maximum", "K_H", declared.maximum, "N/m", greatest);
+    list.add("stiffness.maximum", symbol, declared.maximum, unit, greatest);
     let models = stiffness_models(rig);
-    let uniform = "C_A = (V_{ho} + V_{A0} + A_A x)/β_e";
-    list.add("stiffness.uniform.minimum", "K_H", models.uniform.minimum, "N/m", uniform);
-    list.add("stiffness.uniform.maximum", "K_H", models.uniform.maximum, "N/m", uniform);
-    let by_volume = "C_A = C_{ho} + (V_{A0} + A_A x)/β_0";
-    list.add("stiffness.by_volume.minimum", "K_H", models.by_volume.minimum, "N/m", by_volume);
-    list.add("stiffness.by_volume.maximum", "K_H", models.by_volume.maximum, "N/m", by_volume);
+    let uniform = motion.either("C_A = (V_{ho} + V_{A0} + A_A x)/β_e", "C_A = (V_{ho} + V_{A0} + D θ)/β_e");
+    list.add("stiffness.uniform.minimum", symbol, models.uniform.minimum, unit, uniform);
+    list.add("stiffness.uniform.maximum", symbol, models.uniform.maximum, unit, uniform);
+    let by_volume = motion.either("C_A = C_{ho} + (V_{A0} + A_A x)/β_0", "C_A = C_{ho} + (V_{A0} + D θ)/β_0");
+    list.add("stiffness.by_volume.minimum", symbol, models.by_volume.minimum, unit, by_volume);
+    list.add("stiffness.by_volume.maximum", symbol, models.by_volume.maximum, unit, by_volume);
     if let Line::Hose { .. } = components.line_a {
         let soft = stroke_stiffness(rig, StiffeningMember::Minimum).minimum;
-        list.add(
-            "stiffness.minimum_softest_wall",
-            "K_H",
-            soft,
-            "N/m",
-            "least K_H at the least stiffening r_β",
-        );
+        let equation =
+            motion.either("least K_H at the least stiffening r_β", "least K_θ at the least stiffening r_β");
+        list.add("stiffness.minimum_softest_wall", symbol, soft, unit, equation);
         let stiff = stroke_stiffness(rig, StiffeningMember::Maximum).maximum;
-        list.add(
-            "stiffness.maximum_stiffest_wall",
-            "K_H",
-            stiff,
-            "N/m",
+        let equation = motion.either(
             "greatest K_H at the greatest stiffening r_β",
+            "greatest K_θ at the greatest stiffening r_β",
         );
+        list.add("stiffness.maximum_stiffest_wall", symbol, stiff, unit, equation);
     }
 }
 
 fn equilibrium(rig: &Rig, list: &mut List) {
-    let point = &rig.point;
+    let (point, motion) = (&rig.point, list.motion);
+    let taken = motion
+        .either(["q_A(U, p_A) = A_A v", "q_B(U, p_B) = -A_B v"], ["q_A(U, p_A) = D ω", "q_B(U, p_B) = -D ω"]);
     let [command, pressure_a, pressure_b] = match rig.condition {
-        Condition::Command(_) => {
-            ["the null of the valve", "q_A(U, p_A) = 0, blocked piston", "q_B(U, p_B) = 0, blocked piston"]
-        }
+        Condition::Command(_) => motion.either(
+            ["the null of the valve", "q_A(U, p_A) = 0, blocked piston", "q_B(U, p_B) = 0, blocked piston"],
+            ["the null of the valve", "q_A(U, p_A) = 0, blocked shaft", "q_B(U, p_B) = 0, blocked shaft"],
+        ),
         Condition::Load(_) => [
             "the command that holds the load",
             "q_A(U, p_A) = 0, holding the load",
             "q_B(U, p_B) = 0, holding the load",
         ],
-        Condition::Motion(..) => ["declared", "q_A(U, p_A) = A_A v", "q_B(U, p_B) = -A_B v"],
-        Condition::Moving(..) => {
-            ["the command that keeps the velocity", "q_A(U, p_A) = A_A v", "q_B(U, p_B) = -A_B v"]
-        }
+        Condition::Motion(..) => ["declared", taken[0], taken[1]],
+        Condition::Moving(..) => ["the command that keeps the velocity", taken[0], taken[1]],
         Condition::Matched(..) => ["declared", "p_A = (p_S + p_T + p_L)/2", "p_B = (p_S + p_T - p_L)/2"],
     };
     list.group("Operating point");
-    let [place, speed] = ["m", "m/s"].map(|unit| list.motion.symbol(unit));
+    let [place, speed] = [&LENGTH, &VELOCITY].map(|dimension| list.si(dimension));
     let position = match rig.actuator.components().cylinder.stroke.length() {
         Some(_) => "declared, or mid stroke",
         None => "declared, or zero",
     };
-    list.add("operating_point.position", "x_p", point.position, place, position);
-    list.add("operating_point.velocity", "v", point.velocity, speed, "declared, or standstill");
+    list.add("operating_point.position", motion.symbols().position, point.position, place, position);
+    list.add(
+        "operating_point.velocity",
+        motion.either("v", "ω"),
+        point.velocity,
+        speed,
+        "declared, or standstill",
+    );
     list.add("operating_point.command", "U_C", point.command, "V", command);
     list.add("operating_point.pressure_a", "p_A", point.pressure_a, "Pa", pressure_a);
     list.add("operating_point.pressure_b", "p_B", point.pressure_b, "Pa", pressure_b);
     list.add("operating_point.load_pressure", "p_L", point.load_pressure(), "Pa", "p_L = p_A - p_B");
-    list.add("operating_point.hydraulic_force", "F_H", point.hydraulic_force, "N", "F_H = A_A p_A - A_B p_B");
+    let (name, symbol, equation) = motion.either(
+        ("operating_point.hydraulic_force", "F_H", "F_H = A_A p_A - A_B p_B"),
+        ("operating_point.hydraulic_torque", "T_H", "T_H = D (p_A - p_B)"),
+    );
+    list.add(name, symbol, point.hydraulic_force, list.si(&FORCE), equation);
 }
 
 fn linear_parameters(rig: &Rig, list: &mut List) {
     list.group("Linear model");
     let slopes = match rig.model.external_leakage {
-        None => "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}",
+        None => list.motion.either(SLOPES, SLOPES_OF_A_MOTOR),
         Some(_) => "1/K_c = 1/(K_{cA} + G_e) + 1/(K_{cB} + G_e), with the leakage G_e through the case",
     };
+    let (motion, symbols) = (list.motion, list.motion.symbols());
+    let flow_gain = motion.either(FLOW_GAIN, FLOW_GAIN_OF_A_MOTOR);
+    let stiffness = motion.either(
+        "K_H = A_A^2/C_A + A_B^2/C_B at the operating point",
+        "K_θ = D^2 (1/C_A + 1/C_B) at the operating point",
+    );
     for parameter in &rig.parameters {
         let (symbol, unit, equation) = match parameter.name {
-            "viscous_friction" => ("f_v", "N.s/m", "f_v = slope of the viscous part"),
-            "flow_gain" => ("K_qU", "m3/(s.V)", "K_{qU} = A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)/K_H"),
+            "viscous_friction" => ("f_v", list.si(&DAMPING), "f_v = slope of the viscous part"),
+            "flow_gain" => ("K_qU", "m3/(s.V)", flow_gain),
             "flow_pressure_coefficient" => ("K_c", "m3/(s.Pa)", slopes),
-            "hydraulic_stiffness" => ("K_H", "N/m", "K_H = A_A^2/C_A + A_B^2/C_B at the operating point"),
+            "hydraulic_stiffness" => (symbols.stiffness, list.si(&STIFFNESS), stiffness),
             "valve_natural_frequency" => ("ω_nv", "rad/s", "declared for the valve"),
             "valve_damping_ratio" => ("ξ_v", "1", "declared for the valve"),
-            "moving_mass" => ("M", list.motion.symbol("kg"), "declared for the cylinder"),
-            "piston_area" if list.motion.is_rotary() => ("D", "m3/rad", "declared for the motor"),
+            "moving_mass" => (
+                symbols.mass,
+                list.si(&MASS),
+                motion.either("declared for the cylinder", "declared for the motor"),
+            ),
+            "piston_area" if motion.is_rotary() => ("D", "m3/rad", "declared for the motor"),
             "piston_area" => ("A_u", "m2", "A_u = (A_A + A_B)/2"),
-            _ => ("K_S", "N/m", "declared for the force sensor"),
+            _ => (
+                "K_S",
+                list.si(&STIFFNESS),
+                motion.either("declared for the force sensor", "declared for the torque sensor"),
+            ),
         };
         list.add(format!("linear.{}", parameter.name), symbol, parameter.derived, unit, equation);
         match parameter.origin {
@@ -279,25 +312,24 @@ fn friction(rig: &Rig, list: &mut List) {
     let levels = lugre.curve.both_levels();
     let least =
         levels.map(|levels| levels.passive_viscous(lugre.bristle_damping)).into_iter().fold(0.0, f64::max);
-    list.add(
-        "friction.passive_viscous_minimum",
-        "σ_2",
-        least,
-        "N.s/m",
-        "σ_2 >= σ_1 (F_S - F_C)/F_C for passivity",
-    );
+    let equation = list
+        .motion
+        .either("σ_2 >= σ_1 (F_S - F_C)/F_C for passivity", "σ_2 >= σ_1 (T_S - T_C)/T_C for passivity");
+    list.add("friction.passive_viscous_minimum", "σ_2", least, list.si(&DAMPING), equation);
 }
 
 /// The speed at which the flow of the pump drives the piston, in each direction where they differ.
 fn piston_speed(flow: f64, [area_a, area_b]: [f64; 2], list: &mut List) {
-    let unit = list.motion.symbol("m/s");
+    let unit = list.si(&VELOCITY);
     let differs = area_a.total_cmp(&area_b).is_ne();
     let equation = match (list.motion.is_rotary(), differs) {
-        (true, _) => "v_{max} = q_{pump}/D",
+        (true, _) => "ω_{max} = q_{pump}/D",
         (false, false) => "v_{max} = q_{pump}/A, in both directions",
         (false, true) => "v_{max} = q_{pump}/A_A, extending",
     };
-    list.add("supply.piston_speed", "v_max", flow / area_a, unit, equation);
+    let (name, symbol) =
+        list.motion.either(("supply.piston_speed", "v_max"), ("supply.shaft_speed", "ω_max"));
+    list.add(name, symbol, flow / area_a, unit, equation);
     if differs {
         let equation = "v_{max} = q_{pump}/A_B, retracting";
         list.add("supply.piston_speed_retracting", "v_max", flow / area_b, unit, equation);
@@ -338,14 +370,12 @@ fn sizing(project: &Project, rig: &Rig, list: &mut List) {
     let Some(sizing) = &project.sizing else { return };
     list.group("Sizing");
     if let Some(flow_gain) = sizing.flow_gain {
-        let equation = "K_{qU} = A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)/K_H";
-        list.add("sizing.flow_gain", "K_qU", rig.derived.flow_gain, "m3/(s.V)", equation);
+        list.add("sizing.flow_gain", "K_qU", rig.derived.flow_gain, "m3/(s.V)", FLOW_GAIN);
         list.stated(flow_gain, "[sizing]", None);
     }
     if let Some(coefficient) = sizing.flow_pressure_coefficient {
         let derived = rig.derived.flow_pressure_coefficient;
-        let equation = "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}";
-        list.add("sizing.flow_pressure_coefficient", "K_c", derived, "m3/(s.Pa)", equation);
+        list.add("sizing.flow_pressure_coefficient", "K_c", derived, "m3/(s.Pa)", SLOPES);
         list.stated(coefficient, "[sizing]", None);
     }
 }

@@ -29,62 +29,66 @@ const FROM_LEAKAGE: &str = "K_{vinp} = (q_0 - q_{tare} sqrt(p_{in}/p_{tare}))/sq
 
 /// Derived quantities of the servovalve: edges, flow gains, slopes.
 pub(super) fn valve(project: &Project, rig: &Rig, list: &mut List) {
-    let components = rig.actuator.components();
-    let (valve, supply, cylinder) = (&components.valve, &components.supply, &components.cylinder);
-    let areas = cylinder.areas_at(rig.point.position);
     list.group("Servovalve");
     if let Some(actuator) = &project.actuator {
         edges(&actuator.valve, &actuator.supply, rig, list);
     }
-    for (name, direction, area, equation) in [
-        (
-            "extending",
-            SpoolDirection::Extending,
-            areas[0],
-            "K_{qU} = A_A v/U unloaded, edges 3 and 6 carrying one flow",
-        ),
-        (
-            "retracting",
-            SpoolDirection::Retracting,
-            areas[1],
-            "K_{qU} = A_B v/U unloaded, edges 5 and 4 carrying one flow",
-        ),
-    ] {
-        match velocity_gain(valve, supply, areas, 0.0, direction) {
-            Some(gain) => {
-                list.add(format!("valve.flow_gain_{name}"), "K_qU", area * gain, "m3/(s.V)", equation)
-            }
-            None => list.absent(
-                format!("valve.flow_gain_{name}"),
-                "K_qU",
-                "m3/(s.V)",
-                equation,
-                "the supply cannot move the unloaded piston this way",
-            ),
-        }
-    }
-    let own = TwoPressureModel { external_leakage: None, ..rig.model };
-    for (name, direction, equation) in [
-        (
-            "extending",
-            SpoolDirection::Extending,
-            "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U to 0 from above",
-        ),
-        (
-            "retracting",
-            SpoolDirection::Retracting,
-            "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U to 0 from below",
-        ),
-    ] {
-        let parameters = reduced(&two_pressures(&own, &rig.point, direction));
-        let name = format!("valve.flow_pressure_coefficient_{name}");
-        list.add(name, "K_c", parameters.flow_pressure_coefficient, "m3/(s.Pa)", equation);
-    }
+    unloaded_flow_gains(rig, list);
+    null_leakage(rig, list);
     null_flow_gains(rig, list);
     greatest_leakage(project, list);
     let chambers = without_case(rig);
     chamber_slopes(&chambers, list);
     pressure_gain(&TwoPressureLinearParameters { chambers, ..rig.two_pressure }, list);
+}
+
+/// K_qU of an unloaded actuator that moves forward or back.
+fn unloaded_flow_gains(rig: &Rig, list: &mut List) {
+    let components = rig.actuator.components();
+    let (valve, supply, cylinder) = (&components.valve, &components.supply, &components.cylinder);
+    let areas = cylinder.areas_at(rig.point.position);
+    let [forward, back] = list.motion.either(
+        [
+            "K_{qU} = A_A v/U unloaded, edges 3 and 6 carrying one flow",
+            "K_{qU} = A_B v/U unloaded, edges 5 and 4 carrying one flow",
+        ],
+        [
+            "K_{qU} = D ω/U unloaded, edges 3 and 6 carrying one flow",
+            "K_{qU} = D ω/U unloaded, edges 5 and 4 carrying one flow",
+        ],
+    );
+    let immovable = list.motion.either(
+        "the supply cannot move the unloaded piston this way",
+        "the supply cannot move the unloaded shaft this way",
+    );
+    for (name, direction, area, equation) in [
+        ("valve.flow_gain_extending", SpoolDirection::Extending, areas[0], forward),
+        ("valve.flow_gain_retracting", SpoolDirection::Retracting, areas[1], back),
+    ] {
+        match velocity_gain(valve, supply, areas, 0.0, direction) {
+            Some(gain) => list.add(name, "K_qU", area * gain, "m3/(s.V)", equation),
+            None => list.absent(name, "K_qU", "m3/(s.V)", equation, immovable),
+        }
+    }
+}
+
+/// K_c of the valve on either side of a spool at null.
+fn null_leakage(rig: &Rig, list: &mut List) {
+    let own = TwoPressureModel { external_leakage: None, ..rig.model };
+    let [above, below] = list.motion.either(
+        [
+            "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U to 0 from above",
+            "A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}, U to 0 from below",
+        ],
+        ["1/K_c = 1/K_{cA} + 1/K_{cB}, U to 0 from above", "1/K_c = 1/K_{cA} + 1/K_{cB}, U to 0 from below"],
+    );
+    for (name, direction, equation) in [
+        ("valve.flow_pressure_coefficient_extending", SpoolDirection::Extending, above),
+        ("valve.flow_pressure_coefficient_retracting", SpoolDirection::Retracting, below),
+    ] {
+        let parameters = reduced(&two_pressures(&own, &rig.point, direction));
+        list.add(name, "K_c", parameters.flow_pressure_coefficient, "m3/(s.Pa)", equation);
+    }
 }
 
 /// K_pU of the valve without anything else that leaks.
@@ -105,12 +109,18 @@ fn null_flow_gains(rig: &Rig, list: &mut List) {
         (
             "valve.flow_gain_above_null",
             SpoolDirection::Extending,
-            "K_{qU} = A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)/K_H, U to 0 from above",
+            list.motion.either(
+                "K_{qU} = A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)/K_H, U to 0 from above",
+                "K_{qU} = D^2 (K_{qA}/C_A + K_{qB}/C_B)/K_θ, U to 0 from above",
+            ),
         ),
         (
             "valve.flow_gain_below_null",
             SpoolDirection::Retracting,
-            "K_{qU} = A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)/K_H, U to 0 from below",
+            list.motion.either(
+                "K_{qU} = A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)/K_H, U to 0 from below",
+                "K_{qU} = D^2 (K_{qA}/C_A + K_{qB}/C_B)/K_θ, U to 0 from below",
+            ),
         ),
     ];
     for (name, direction, equation) in sides {

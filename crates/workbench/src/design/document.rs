@@ -148,7 +148,11 @@ pub(crate) fn status(view: &ProjectDesign) -> Document {
     sentences.extend(view.rounding.iter().flat_map(|rounding| rounding_sentences(rounding, view.gain_per)));
     let mut out = Document::default();
     let mark = view.designed.view.verdict().into();
-    out.verdict(mark, format!("Design: {}", verdict_sentence(&view.verdict())), sentences);
+    out.verdict(
+        mark,
+        format!("Design: {}", verdict_sentence(&view.verdict(), view.designed.problem.units.motion)),
+        sentences,
+    );
     out
 }
 

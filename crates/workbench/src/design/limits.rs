@@ -13,7 +13,7 @@ use crate::audit::PrefilterGain;
 use crate::document::{Cell, Document, Table};
 use crate::limit_kind::{limit_words, origin_words};
 use crate::plant_names::plant_words;
-use crate::quantity::DisplayUnit;
+use crate::quantity::{DisplayUnit, FORCE, MotionWords, QuantityName};
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::portable::magnitude;
 
@@ -71,6 +71,7 @@ fn command_sentence(view: &ProjectDesign, command: &CommandOfSteps) -> String {
     let unit = view.gain_per.unwrap_or(DisplayUnit::NEWTON);
     let force = |newton: f64| unit.text(newton, 3);
     let volts = |value: f64| format!("{} V", significant(value, 3));
+    let MotionWords { force: quantity, piston, .. } = view.designed.problem.units.motion.words();
     let step = &command.step;
     let [from, to] = [step.from_n, step.to_n].map(force);
     let place = match command.is_at_rest() {
@@ -87,7 +88,9 @@ fn command_sentence(view: &ProjectDesign, command: &CommandOfSteps) -> String {
         StepLimit::Command => format!("keeps within {}", volts(command.limit_v)),
         StepLimit::Force(limit) => {
             let end = match limit {
-                ForceLimit::Supply => "the force at which the lowest supply pressure stalls the piston",
+                ForceLimit::Supply => {
+                    &*format!("the {quantity} at which the lowest supply pressure stalls the {piston}")
+                }
                 ForceLimit::Sensor => "the declared capacity of the sensor",
             };
             format!("reaches {end}, and the valve would do more within {}", volts(command.limit_v))
@@ -97,7 +100,7 @@ fn command_sentence(view: &ProjectDesign, command: &CommandOfSteps) -> String {
         true => String::new(),
         false => {
             format!(
-                "under any controller at most {} hold the force between these steps; ",
+                "under any controller at most {} hold the {quantity} between these steps; ",
                 volts(command.at_rest_v)
             )
         }
@@ -137,14 +140,14 @@ fn command_object(view: &ProjectDesign, command: &CommandOfSteps) -> Object {
     };
     Object::new()
         .with("scenario", command.scenario.as_str())
-        .with("from_n", command.step.from_n)
-        .with("to_n", command.step.to_n)
+        .with(QuantityName::moving("from", &FORCE), command.step.from_n)
+        .with(QuantityName::moving("to", &FORCE), command.step.to_n)
         .with("at_s", command.at_s)
         .with("peak", if command.is_at_rest() { "at_rest" } else { "transient" })
         .with("largest_v", command.largest_v)
         .with("at_rest_v", command.at_rest_v)
         .with("limit_v", command.limit_v)
-        .with("largest_step_n", command.largest_step_n)
+        .with(QuantityName::moving("largest_step", &FORCE), command.largest_step_n)
         .with("step_limit", step_limit)
         .with("evidence", "search")
         .with("plants", command.plants)

@@ -66,10 +66,10 @@ fn remarks(view: &ProjectDesign, words: &ManualLaw) -> Vec<String> {
     };
     let follows = view.designed.problem.in_time.iter().any(|required| required.follows);
     if follows && !words.parts.iter().any(integrates) {
-        all.push(
-            "it has no integral part: at rest the force is off its reference by what the gain of a plant at rest differs from that of the nominal one, and by what friction and the null of the valve make"
-                .to_string(),
-        );
+        let force = view.designed.problem.units.motion.words().force;
+        all.push(format!(
+            "it has no integral part: at rest the {force} is off its reference by what the gain of a plant at rest differs from that of the nominal one, and by what friction and the null of the valve make"
+        ));
     }
     if let Some(sample_time_s) = view.designed.problem.compensation.sample_time_s() {
         let nyquist = PI / sample_time_s;

@@ -6,7 +6,7 @@ use super::ProjectDesign;
 use crate::answer::{Object, significant};
 use crate::document::Document;
 use crate::error::design_error_words;
-use crate::quantity::{ANGULAR_FREQUENCY, VOLTAGE_PER_PRESSURE, display};
+use crate::quantity::{ANGULAR_FREQUENCY, QuantityName, VOLTAGE_PER_FORCE, VOLTAGE_PER_PRESSURE, display};
 
 /// The feedback with what it gains; empty where it was not free.
 pub(crate) fn document(view: &ProjectDesign) -> Document {
@@ -79,8 +79,11 @@ pub fn pressure_feedback_object(found: &PressureFeedbackDesign) -> Object {
         .with("high_pass_rad_per_s", found.declared.high_pass)
         .maybe("low_pass_rad_per_s", found.declared.low_pass)
         .with("loop_gain_factor", found.loop_gain_factor)
-        .with("proportional_gain_v_per_n", found.proportional_gain[1])
-        .with("proportional_gain_without_v_per_n", found.proportional_gain[0])
+        .with(QuantityName::moving("proportional_gain", &VOLTAGE_PER_FORCE), found.proportional_gain[1])
+        .with(
+            QuantityName::moving("proportional_gain_without", &VOLTAGE_PER_FORCE),
+            found.proportional_gain[0],
+        )
         .with("limited_at_rad_per_s", limited)
         .with("limited_without_at_rad_per_s", limited_without)
         .maybe("least_damping_ratio", damping.map(|[_, with]| with))

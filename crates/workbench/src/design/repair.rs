@@ -234,7 +234,10 @@ fn advice(run: &TrialRun) -> String {
     let step = run.units.force.short((to - from).abs(), 3);
     let met = |names: &[&str]| run.met.iter().any(|one| names.iter().any(|name| one.starts_with(name)));
     if run.machine.is_none() {
-        return "no linear plant has this; the nonlinear simulation must first find an equilibrium, at a reference and a position that it can hold".to_string();
+        let position = run.units.motion.either("a position", "an angle");
+        return format!(
+            "no linear plant has this; the nonlinear simulation must first find an equilibrium, at a reference and {position} that it can hold"
+        );
     }
     if met(&["cavitation", "empty", "supply_lost"]) {
         return format!(
@@ -242,7 +245,10 @@ fn advice(run: &TrialRun) -> String {
         );
     }
     if met(&["end_stop", "load_contact"]) {
-        return format!("no linear plant has this; more room for the piston, or a smaller step than {step}");
+        let piston = run.units.motion.words().piston;
+        return format!(
+            "no linear plant has this; more room for the {piston}, or a smaller step than {step}"
+        );
     }
     if met(&["command_limit"]) {
         return format!(

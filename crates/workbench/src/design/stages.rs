@@ -16,6 +16,7 @@ use crate::answer::{Csv, OutputFile};
 use crate::audit::{self, certificate_of};
 use crate::error::CommandError;
 use crate::project::{Loaded, with_laws, with_line_model, with_pressure_feedback};
+use crate::quantity::MotionKind;
 use crate::robust::{BoundsError, DesignFrequency, RobustProblem};
 use crate::specification::kind_key;
 
@@ -108,7 +109,7 @@ fn has_rows(file: &OutputFile) -> bool {
 }
 
 fn transfer_file(name: &str, function: &TransferFunction) -> OutputFile {
-    OutputFile::new(name, factors(function).print())
+    OutputFile::new(name, factors(function).print(MotionKind::default()))
 }
 
 /// The frequencies at which a loop is drawn: around those of the design, or around what a required

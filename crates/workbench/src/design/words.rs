@@ -12,7 +12,7 @@ use super::manual::part_name;
 use crate::audit::DelayedPaths;
 use crate::limit_kind::limit_words;
 use crate::project::{DESIGN_OBJECTIVES, word_of};
-use crate::quantity::significant;
+use crate::quantity::{MotionKind, significant};
 use crate::specification::numbered;
 
 /// The word of a verdict in JSON.
@@ -34,7 +34,7 @@ pub(super) fn verdict_key(verdict: &DesignVerdict) -> &'static str {
 }
 
 /// The verdict for people, with what it means.
-pub(crate) fn verdict_sentence(verdict: &DesignVerdict) -> String {
+pub(crate) fn verdict_sentence(verdict: &DesignVerdict, motion: MotionKind) -> String {
     match verdict {
         DesignVerdict::Stopped { is_met, is_driven, miss } => stopped_sentence(*is_met, *is_driven, *miss),
         DesignVerdict::NotProven => {
@@ -56,7 +56,7 @@ pub(crate) fn verdict_sentence(verdict: &DesignVerdict) -> String {
                 .to_string()
         }
         DesignVerdict::CommandBeyondValve { scenario, largest_v, limit_v, held_v } => {
-            command_sentence(scenario, [*largest_v, *limit_v], *held_v)
+            command_sentence(scenario, [*largest_v, *limit_v], *held_v, motion)
         }
         DesignVerdict::DelayNotTolerated(paths) => format!(
             "not met: the controller satisfies every specification, and its loop tolerates less further delay than `design.minimum_delay_margin` requires{}",
@@ -127,10 +127,16 @@ fn delay_cure(paths: DelayedPaths) -> &'static str {
 }
 
 /// The command of a scenario's step that is beyond its limit.
-fn command_sentence(scenario: &str, [largest_v, limit_v]: [f64; 2], held_v: Option<f64>) -> String {
+fn command_sentence(
+    scenario: &str,
+    [largest_v, limit_v]: [f64; 2],
+    held_v: Option<f64>,
+    motion: MotionKind,
+) -> String {
+    let force = motion.words().force;
     let volts = |value: f64| format!("{} V", significant(value, 3));
     let hold = held_v.map_or(String::new(), |held_v| {
-        format!(": {} hold the force, whatever the controller", volts(held_v))
+        format!(": {} hold the {force}, whatever the controller", volts(held_v))
     });
     format!(
         "not met: the controller satisfies every specification, and the steps of the scenario `{scenario}` take {} of the {} that `design.command_of_steps` leaves the valve{hold}",

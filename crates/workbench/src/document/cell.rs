@@ -67,9 +67,9 @@ pub(crate) enum Cell {
     Text(String),
     /// A path or a name of a file or of a program.
     Code(String),
-    /// The name of a number for programs, such as `line.a.wave_speed`; the page shows it in words
+    /// The name of a number for programs, such as `line.a.wave_speed`; the page shows its words
     /// with its symbol.
-    Name { name: String, symbol: String },
+    Name { name: String, words: String, symbol: String },
     /// An equation or one of its symbols.
     Equation(String),
     /// A unit.

@@ -111,24 +111,13 @@ fn breakable(text: &str) -> Markup {
     PreEscaped(prose(text).into_string().replace('_', "_<wbr>").replace('.', ".<wbr>"))
 }
 
-/// `line.a.wave_speed` as "wave speed, line A": the word of the group is not repeated.
-fn words(name: &str) -> String {
-    let (group, quantity) = name.split_once('.').unwrap_or(("", name));
-    match (group, quantity.split_once('.')) {
-        ("line", Some((side, quantity))) => {
-            format!("{}, line {}", quantity.replace('_', " "), side.to_uppercase())
-        }
-        _ => quantity.replace(['_', '.'], " "),
-    }
-}
-
 impl Cell {
     /// For the page.
     fn markup(&self) -> Markup {
         match self {
             Cell::Text(text) => coded(text),
             Cell::Code(text) => html! { code { (breakable(text)) } },
-            Cell::Name { name, symbol } => html! { span.symbol { (typeset(symbol)) } (prose(&words(name))) },
+            Cell::Name { words, symbol, .. } => html! { span.symbol { (typeset(symbol)) } (prose(words)) },
             Cell::Unit(text) => html! { span.unit { (unit(text)) } },
             Cell::Equation(equation) => typeset(equation),
             Cell::Status(mark, cell) => badge(*mark, &cell.text()),

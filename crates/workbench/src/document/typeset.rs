@@ -56,6 +56,12 @@ pub fn prose(sentence: &str) -> Markup {
     html! { @for (index, word) in sentence.split(' ').enumerate() { @if index > 0 { " " } (set(word)) } }
 }
 
+/// A word as it begins a sentence.
+pub(crate) fn capital(word: &str) -> String {
+    let mut letters = word.chars();
+    letters.next().map_or(String::new(), |first| format!("{}{}", first.to_uppercase(), letters.as_str()))
+}
+
 /// A word with the marks around it.
 fn set(word: &str) -> Markup {
     let core = word.trim_end_matches([',', '.', ';', ':', ')', '°']);

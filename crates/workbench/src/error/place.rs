@@ -46,19 +46,17 @@ fn unbalanced(error: &ProjectFamilyError, numbers: &[String], project: &Project)
     let (of_point, others): (Vec<&String>, Vec<&String>) =
         numbers.iter().filter(ranged).partition(|name| name.starts_with(OF_POINT));
     let path = of_point.into_iter().chain(others).next().map(|name| range_of(name, project));
-    let help = match &path {
-        Some(path) if path.starts_with(REGION) => {
-            "narrow the region to the points that the rig can hold, raise `supply.pressure`, or enlarge the areas of the piston"
-        }
-        Some(_) => {
-            "narrow the range to the points that the rig can hold, raise `supply.pressure`, or enlarge the areas of the piston"
-        }
-        None => {
-            "state an operating point that the rig can hold, raise `supply.pressure`, or enlarge the areas of the piston"
-        }
+    let start = match &path {
+        Some(path) if path.starts_with(REGION) => "narrow the region to the points",
+        Some(_) => "narrow the range to the points",
+        None => "state an operating point",
     };
+    let piston = project.motion().words().piston;
+    let help = format!(
+        "{start} that the rig can hold, raise `supply.pressure`, or enlarge the areas of the {piston}"
+    );
     let path = path.unwrap_or_else(|| "operating_point".to_string());
-    LateError { path, message: error.to_string(), help: help.to_string() }
+    LateError { path, message: error.to_string(), help }
 }
 
 /// The key at which the range of a number is written.

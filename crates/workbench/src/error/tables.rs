@@ -92,7 +92,7 @@ fn simulate(error: &SimulateError) -> Vec<String> {
         SimulateError::NoScenario => &["scenario"],
         SimulateError::NoController => &["controller"],
         SimulateError::Loop(_) => &["controller", "prefilter", "sensor"],
-        SimulateError::LoadMass => &["load"],
+        SimulateError::LoadMass(_) => &["load"],
         SimulateError::Line(_) => &["line"],
         _ => &[],
     };

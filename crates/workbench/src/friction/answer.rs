@@ -49,7 +49,7 @@ pub fn json(loaded: &Loaded, found: &FrictionIdentification) -> String {
         })
         .with("independent_share", found.independent)
         .with("converged", found.has_converged());
-    envelope("identify", loaded).and(body).print()
+    envelope("identify", loaded).and(body).print(loaded.project.motion())
 }
 
 fn estimate(one: &Result<Estimate, OpenCoefficient>) -> Object {

@@ -39,7 +39,7 @@ pub fn json(loaded: &Loaded, found: &LineIdentification) -> String {
         .with("command", "identify")
         .with("project_sha256", loaded.sha256.as_str())
         .with("line", line)
-        .print()
+        .print(loaded.project.motion())
 }
 
 fn estimate(number: &Result<Estimate, NotIdentifiableLine>) -> Object {

@@ -9,6 +9,7 @@ use super::{
 };
 use crate::answer::{Csv, Json, Object, OutputFile, quoted};
 use crate::caveat;
+use crate::quantity::{DAMPING, FORCE, LENGTH, MASS, QuantityName, STIFFNESS};
 use crate::setup::Setup;
 
 /// The same with the results of a sweep.
@@ -57,7 +58,10 @@ pub(crate) fn body(setup: &Setup<'_>, linearization: &Linearization) -> Object {
         .with("passivity", ports(linearization, |view| passivity(&view.passivity)))
         .maybe("virtual_impedance", linearization.asked.as_ref().map(asked))
         .with("compliance_hidden_above_rad_per_s", linearization.compliance_hidden_above_rad_per_s)
-        .with("load_step_final_force_n", final_force(linearization))
+        .with(
+            QuantityName::OfMotion(["load_step_final_force", "load_step_final_torque"], &FORCE),
+            final_force(linearization),
+        )
         .with("load_step_moves", if linearization.open_loop.moves_ground { "ground" } else { "load" })
         .with("warnings", caveat::of_models_in_words(setup))
 }
@@ -66,11 +70,14 @@ fn stiffness(linearization: &Linearization) -> Object {
     let [nominal, softest, stiffest] = linearization.stiffness;
     let models = &linearization.stiffness_models;
     Object::new()
-        .with("minimum_n_per_m", nominal.minimum)
-        .with("maximum_n_per_m", nominal.maximum)
-        .with("minimum_position_m", nominal.minimum_position)
-        .with("minimum_softest_wall_n_per_m", softest.minimum)
-        .with("maximum_stiffest_wall_n_per_m", stiffest.maximum)
+        .with(QuantityName::moving("minimum", &STIFFNESS), nominal.minimum)
+        .with(QuantityName::moving("maximum", &STIFFNESS), nominal.maximum)
+        .with(
+            QuantityName::OfMotion(["minimum_position", "minimum_angle"], &LENGTH),
+            nominal.minimum_position,
+        )
+        .with(QuantityName::moving("minimum_softest_wall", &STIFFNESS), softest.minimum)
+        .with(QuantityName::moving("maximum_stiffest_wall", &STIFFNESS), stiffest.maximum)
         .with("uniform", [models.uniform.minimum, models.uniform.maximum])
         .with("by_volume", [models.by_volume.minimum, models.by_volume.maximum])
         .with("sentence", stiffness_sentence(linearization))
@@ -80,7 +87,7 @@ fn linkages(places: &[LinkagePlace]) -> Option<Vec<Object>> {
     (!places.is_empty()).then(|| places.iter().map(linkage).collect())
 }
 
-/// A linkage at one position.
+/// A linkage at one position: it joins the rod of a cylinder.
 fn linkage(place: &LinkagePlace) -> Object {
     Object::new()
         .with("at", place.at.words())
@@ -131,24 +138,26 @@ fn ports(linearization: &Linearization, of: impl Fn(&PortView) -> Object) -> Obj
 fn asked(asked: &AskedImpedance) -> Object {
     let magnitude = phea_dynamics::portable::magnitude;
     Object::new()
-        .with("stiffness_n_per_m", asked.impedance.stiffness)
-        .with("damping_n_s_per_m", asked.impedance.damping)
-        .with("mass_kg", asked.impedance.mass)
+        .with(QuantityName::moving("stiffness", &STIFFNESS), asked.impedance.stiffness)
+        .with(QuantityName::moving("damping", &DAMPING), asked.impedance.damping)
+        .with(QuantityName::OfMotion(["mass", "inertia"], &MASS), asked.impedance.mass)
         .with("filter_time_s", asked.impedance.filter_time_s)
         .with("within_percent", WITHIN_PERCENT)
         .known("follows_rad_per_s", asked.follows_rad_per_s.map(|band| band.to_vec()), "nowhere within that")
         .each("points", &asked.points, |point| {
             Object::new()
                 .with("frequency_rad_per_s", point.frequency_rad_per_s)
-                .with("asked_n_s_per_m", magnitude(point.asked))
-                .with("shown_n_s_per_m", magnitude(point.shown))
+                .with(QuantityName::moving("asked", &DAMPING), magnitude(point.asked))
+                .with(QuantityName::moving("shown", &DAMPING), magnitude(point.shown))
                 .with("asked", point.asked)
                 .with("shown", point.shown)
         })
 }
 
 fn final_force(linearization: &Linearization) -> Object {
-    let unstable = "unstable: the force has no final value";
+    let unstable = linearization
+        .motion
+        .either("unstable: the force has no final value", "unstable: the torque has no final value");
     let closed_loop = linearization.closed_loop.as_ref().and_then(|view| view.final_force_n);
     let reason = linearization.closed_loop_absent.map_or(unstable, no_closed_impedance_words);
     Object::new().known("open_loop", linearization.open_loop.final_force_n, unstable).known(

@@ -15,6 +15,7 @@ use crate::answer::significant;
 use crate::caveat;
 use crate::document::{Cell, Document, Table};
 use crate::figure::Figure;
+use crate::quantity::{DAMPING, MotionKind};
 use crate::setup::Setup;
 
 /// The tables and sentences of `linearize` for people.
@@ -27,8 +28,9 @@ pub(crate) fn output(setup: &Setup<'_>, linearization: &Linearization) -> Docume
         out.section("Linkage", linkage_table(&linearization.linkage));
     }
     out.append(document(linearization, vec![]));
+    let motion = linearization.motion;
     let without = if linearization.load_yields { " of the actuator, whatever its load," } else { "" };
-    out.heading(format!("Driving-point impedance{without} Z = -F_e/(s X_L)"));
+    out.heading(format!("Driving-point impedance{without} Z = {}", motion.symbols().impedance));
     let closed = match (&linearization.closed_loop, &linearization.closed_loop_absent) {
         (Some(view), _) => passivity_sentence(&view.passivity),
         (None, Some(reason)) => format!("not computed, because {}", no_closed_impedance_words(*reason)),
@@ -38,11 +40,14 @@ pub(crate) fn output(setup: &Setup<'_>, linearization: &Linearization) -> Docume
     out.sentences([
         format!("open loop:   {}", passivity_sentence(&linearization.open_loop.passivity)),
         format!("closed loop: {closed}"),
-        format!("above {hidden} rad/s {} hides the compliance", hiding_mass_words(linearization.hidden_by)),
+        format!(
+            "above {hidden} rad/s {} hides the compliance",
+            hiding_mass_words(linearization.hidden_by, motion)
+        ),
     ]);
     out.sentences(impedance_at_joint(linearization));
     if let Some(asked) = &linearization.asked {
-        out.section("Impedance requested and achieved", asked_table(asked));
+        out.section("Impedance requested and achieved", asked_table(asked, motion));
         out.sentences([asked_sentence(asked)]);
     }
     out
@@ -110,7 +115,7 @@ pub(crate) fn impedance_at_joint(linearization: &Linearization) -> Option<String
 }
 
 /// A virtual impedance and what the port shows, at a few frequencies.
-pub(crate) fn asked_table(asked: &AskedImpedance) -> Table {
+pub(crate) fn asked_table(asked: &AskedImpedance, motion: MotionKind) -> Table {
     let row = |point: &AskedAt| {
         let size = |value: Complex64| Cell::number(portable::magnitude(value), 3);
         let turned = portable::argument(point.shown / point.asked).to_degrees();
@@ -121,7 +126,9 @@ pub(crate) fn asked_table(asked: &AskedImpedance) -> Table {
             Cell::number(turned, 2),
         ]
     };
-    let headings = ["frequency, rad/s", "requested, N.s/m", "achieved, N.s/m", "phase difference, deg"];
+    let unit = motion.dimension(&DAMPING).si;
+    let [requested, achieved] = ["requested", "achieved"].map(|word| format!("{word}, {unit}"));
+    let headings = ["frequency, rad/s", &requested, &achieved, "phase difference, deg"];
     Table::new(headings).with(asked.points.iter().map(row))
 }
 

@@ -7,7 +7,7 @@ use crate::answer::{Csv, Object, OutputFile, significant};
 use crate::caveat;
 use crate::document::{Document, Table};
 use crate::figure::{Figure, PoleSweep, PoleSweepPoint, Words};
-use crate::quantity::DisplayUnit;
+use crate::quantity::{DisplayUnit, MotionKind, QuantityName, STIFFNESS};
 
 /// The swept number, in the JSON of `linearize`.
 pub(super) fn head(sweep: &Sweep) -> Object {
@@ -21,16 +21,16 @@ pub(super) fn head(sweep: &Sweep) -> Object {
 
 /// What came of each value.
 pub(super) fn rows(sweep: &Sweep) -> Vec<Object> {
-    sweep.points.iter().map(row).collect()
+    sweep.points.iter().map(|point| row(point, sweep.units.motion)).collect()
 }
 
-fn row(point: &SweepPoint) -> Object {
+fn row(point: &SweepPoint, motion: MotionKind) -> Object {
     let found = point.found.as_ref().ok();
     let models = found.map(|found| &found.linearization);
     let stiffness = models.map(|models| {
         Object::new()
-            .with("minimum_n_per_m", models.stiffness[0].minimum)
-            .with("maximum_n_per_m", models.stiffness[0].maximum)
+            .with(QuantityName::moving("minimum", &STIFFNESS), models.stiffness[0].minimum)
+            .with(QuantityName::moving("maximum", &STIFFNESS), models.stiffness[0].maximum)
     });
     let poles = models.map(|models| {
         Object::new()
@@ -52,7 +52,9 @@ fn row(point: &SweepPoint) -> Object {
         .with("bandwidth_rad_per_s", found.and_then(|found| found.bandwidth_rad_per_s.ok()))
         .maybe(
             "bandwidth_rad_per_s_reason",
-            found.and_then(|found| found.bandwidth_rad_per_s.err()).map(no_bandwidth_words),
+            found
+                .and_then(|found| found.bandwidth_rad_per_s.err())
+                .map(|why| no_bandwidth_words(why, motion)),
         )
         .with("passive", passive)
         .maybe("reason", point.found.as_ref().err().map(ToString::to_string))
@@ -76,7 +78,8 @@ pub(crate) fn sweep_document(sweep: &Sweep) -> Document {
         "1" | "" => sweep.path.clone(),
         symbol => format!("{}, {symbol}", sweep.path),
     };
-    let stiffness = format!("K_H over the stroke, {}", stiffness_unit(sweep).symbol);
+    let symbol = sweep.units.motion.symbols().stiffness;
+    let stiffness = format!("{symbol} over the stroke, {}", stiffness_unit(sweep).symbol);
     let heads = [
         key.as_str(),
         stiffness.as_str(),
@@ -91,9 +94,9 @@ pub(crate) fn sweep_document(sweep: &Sweep) -> Document {
         lines.row(cells(sweep, point));
     }
     out.table(lines);
-    out.sentences([
-        "K_H is of the nominal wall; the bandwidth is that of the nominal loop with the given controller, to -3 dB.".to_string(),
-    ]);
+    out.sentences([format!(
+        "{symbol} is of the nominal wall; the bandwidth is that of the nominal loop with the given controller, to -3 dB."
+    )]);
     let reasons = sweep.points.iter().filter_map(|point| Some((point.value, point.found.as_ref().err()?)));
     out.sentences(reasons.map(|(value, reason)| format!("{}: {reason}", sweep.unit.text(value, 4))));
     out
@@ -134,9 +137,10 @@ fn cells(sweep: &Sweep, point: &SweepPoint) -> [String; 7] {
         root_list(&found.poles),
         frequency,
         damping,
-        found
-            .bandwidth_rad_per_s
-            .map_or_else(|why| no_bandwidth_words(why).to_string(), |bandwidth| significant(bandwidth, 4)),
+        found.bandwidth_rad_per_s.map_or_else(
+            |why| no_bandwidth_words(why, sweep.units.motion).to_string(),
+            |bandwidth| significant(bandwidth, 4),
+        ),
         closed.map_or(open.to_string(), |closed| format!("{open}, closed loop {closed}")),
     ]
 }
@@ -160,6 +164,7 @@ pub(crate) fn sweep_figure(sweep: &Sweep) -> Figure {
     let chart = PoleSweep {
         quantity: sweep.path.clone(),
         unit: sweep.unit,
+        motion: sweep.units.motion,
         stiffness_unit: stiffness_unit(sweep),
         by_ratio: sweep.by_ratio,
         points: points.collect(),

@@ -29,6 +29,7 @@ pub(crate) fn stiffness_words(motion: MotionKind, stiffness: &StrokeStiffness) -
 /// One sentence on the two stiffness models.
 pub(crate) fn stiffness_sentence(linearization: &Linearization) -> String {
     let Linearization { motion, stiffness_models: difference, .. } = linearization;
+    let symbol = motion.symbols().stiffness;
     let range = |stiffness: &StrokeStiffness| stiffness_words(*motion, stiffness)[0].clone();
     let [_, place] = stiffness_words(*motion, &difference.by_volume);
     let percent = |share: f64| significant(100.0 * share, 2);
@@ -39,14 +40,14 @@ pub(crate) fn stiffness_sentence(linearization: &Linearization) -> String {
     };
     if ratios.iter().all(|ratio| (ratio - 1.0).abs() < AGREEMENT) {
         return format!(
-            "K_H is {} {place}, by either stiffness model (uniform, by_volume): the lines are hardly softer \
+            "{symbol} is {} {place}, by either stiffness model (uniform, by_volume): the lines are hardly softer \
              than the oil, and {} % of the oil is in the chambers.{gas}",
             range(&difference.by_volume),
             percent(difference.chamber_volume_share)
         );
     }
     format!(
-        "With one modulus for line and chamber (uniform) K_H is {} {place}; if the oil in the chambers \
+        "With one modulus for line and chamber (uniform) {symbol} is {} {place}; if the oil in the chambers \
          keeps its own (by_volume) it is {}, and its least value {} times as high: {} % of the oil is in the chambers, \
          and the lines account for {} % of the compliance.{gas}",
         range(&difference.uniform),
@@ -58,9 +59,9 @@ pub(crate) fn stiffness_sentence(linearization: &Linearization) -> String {
 }
 
 /// Mass that hides the compliance.
-pub(crate) fn hiding_mass_words(mass: HidingMass) -> &'static str {
+pub(crate) fn hiding_mass_words(mass: HidingMass, motion: MotionKind) -> &'static str {
     match mass {
-        HidingMass::Piston => "the piston's mass",
+        HidingMass::Piston => motion.either("the piston's mass", "the shaft's inertia"),
         HidingMass::Oil => "the oil of the transmission",
     }
 }
@@ -76,11 +77,14 @@ pub(crate) fn no_closed_impedance_words(reason: NoClosedImpedance) -> &'static s
 }
 
 /// Reason why a loop has no bandwidth.
-pub(super) fn no_bandwidth_words(reason: NoBandwidth) -> &'static str {
+pub(super) fn no_bandwidth_words(reason: NoBandwidth, motion: MotionKind) -> &'static str {
     match reason {
         NoBandwidth::NoController => "the project gives no controller",
         NoBandwidth::NotClosed => "the loop cannot be closed",
         NoBandwidth::Unstable => "the closed loop is unstable",
-        NoBandwidth::BeyondRange => "the force follows up to every frequency that was looked at",
+        NoBandwidth::BeyondRange => motion.either(
+            "the force follows up to every frequency that was looked at",
+            "the torque follows up to every frequency that was looked at",
+        ),
     }
 }

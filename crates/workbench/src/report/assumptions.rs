@@ -21,12 +21,13 @@ pub(super) fn assumptions(project: &Project) -> Vec<String> {
     told.extend(lines(actuator));
     let sizing = project.sizing.as_ref().map(|sizing| first_order(sizing.speed));
     told.extend(friction(actuator));
-    told.push(match actuator.load {
-        Load::Prescribed => {
-            "The load moves as prescribed; the force sensor's stiffness includes what it is mounted on."
-        }
-        _ => "The load is the declared one; the force sensor's stiffness includes what it is mounted on.",
-    });
+    let moves = match actuator.load {
+        Load::Prescribed => "The load moves as prescribed",
+        _ => "The load is the declared one",
+    };
+    let sensor = actuator.motion().words().force_sensor;
+    let load = format!("{moves}; the {sensor}'s stiffness includes what it is mounted on.");
+    told.push(&load);
     told.extend(sizing.as_deref());
     if actuator.fluid.entrained_air.is_none_or(|fraction| fraction == 0.0) {
         told.push("The oil carries no free air.");
@@ -54,7 +55,10 @@ fn first_order(speed: Speed) -> String {
 fn supply(actuator: &DeclaredActuator) -> &'static str {
     match actuator.supply.model {
         SupplyModel::Constant { flow: Some(_) } => {
-            "Pressures are gauge; tank and supply stay at the declared pressures, whatever the valve takes: `supply.flow` limits the sizing, the speeds of the piston and an operating region, and with `supply.model = \"constant\"` no simulation and no linear plant."
+            actuator.motion().either(
+                "Pressures are gauge; tank and supply stay at the declared pressures, whatever the valve takes: `supply.flow` limits the sizing, the speeds of the piston and an operating region, and with `supply.model = \"constant\"` no simulation and no linear plant.",
+                "Pressures are gauge; tank and supply stay at the declared pressures, whatever the valve takes: `supply.flow` limits the sizing, the speeds of the shaft and an operating region, and with `supply.model = \"constant\"` no simulation and no linear plant.",
+            )
         }
         SupplyModel::Constant { flow: None } => {
             "Pressures are gauge; tank and supply stay at the declared pressures, whatever the valve takes."

@@ -149,7 +149,12 @@ fn words(runs: u64, plan: &Plan, summary: &Summary) -> String {
         let metric = TOLD_FIRST.into_iter().find(|metric| spreads[*metric].is_some())?;
         let unit = shown_in(metric, units);
         let [low, .., high] = spreads[metric]?.quantiles.map(|value| unit.number(value, DIGITS));
-        Some(format!("{}: {} {low} to {high} {}", cause_words(window, units), metric.label(), unit.symbol))
+        Some(format!(
+            "{}: {} {low} to {high} {}",
+            cause_words(window, units),
+            metric.label(units.motion),
+            unit.symbol
+        ))
     };
     told.extend(windows.filter_map(of_window).take(TOLD_EVENTS));
     let [least, .., most] = QUANTILES;
@@ -208,7 +213,11 @@ fn worst(out: &mut Document, plan: &Plan, summary: &Summary) {
 /// Event by event, the metrics in which a run is worst, without their units.
 fn worst_in(plan: &Plan, worst: &WorstRun) -> String {
     let of_window = |(index, window)| {
-        let of = worst.of.iter().filter(|(place, _)| *place == index).map(|(_, metric)| metric.label());
+        let of = worst
+            .of
+            .iter()
+            .filter(|(place, _)| *place == index)
+            .map(|(_, metric)| metric.label(plan.motion()));
         let of: Vec<&str> = of.collect();
         (!of.is_empty()).then(|| format!("{}: {}", cause_words(window, plan.units()), of.join(", ")))
     };

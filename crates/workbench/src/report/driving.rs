@@ -25,7 +25,10 @@ pub(super) fn sentences(scenario: &Scenario, units: Units, turns: bool) -> Vec<S
     if !scenario.external_force.is_empty() {
         let external = &scenario.external_force;
         told.push(match turns {
-            false => format!("An external force acts on the load: {}.", parts(external, units.force)),
+            false => {
+                let force = units.motion.words().force;
+                format!("An external {force} acts on the load: {}.", parts(external, units.force))
+            }
             true => format!(
                 "An external torque acts on the joint: {}.",
                 parts(external, DisplayUnit::NEWTON_METRE)

@@ -60,7 +60,8 @@ fn origin(project: &Project) -> String {
         count => parts.push(format!("{count} directions in which identified numbers are uncertain together")),
     }
     format!(
-        "K_qU, K_c and K_H are not ranges of their own here: they follow from {}, and move together. The project names the independent ranges that this replaces.",
+        "K_qU, K_c and {} are not ranges of their own here: they follow from {}, and move together. The project names the independent ranges that this replaces.",
+        project.motion().symbols().stiffness,
         parts.join(", and from ")
     )
 }

@@ -11,11 +11,11 @@ use crate::answer::significant;
 use crate::document::{Document, Table};
 use crate::figure::{AsymptoteLine, Figure, FrequencyMark, FrequencySeries, ImpedanceDiagram, Words};
 use crate::linearize::{
-    Linearization, PortView, asked_sentence, asked_table, frequency_grid, hiding_mass_words,
+    HidingMass, Linearization, PortView, asked_sentence, asked_table, frequency_grid, hiding_mass_words,
     impedance_at_joint, no_closed_impedance_words, passivity_sentence,
 };
 use crate::project::DeclaredSeries;
-use crate::quantity::DisplayUnit;
+use crate::quantity::{DAMPING, DisplayUnit, MASS, MotionKind, STIFFNESS};
 use crate::setup::Setup;
 
 pub(super) fn chapter(
@@ -27,7 +27,9 @@ pub(super) fn chapter(
     let hidden = significant(linearization.compliance_hidden_above_rad_per_s, 4);
     let units = project.units;
     let mut out = Document::default();
-    out.equations(vec!["Z = -F_e/(s X_L)".to_string()]);
+    let motion = linearization.motion;
+    let words = motion.words();
+    out.equations(vec![format!("Z = {}", motion.symbols().impedance)]);
     let met = match project.actuator.as_ref().and_then(|actuator| actuator.series.as_ref()) {
         None => "the sensor's stiffness alone",
         Some(DeclaredSeries::Transmission(_)) => {
@@ -37,8 +39,11 @@ pub(super) fn chapter(
             "sensor and series spring alone, whose stiffnesses in series stand for K_S in the straight lines"
         }
     };
-    let hiding = hiding_mass_words(linearization.hidden_by);
-    out.explanation(format!("The driving-point impedance Z is the resistance to a load that moves the rod: a damper, spring or mass, depending on frequency. Above {hidden} rad/s {hiding} hides the hydraulic compliance, and the load meets {met}."));
+    let hiding = hiding_mass_words(linearization.hidden_by, motion);
+    out.explanation(format!(
+        "The driving-point impedance Z is the resistance to a load that moves the {}: a damper, spring or {}, depending on frequency. Above {hidden} rad/s {hiding} hides the hydraulic compliance, and the load meets {met}.",
+        words.rod, words.mass
+    ));
     out.explanations(impedance_at_joint(linearization).map(|sentence| format!("{sentence}.")));
     out.left_out(setup);
     out.figures([figure(linearization)?]);
@@ -53,29 +58,40 @@ pub(super) fn chapter(
             .closed_loop_absent
             .map(|reason| format!("closed loop: {}", no_closed_impedance_words(reason))),
     );
-    if let Some(asked) = &linearization.asked {
-        out.heading("The virtual impedance");
-        out.equations(vec![
-            "U_C = G (F F_{ref} - y)".to_string(),
-            "y = F_e + (M_v s^2 + B_v s + K_v)/(τ s + 1)^n (X_L - X_0)".to_string(),
-        ]);
-        out.explanation("The impedance that the loop is required to show to a load that moves its port, and the one that it shows: Z = M_v s + B_v + K_v/s against -F_e/(s X_L) of the nominal plant, waves, samples and delay included.");
-        out.table(asked_table(asked));
-        out.sentences([format!("closed loop: {}", asked_sentence(asked))]);
-    }
+    out.append(required(linearization));
     out.heading("The load moves");
     out.figures([load_motion::figure(project, &forces)]);
-    out.explanation(format!("Largest change of the force: {}.", peaks(&forces, units.force)));
+    out.explanation(format!("Largest change of the {}: {}.", words.force, peaks(&forces, units.force)));
     let of = what_moves(project, forces.iter().any(|moved| moved.moves_ground));
     let step = units.position.text(1e-3, 3);
     let remaining: Vec<String> = views(linearization)
         .iter()
         .map(|(name, view)| format!("{name} {}", remains(view, units.force)))
         .collect();
-    out.explanation(format!("Proposition 6.2: with leakage or feedback the zero at the origin makes the force return. After a step of {of} by {step} there remains, {}.", remaining.join(", ")));
+    out.explanation(format!("Proposition 6.2: with leakage or feedback the zero at the origin makes the {} return. After a step of {of} by {step} there remains, {}.", words.force, remaining.join(", ")));
     out.heading("Asymptotes");
     out.table(asymptotes(linearization));
     Ok(Chapter::of("impedance", "The impedance at the load", out))
+}
+
+/// The virtual impedance; empty where the project states none.
+fn required(linearization: &Linearization) -> Document {
+    let mut out = Document::default();
+    let Some(asked) = &linearization.asked else { return out };
+    let motion = linearization.motion;
+    out.heading("The virtual impedance");
+    let equations = motion.either(
+        ["U_C = G (F F_{ref} - y)", "y = F_e + (M_v s^2 + B_v s + K_v)/(τ s + 1)^n (X_L - X_0)"],
+        ["U_C = G (F T_{ref} - y)", "y = T_e + (M_v s^2 + B_v s + K_v)/(τ s + 1)^n (Θ_L - Θ_0)"],
+    );
+    out.equations(equations.map(str::to_string).to_vec());
+    out.explanation(format!(
+        "The impedance that the loop is required to show to a load that moves its port, and the one that it shows: Z = M_v s + B_v + K_v/s against {} of the nominal plant, waves, samples and delay included.",
+        motion.symbols().impedance
+    ));
+    out.table(asked_table(asked, motion));
+    out.sentences([format!("closed loop: {}", asked_sentence(asked))]);
+    out
 }
 
 fn peaks(forces: &[Moved], unit: DisplayUnit) -> String {
@@ -99,11 +115,11 @@ fn views(linearization: &Linearization) -> Vec<(&'static str, &PortView)> {
     views
 }
 
-fn behaviour(power: i32) -> &'static str {
+fn behaviour(power: i32, motion: MotionKind) -> &'static str {
     match power {
         -1 => "spring",
         0 => "damper",
-        1 => "mass",
+        1 => motion.words().mass,
         _ => "of higher order",
     }
 }
@@ -119,21 +135,29 @@ fn asymptotes(linearization: &Linearization) -> Table {
                 AsymptoteKind::OilLimit => "limit: oil at the load's piston",
             };
             let unit = match asymptote.power {
-                -1 => "N/m",
-                0 => "N.s/m",
-                1 => linearization.motion.symbol("kg"),
+                -1 => linearization.motion.dimension(&STIFFNESS).si,
+                0 => linearization.motion.dimension(&DAMPING).si,
+                1 => linearization.motion.dimension(&MASS).si,
                 _ => "SI",
             };
             rows.row([
                 name.to_string(),
                 regime.to_string(),
-                behaviour(asymptote.power).to_string(),
+                behaviour(asymptote.power, linearization.motion).to_string(),
                 format!("{} {}", significant(asymptote.coefficient, 4), unit),
                 between(asymptote.from, asymptote.to),
             ]);
         }
     }
     rows
+}
+
+/// The frequency above which a mass hides the compliance.
+fn hidden_label(by: HidingMass, motion: MotionKind) -> &'static str {
+    match by {
+        HidingMass::Piston => motion.either("√(K_H/M)", "√(K_θ/J)"),
+        HidingMass::Oil => "√(K_eq/m)",
+    }
 }
 
 fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
@@ -148,7 +172,9 @@ fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
             }
             lines.push(AsymptoteLine {
                 label: match asymptote.kind {
-                    AsymptoteKind::LowFrequency => format!("{}, {name}", behaviour(asymptote.power)),
+                    AsymptoteKind::LowFrequency => {
+                        format!("{}, {name}", behaviour(asymptote.power, linearization.motion))
+                    }
                     AsymptoteKind::CompliancePlateau => "K_eq/s".to_string(),
                     AsymptoteKind::SensorLimit => "K_S/s".to_string(),
                     AsymptoteKind::OilLimit => "k_{N+1}/s".to_string(),
@@ -163,13 +189,14 @@ fn figure(linearization: &Linearization) -> Result<Figure, LinearError> {
     let bands =
         linearization.closed_loop.as_ref().map(|view| view.passivity.bands.as_slice()).unwrap_or_default();
     let chart = ImpedanceDiagram {
+        motion: linearization.motion,
         series: views(linearization)
             .iter()
             .map(|(name, view)| FrequencySeries::new(*name, &grid, |at| view.impedance.at_frequency(at)))
             .collect(),
         asymptotes: lines,
         corners: vec![FrequencyMark {
-            label: linearization.motion.formula(linearization.hidden_by.label()).into_owned(),
+            label: hidden_label(linearization.hidden_by, linearization.motion).to_string(),
             frequency_rad_per_s: linearization.compliance_hidden_above_rad_per_s,
         }],
         non_passive_bands_rad_per_s: bands

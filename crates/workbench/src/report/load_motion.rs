@@ -7,10 +7,11 @@ use phea_dynamics::time_response::{
 
 use crate::answer::significant;
 use crate::figure::axis::extent;
-use crate::figure::{DisplayUnit, Figure, Words};
+use crate::figure::{Figure, Words};
 use crate::linearize::PortView;
-use crate::over_time::{Trace, chart, panel, trace};
+use crate::over_time::{Trace, chart, measured_force, panel, trace};
 use crate::project::{LoadMotion, MotionShape, Project};
+use crate::quantity::Units;
 
 /// The motion that is shown where no scenario moves the load: 1 mm in 0.1 s.
 const MOTION: (f64, f64) = (1e-3, 0.1);
@@ -104,7 +105,8 @@ pub(super) fn forces(
 }
 
 /// The remaining forces, in sentences.
-fn end(forces: &[Moved], unit: DisplayUnit) -> String {
+fn end(forces: &[Moved], units: Units) -> String {
+    let (unit, force) = (units.force, units.motion.words().force);
     let known: Vec<(&str, f64)> =
         forces.iter().filter_map(|moved| Some((moved.name, moved.force.as_ref()?.remains_n))).collect();
     let unstable = forces.iter().filter(|moved| moved.force.is_none()).map(|moved| moved.name);
@@ -119,10 +121,10 @@ fn end(forces: &[Moved], unit: DisplayUnit) -> String {
             )]
         }
     };
-    sentences.extend(
-        unstable
-            .map(|name| format!("The {name} is unstable: its force grows without bound and is not drawn.")),
-    );
+    sentences
+        .extend(unstable.map(|name| {
+            format!("The {name} is unstable: its {force} grows without bound and is not drawn.")
+        }));
     sentences.join(" ")
 }
 
@@ -130,6 +132,7 @@ fn end(forces: &[Moved], unit: DisplayUnit) -> String {
 pub(super) fn what_moves(project: &Project, is_ground: bool) -> &'static str {
     let linked = project.actuator.as_ref().is_some_and(|actuator| actuator.linkage.is_some());
     match (is_ground, linked) {
+        // a linkage is behind a rod
         (true, true) => "the ground of the load, as seen at the rod's end,",
         (true, false) => "the ground of the load",
         (false, true) => "the rod's end",
@@ -140,19 +143,25 @@ pub(super) fn what_moves(project: &Project, is_ground: bool) -> &'static str {
 /// The figure of these forces.
 pub(super) fn figure(project: &Project, forces: &[Moved]) -> Figure {
     let (distance, duration) = motion(project);
-    let unit = project.units.force;
+    let units = project.units;
     let moved = what_moves(project, forces.iter().any(|moved| moved.moves_ground));
     let caption = format!(
-        "Change of the force while {moved} moves {} in {} s (a smooth step of fifth order), linear and with no limit on the command. {}",
+        "Change of the {} while {moved} moves {} in {} s (a smooth step of fifth order), linear and with no limit on the command. {}",
+        units.motion.words().force,
         project.units.position.text(distance, 3),
         significant(duration, 3),
-        end(forces, unit)
+        end(forces, units)
     );
     let known = forces
         .iter()
         .filter_map(|moved| Some((moved.name.to_string(), moved.force.as_ref()?.series.clone())));
     let (names, series): (Vec<String>, Vec<Trace>) = known.unzip();
     let (start, end) = extent(series.iter().flatten().map(|(time, _)| *time));
-    let chart = chart(vec![panel("Force F_e", unit, 250.0, series)], names, &[], [start, end]);
+    let chart = chart(
+        vec![panel(&measured_force(units.motion), units.force, 250.0, series)],
+        names,
+        &[],
+        [start, end],
+    );
     chart.draw(&Words::new("load-motion", "Load motion", caption))
 }

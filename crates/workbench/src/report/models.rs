@@ -2,11 +2,12 @@
 //! dominance.
 
 use super::chapter::Chapter;
-use crate::document::Document;
+use crate::document::{Document, capital};
 use crate::figure::{
     BodeDiagram, Figure, FrequencyMark, FrequencySeries, PoleMap, PoleMapScale, PoleSeries, Words,
 };
 use crate::linearize::{Linearization, document, frequency_grid, model_words, resonance};
+use crate::quantity::MotionWords;
 use crate::setup::Setup;
 use phea_dynamics::linear::{LinearError, TransferFunction};
 use phea_dynamics::portable;
@@ -54,8 +55,9 @@ fn poles(linearization: &Linearization) -> Figure {
         natural_frequencies_rad_per_s: vec![1.0, 10.0, 100.0, 1000.0],
     };
     let load = if linearization.load_yields { ", and the load on its own spring" } else { "" };
+    let MotionWords { force, piston, load_cell, .. } = linearization.motion.words();
     let caption = format!(
-        "Poles from command to force: the slow hydraulic pole, the piston on the load cell, the valve's spool{load}."
+        "Poles from command to {force}: the slow hydraulic pole, the {piston} on the {load_cell}, the valve's spool{load}."
     );
     chart.draw(&Words::new("poles", "Pole map", &caption))
 }
@@ -73,7 +75,8 @@ fn responses(linearization: &Linearization) -> Result<Figure, LinearError> {
         first = "the plant, which has load, leakage and both chambers";
     }
     let caption = format!(
-        "Force over command of the models with the values in use, and the difference of each from {first}."
+        "{} over command of the models with the values in use, and the difference of each from {first}.",
+        capital(linearization.motion.words().force)
     );
     let words = Words::new("bode", "Frequency response of the models", &caption);
     diagram(linearization, words, &models, &linearization.plant.command)
@@ -116,8 +119,8 @@ fn diagram(
     let resonance = resonance(reference)
         .map(|pole| FrequencyMark { label: "resonance".to_string(), frequency_rad_per_s: pole.im });
     let chart = BodeDiagram {
-        quantity: "F_e/U_C".to_string(),
-        unit: "N/V".to_string(),
+        quantity: linearization.motion.either("F_e/U_C", "T_e/U_C").to_string(),
+        unit: linearization.motion.either("N/V", "N.m/V").to_string(),
         series: series.collect(),
         marks: resonance.into_iter().collect(),
     };

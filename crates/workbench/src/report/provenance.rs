@@ -39,7 +39,7 @@ pub(super) fn chapter(loaded: &Loaded, is_judged: bool) -> Chapter {
         out.explanation(format!("Not stated by the project: {}", coded(&defaults)));
     }
     out.heading("Assumptions");
-    out.sentences(loaded.lines.iter().map(line_choice::sentence).chain(assumptions(&loaded.project)));
+    out.sentences(line_choice::sentence(loaded).into_iter().chain(assumptions(&loaded.project)));
     out.heading("Not proven here");
     out.explanation(not_proven(&loaded.project, is_judged));
     Chapter::of("provenance", "Provenance and assumptions", out)

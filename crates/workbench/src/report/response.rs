@@ -6,9 +6,10 @@ use phea_dynamics::time_response::{Settling, StepMetrics};
 use super::chapter::Chapter;
 use crate::answer::significant;
 use crate::document::{Document, StatusMark, Table};
-use crate::figure::{DisplayUnit, Figure, SettlingBand, Words};
+use crate::figure::{Figure, SettlingBand, Words};
 use crate::linear_loop::{LinearLoop, LoopStability, StepView};
 use crate::over_time::ForceStep;
+use crate::quantity::{DisplayUnit, Units};
 use crate::setup::Setup;
 
 /// Height of the drawn step where the project's scenarios give none, N.
@@ -32,7 +33,7 @@ pub(super) fn chapter(
     out.left_out(setup);
     match &linear_loop.step {
         Ok(view) => {
-            out.figures([figure(view, reference_n.unwrap_or(REFERENCE), setup.project.units.force)]);
+            out.figures([figure(view, reference_n.unwrap_or(REFERENCE), setup.project.units)]);
             out.table(metrics(view));
         }
         Err(reason) => out.verdict(StatusMark::Bad, format!("No step response: {reason}"), vec![]),
@@ -49,7 +50,7 @@ pub(super) fn chapter(
     Chapter::of(anchor, title, out)
 }
 
-fn figure(view: &StepView, reference: f64, unit: DisplayUnit) -> Figure {
+fn figure(view: &StepView, reference: f64, units: Units) -> Figure {
     let sized = |values: &[f64]| values.iter().map(|value| value * reference).collect::<Vec<f64>>();
     let band = view.metrics.settling_band_percent;
     let words = |time_s| format!("t_s({} %) = {} s", significant(band, 2), significant(time_s, 3));
@@ -59,11 +60,15 @@ fn figure(view: &StepView, reference: f64, unit: DisplayUnit) -> Figure {
         force: &sized(&view.response),
         filtered_reference: &sized(&view.filtered_reference),
         command: &sized(&view.command_v_per_n),
-        unit,
+        units,
         settling_band: Some(SettlingBand { level: reference, percent: band }),
         settled: view.metrics.settling.time_s().map(|time_s| (time_s, words(time_s))),
     };
-    let caption = format!("A step of {}: force, prefiltered reference and command.", unit.text(reference, 3));
+    let caption = format!(
+        "A step of {}: {}, prefiltered reference and command.",
+        units.force.text(reference, 3),
+        units.motion.words().force
+    );
     shown.chart().draw(&Words::new("step", "Step response", caption))
 }
 

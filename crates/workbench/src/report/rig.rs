@@ -221,7 +221,8 @@ pub(super) fn lines_words(actuator: &project::DeclaredActuator) -> String {
 
 fn facts(actuator: &project::DeclaredActuator, rig: &Rig) -> Table {
     let components = rig.actuator.components();
-    let moving = |value, dimension| shown(value, actuator.motion().dimension(dimension));
+    let (motion, words) = (actuator.motion(), actuator.motion().words());
+    let moving = |value, dimension| shown(value, motion.dimension(dimension));
     let mut rows = vec![
         (
             "supply",
@@ -240,9 +241,9 @@ fn facts(actuator: &project::DeclaredActuator, rig: &Rig) -> Table {
             ),
         ),
         ("servovalve", valve_words(actuator)),
-        ("cylinder", moving_words(actuator, Beside::Words)),
-        ("moving mass", moving(moving_mass(actuator), &MASS)),
-        ("force sensor", moving(actuator.force_sensor.stiffness, &STIFFNESS)),
+        (words.cylinder, moving_words(actuator, Beside::Words)),
+        (motion.either("moving mass", "inertia"), moving(moving_mass(actuator), &MASS)),
+        (words.force_sensor, moving(actuator.force_sensor.stiffness, &STIFFNESS)),
     ];
     let series = actuator.series.as_ref().map(series_words);
     rows.extend(series.as_ref().map(|[name, words]| (name.as_str(), words.clone())));

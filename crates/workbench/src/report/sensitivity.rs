@@ -39,7 +39,8 @@ pub(super) fn chapter(
     let mut out = Document::default();
     let prescribed =
         project.actuator.as_ref().is_some_and(|actuator| actuator.load == crate::project::Load::Prescribed);
-    let stands = if prescribed { "of force sensor and environment" } else { "of the force sensor" };
+    let sensor = project.motion().words().force_sensor;
+    let stands = if prescribed { format!("of {sensor} and environment") } else { format!("of the {sensor}") };
     out.explanation(format!("The first scenario again with one quantity changed: the stiffness K_S {stands}, and all friction. Neither is known accurately for a real rig, and the overshoot depends on both. The controller is the {} one.", side.name));
     let refused = varied.iter().filter_map(|varied| Some((varied, varied.run.as_ref().err()?)));
     out.explanations(
@@ -120,7 +121,8 @@ fn event_table(varied: &[VariedQuantity], event: usize) -> Option<Table> {
     let shown = told(windows.iter());
     let event = cause_words(&windows.first()?.0, units);
     let bands = || windows.iter().map(|(_, metrics)| metrics.settling_band_percent);
-    let heads = std::iter::once(event).chain(shown.iter().map(|metric| label_within(*metric, bands())));
+    let heads =
+        std::iter::once(event).chain(shown.iter().map(|metric| label_within(*metric, bands(), units.motion)));
     let mut rows = Table::grouped_by("quantity", heads);
     let mut quantity = "";
     for varied in varied {

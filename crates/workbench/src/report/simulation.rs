@@ -4,10 +4,10 @@
 use super::chapter::Chapter;
 use super::driven::MachineChapter;
 use super::driving;
-use crate::document::{Cell, Document, StatusMark, Table};
+use crate::document::{Cell, Document, StatusMark, Table, capital};
 use crate::figure::Figure;
 use crate::project::{Project, Scenario};
-use crate::quantity::Units;
+use crate::quantity::{MotionWords, Units};
 use crate::simulate::{
     Metric, Metrics, NamedRun, TimeRequirement, TrackingWish, Window, adjustment_sentence, cause_words,
     cells_of, close_ups, coarse_sentence, gas_sentence, headline, label_within, measured, measured_together,
@@ -29,7 +29,8 @@ pub(super) fn chapter(project: &Project, driven: &MachineChapter) -> Chapter {
         }
     }
     let any = (0..project.scenarios.len()).any(|index| !driven.of_scenario(index).is_empty());
-    out.explanations(any.then(|| "The rig as a whole, simulated: spool with saturation, the flow of each edge, chambers that grow and shrink, friction as declared, load cell and load, under the controller as it is deployed. Peaks and settling times are those of the solution over each step of the integration, so that they do not depend on the rows of the table.".to_string()));
+    let cell = project.motion().words().load_cell;
+    out.explanations(any.then(|| format!("The rig as a whole, simulated: spool with saturation, the flow of each edge, chambers that grow and shrink, friction as declared, {cell} and load, under the controller as it is deployed. Peaks and settling times are those of the solution over each step of the integration, so that they do not depend on the rows of the table.")));
     for (index, declared) in project.scenarios.iter().enumerate() {
         let runs = driven.of_scenario(index);
         let required = driven.required_of(index);
@@ -53,7 +54,8 @@ pub(super) fn inside(project: &Project, driven: &MachineChapter) -> Option<Chapt
         return None;
     }
     let mut out = Document::default();
-    out.explanation("What the figures of both controllers leave out: the spool and the command, both chambers, and hydraulic and measured force, between which lie the friction and the acceleration of the piston; in the order of Figure 6.17 of Ledezma (2019).");
+    let MotionWords { force, piston, .. } = project.motion().words();
+    out.explanation(format!("What the figures of both controllers leave out: the spool and the command, both chambers, and hydraulic and measured {force}, between which lie the friction and the acceleration of the {piston}; in the order of Figure 6.17 of Ledezma (2019)."));
     out.figures(figures);
     Some(Chapter::of("inside", "Inside the simulated rig at each event", out))
 }
@@ -110,11 +112,6 @@ fn of(named: &NamedRun<'_>, runs: &[NamedRun<'_>]) -> String {
     if runs.len() > 1 { format!("{}: ", capital(named.name)) } else { String::new() }
 }
 
-fn capital(word: &str) -> String {
-    let mut letters = word.chars();
-    letters.next().map_or(String::new(), |first| format!("{}{}", first.to_uppercase(), letters.as_str()))
-}
-
 /// The metrics of each event: a row for each controller, compared with published values.
 fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, required: Option<&TimeRequirement>) -> Document {
     let mut out = Document::default();
@@ -125,8 +122,8 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, required: Option<&TimeReq
         [alone] => out.table(windows(alone.run, required, Some(declared))),
         several => {
             let shown = told(several.iter().flat_map(|named| &named.run.windows));
-            let band = first.settling_band_percent;
-            let words = shown.iter().map(|metric| label_within(*metric, [band]));
+            let (band, motion) = (first.settling_band_percent, first.record.units.motion);
+            let words = shown.iter().map(|metric| label_within(*metric, [band], motion));
             let heads = std::iter::once(String::new()).chain(words);
             let mut rows = Table::grouped_by("event", heads);
             for (index, (window, _)) in first.windows.iter().enumerate() {
@@ -156,8 +153,9 @@ fn metrics(runs: &[NamedRun<'_>], declared: &Scenario, required: Option<&TimeReq
         )
     });
     out.explanation(format!(
-        "Settling is to {} % of the step, or of the reference that a load motion disturbs; the steady-state error is reference less force, averaged over the last tenth of the window; the rise is from 10 to 90 % of the step.{wished}",
-        first.settling_band_percent
+        "Settling is to {} % of the step, or of the reference that a load motion disturbs; the steady-state error is reference less {}, averaged over the last tenth of the window; the rise is from 10 to 90 % of the step.{wished}",
+        first.settling_band_percent,
+        first.record.units.motion.words().force
     ));
     out
 }

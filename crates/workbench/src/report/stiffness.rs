@@ -12,7 +12,7 @@ use crate::linearize::{
     stiffness_over_force, stiffness_sentence,
 };
 use crate::project::DeclaredActuator;
-use crate::quantity::Units;
+use crate::quantity::{MotionWords, Units};
 use crate::rig::Rig;
 use crate::sizing::model_name;
 
@@ -62,7 +62,10 @@ fn figure(rig: &Rig, stroke: f64, units: Units) -> Figure {
         units,
         ..StiffnessDiagram::default()
     };
-    let told = "Hydraulic stiffness against piston position: the declared model with its band of dynamic stiffening, and the other model";
+    let MotionWords { piston, position, .. } = units.motion.words();
+    let told = format!(
+        "Hydraulic stiffness against {piston} {position}: the declared model with its band of dynamic stiffening, and the other model"
+    );
     let caption = match rig.actuator.components().adjustments {
         [None, None] => format!("{told}."),
         _ => format!(
@@ -91,8 +94,11 @@ fn over_force(rig: &Rig, found: StiffnessOverForce, units: Units) -> Figure {
         units,
         ..StiffnessDiagram::default()
     };
-    let caption = "Hydraulic stiffness for slow motions against the force that is held at standstill, at the position of the operating point: with more force the gas of chamber A becomes stiffer and that of chamber B softer. The curves end where the gas at a chamber is shut off, or at the nominal voltage.";
-    chart.draw(&Words::new("stiffness-force", "Hydraulic stiffness over the force", caption))
+    let MotionWords { force, position, .. } = units.motion.words();
+    let caption = format!(
+        "Hydraulic stiffness for slow motions against the {force} that is held at standstill, at the {position} of the operating point: with more {force} the gas of chamber A becomes stiffer and that of chamber B softer. The curves end where the gas at a chamber is shut off, or at the nominal voltage."
+    );
+    chart.draw(&Words::new("stiffness-force", format!("Hydraulic stiffness over the {force}"), caption))
 }
 
 fn positions(stroke: f64) -> Vec<f64> {

@@ -13,6 +13,7 @@ use super::{
 use super::{repetition, required, required_of_run};
 use crate::answer::{Object, body_in_use};
 use crate::project::Loaded;
+use crate::quantity::{FORCE, MotionKind, QuantityName};
 use phea_dynamics::simulation::{Amplification, GrowthCause};
 
 /// What `simulate` says to programs if a frequency response is requested: no scenario is run.
@@ -68,6 +69,7 @@ const NO_GAS_VALVE: &str = "no valve lies between a chamber and its gas";
 const NO_HEAT: &str = "a polytropic exponent gives no temperature: state `thermal_time_constant`";
 
 fn scenario(run: &ScenarioRun, state_file: String) -> Object {
+    let motion = run.record.units.motion;
     let stopped = run.stopped();
     let mode = stopped.and_then(|stopped| stopped.mode).map(|mode| {
         Object::new()
@@ -89,7 +91,7 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
     let unfollowed = run.unfollowed.map(|kinks| {
         Object::new().with("steps", kinks.steps).with("cause", repetition::unfollowed_word(kinks.cause))
     });
-    let repetition = run.repetition.as_ref().map(repetition::row);
+    let repetition = run.repetition.as_ref().map(|repetition| repetition::row(repetition, motion));
     let divergence = run.divergence.as_ref().map(repetition::divergence_row);
     let ended_s = StoppedRun::of(run.status).map(|stopped| stopped.time_s);
     Object::new()
@@ -103,7 +105,7 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
         .with("look_s", run.look_s)
         .with("open_loop", run.open_loop)
         .told("state_file", run.end.as_ref().map(|_| state_file).map_err(|why| not_saved_words(*why)))
-        .each("events", &run.windows, event)
+        .each("events", &run.windows, |one| event(one, motion))
         .each("occurrences", &run.occurrences, |occurrence| {
             Object::new()
                 .with("time_s", occurrence.time_s)
@@ -111,11 +113,11 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
                 .with("begins", occurrence.begins)
         })
         .told("outside_model_s", run.outside_model_s.ok_or("its equations hold throughout"))
-        .each("measured", &run.measured, overlay)
+        .each("measured", &run.measured, |one| overlay(one, motion))
         .told("errors_amplified", amplified.ok_or(NOT_AMPLIFIED))
         .told("kinks_unfollowed", unfollowed.ok_or(FOLLOWED))
         .told("repetition", repetition.ok_or("one pass was enough"))
-        .told("check", run.check.as_ref().map(check::row).ok_or("it was not checked"))
+        .told("check", run.check.as_ref().map(|check| check::row(check, motion)).ok_or("it was not checked"))
         .each("beyond_expansion", &run.beyond_expansion, |beyond| {
             Object::new()
                 .with("chamber", beyond.chamber)
@@ -123,7 +125,10 @@ fn scenario(run: &ScenarioRun, state_file: String) -> Object {
                 .with("stated_pressure_pa", beyond.stated_pa)
         })
         .and(adjustment(run))
-        .told("ledgers", run.ledger.as_ref().map(ledger).map_err(|why| no_ledger_words(*why)))
+        .told(
+            "ledgers",
+            run.ledger.as_ref().map(|one| ledger(one, motion)).map_err(|why| no_ledger_words(*why)),
+        )
         .each("exceeded", &run.exceeded, exceeded)
 }
 
@@ -133,15 +138,15 @@ fn of_mode(grown: &Amplification) -> Option<f64> {
 }
 
 /// A measured signal over the simulated one.
-fn overlay(overlay: &Overlay) -> Object {
+fn overlay(overlay: &Overlay, motion: MotionKind) -> Object {
     Object::new()
         .with("file", overlay.file.as_str())
         .with("column", overlay.column.as_str())
-        .with("signal", overlay.signal.name())
+        .with("signal", overlay.signal.quantity())
         .with("rows", overlay.times_s.len())
         .with("rows_outside", overlay.rows_outside)
-        .told("rmse", overlay.rmse.map_err(unmeasured_words))
-        .told("nrmse", overlay.nrmse.map_err(unmeasured_words))
+        .told("rmse", overlay.rmse.map_err(|why| unmeasured_words(why, motion)))
+        .told("nrmse", overlay.nrmse.map_err(|why| unmeasured_words(why, motion)))
 }
 
 /// A limit of the rig that a run exceeds.
@@ -157,10 +162,11 @@ fn exceeded(exceeded: &Exceeded) -> Object {
 }
 
 /// The accounts of oil and energy, each with how far it is from closing.
-fn ledger(ledger: &RunLedger) -> Object {
+fn ledger(ledger: &RunLedger, motion: MotionKind) -> Object {
     let account = |sum: &AccountSum| {
+        let part = if sum.part == "piston" { motion.words().piston } else { sum.part };
         Object::new()
-            .with("part", sum.part)
+            .with("part", part)
             .with("stored", sum.stored)
             .with("inflow", sum.inflow)
             .with("lost", sum.lost)
@@ -170,7 +176,7 @@ fn ledger(ledger: &RunLedger) -> Object {
     Object::new().each("oil_m3", &ledger.oil, account).each("energy_j", &ledger.energy, account)
 }
 
-fn event((window, metrics): &(Window, Metrics)) -> Object {
+fn event((window, metrics): &(Window, Metrics), motion: MotionKind) -> Object {
     let reference_n = match window.cause {
         Cause::ReferenceStep { from_n, to_n } => Ok([from_n, to_n]),
         _ => Err("the reference does not step"),
@@ -183,7 +189,7 @@ fn event((window, metrics): &(Window, Metrics)) -> Object {
         .with("kind", window.cause.word())
         .with("time_s", window.start_s)
         .with("until_s", window.end_s)
-        .told("reference_n", reference_n)
+        .told(QuantityName::moving("reference", &FORCE), reference_n)
         .told("command_v", command_v)
-        .with("metrics", metrics_row(metrics))
+        .with("metrics", metrics_row(metrics, motion))
 }

@@ -13,7 +13,7 @@ use super::{
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
 use crate::project::{InputSignal, Loaded, Scenario};
-use crate::quantity::{DisplayUnit, TIME, Units, VOLTAGE, ZERO_CELSIUS, display};
+use crate::quantity::{DisplayUnit, MotionKind, TIME, Units, VOLTAGE, ZERO_CELSIUS, display};
 
 /// Number of occurrences that are listed one by one; more are counted.
 const TOLD: usize = 8;
@@ -96,7 +96,7 @@ pub(crate) fn windows(
     let shown: Vec<Metric> = Metric::ALL.into_iter().filter(|metric| always(metric) || has(metric)).collect();
     let head = |metric: &Metric| match metric {
         Metric::DisturbancePeak => "disturbance".to_string(),
-        other => label_within(*other, [run.settling_band_percent]),
+        other => label_within(*other, [run.settling_band_percent], run.record.units.motion),
     };
     let units = run.record.units;
     let mut rows = Table::new(std::iter::once("event".to_string()).chain(shown.iter().map(head)));
@@ -195,7 +195,7 @@ fn measured_cells(overlay: &Overlay, units: Units) -> [Cell; 5] {
         outside => format!("{}, {outside} more outside", overlay.times_s.len()),
     };
     [
-        overlay.signal.name().into(),
+        overlay.signal.quantity().text(units.motion).into_owned().into(),
         format!("{} `{}`", overlay.file, overlay.column).into(),
         overlay.nrmse.map_or(Cell::Missing, percent),
         overlay.rmse.map_or(Cell::Missing, |rmse| Cell::quantity(rmse, 3, overlay.display_unit(units))),
@@ -212,7 +212,7 @@ pub(crate) fn cause_words(window: &Window, units: Units) -> String {
         Cause::CommandStep { to_v, .. } => format!("command to {} at {at}", display(to_v, &VOLTAGE, 4)),
         Cause::CommandMotion { kind } => format!("{kind} of the command at {at}"),
         Cause::LoadMotion => format!("load motion at {at}"),
-        Cause::ExternalForce { .. } => format!("{} at {at}", window.cause.label()),
+        Cause::ExternalForce { .. } => format!("{} at {at}", window.cause.label(units.motion)),
         Cause::SettingChange => format!("setting of the accumulators at {at}"),
     }
 }
@@ -274,7 +274,8 @@ pub(crate) fn gas_sentence(run: &ScenarioRun) -> Option<String> {
 /// The events of a run, a sentence each.
 pub(crate) fn occurrence_sentences(run: &ScenarioRun) -> Vec<String> {
     let (found, units) = (&run.occurrences, run.record.units);
-    let mut sentences: Vec<String> = found.iter().take(TOLD).map(occurrence_words).collect();
+    let mut sentences: Vec<String> =
+        found.iter().take(TOLD).map(|one| occurrence_words(one, units.motion)).collect();
     if found.len() > TOLD {
         sentences.push(format!("and {} more changes of this kind, listed in the JSON", found.len() - TOLD));
     }
@@ -300,7 +301,7 @@ fn beyond_words(beyond: &BeyondExpansion, units: Units) -> String {
     )
 }
 
-fn occurrence_words(occurrence: &Occurrence) -> String {
+fn occurrence_words(occurrence: &Occurrence, motion: MotionKind) -> String {
     let Occurrence { kind, time_s, begins } = *occurrence;
     let of_chamber = [("_a", "A"), ("_b", "B")];
     let of_chamber = of_chamber.iter().find_map(|(end, chamber)| Some((kind.strip_suffix(end)?, *chamber)));
@@ -327,7 +328,10 @@ fn occurrence_words(occurrence: &Occurrence) -> String {
         "turbulent_transmission" => {
             ["the flow in the transmission is turbulent", "the flow in the transmission is laminar again"]
         }
-        "end_stop" => ["the piston reaches the end of chamber #", "the piston leaves the end of chamber #"],
+        "end_stop" => motion.either(
+            ["the piston reaches the end of chamber #", "the piston leaves the end of chamber #"],
+            ["the shaft reaches the end of chamber #", "the shaft leaves the end of chamber #"],
+        ),
         "empty" => ["chamber # has no volume left", "chamber # has volume again"],
         "load_contact" => ["the load touches the wall", "the load leaves the wall"],
         "accumulator_empty" => {
@@ -349,9 +353,10 @@ fn occurrence_words(occurrence: &Occurrence) -> String {
         _ => ["the command reaches its limit", "the command leaves its limit"],
     };
     let first = match (kind, time_s) {
-        ("load_contact", 0.0) => {
-            "the load touches the wall from the start: the force or weight that it carries there closes its gap"
-        }
+        ("load_contact", 0.0) => motion.either(
+            "the load touches the wall from the start: the force or weight that it carries there closes its gap",
+            "the load touches the wall from the start: the torque or weight that it carries there closes its gap",
+        ),
         _ => first,
     };
     let what = if begins { first } else { then }.replace('#', chamber);
@@ -418,7 +423,7 @@ fn side_by_side(columns: &[Option<&ScenarioRun>], units: Units) -> Table {
             let of = |cells: &Option<PerMetric<Cell>>| cells.as_ref().map(|cells| cells[metric].clone());
             let values: Vec<Cell> = cells.iter().map(|cells| of(cells).unwrap_or_default()).collect();
             if values.iter().any(|value| *value != Cell::Missing) {
-                rows.row(std::iter::once(label_within(metric, bands()).into()).chain(values));
+                rows.row(std::iter::once(label_within(metric, bands(), units.motion).into()).chain(values));
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Limits of the rig that a run exceeds, in sentences.
 
 use super::{Exceeded, LimitPlace, RigLimit};
-use crate::quantity::{DisplayUnit, LENGTH, Units, VOLTAGE, display, significant};
+use crate::quantity::{DisplayUnit, LENGTH, MotionWords, Units, VOLTAGE, display, significant};
 
 /// A limit of the rig that a run exceeds.
 pub(crate) fn exceeded_words(exceeded: &Exceeded, units: Units) -> String {
@@ -34,12 +34,13 @@ pub(crate) fn exceeded_words(exceeded: &Exceeded, units: Units) -> String {
             )
         }
     };
+    let MotionWords { force, force_sensor, piston, .. } = units.motion.words();
     match exceeded.limit {
         RigLimit::SensorCapacity => format!(
-            "from {first} s on the force sensor is overloaded: its capacity is {limit}, the force comes to {peak} at {at} s"
+            "from {first} s on the {force_sensor} is overloaded: its capacity is {limit}, the {force} comes to {peak} at {at} s"
         ),
         RigLimit::StallForce => format!(
-            "from {first} s on the reference exceeds the force that the supply can produce: the piston stalls at {limit}, and {peak} is asked for at {at} s"
+            "from {first} s on the reference exceeds the {force} that the supply can produce: the {piston} stalls at {limit}, and {peak} is asked for at {at} s"
         ),
         RigLimit::NominalVoltage => format!(
             "from {first} s on the command is beyond the valve's {limit}, and comes to {peak} at {at} s: the rig clips it, so state \

@@ -3,10 +3,11 @@
 use super::span::{span_of, span_of_events};
 use super::{Cause, Metrics, Record, ScenarioComparison, ScenarioRun, Window, cause_words};
 use crate::answer::{OutputFile, picture_files, significant};
+use crate::document::capital;
 use crate::figure::axis::extent;
 use crate::figure::{CurveChart, CurvePanel, CurveStyle, DisplayUnit, Figure, SettlingBand, Words};
-use crate::over_time::{ForceStep, Trace, behind, chart, named, panel, trace};
-use crate::quantity::Units;
+use crate::over_time::{ForceStep, Trace, behind, chart, measured_force, named, panel, trace};
+use crate::quantity::{MotionKind, MotionWords, Units};
 use phea_hydraulics::signal::Signal;
 
 /// Largest number of events that are all enlarged; if there are more, all that are not steps, and
@@ -16,18 +17,19 @@ const ENLARGED: usize = 3;
 /// The whole run, and each event enlarged.
 pub(crate) fn pictures(run: &ScenarioRun, number: usize) -> Vec<Figure> {
     let end = run.record.times_s.last().copied().unwrap_or(0.0);
+    let MotionWords { force, position, positions, piston, .. } = run.record.units.motion.words();
     let whole = Words::new(
         format!("simulation-{number}"),
         format!("Simulated: {}", run.name),
-        format!("Force, voltages, pressures and position over {}.", shown_words(run, end)),
+        format!("{}, voltages, pressures and {position} over {}.", capital(force), shown_words(run, end)),
     );
     let mut figures = vec![overview(&whole, run, span_of_events(run, end))];
     for (index, window) in enlarged(&run.windows, end) {
-        let positions = if moves_load(window) { ", positions" } else { "" };
+        let moved = if moves_load(window) { format!(", {positions}") } else { String::new() };
         let asked_for = if run.open_loop { "" } else { " with its reference" };
         let caption = format!(
-            "Voltages, pressures of both chambers, hydraulic and measured force, measured force\
-             {asked_for}{positions}. Between hydraulic and measured force lie the friction and the acceleration of the piston."
+            "Voltages, pressures of both chambers, hydraulic and measured {force}, measured {force}\
+             {asked_for}{moved}. Between hydraulic and measured {force} lie the friction and the acceleration of the {piston}."
         );
         let words = Words::new(
             format!("simulation-{number}-event-{}", index + 1),
@@ -60,7 +62,9 @@ fn overlaid(run: &ScenarioRun, number: usize, span_s: [f64; 2]) -> Option<Figure
     let panels = run.measured.iter().map(|overlay| {
         let simulated = over_time(&run.record, run.record.signal(overlay.signal));
         let measured = trace(&overlay.times_s, &overlay.measured);
-        panel(&overlay.quantity(), overlay.display_unit(run.record.units), height, vec![simulated, measured])
+        let units = run.record.units;
+        let title = overlay.signal.words(units.motion);
+        panel(&title, overlay.display_unit(units), height, vec![simulated, measured])
     });
     let panels: Vec<CurvePanel> = panels.collect();
     let words = Words::new(
@@ -69,7 +73,7 @@ fn overlaid(run: &ScenarioRun, number: usize, span_s: [f64; 2]) -> Option<Figure
         "What was measured on the rig, on what the nonlinear simulation of the project does.",
     );
     let legend = ["simulated", "measured"].map(String::from);
-    let events = instants(&run.windows, span_s);
+    let events = instants(&run.windows, span_s, run.record.units.motion);
     (!panels.is_empty()).then(|| chart(panels, legend, &events, span_s).draw(&words))
 }
 
@@ -92,8 +96,11 @@ pub(super) fn close_up(words: &Words, run: &ScenarioRun, window: &Window, span_s
     let record = &run.record;
     let forces =
         [Signal::Force, Signal::HydraulicForce].map(|signal| over_time(record, record.signal(signal)));
-    let forces = panel("Forces F_e, F_H", record.units.force, 150.0, forces.into());
-    let forces = named(forces, ["measured force", "hydraulic force"]);
+    let motion = record.units.motion;
+    let title = motion.either("Forces F_e, F_H", "Torques T_e, T_H");
+    let forces = panel(title, record.units.force, 150.0, forces.into());
+    let names = motion.either(["measured force", "hydraulic force"], ["measured torque", "hydraulic torque"]);
+    let forces = named(forces, names);
     let mut panels = vec![voltages(record), pressures(record), forces, measured(record, 150.0)];
     panels.extend(prefiltered(record));
     panels.extend(error_panel(record).filter(|_| matches!(window.cause, Cause::ReferenceMotion { .. })));
@@ -118,14 +125,14 @@ const LEAVES: f64 = 0.5;
 /// The measured force with its reference, before and after the prefilter; a prefiltered reference
 /// that would spoil the scale is left to a panel of its own.
 fn measured(record: &Record, height: f64) -> CurvePanel {
-    let unit = record.units.force;
+    let Units { motion, force: unit, .. } = record.units;
     let mut series = vec![over_time(record, record.signal(Signal::Force))];
-    let mut names = vec!["measured force"];
+    let mut names = vec![motion.either("measured force", "measured torque")];
     if fits(record) {
         series.push(over_time(record, record.signal(Signal::FilteredReference)));
         names.push("prefiltered reference");
     }
-    let force = named(panel("Force F_e", unit, height, series), names);
+    let force = named(panel(&measured_force(motion), unit, height, series), names);
     let asked = asked_for(record);
     let is_asked = asked.is_some();
     let mut force = behind(force, unit, CurveStyle::Reference, asked);
@@ -135,9 +142,10 @@ fn measured(record: &Record, height: f64) -> CurvePanel {
 
 /// The prefiltered reference by itself, where it does not fit the scale of the force.
 fn prefiltered(record: &Record) -> Option<CurvePanel> {
-    let unit = record.units.force;
+    let Units { motion, force: unit, .. } = record.units;
+    let title = motion.either("F F_ref", "F T_ref");
     let series = over_time(record, record.signal(Signal::FilteredReference));
-    (!fits(record)).then(|| named(panel("F F_ref", unit, 90.0, vec![series]), ["prefiltered reference"]))
+    (!fits(record)).then(|| named(panel(title, unit, 90.0, vec![series]), ["prefiltered reference"]))
 }
 
 /// Whether the prefiltered reference can be drawn on the scale of force and reference.
@@ -155,11 +163,17 @@ pub(super) fn tracking_error(record: &Record) -> Vec<f64> {
     pairs.map(|(reference, force)| reference - force).collect()
 }
 
+/// What the axis of that error is called.
+pub(super) fn error_title(motion: MotionKind) -> &'static str {
+    motion.either("F_ref - F_e", "T_ref - T_e")
+}
+
 fn error_panel(record: &Record) -> Option<CurvePanel> {
     let error = tracking_error(record);
-    let unit = record.units.force;
+    let Units { motion, force: unit, .. } = record.units;
     (!error.is_empty()).then(|| {
-        named(panel("F_ref - F_e", unit, 90.0, vec![over_time(record, error)]), ["error"]).with_zero_line()
+        named(panel(error_title(motion), unit, 90.0, vec![over_time(record, error)]), ["error"])
+            .with_zero_line()
     })
 }
 
@@ -175,7 +189,7 @@ pub(super) fn moves_load(window: &Window) -> bool {
 
 /// What acts on the load from outside.
 fn external_words(record: &Record) -> &'static str {
-    if turns(record) { "external torque" } else { "external force" }
+    if turns(record) || record.units.motion.is_rotary() { "external torque" } else { "external force" }
 }
 
 /// What the position of the load is called: behind a linkage it is that of the rod's end.
@@ -194,7 +208,8 @@ fn from_outside(record: &Record) -> Option<CurvePanel> {
     let series = over_time(record, external_force(record)?);
     Some(match turns(record) {
         false => {
-            let force = panel("Force F_x", record.units.force, 90.0, vec![series]);
+            let title = record.units.motion.either("Force F_x", "Torque T_x");
+            let force = panel(title, record.units.force, 90.0, vec![series]);
             named(force, [external_words(record)])
         }
         true => named(
@@ -271,14 +286,14 @@ fn pressures(record: &Record) -> CurvePanel {
 fn positions(record: &Record) -> CurvePanel {
     let series =
         [Signal::Position, Signal::LoadPosition].map(|signal| over_time(record, record.signal(signal)));
-    let quantity = if record.units.motion.is_rotary() { "Angle" } else { "Position" };
-    let positions = panel(quantity, record.units.position, 90.0, series.into());
-    named(positions, [if record.units.motion.is_rotary() { "shaft" } else { "piston" }, load_words(record)])
+    let MotionWords { position, piston, .. } = record.units.motion.words();
+    let positions = panel(&capital(position), record.units.position, 90.0, series.into());
+    named(positions, [*piston, load_words(record)])
 }
 
 /// Panels of one run, with its events.
 fn drawn(run: &ScenarioRun, panels: Vec<CurvePanel>, span_s: [f64; 2]) -> CurveChart {
-    chart(panels, [], &instants(&run.windows, span_s), span_s)
+    chart(panels, [], &instants(&run.windows, span_s, run.record.units.motion), span_s)
 }
 
 /// The events that have a figure of their own, with their indices among all.
@@ -308,10 +323,14 @@ pub(super) fn enlarged(windows: &[(Window, Metrics)], end_s: f64) -> Vec<(usize,
 }
 
 /// The events of windows that are within the frame.
-pub(super) fn instants(windows: &[(Window, Metrics)], [start, end]: [f64; 2]) -> Vec<(f64, String)> {
+pub(super) fn instants(
+    windows: &[(Window, Metrics)],
+    [start, end]: [f64; 2],
+    motion: MotionKind,
+) -> Vec<(f64, String)> {
     let seen = windows.iter().map(|(window, _)| window);
     let seen = seen.filter(|window| window.start_s >= start && window.start_s < end);
-    seen.map(|window| (window.start_s, window.cause.label().to_string())).collect()
+    seen.map(|window| (window.start_s, window.cause.label(motion).to_string())).collect()
 }
 
 /// Values of a signal at the times of its record.
@@ -355,13 +374,16 @@ fn step(run: &ScenarioRun, window: &Window, (number, event): (usize, usize)) -> 
         force: &of(&record.signal(Signal::Force)),
         filtered_reference: &of(&record.signal(Signal::FilteredReference)),
         command: &of(&record.signal(Signal::Control)),
-        unit: record.units.force,
+        units: record.units,
         settling_band: (to_n != 0.0).then_some(SettlingBand { level: to_n, percent }),
         settled: settling
             .map(|time_s| (window.start_s + time_s, format!("t_s = {} s", significant(time_s, 3)))),
     };
     let title = format!("Step response: {}", cause_words(window, record.units));
-    let caption = "Measured force, reference before and after the prefilter, and the command; the band is that of the settling time.";
+    let caption = format!(
+        "Measured {}, reference before and after the prefilter, and the command; the band is that of the settling time.",
+        record.units.motion.words().force
+    );
     Some(shown.chart().draw(&Words::new(format!("simulation-{number}-step-{event}"), title, caption)))
 }
 
@@ -377,8 +399,9 @@ fn compared(comparison: &ScenarioComparison<'_>, name: &str, number: usize) -> V
     let titles = comparison.projects.iter().map(|(loaded, _)| loaded.project.title.clone());
     let (titles, runs): (Vec<String>, Vec<&ScenarioRun>) =
         titles.zip(comparison.runs_of(name)).filter_map(|(title, run)| Some((title, run?))).unzip();
-    let caption = "Force, command and load pressure of each project.";
-    laid_over((&format!("compare-{number}"), name, caption), &titles, &runs)
+    let force = capital(units_of(&runs).motion.words().force);
+    let caption = format!("{force}, command and load pressure of each project.");
+    laid_over((&format!("compare-{number}"), name, &caption), &titles, &runs)
 }
 
 /// One scenario of several rigs: the whole, and each event of the first of them enlarged.
@@ -414,13 +437,14 @@ fn side_by_side(words: &Words, titles: &[String], runs: &[&ScenarioRun], span_s:
     let windows = runs.first().map(|run| run.windows.as_slice()).unwrap_or_default();
     let units = units_of(runs);
     let unit = units.force;
-    let forces = panel("Force F_e", unit, 230.0, each(|record| record.signal(Signal::Force)));
+    let forces =
+        panel(&measured_force(units.motion), unit, 230.0, each(|record| record.signal(Signal::Force)));
     let panels = vec![
         behind(forces, unit, CurveStyle::Reference, reference),
         panel("Command U_C", DisplayUnit::VOLT, 130.0, each(|record| record.signal(Signal::Control))),
         panel("p_A - p_B", units.pressure, 130.0, each(load_pressure)),
     ];
-    chart(panels, titles.to_vec(), &instants(windows, span_s), span_s).draw(words)
+    chart(panels, titles.to_vec(), &instants(windows, span_s, units.motion), span_s).draw(words)
 }
 
 /// The units in which several runs are drawn: those of the first.

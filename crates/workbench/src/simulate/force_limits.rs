@@ -30,8 +30,9 @@ pub(crate) fn exceeded_force(exceeded: &ExceededForce, units: &Units) -> (String
     match exceeded.limit {
         RestLimit::Stall { pressure, force: stalls } => (
             format!(
-                "and at a supply of {} the piston stalls at {}: no controller reaches it",
+                "and at a supply of {} the {} stalls at {}: no controller reaches it",
                 display(pressure, &PRESSURE, 4),
+                units.motion.words().piston,
                 force(stalls, units)
             ),
             format!("stay within {reached}, raise the supply pressure, or take a larger actuator"),

@@ -28,9 +28,10 @@ fn beyond_rig(beyond: &BeyondRig, units: &Units) -> String {
         BeyondRig::Motion { time, moved_by, from, stroke } => {
             let length = |value: f64| display(value, units.motion.dimension(&LENGTH), 4);
             format!(
-                "the load moves by {} until {} and takes the piston from {} to {}, beyond its stroke of {}",
+                "the load moves by {} until {} and takes the {} from {} to {}, beyond its stroke of {}",
                 length(*moved_by),
                 display(*time, &TIME, 4),
+                units.motion.words().piston,
                 length(*from),
                 length(from + moved_by),
                 length(*stroke)

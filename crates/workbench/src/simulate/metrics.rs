@@ -3,7 +3,7 @@
 use super::{Metric, Metrics, PerMetric, Unmeasured, unmeasured_words};
 use crate::answer::Object;
 use crate::document::Cell;
-use crate::quantity::{DisplayUnit, Units};
+use crate::quantity::{DisplayUnit, MotionKind, Units};
 
 /// The unit in which people read a metric.
 pub(crate) fn shown_in(metric: Metric, units: Units) -> DisplayUnit {
@@ -19,10 +19,14 @@ pub(crate) fn metric_cell(metric: Metric, value: f64, units: Units) -> Cell {
 
 /// The label of a metric, that of the settling time with its band: `settling (1 %)`; with each band
 /// once where it differs between what is compared.
-pub(crate) fn label_within(metric: Metric, bands_percent: impl IntoIterator<Item = f64>) -> String {
+pub(crate) fn label_within(
+    metric: Metric,
+    bands_percent: impl IntoIterator<Item = f64>,
+    motion: MotionKind,
+) -> String {
     match metric {
         Metric::SettlingTime => settling_within(bands_percent),
-        other => other.label().to_string(),
+        other => other.label(motion).to_string(),
     }
 }
 
@@ -34,7 +38,7 @@ pub(crate) fn settling_within(bands_percent: impl IntoIterator<Item = f64>) -> S
             bands.push(band);
         }
     }
-    let label = Metric::SettlingTime.label();
+    let label = Metric::SettlingTime.label(MotionKind::Linear);
     if bands.is_empty() { label.to_string() } else { format!("{label} ({})", bands.join(", ")) }
 }
 
@@ -53,10 +57,10 @@ fn small_as_zero(error_n: f64) -> f64 {
 }
 
 /// The metrics in an answer: the value of each, or the reason why there is none.
-pub(crate) fn metrics_row(metrics: &Metrics) -> Object {
+pub(crate) fn metrics_row(metrics: &Metrics, motion: MotionKind) -> Object {
     Metric::ALL.into_iter().fold(Object::new(), |row, metric| {
         let band = (metric == Metric::SettlingTime).then_some(metrics.settling_band_percent);
-        row.told(metric.name(), metrics.get(metric).map_err(unmeasured_words))
+        row.told(metric.quantity(), metrics.get(metric).map_err(|why| unmeasured_words(why, motion)))
             .maybe("settling_band_percent", band)
     })
 }

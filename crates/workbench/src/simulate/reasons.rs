@@ -1,6 +1,7 @@
 //! Reasons for which a run lacks a number, a saved end, accounts or a closed loop.
 
 use super::{NoClosedLoop, NoLedger, NotSaved, RunStatus, Unmeasured};
+use crate::quantity::MotionKind;
 
 /// Status of a run.
 pub(crate) fn status_words(status: RunStatus) -> &'static str {
@@ -20,17 +21,26 @@ pub(crate) fn status_words(status: RunStatus) -> &'static str {
 }
 
 /// Reason why a number of a run is absent.
-pub(crate) fn unmeasured_words(reason: Unmeasured) -> &'static str {
+pub(crate) fn unmeasured_words(reason: Unmeasured, motion: MotionKind) -> &'static str {
     match reason {
         Unmeasured::RunEnded => "the run ended before",
         Unmeasured::NoStep => "the reference does not step",
         Unmeasured::NoMotion => "the load does not begin to move",
-        Unmeasured::NotReached => "the force does not reach 90 % of the step",
-        Unmeasured::BegunBeyond => "the force is already beyond 10 % of the step when it begins",
+        Unmeasured::NotReached => motion.either(
+            "the force does not reach 90 % of the step",
+            "the torque does not reach 90 % of the step",
+        ),
+        Unmeasured::BegunBeyond => motion.either(
+            "the force is already beyond 10 % of the step when it begins",
+            "the torque is already beyond 10 % of the step when it begins",
+        ),
         Unmeasured::NotSettled => "outside the band in the last tenth of the window",
         Unmeasured::ReferenceMoves => "the reference moves",
         Unmeasured::OpenLoop => "open loop: there is no reference",
-        Unmeasured::ReferenceGiven => "the reference says which force there should be",
+        Unmeasured::ReferenceGiven => motion.either(
+            "the reference says which force there should be",
+            "the reference says which torque there should be",
+        ),
         Unmeasured::ReferenceStandsStill => "the reference stands still",
         Unmeasured::ZeroReference => "the reference is zero: a band around it has no width",
         Unmeasured::OneRunHasNone => "one of the two runs has none",
@@ -61,11 +71,14 @@ pub(super) fn no_ledger_words(reason: NoLedger) -> &'static str {
 }
 
 /// Reason why a machine has no closed loop.
-pub(super) fn no_closed_loop_words(reason: NoClosedLoop) -> &'static str {
+pub(super) fn no_closed_loop_words(reason: NoClosedLoop, motion: MotionKind) -> &'static str {
     match reason {
         NoClosedLoop::Stopped => "it was stopped before",
         NoClosedLoop::NoController => "the project gives no controller",
-        NoClosedLoop::NoReference => "no reference holds the force of the operating point",
+        NoClosedLoop::NoReference => motion.either(
+            "no reference holds the force of the operating point",
+            "no reference holds the torque of the operating point",
+        ),
         NoClosedLoop::Open => "the loop is open",
     }
 }

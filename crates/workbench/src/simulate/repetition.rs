@@ -5,16 +5,20 @@ use super::{
     status_words, unmeasured_words,
 };
 use crate::answer::{Object, significant};
-use crate::quantity::{DisplayUnit, Units, VOLTAGE, display};
+use crate::quantity::{DisplayUnit, MotionKind, Units, VOLTAGE, display};
 use phea_dynamics::simulation::{GrowthCause, UnfollowedCause, UnfollowedKinks};
 use phea_hydraulics::signal::Signal;
 
 /// The object `repetition` of a scenario.
-pub(super) fn row(repetition: &Repetition) -> Object {
-    Object::new()
-        .with("status", word(repetition.agreement))
-        .each("passes", &repetition.passes, pass)
-        .told("spread", repetition.spread.as_ref().map(spread).ok_or("the passes have no number in common"))
+pub(super) fn row(repetition: &Repetition, motion: MotionKind) -> Object {
+    Object::new().with("status", word(repetition.agreement)).each("passes", &repetition.passes, pass).told(
+        "spread",
+        repetition
+            .spread
+            .as_ref()
+            .map(|one| spread(one, motion))
+            .ok_or("the passes have no number in common"),
+    )
 }
 
 fn word(agreement: PassAgreement) -> &'static str {
@@ -36,11 +40,11 @@ fn pass(pass: &Pass) -> Object {
         .with("evaluations", pass.work.evaluations)
 }
 
-fn spread(spread: &PassSpread) -> Object {
-    let [before, after] = spread.values.map(|value| value.map_err(unmeasured_words));
+fn spread(spread: &PassSpread, motion: MotionKind) -> Object {
+    let [before, after] = spread.values.map(|value| value.map_err(|why| unmeasured_words(why, motion)));
     Object::new()
         .told("event", spread.of.map(|(window, _)| window + 1).ok_or("no event has a metric"))
-        .with("metric", spread.of.map_or(Signal::Force.name(), |(_, metric)| metric.name()))
+        .with("metric", spread.of.map_or(Signal::Force.quantity(), |(_, metric)| metric.quantity()))
         .told("before", before)
         .told("after", after)
         .with("part", spread.part)
@@ -65,9 +69,9 @@ pub(super) fn divergence_row(divergence: &Divergence) -> Object {
         Divergence::CommandSwings { range_v, swings, .. } => {
             row("command_swings").with("range_v", range_v).with("swings", swings)
         }
-        Divergence::ForceBeyondReference { force_n, reference_n, .. } => {
-            row("force_beyond_reference").with("force_n", force_n).with("reference_n", reference_n)
-        }
+        Divergence::ForceBeyondReference { force_n, reference_n, .. } => row("force_beyond_reference")
+            .with(Signal::Force.quantity(), force_n)
+            .with(Signal::Reference.quantity(), reference_n),
     }
 }
 
@@ -85,7 +89,8 @@ pub(super) fn divergence_words(divergence: &Divergence, units: Units) -> String 
             display(range_v, &VOLTAGE, 4)
         ),
         Divergence::ForceBeyondReference { force_n, reference_n, .. } => format!(
-            "the force comes to {} at {since} s, more than ten times the largest reference of {}, and nothing else moves the load",
+            "the {} comes to {} at {since} s, more than ten times the largest reference of {}, and nothing else moves the load",
+            units.motion.words().force,
             units.force.short(force_n, 4),
             units.force.short(reference_n, 4)
         ),
@@ -170,7 +175,7 @@ fn agreement_words(run: &ScenarioRun, repetition: &Repetition) -> String {
 
 /// What differs most, in words.
 fn apart(spread: &PassSpread, units: Units) -> String {
-    let name = spread.of.map_or("force", |(_, metric)| metric.label());
+    let name = spread.of.map_or(units.motion.words().force, |(_, metric)| metric.label(units.motion));
     let unit = spread.of.map_or(units.force, |(_, metric)| shown_in(metric, units));
     let event = spread.of.map_or(String::new(), |(window, _)| format!(" of event {}", window + 1));
     let number = |value: Measured| match value {

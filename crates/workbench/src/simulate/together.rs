@@ -2,16 +2,17 @@
 //! colour for each controller.
 
 use super::figures::{
-    asked_for, close_up, enlarged, instants, load_pressure, moves_load, over_time, shown_words,
+    asked_for, close_up, enlarged, error_title, instants, load_pressure, moves_load, over_time, shown_words,
     tracking_error,
 };
 use super::span::{are_alike, span_of, span_of_events};
 use super::{
     Cause, Record, ScenarioRun, TrackingWish, Window, cause_words, required_overshoot, required_settling,
 };
+use crate::document::capital;
 use crate::figure::{CurveChart, CurvePanel, CurveRange, CurveStyle, DisplayUnit, Figure, Words};
-use crate::over_time::{Trace, behind, chart, has, panel, trace};
-use crate::quantity::Units;
+use crate::over_time::{Trace, behind, chart, has, measured_force, panel, trace};
+use crate::quantity::{MotionWords, Units};
 use phea_hydraulics::signal::Signal;
 
 /// A run with the name of its controller.
@@ -26,12 +27,14 @@ pub(crate) struct NamedRun<'a> {
 /// The whole run, and each event enlarged, every controller in each figure.
 pub(crate) fn together(runs: &[NamedRun<'_>], number: usize, wish: Option<&TrackingWish>) -> Vec<Figure> {
     let Some(first) = runs.first() else { return vec![] };
+    let MotionWords { force, piston, .. } = units(runs).motion.words();
     let end = end_of(runs);
     let words = Words::new(
         format!("simulation-{number}"),
         format!("Simulated: {}", first.run.name),
         format!(
-            "Force, command, load pressure and piston over {}, {}.",
+            "{}, command, load pressure and {piston} over {}, {}.",
+            capital(force),
             shown_words(first.run, end),
             whose(runs)
         ),
@@ -44,7 +47,7 @@ pub(crate) fn together(runs: &[NamedRun<'_>], number: usize, wish: Option<&Track
         let words = Words::new(
             format!("simulation-{number}-event-{}", index + 1),
             format!("Enlarged: {}", cause_words(window, units(runs))),
-            format!("What the event does to force, command and load pressure, {}.", whose(runs)),
+            format!("What the event does to {force}, command and load pressure, {}.", whose(runs)),
         );
         let shown = ([190.0, 110.0], moves_load(window));
         figures.push(drawn(&words, runs, longest(runs, window, end), shown, wish));
@@ -61,7 +64,8 @@ pub(crate) fn at_a_glance(name: &str, runs: &[NamedRun<'_>], wish: Option<&Track
     let from = spans().map(|span| span[0]).fold(end, f64::min);
     let until = spans().map(|span| span[1]).fold(0.0, f64::max);
     let span = if from < until { [from, until] } else { [0.0, end] };
-    let title = format!("Force over time: {}", first.run.name);
+    let force = capital(units(runs).motion.words().force);
+    let title = format!("{force} over time: {}", first.run.name);
     let caption = format!("The nonlinear simulation, {}{}.", whose(runs), of_wish(wish));
     let mut panels = forces_enlarged(runs, [220.0, 110.0], span, wish);
     panels.extend(errors(runs, span));
@@ -73,6 +77,7 @@ pub(crate) fn at_a_glance(name: &str, runs: &[NamedRun<'_>], wish: Option<&Track
 /// (2019).
 pub(crate) fn close_ups(named: NamedRun<'_>, number: usize) -> Vec<Figure> {
     let NamedRun { name, run } = named;
+    let force = run.record.units.motion.words().force;
     let end = end_of(&[named]);
     let events = enlarged(&run.windows, end).into_iter();
     let figure = |(index, window): (usize, &Window)| {
@@ -83,7 +88,9 @@ pub(crate) fn close_ups(named: NamedRun<'_>, number: usize) -> Vec<Figure> {
                 run.name,
                 cause_words(window, run.record.units)
             ),
-            "Voltages, pressures of both chambers, hydraulic and measured force, measured force.",
+            format!(
+                "Voltages, pressures of both chambers, hydraulic and measured {force}, measured {force}."
+            ),
         );
         close_up(&words, run, window, span_of(run, window, end))
     };
@@ -103,8 +110,9 @@ pub(crate) fn measured_together(runs: &[NamedRun<'_>], number: usize) -> Option<
         let measured = trace(&overlay.times_s, &overlay.measured);
         let series = simulated.chain([measured]).collect();
         let reference = asked_for(&first.run.record).filter(|_| overlay.signal == Signal::Force);
-        let unit = overlay.display_unit(first.run.record.units);
-        behind(panel(&overlay.quantity(), unit, height, series), unit, CurveStyle::Reference, reference)
+        let units = first.run.record.units;
+        let (title, unit) = (overlay.signal.words(units.motion), overlay.display_unit(units));
+        behind(panel(&title, unit, height, series), unit, CurveStyle::Reference, reference)
     });
     let panels: Vec<CurvePanel> = panels.collect();
     let words = Words::new(
@@ -114,7 +122,7 @@ pub(crate) fn measured_together(runs: &[NamedRun<'_>], number: usize) -> Option<
     );
     let names = runs.iter().map(|named| named.name).chain(["measured"]).map(String::from);
     let span_s = [0.0, end_of(runs)];
-    let events = instants(&first.run.windows, span_s);
+    let events = instants(&first.run.windows, span_s, units(runs).motion);
     (!overlays.is_empty()).then(|| chart(panels, names, &events, span_s).draw(&words))
 }
 
@@ -161,16 +169,17 @@ fn drawn(
     panels.push(panel("p_A - p_B", units(runs).pressure, low, each(runs, load_pressure)));
     if positions {
         let piston = each(runs, |record| record.signal(Signal::Position));
-        panels.push(panel("Piston", units(runs).position, 90.0, piston));
+        let Units { motion, position, .. } = units(runs);
+        panels.push(panel(&capital(motion.words().piston), position, 90.0, piston));
     }
     with_events(runs, panels, span_s).draw(words)
 }
 
 /// Reference less force, where the reference moves.
 fn errors(runs: &[NamedRun<'_>], span_s: [f64; 2]) -> Option<CurvePanel> {
-    let unit = units(runs).force;
+    let Units { motion, force: unit, .. } = units(runs);
     moves_reference(runs, span_s)
-        .then(|| panel("F_ref - F_e", unit, 90.0, each(runs, tracking_error)).with_zero_line())
+        .then(|| panel(error_title(motion), unit, 90.0, each(runs, tracking_error)).with_zero_line())
 }
 
 /// Whether the reference begins to move within a span, other than by steps.
@@ -185,7 +194,7 @@ fn with_events(runs: &[NamedRun<'_>], panels: Vec<CurvePanel>, span_s: [f64; 2])
     let windows = runs.first().map(|named| named.run.windows.as_slice()).unwrap_or_default();
     let measured = force_measured(runs).map(|_| "measured");
     let names = runs.iter().map(|named| named.name).chain(measured).map(String::from);
-    chart(panels, names, &instants(windows, span_s), span_s)
+    chart(panels, names, &instants(windows, span_s, units(runs).motion), span_s)
 }
 
 fn each(runs: &[NamedRun<'_>], values: impl Fn(&Record) -> Vec<f64>) -> Vec<Trace> {
@@ -211,8 +220,8 @@ fn forces(runs: &[NamedRun<'_>], height: f64, span_s: [f64; 2], wish: Option<&Tr
     let wished = wish.map(|wish| wish.lines(windows.iter().map(|(window, _)| window), span_s));
     let wished = wished.into_iter().flatten();
     let wished = wished.map(|line| line.iter().map(|[time_s, value]| (*time_s, *value)).collect());
-    let unit = units(runs).force;
-    let panel = behind(panel("Force F_e", unit, height, curves), unit, CurveStyle::Limit, wished);
+    let Units { motion, force: unit, .. } = units(runs);
+    let panel = behind(panel(&measured_force(motion), unit, height, curves), unit, CurveStyle::Limit, wished);
     behind(panel, unit, CurveStyle::Reference, first.and_then(|run| asked_for(&run.record)))
 }
 
@@ -226,9 +235,9 @@ fn forces_enlarged(
 ) -> Vec<CurvePanel> {
     let whole = forces(runs, tall, span_s, wish);
     let near = near_reference(runs, span_s, wish).filter(|_| has(&whole, CurveStyle::Limit));
-    let unit = units(runs).force;
+    let Units { motion, force: unit, .. } = units(runs);
     let enlarged = near.map(|ends| CurvePanel {
-        title: unit.title("F_e enlarged"),
+        title: unit.title(motion.either("F_e enlarged", "T_e enlarged")),
         range: CurveRange::Between(ends.map(|end| unit.of(end))),
         height: low,
         ..whole.clone()

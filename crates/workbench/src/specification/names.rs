@@ -8,7 +8,9 @@ use super::{NamedSpecification, SpecificationName};
 pub(crate) fn subject_words(name: SpecificationName) -> &'static str {
     match name {
         SpecificationName::ClosedLoop(closed_loop) => closed_loop_words(closed_loop),
-        SpecificationName::RoundedCommand => "force error of the rounded command",
+        SpecificationName::RoundedCommand(motion) => {
+            motion.either("force error of the rounded command", "torque error of the rounded command")
+        }
         SpecificationName::RoundedMeasurement => "command error of the rounded measurement",
     }
 }

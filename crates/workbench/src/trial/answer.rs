@@ -3,6 +3,7 @@
 use super::words::{agreement_key, not_driven, reason_words, run_name};
 use super::{Agreement, HeldRequirement, Leg, StepSize, Trial, TrialRun, TrialStep};
 use crate::answer::Object;
+use crate::quantity::{FORCE, QuantityName};
 use crate::simulate::satisfied_word;
 
 /// A trial in JSON.
@@ -23,10 +24,14 @@ fn row(run: &TrialRun) -> Object {
         .with("agrees", run.agreement <= Agreement::AgreesButForSettling)
         .with("agreement", agreement_key(run.agreement))
         .with("reason", reason_words(&run.reason, run.units))
-        .with("reference_n", run.reference_n)
+        .with(QuantityName::moving("reference", &FORCE), run.reference_n)
         .with("step", size_word(run.size))
         .with("worst_step", leg_word(run.worst))
-        .known("remaining_amplitude_n", run.remaining_amplitude_n, "the run ended before")
+        .known(
+            QuantityName::moving("remaining_amplitude", &FORCE),
+            run.remaining_amplitude_n,
+            "the run ended before",
+        )
         .known("linear", run.linear.as_ref().map(step), no_step)
         .known("machine", run.machine.as_ref().map(step), "it does not start")
         .each("steps", &run.legs, |(leg, of_leg)| {

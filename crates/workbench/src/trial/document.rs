@@ -1,11 +1,13 @@
 //! The trial of a verdict on the machine, for people.
 
-use super::words::{have_one_name, largest_step_words, not_driven, percent_words, reason_words, run_name};
+use super::words::{
+    have_one_name, largest_step_words, not_driven, percent_words, reason_words, run_name, units_of,
+};
 use super::{
     Agreement, BAND_PERCENT, Leg, MOST_OF_SCENARIOS, OVERSHOOT_ROOM_PERCENT, SETTLING_RATIO, SETTLING_ROOM,
     StepResponse, StepSize, Trial, TrialRun, TrialStep,
 };
-use crate::document::{Cell, Document, Table};
+use crate::document::{Cell, Document, Table, capital};
 use crate::figure::{FamilySteps, Figure, TimeSeries, Words};
 use crate::plant_names::plant_words;
 use crate::quantity::DisplayUnit;
@@ -54,8 +56,9 @@ pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Docume
         Agreement::Contradicts => "contradicts the verdict",
     };
     out.explanation(format!(
-        "The nonlinear simulation {did}. The nonlinear rig under this controller: steps of the reference there, back and there again, {}, compared with those of the linear loop. Of the three steps the worst numbers are given; a force within {BAND_PERCENT} % of the step has settled.",
-        steps_words(trial)
+        "The nonlinear simulation {did}. The nonlinear rig under this controller: steps of the reference there, back and there again, {}, compared with those of the linear loop. Of the three steps the worst numbers are given; a {} within {BAND_PERCENT} % of the step has settled.",
+        steps_words(trial),
+        units_of(trial).motion.words().force
     ));
     let settles = format!("settles in ({BAND_PERCENT} %)");
     out.table(
@@ -73,9 +76,11 @@ pub(crate) fn document(trial: &Trial, figure_words: Option<[&str; 2]>) -> Docume
 fn steps_words(trial: &Trial) -> String {
     let of_scenarios =
         format!("by the steps of the scenarios (the {MOST_OF_SCENARIOS} largest of other sizes)");
+    let force = units_of(trial).motion.words().force;
+    let tenth = format!("by a tenth of the {force} that the supply can produce");
     let sizes = [
         (StepSize::Required, "by the required step"),
-        (StepSize::Tenth, "by a tenth of the force that the supply can produce"),
+        (StepSize::Tenth, &tenth),
         (StepSize::Reversed, "by as much the other way"),
         (StepSize::Scenario, &of_scenarios),
         (StepSize::Largest, "by the largest step"),
@@ -122,8 +127,10 @@ fn repeated<'a>(trial: &'a Trial, run: &TrialRun) -> Option<&'a TrialRun> {
 
 /// What the words and the last column of the table mean, as far as they occur.
 fn meanings(trial: &Trial) -> Vec<String> {
+    let motion = units_of(trial).motion;
+    let force = motion.words().force;
     let mut told = vec![format!(
-        "\"agrees\": the overshoot lies within {OVERSHOOT_ROOM_PERCENT} % of the step and the settling time within {} % of those of the linear loop, and the force comes to rest without a limit on the way",
+        "\"agrees\": the overshoot lies within {OVERSHOOT_ROOM_PERCENT} % of the step and the settling time within {} % of those of the linear loop, and the {force} comes to rest without a limit on the way",
         100.0 * SETTLING_ROOM
     )];
     if trial.runs.iter().any(|run| run.agreement == Agreement::AgreesButForSettling) {
@@ -148,13 +155,12 @@ fn meanings(trial: &Trial) -> Vec<String> {
             true => "; corners of the box and plants inside it are driven through the other steps alone",
             false => "",
         };
-        told.push(format!("\"largest step\": {}{but}", largest_step_words()));
+        told.push(format!("\"largest step\": {}{but}", largest_step_words(motion)));
     }
     if trial.runs.iter().any(|run| run.remaining_amplitude_n.is_some()) {
-        told.push(
-            "\"remains\": half the range of the force over the last fifth of a step; a run steps there, back and there again, and the largest counts"
-                .to_string(),
-        );
+        told.push(format!(
+            "\"remains\": half the range of the {force} over the last fifth of a step; a run steps there, back and there again, and the largest counts"
+        ));
     }
     told
 }
@@ -257,7 +263,8 @@ fn figure(trial: &Trial, [name, title]: [&str; 2]) -> Option<Figure> {
     let stands_out = |run: &TrialRun| run.agreement != Agreement::Agrees || !run.satisfies();
     let drawn = runs.iter().filter(|run| is_first(run.size) || stands_out(run));
     let named = drawn.filter_map(|run| series(&run_name(run), &run.machine_response)).collect();
-    let quantity = "Force, part of the step".to_string();
+    let force = units_of(trial).motion.words().force;
+    let quantity = format!("{}, part of the step", capital(force));
     let chart = FamilySteps { quantity, nominal, named, ..FamilySteps::default() };
     let waves = if runs.iter().any(|run| run.quarter_wave_rad_per_s.is_some()) {
         " with waves in its lines,"
@@ -265,7 +272,7 @@ fn figure(trial: &Trial, [name, title]: [&str; 2]) -> Option<Figure> {
         ""
     };
     let caption = format!(
-        "The worst of three steps of the reference (there, back and there again) in the nonlinear simulation: of the rig as declared,{waves} and its worst plants made into rigs; of their other steps those that do not agree with the linear loop or miss what is required. A force that leaves the frame is drawn up to there."
+        "The worst of three steps of the reference (there, back and there again) in the nonlinear simulation: of the rig as declared,{waves} and its worst plants made into rigs; of their other steps those that do not agree with the linear loop or miss what is required. A {force} that leaves the frame is drawn up to there."
     );
     Some(chart.draw(&Words::new(name, title, caption)))
 }

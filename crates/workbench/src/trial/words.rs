@@ -6,7 +6,7 @@ use super::{
 };
 use crate::document::Cell;
 use crate::plant_names::plant_words;
-use crate::quantity::{DisplayUnit, Units, significant};
+use crate::quantity::{DisplayUnit, MotionKind, MotionWords, Units, significant};
 use crate::specification::numbered;
 use crate::verdict_words::agreement_word;
 
@@ -53,9 +53,10 @@ pub(crate) fn have_one_name(run: &TrialRun, other: &TrialRun) -> bool {
 }
 
 /// The size of a step that is called the largest.
-pub(crate) fn largest_step_words() -> String {
+pub(crate) fn largest_step_words(motion: MotionKind) -> String {
+    let MotionWords { force, force_sensor, .. } = motion.words();
     format!(
-        "up to {} % of the force that the supply can produce, the capacity of the force sensor and the limit of the command, whichever is least, and smaller where a run meets a limit all the same",
+        "up to {} % of the {force} that the supply can produce, the capacity of the {force_sensor} and the limit of the command, whichever is least, and smaller where a run meets a limit all the same",
         significant(100.0 * REACH, 3)
     )
 }
@@ -135,7 +136,7 @@ pub(crate) fn finding_words(finding: &TrialFinding, units: Units) -> String {
         }
         TrialFinding::Unsettled { leg, end } => {
             let words = end.map_or(String::new(), |end| format!(": {}", end_words(end, units)));
-            format!("the force does not settle{}{words}", leg_words(*leg))
+            format!("the {} does not settle{}{words}", units.motion.words().force, leg_words(*leg))
         }
         TrialFinding::Overshoots { percent, leg, linear, note } => {
             let overshoots = overshoots(*percent, *leg, *linear);
@@ -232,8 +233,13 @@ fn not_driven_words(one: &NotDriven, units: Units) -> String {
     }
 }
 
+/// The units of what a trial drives.
+pub(super) fn units_of(trial: &Trial) -> Units {
+    trial.runs.first().map_or_else(Units::default, |run| run.units)
+}
+
 /// All that a trial does not drive.
 pub(crate) fn not_driven(trial: &Trial) -> Vec<String> {
-    let units = trial.runs.first().map_or_else(Units::default, |run| run.units);
+    let units = units_of(trial);
     trial.not_driven.iter().map(|one| not_driven_words(one, units)).collect()
 }

@@ -14,6 +14,7 @@ use crate::answer::significant;
 use crate::audit::{ProjectAudit, in_time};
 use crate::caveat::{caveats, outside_parameters, sentence};
 use crate::design::{DESIGNED_PROJECT, ProjectDesign, rig_miss_words};
+use crate::document::capital;
 use crate::plant_names::plant_text;
 use crate::project::{DeclaredSpecification, Project, SpecificationKind};
 use crate::quantity::DisplayUnit;
@@ -354,9 +355,10 @@ fn undeclared(contents: &Contents<'_>, taken: Option<&Side<'_>>) -> Vec<String> 
     let comparable = !project.motion().is_rotary();
     match farthest.max_by(|one, other| one.0.total_cmp(&other.0)) {
         Some((nrmse, overlay)) if nrmse > NEAR => steps.push(format!(
-            "Bring the model nearer to the rig before relying on its numbers: {} lies {} % of its range from what was measured; friction, leakage and the stiffness of the load cell are the first to check.",
-            overlay.quantity(),
-            significant(100.0 * nrmse, 3)
+            "Bring the model nearer to the rig before relying on its numbers: {} lies {} % of its range from what was measured; friction, leakage and the stiffness of the {} are the first to check.",
+            overlay.signal.words(project.motion()),
+            significant(100.0 * nrmse, 3),
+            project.motion().words().load_cell
         )),
         Some(_) => {}
         None if !comparable => steps.push("Measure on the rig what was simulated: nothing here has been compared with it.".to_string()),
@@ -369,9 +371,4 @@ fn undeclared(contents: &Contents<'_>, taken: Option<&Side<'_>>) -> Vec<String> 
         );
     }
     steps
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| format!("{}{}", first.to_uppercase(), letters.as_str()))
 }

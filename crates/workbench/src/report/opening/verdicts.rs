@@ -11,7 +11,9 @@ use crate::audit::position_words;
 use crate::document::{Cell, StatusMark, Table};
 use crate::quantity::DisplayUnit;
 use crate::report::specifications::demand;
-use crate::simulate::{RunStatus, ScenarioRun, required_overshoot, required_rise, required_settling};
+use crate::simulate::{
+    Overlay, RunStatus, ScenarioRun, required_overshoot, required_rise, required_settling,
+};
 use crate::specification::numbered;
 use crate::trial;
 use crate::verdict_words::frequency_words;
@@ -54,7 +56,8 @@ fn of_family(contents: &Contents<'_>, sides: &[Side<'_>]) -> Rows {
         let verdict = Cell::verdict(view.verdict()).then(missed);
         Some(verdict.then(proven(side.is_proven().unwrap_or(false))).strong())
     }));
-    rows.extend(row("position of every plant", sides, |side| {
+    let position = contents.setup.project.motion().words().position;
+    rows.extend(row(format!("{position} of every plant"), sides, |side| {
         Some(Cell::from(position_words(side.view?.position.as_ref()?)))
     }));
     rows.extend(row("every plant stable", sides, |side| {
@@ -184,11 +187,11 @@ fn numbers(sides: &[Side<'_>]) -> Rows {
 
 /// The measured signals with their deviations.
 fn measured(side: &Side<'_>) -> Option<Cell> {
-    let overlays = side.runs?.iter().flat_map(|run| &run.measured);
-    let told: Vec<String> = overlays
-        .filter_map(|overlay| {
-            Some(format!("{} {} %", overlay.quantity(), significant(100.0 * overlay.nrmse.ok()?, 3)))
-        })
-        .collect();
+    let words = |run: &ScenarioRun, overlay: &Overlay| {
+        let signal = overlay.signal.words(run.record.units.motion);
+        Some(format!("{signal} {} %", significant(100.0 * overlay.nrmse.ok()?, 3)))
+    };
+    let overlays = side.runs?.iter().flat_map(|run| run.measured.iter().map(move |overlay| (run, overlay)));
+    let told: Vec<String> = overlays.filter_map(|(run, overlay)| words(run, overlay)).collect();
     (!told.is_empty()).then(|| told.join(", ").into())
 }

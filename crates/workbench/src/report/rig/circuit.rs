@@ -11,7 +11,7 @@ use crate::project::{
     DeclaredCrossPort, DeclaredLine, DeclaredLinkage, DeclaredSeries, LinkageKind, Load, OrificeSize,
     Project, SupplyModel,
 };
-use crate::quantity::{self, FLOW, LENGTH, MASS, PRESSURE, STIFFNESS, VOLTAGE, VOLUME};
+use crate::quantity::{self, FLOW, LENGTH, MASS, MotionWords, PRESSURE, STIFFNESS, VOLTAGE, VOLUME};
 use crate::rig::Rig;
 
 pub(super) fn circuit(project: &Project, actuator: &DeclaredActuator, rig: &Rig) -> Figure {
@@ -54,7 +54,10 @@ pub(super) fn circuit(project: &Project, actuator: &DeclaredActuator, rig: &Rig)
             rows: controller_words(project, controller),
         }),
     };
-    let caption = "The circuit as the project describes it: supply, servovalve, lines, cylinder, load cell, load, and the loop that closes over the force.";
+    let MotionWords { cylinder, load_cell, force, .. } = actuator.motion().words();
+    let caption = format!(
+        "The circuit as the project describes it: supply, servovalve, lines, {cylinder}, {load_cell}, load, and the loop that closes over the {force}."
+    );
     chart.draw(&Words::new("circuit", "The rig", caption))
 }
 

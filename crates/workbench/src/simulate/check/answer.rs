@@ -2,21 +2,24 @@
 
 use super::{Difference, Metric, ToleranceCheck};
 use crate::answer::{Object, significant};
-use crate::quantity::Units;
+use crate::quantity::{FORCE, MotionKind, QuantityName, Units};
 use crate::simulate::{RunStatus, unmeasured_words};
 
 /// The object `check` of a scenario.
-pub(crate) fn row(check: &ToleranceCheck) -> Object {
+pub(crate) fn row(check: &ToleranceCheck, motion: MotionKind) -> Object {
     let force = check.force.as_ref().ok_or("the two runs have no sample in common");
     Object::new()
         .with("tolerance", check.tolerance)
         .with("status", check.stopped.map_or(RunStatus::Completed, |stopped| stopped.status).key())
         .with("look_s", check.look_s)
-        .told("force_difference_n", force.map(|force| force.difference))
+        .told(
+            QuantityName::OfMotion(["force_difference", "torque_difference"], &FORCE),
+            force.map(|force| force.difference),
+        )
         .told("part_of_peak", force.map(Difference::part_of_peak))
         .each("signals", &check.signals, |found| {
             Object::new()
-                .with("name", found.signal.name())
+                .with("name", found.signal.quantity())
                 .with("difference", found.difference)
                 .with("time_s", found.time_s)
                 .with("peak", found.peak)
@@ -27,9 +30,10 @@ pub(crate) fn row(check: &ToleranceCheck) -> Object {
                 "metrics",
                 Metric::ALL,
                 |metric| {
-                    Object::new()
-                        .with("name", metric.name())
-                        .told("difference", found.differences[metric].map_err(unmeasured_words))
+                    Object::new().with("name", metric.quantity()).told(
+                        "difference",
+                        found.differences[metric].map_err(|why| unmeasured_words(why, motion)),
+                    )
                 },
             )
         })
@@ -47,7 +51,8 @@ pub(crate) fn sentences(check: &ToleranceCheck, units: Units) -> Vec<String> {
     }
     let Some(force) = &check.force else { return told };
     told.push(format!(
-        "checked at the tolerance {tolerance}: the force differs by {} at {} s, {} of its peak{}",
+        "checked at the tolerance {tolerance}: the {} differs by {} at {} s, {} of its peak{}",
+        units.motion.words().force,
         units.force.text(force.difference, 2),
         significant(force.time_s, 6),
         significant(force.part_of_peak(), 2),

@@ -4,33 +4,37 @@ use std::io;
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
+use phea_hydraulics::signal::Signal;
 
 use super::{MachineResponse, MachineResponses, ResponsePoint};
 use crate::answer::{NumberTable, Object, OutputFile, TableFormat};
+use crate::quantity::{FORCE, MotionKind, QuantityName};
 use crate::simulate::RunStatus;
 use crate::simulate::reasons::no_closed_loop_words;
 
+const COMMAND_AMPLITUDE: QuantityName = QuantityName::Fixed("amplitude_v");
+const REFERENCE_AMPLITUDE: QuantityName = QuantityName::moving("amplitude", &FORCE);
 const NO_WINDOW: &str = "the simulation ended before a window did";
 const NO_SYSTEM: &str =
     "a sampled loop around a machine with states and waves is not a linear system of finite order here";
 
 /// The part of the JSON object.
 pub(crate) fn body(found: &MachineResponses) -> Object {
-    let points = |response: &MachineResponse, amplitude: &str| {
+    let points = |response: &MachineResponse, amplitude: QuantityName| {
         Object::new().each("points", &response.points, |point| row(point, amplitude))
     };
-    let closed_loop = found.closed_loop.as_ref().map(|closed| points(closed, "amplitude_n"));
+    let closed_loop = found.closed_loop.as_ref().map(|closed| points(closed, REFERENCE_AMPLITUDE));
     Object::new()
-        .with("position_m", found.position_m)
-        .with("force_n", found.force_n)
+        .with(Signal::Position.quantity(), found.position_m)
+        .with(Signal::Force.quantity(), found.force_n)
         .with("command_v", found.command_v)
         .with("stopped", found.stopped)
-        .with("open_loop", points(&found.open_loop, "amplitude_v"))
-        .told("closed_loop", closed_loop.map_err(|why| no_closed_loop_words(*why)))
+        .with("open_loop", points(&found.open_loop, COMMAND_AMPLITUDE))
+        .told("closed_loop", closed_loop.map_err(|why| no_closed_loop_words(*why, found.units.motion)))
 }
 
 /// `reason` is that of the five numbers above it, where one is missing.
-fn row(point: &ResponsePoint, amplitude: &str) -> Object {
+fn row(point: &ResponsePoint, amplitude: QuantityName) -> Object {
     let finite = |value: f64| value.is_finite().then_some(value);
     let pair = |value: Complex64| value.is_finite().then_some(value);
     let [difference_db, difference_deg] = point.differs(point.linear_plant).map(finite);
@@ -63,23 +67,28 @@ fn row(point: &ResponsePoint, amplitude: &str) -> Object {
 ///
 /// # Errors
 /// Those of the table.
-pub(crate) fn files(found: &MachineResponses, format: TableFormat) -> io::Result<Vec<OutputFile>> {
-    let mut files = vec![file("open_loop", "amplitude_v", &found.open_loop, format)?];
+pub(crate) fn files(
+    found: &MachineResponses,
+    format: TableFormat,
+    motion: MotionKind,
+) -> io::Result<Vec<OutputFile>> {
+    let mut files = vec![file("open_loop", COMMAND_AMPLITUDE, &found.open_loop, (format, motion))?];
     if let Ok(closed) = &found.closed_loop {
-        files.push(file("closed_loop", "amplitude_n", closed, format)?);
+        files.push(file("closed_loop", REFERENCE_AMPLITUDE, closed, (format, motion))?);
     }
     Ok(files)
 }
 
 fn file(
     name: &str,
-    amplitude: &str,
+    amplitude: QuantityName,
     response: &MachineResponse,
-    format: TableFormat,
+    (format, motion): (TableFormat, MotionKind),
 ) -> io::Result<OutputFile> {
+    let amplitude = amplitude.text(motion);
     let heads = [
         "frequency_rad_per_s",
-        amplitude,
+        &amplitude,
         "magnitude_db",
         "phase_deg",
         "linear_plant_magnitude_db",

@@ -5,7 +5,7 @@ use phea_dynamics::portable;
 use super::{MachineResponse, MachineResponses, ResponsePoint};
 use crate::answer::significant;
 use crate::document::{Cell, Document, Table};
-use crate::quantity::{DisplayUnit, VOLTAGE, display};
+use crate::quantity::{DisplayUnit, MotionKind, VOLTAGE, display};
 use crate::simulate::reasons::no_closed_loop_words;
 
 /// The tables and sentences of a frequency response.
@@ -19,12 +19,21 @@ pub(crate) fn document(found: &MachineResponses) -> Document {
     let mut section = |title: &str, found: &MachineResponse, unit: DisplayUnit| {
         out.heading(title);
         out.table(response(found, unit));
-        out.sentences(found.points.iter().filter_map(remark));
+        out.sentences(found.points.iter().filter_map(|point| remark(point, units.motion)));
     };
-    section("Open loop, from command to force, dB re 1 N/V", &found.open_loop, DisplayUnit::VOLT);
+    let motion = units.motion;
+    let open = motion.either(
+        "Open loop, from command to force, dB re 1 N/V",
+        "Open loop, from command to torque, dB re 1 N.m/V",
+    );
+    section(open, &found.open_loop, DisplayUnit::VOLT);
     match &found.closed_loop {
-        Ok(closed) => section("Closed loop, from reference to force", closed, units.force),
-        Err(reason) => out.heading(format!("No closed loop: {}.", no_closed_loop_words(*reason))),
+        Ok(closed) => section(
+            motion.either("Closed loop, from reference to force", "Closed loop, from reference to torque"),
+            closed,
+            units.force,
+        ),
+        Err(reason) => out.heading(format!("No closed loop: {}.", no_closed_loop_words(*reason, motion))),
     }
     if found.stopped {
         out.line("Stopped before its end.");
@@ -73,11 +82,11 @@ pub(super) fn own(point: &ResponsePoint) -> [f64; 2] {
 }
 
 /// A remark on a point.
-fn remark(point: &ResponsePoint) -> Option<String> {
+fn remark(point: &ResponsePoint, motion: MotionKind) -> Option<String> {
     let at = significant(point.frequency_rad_per_s, 4);
     if let Some(status) = point.ended {
-        let word = status.key();
-        return Some(format!("{at} rad/s: the simulation ended before the force settled ({word})"));
+        let (force, word) = (motion.words().force, status.key());
+        return Some(format!("{at} rad/s: the simulation ended before the {force} settled ({word})"));
     }
     if !point.settled {
         let percent = significant(100.0 * point.change, 2);

@@ -2,27 +2,31 @@
 
 use super::{MachineResponse, MachineResponses};
 use crate::figure::{Figure, FrequencySeries, MeasuredResponse, Words};
+use crate::quantity::MotionKind;
 
 /// A diagram for each loop.
 pub(crate) fn pictures(found: &MachineResponses) -> Vec<Figure> {
+    let motion = found.units.motion;
     let mut figures = vec![diagram(
         &found.open_loop,
+        motion,
         (
             "frequency-response-open-loop",
             "Open loop: machine and linear plant",
-            "F_e/U_C",
-            "N/V",
+            motion.either("F_e/U_C", "T_e/U_C"),
+            motion.either("N/V", "N.m/V"),
             "linear plant P",
         ),
     )];
     if let Ok(closed) = &found.closed_loop {
         figures.push(diagram(
             closed,
+            motion,
             (
                 "frequency-response-closed-loop",
                 "Closed loop: machine and linear plant",
-                "F_e/F_ref",
-                "N/N",
+                motion.either("F_e/F_ref", "T_e/T_ref"),
+                motion.either("N/N", "N.m/(N.m)"),
                 "loop of the linear plant",
             ),
         ));
@@ -32,10 +36,14 @@ pub(crate) fn pictures(found: &MachineResponses) -> Vec<Figure> {
 
 fn diagram(
     response: &MachineResponse,
+    motion: MotionKind,
     (name, title, quantity, unit, model): (&str, &str, &str, &str, &str),
 ) -> Figure {
-    let caption = "Each point is the fundamental of the force, over whole periods of a sine that the nonlinear model has settled to; \
-                   below, what it differs by from the linear plant, and its harmonics over the fundamental.";
+    let caption = format!(
+        "Each point is the fundamental of the {}, over whole periods of a sine that the nonlinear model has settled to; \
+         below, what it differs by from the linear plant, and its harmonics over the fundamental.",
+        motion.words().force
+    );
     let curve = |name: &str, response: &[num_complex::Complex64], frequencies: &[f64]| FrequencySeries {
         name: name.to_string(),
         frequencies_rad_per_s: frequencies.to_vec(),
