@@ -1,4 +1,4 @@
-//! Bounds: against published examples, against the plain method, and against the closed loops
+//! Bounds: against published examples, against the elementary method, and against the closed loops
 //! themselves.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 

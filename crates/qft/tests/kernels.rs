@@ -1,4 +1,4 @@
-//! Kernels that cannot be reached from outside, compiled here once more for the unit tests next to
+//! Kernels that cannot be reached from outside, compiled here again for the unit tests next to
 //! their code: the library itself is not built for tests.
 #![allow(dead_code, unreachable_pub, reason = "a kernel's callers stay in the library")]
 

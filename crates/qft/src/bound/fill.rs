@@ -14,15 +14,15 @@ use super::quadratic::negative_gains;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Edge {
-    /// q at both ends.
+    /// Values of q at both ends.
     pub(super) ends: [Complex64; 2],
-    /// e at both ends.
+    /// Values of e at both ends.
     pub(super) constants: [f64; 2],
-    /// kappa
+    /// Curvature kappa.
     pub(super) curvature: f64,
-    /// (r/W)^2 that goes with |q_k + L0|^2, the greater of both ends'.
+    /// Coefficient (r/W)^2 of |q_k + L0|^2, the greater of the two ends.
     pub(super) share: f64,
-    /// Whether the variable is 1/g: for the control effort, with P/P0 conjugated in place of q.
+    /// True if the variable is 1/g: for the control effort, with P/P0 conjugated in place of q.
     pub(super) reciprocal: bool,
 }
 
@@ -42,7 +42,7 @@ impl Edge {
     /// The edge between two plants whose sensitivity is limited.
     ///
     /// ```text
-    /// e = |q|^2 - |u|^2/W^2,    u straight from one plant to the other
+    /// e = |q|^2 - |u|^2/W^2,    u linear from one plant to the other
     /// ```
     pub(super) fn of_sensitivity(
         ends: [&WeightedPlant; 2],
@@ -77,7 +77,7 @@ impl Edge {
         }
     }
 
-    /// The gains forbidden by the inner points of the edge; its ends are plants and are judged as
+    /// The gains forbidden by the inner points of the edge; its ends are plants and are treated as
     /// such.
     ///
     /// ```text

@@ -1,4 +1,4 @@
-//! The curvature, which the subproblem takes from here.
+//! The curvature, which the subproblem imports from here.
 
 #[path = "../../src/loop_shaping/descent/curvature.rs"]
 mod curvature;

@@ -1,4 +1,4 @@
-//! Two plants that are as bad as each other, at different frequencies.
+//! Two equally bad plants at different frequencies.
 
 use phea_dynamics::controller::Timing;
 use phea_dynamics::expression::Recorded;
@@ -9,7 +9,7 @@ use phea_qft::verification::{PlantPoint, TrackingJudgement};
 
 use super::plants::{audited, compensation, parameter, rational, specification};
 
-/// a^2/(s (s + a)): P(s/a) for P = 1/(s (s + 1)).
+/// Plant a^2/(s (s + a)): P(s/a) for P = 1/(s (s + 1)).
 fn scaled<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
     PlantCoefficients {
         command: RationalCoefficients {
