@@ -1,9 +1,9 @@
 //! Example D compared with differential evolution in NumPy, one core each, in one run:
 //! `cargo bench -p phea-qft --bench design`.
 //!
-//! P = k a/(s (s + a)): the controller of one zero and two poles with the least high-frequency
-//! gain, real and complex poles, from three seeds. The peer is `benches/peers/design.py`, run by
-//! the Python in `target/venv` (made by `cargo xtask ci comparisons`) or the one named by
+//! Plant P = k a/(s (s + a)): the controller of one zero and two real or complex poles with the
+//! least high-frequency gain, from three seeds. The peer is `benches/peers/design.py`, run by the
+//! Python in `target/venv` (made by `cargo xtask ci comparisons`) or the one named by
 //! `PHEA_PYTHON`. The design of phea must pass its audit over the whole box and be within 0.1 dB of
 //! the least gain; the peer evaluates only 81 plants and 180 frequencies, and so may find less.
 //! Times are printed and never asserted.
@@ -39,8 +39,8 @@ const RUNS: usize = 5;
 /// Allowed distance of a result from the least gain, dB.
 const ALLOWED_DB: f64 = 0.1;
 
-/// Problem for both: the peer's name of it, the damping ratios of the poles, and the least gain of
-/// a dense search over the whole box.
+/// Problem for both sides: its name at the peer, the damping ratios of the poles, and the least
+/// gain found by a dense search over the whole box.
 struct Task {
     poles: &'static str,
     damping_ratio: [f64; 2],

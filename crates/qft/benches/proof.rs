@@ -73,8 +73,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Effort of one method: leaves and seconds, or the fraction of the boxes proven before they were
-/// used up.
+/// Effort of one method: leaves and seconds, or the fraction of the box proven before the budget
+/// was used up.
 struct Effort {
     leaves: usize,
     seconds: f64,

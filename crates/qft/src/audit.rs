@@ -142,9 +142,9 @@ pub fn audit_of_known_plants_by(
     audit_with(problem, (&KeptPlants::of(workers), effort), watch).map(|(audit, _)| audit)
 }
 
-/// Audits with plants of this family already sampled in the same loop (with any controller), so
-/// that none is sampled twice. Returns the audit and true if the specifications were audited
-/// completely.
+/// Audits to the given extent, with plants of this family already sampled in the same loop (with
+/// any controller), so that none is sampled twice. Returns the audit and true if no search was
+/// skipped.
 pub(crate) fn audit_with(
     problem: &AuditProblem<'_>,
     (kept, effort): (&KeptPlants, AuditEffort),
@@ -231,7 +231,7 @@ fn is_unstable(stability: &StabilityFinding) -> bool {
 }
 
 /// The magnitudes of an unstable loop do not describe a response: it satisfies no specification and
-/// has no margin. Nor may those of a loop that is not known to be stable.
+/// has no margin. This may also be true of a loop that is not known to be stable.
 fn without_stability(finding: &mut SpecificationFinding, stability: &StabilityFinding) {
     let tracks = finding.requirement.is_tracking();
     match stability.verdict {

@@ -1,5 +1,5 @@
-//! Bounds: where the nominal loop L0 may not be, so that every plant of a template satisfies a
-//! specification.
+//! Bounds: regions where the nominal loop L0 may not be, so that every plant of a template
+//! satisfies a specification.
 
 mod ceiling;
 mod combined;

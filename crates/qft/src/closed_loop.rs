@@ -44,7 +44,7 @@ pub use trial::{HeldResponse, ModalPlant, TrialPlant};
 /// For a sinusoidal disturbance the samples of the output obey this exactly: P and P_v are the
 /// sampled responses.
 ///
-/// The prefilter of a sampled loop is F(z), or F(s) where it acts on the reference before sampling.
+/// The prefilter of a sampled loop is F(z), or F(s) if it acts on the reference before sampling.
 /// For a sinusoidal reference below pi/T the samples after F(s) are F(jw) times the samples of the
 /// sine: F T is evaluated with F(jw), and holds for references without content beyond pi/T.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,7 +91,8 @@ pub enum Member {
         disturbance: Option<RationalCoefficients<f64>>,
         /// Feed-forward path K H_v V_d; its feedback part is within P.
         fed_forward: FedForward,
-        /// H_v P_v/(1 - K H_v P_v) with hold and delay, in z; `None` if nothing is fed back.
+        /// Rate path H_v P_v/(1 - K H_v P_v) with hold and delay, in z; `None` if nothing is fed
+        /// back.
         rate: Option<TransferFunction>,
         /// Inner signal P_p/(1 + H_p P_p) with hold and delay, in z.
         inner: Option<TransferFunction>,
@@ -139,7 +140,7 @@ pub struct MemberResponse {
 }
 
 impl Compensation {
-    /// The loop of a controller with this sensor (1 where the output itself is fed back).
+    /// The loop of a controller with this sensor (1 if the output itself is fed back).
     ///
     /// # Errors
     /// [`LinearError`] if a part is not a transfer function or cannot be sampled;
@@ -267,24 +268,24 @@ impl Compensation {
         self.inner_feedback.as_ref()
     }
 
-    /// This loop without rate feed-forward and inner feedback.
+    /// Copy of this loop without rate feed-forward and inner feedback.
     #[must_use]
     pub fn without_inner_paths(&self) -> Compensation {
         Compensation { rate_feed_forward: 0.0, inner_feedback: None, ..self.clone() }
     }
 
-    /// This loop without inner feedback.
+    /// Copy of this loop without inner feedback.
     #[must_use]
     pub fn without_inner_feedback(&self) -> Compensation {
         Compensation { inner_feedback: None, ..self.clone() }
     }
 
-    /// This loop with another delay.
+    /// Copy of this loop with another delay.
     pub fn with_delay(&self, delay_s: f64) -> Compensation {
         Compensation { delay_s, ..self.clone() }
     }
 
-    /// This loop with another controller.
+    /// Copy of this loop with another controller.
     pub(crate) fn with_feedback(&self, feedback: TransferFunction) -> Result<Compensation, LinearError> {
         if feedback.domain() != self.feedback.domain() {
             return Err(LinearError::DomainMismatch);
@@ -328,8 +329,8 @@ impl Compensation {
         let rate = rate_path(gain, rate_sensor, &plant)?;
         let inner = inner_path(inner_feedback, &plant)?;
         let rational = plant.command.transfer_function()?;
-        // The dead time of the plant acts after the hold; for the sensor signal it adds to the
-        // sensor's own.
+        // The dead time of the plant acts after the hold; for the sensor signal it adds to that of
+        // the sensor.
         let held = |function: TransferFunction| {
             let dead_time_s = function.dead_time_s() + plant.dead_time_s;
             function.with_dead_time(dead_time_s)?.discretized(sample_time_s, Discretization::ZeroOrderHold)

@@ -4,7 +4,7 @@
 pub(crate) const LONGEST_STEP: f64 = 0.25;
 /// The smallest step of a climb, as a fraction of the box.
 const SMALLEST_STEP: f64 = 1e-7;
-/// The smallest step of a climb that has ended in a corner, as a fraction of the box.
+/// The smallest step of a climb that ends in a corner, as a fraction of the box.
 const SMALL_STEP: f64 = 1e-3;
 /// Largest number of values that one climb may evaluate.
 const VALUES_MAXIMUM: usize = 2000;

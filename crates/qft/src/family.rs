@@ -2,7 +2,7 @@
 //!
 //! A family over a box has members at grid points, corners, random points or given cases, and every
 //! plant between them also belongs to it; a family of explicit cases or of measured responses
-//! consists of its members only.
+//! consists only of its members.
 
 mod coordinate;
 mod measured;
@@ -32,7 +32,7 @@ pub enum Family {
 pub enum Extent {
     /// Every point of the box that the coordinates span, of which the members are samples.
     Box,
-    /// The members and nothing between them.
+    /// Only the members, without plants between them.
     Members,
 }
 
@@ -132,7 +132,7 @@ impl UncertainFamily {
         Ok(UncertainFamily { plant, coordinates, members, extent })
     }
 
-    /// A family of only the nominal plant.
+    /// Family of only the nominal plant.
     pub fn of_nominal(plant: UncertainPlant) -> UncertainFamily {
         let members = vec![plant.nominal()];
         UncertainFamily { plant, coordinates: vec![], members, extent: Extent::Members }

@@ -9,11 +9,12 @@
 //! k      up to where these limits also hold for H Q, and the noise moves the command by no more than allowed
 //! ```
 //!
-//! Inside out: the inner loop is fast and has its own margins, so that it remains stable if the
-//! outer one is opened, limited or reshaped. A plant with one lightly damped resonance w in series
-//! with an integrator reaches a loop gain of 2 xi w (1 - m): there the criterion amounts to the
-//! damping. Both limits on a gain are closed forms at each frequency, so no search over loops is
-//! needed: one that completes whole designs would repeat minutes of work for each corner.
+//! The design proceeds from the inside out: the inner loop is fast and has separate margins, so
+//! that it remains stable if the outer one is opened, limited or reshaped. A plant with one lightly
+//! damped resonance w in series with an integrator reaches a loop gain of 2 xi w (1 - m): there the
+//! criterion amounts to the damping. Both limits on a gain are closed forms at each frequency, so
+//! no search over loops is needed: one that completes whole designs would repeat minutes of work
+//! for each corner.
 
 mod limits;
 mod search;
@@ -38,7 +39,7 @@ pub struct InnerPoint {
 pub struct InnerPlant {
     /// Frequencies dense enough for its resonances, up to pi/T of a sampled loop.
     pub points: Vec<InnerPoint>,
-    /// The frequency w_0 at which loop gains are compared, the same for every plant.
+    /// The frequency w_0 at which loop gains are compared, common to every plant.
     pub reference: InnerPoint,
 }
 

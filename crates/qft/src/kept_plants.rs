@@ -28,7 +28,7 @@ pub(crate) struct KeptPlants {
     sampled: Rc<RefCell<PlantStore>>,
     /// Plants that a search evaluated, likewise.
     tried: Rc<RefCell<BTreeMap<Vec<u64>, Option<TrialPlant>>>>,
-    /// The last plant that was built: the next one has nearly the same poles.
+    /// The last plant that was built: the next one has nearly equal poles.
     last: RefCell<Option<TrialPlant>>,
     memo: RefCell<EvaluationMemo>,
     workers: Workers,
@@ -78,7 +78,7 @@ impl KeptPlants {
         self.workers
     }
 
-    /// Results of tasks, in their order. Each task has the known plants and its own trial plants,
+    /// Results of tasks, in their order. Each task has the known plants and separate trial plants,
     /// so that its result does not depend on the others.
     pub(crate) fn each<T: Send, R: Send>(
         &self,

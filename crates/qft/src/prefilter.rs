@@ -8,8 +8,8 @@
 //! lower/min|T| <= |F| <= upper/max|T|,      T = P G/(1+L)          over the family, so that lower <= |F T| <= upper (3.18)
 //! ```
 //!
-//! is the only condition on F: a band for its magnitude. Where the band has no width, no prefilter
-//! of any order satisfies it, and the two conflicting plants are identified. Otherwise a stable
+//! is the only condition on F: a band for its magnitude. If the band has no width, no prefilter of
+//! any order satisfies it, and the two conflicting plants are identified. Otherwise a stable
 //! minimum-phase F is fitted into it.
 
 mod band;

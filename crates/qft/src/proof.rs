@@ -14,9 +14,9 @@
 //! Re(conj(d) U_k) >= |d| |V_k| for every control point   ->   |V| <= |U| on the whole leaf
 //! ```
 //!
-//! A loop is stable where n + c, the numerator of 1 + L, has no zero on the imaginary axis nor at
-//! infinity for any plant of the box, and the roots of one plant are to the left of it: roots move
-//! continuously, so none can cross.
+//! A loop is stable if n + c, the numerator of 1 + L, has no zero on the imaginary axis or at
+//! infinity for any plant of the box, and the roots for one plant are to the left of the axis:
+//! roots move continuously, so none can cross.
 
 mod bounds;
 mod certificate;
@@ -70,10 +70,10 @@ pub struct Proof {
 pub struct SpecificationProof {
     /// Claim that every plant satisfies it, up to the tolerance.
     pub standing: Standing,
-    /// Lower bound of the greatest ratio of closed loop to limit, dB: this value is reached
+    /// Lower bound on the greatest ratio of closed loop to limit, dB: this value is reached
     /// somewhere.
     pub least_db: Option<f64>,
-    /// Upper bound of this ratio, dB.
+    /// Upper bound on this ratio, dB.
     pub most_db: Option<f64>,
     /// Point where the least value is reached.
     pub worst: Option<SpecificationMargin>,
@@ -131,7 +131,7 @@ pub enum NotProven {
     Budget(ProofRegion),
     /// The ratio grows, and no maximum was found.
     Unbounded,
-    /// No plant of the box could be shown to be stable or unstable.
+    /// The search found no plant of the box that could be shown to be stable or unstable.
     NoStableMember,
     /// The search has found a violation of a claim that seems to be proven.
     Contradicted,

@@ -75,7 +75,7 @@ impl Requirement {
         (self.lower.as_ref(), &self.upper)
     }
 
-    /// This requirement with an upper limit larger by a factor, and a lower one smaller by it.
+    /// Widens the requirement: an upper limit larger by a factor, and a lower one smaller by it.
     ///
     /// # Errors
     /// [`LinearError`] for a factor that is not finite.
@@ -96,8 +96,8 @@ impl Requirement {
         })
     }
 
-    /// Reserve of a design to every limit at a frequency, dB: the full reserve, or less if two
-    /// limits are less than 1 dB, or less than four reserves, apart.
+    /// Reserve of a design to every limit at a frequency, dB: the full reserve, or less if the
+    /// distance between two limits is less than 1 dB or less than four reserves.
     pub fn reserve_at_db(&self, reserve_db: f64, frequency_rad_per_s: f64) -> f64 {
         let lower = self.lower.as_ref().and_then(|limit| limit.magnitude(frequency_rad_per_s));
         let ratio = self.upper.magnitude(frequency_rad_per_s).zip(lower).map(|(upper, lower)| upper / lower);

@@ -52,7 +52,7 @@ pub(crate) use responding::own_poles;
 pub enum StabilityStatus {
     /// All closed-loop poles are inside the stable region.
     Stable,
-    /// At least one closed-loop pole is outside it.
+    /// The loop has a closed-loop pole outside the stable region.
     Unstable(Instability),
     /// The stability could not be decided.
     NotResolved(Irresolution),
@@ -107,7 +107,7 @@ pub enum Irresolution {
     /// A controller or sensor with undamped poles away from the origin, in a loop known only by
     /// measured points.
     UndampedController,
-    /// A plant whose own unstable poles cannot be counted.
+    /// A plant whose unstable poles cannot be counted.
     OpenLoopPoles,
     /// Fewer than two points were measured below half the sampling rate.
     Points,

@@ -66,7 +66,7 @@ pub enum TemplateError {
         /// The requested tolerance, dB.
         magnitude_db: f64,
     },
-    /// A plant that cannot be put into the loop.
+    /// A plant that does not fit the loop.
     #[error("the plant with parameters {values:?} cannot be sampled: {reason}")]
     Plant {
         /// Parameters of the plant.

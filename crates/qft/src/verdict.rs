@@ -13,7 +13,7 @@ pub enum Verdict {
     Met,
     /// The requirement could not be resolved.
     NotProven,
-    /// At least one plant, named with its frequency, violates it.
+    /// The requirement is violated by at least one plant, named with its frequency.
     Violated,
 }
 
@@ -22,8 +22,8 @@ pub enum Verdict {
 pub enum Evidence {
     /// The members, at the frequencies of a grid: no claim is made between them.
     Grid,
-    /// The worst case was searched for continuously over the box and the band, and nothing worse
-    /// was found; this is not a proof.
+    /// The worst case was searched for continuously over the box and the band, without finding a
+    /// worse one; this is not a proof.
     Search,
     /// Proven for every plant and every frequency.
     Proof,

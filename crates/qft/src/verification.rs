@@ -54,7 +54,7 @@ pub struct SpecificationFinding {
 }
 
 impl SpecificationFinding {
-    /// The worst margins: over the band, inside it, and of each violated band.
+    /// The worst margins: over the band, inside it, and in each violated band.
     pub fn worst_margins(&self) -> impl Iterator<Item = &SpecificationMargin> {
         let bands = self.violations.iter().map(|band| &band.worst);
         self.worst.iter().chain(&self.interior).chain(bands)

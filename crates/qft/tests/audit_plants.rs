@@ -50,7 +50,8 @@ fn specifications() -> [Specification; 1] {
     }]
 }
 
-/// Handing plants on from one audit to the other saves work and does not change the results.
+/// Transfer of plants from one audit to the other, which saves work and does not change the
+/// results.
 #[test]
 fn both_audits_find_what_they_find_alone() {
     for extent in [Extent::Box, Extent::Members] {
@@ -78,7 +79,7 @@ fn backwards(pieces: Vec<WorkPiece<'_>>, _: &'static str, watch: Watch<'_>) -> R
 }
 
 /// Plants, searches and specifications are independent of each other: any number of workers, in any
-/// order, finds and proves identical results.
+/// order, gives identical findings and proofs.
 #[test]
 fn audit_and_proof_do_not_depend_on_the_workers() {
     for extent in [Extent::Box, Extent::Members] {
@@ -106,7 +107,8 @@ fn audit_and_proof_do_not_depend_on_the_workers() {
     }
 }
 
-/// Stopped by its watch at any point, an audit stops at once, and reports its progress until then.
+/// Stopped audits: an audit stops at once when its watch requests it, and reports its progress
+/// until then.
 #[test]
 fn an_audit_stops_where_it_is_told() {
     let (family, around) = (family(Extent::Box), sampled_loop());

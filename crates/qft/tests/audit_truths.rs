@@ -49,7 +49,7 @@ fn rational<'t>(
     PlantCoefficients { command, disturbance: None, dead_time_s: dead_time_s.into(), rate: None }
 }
 
-/// A plant with fixed numbers.
+/// A plant with constant coefficients.
 fn fixed(gain: f64, factors: &[&[f64]]) -> Family {
     let product = factors.iter().fold(Polynomial::new(vec![1.0]), |product, factor| {
         product.product(&Polynomial::new(factor.to_vec()))

@@ -153,7 +153,7 @@ fn a_continuous_loop_carries_delay_and_sensor() {
 
 /// Gain K in U = G (F R - Y) + K s D gives a path parallel to Pd: Pd + K jw P, with P delayed in a
 /// continuous loop, and sampled in a sampled one, where a/(s + a) becomes (1 - r + (r - e)/z)/(z
-/// (z - e)) after a sample and a fraction of one. The loop itself is unchanged.
+/// (z - e)) after a sample and a fraction of one. The loop is unchanged.
 #[test]
 fn a_rate_that_is_fed_forward_is_a_path_of_the_disturbance() {
     let (a, gain, share) = (30.0, 0.7, 0.0037);
@@ -243,8 +243,9 @@ fn a_measured_plant_is_held_up_to_its_images() {
     }
 }
 
-/// For a measurement up to many times pi/T the images are also summed, and the remainder falls with
-/// the square of the range; if the range is too short for them, the response near pi/T is unknown.
+/// Images of a measurement up to many times pi/T: they are also summed, and the remainder falls
+/// with the square of the range; if the range is too short for them, the response near pi/T is
+/// unknown.
 #[test]
 fn the_images_of_a_measured_plant_are_summed() {
     let a = 30.0;

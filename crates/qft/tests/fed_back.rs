@@ -64,8 +64,8 @@ fn close(found: Complex64, expected: Complex64, tolerance: f64) {
 }
 
 /// Plants P = 1/((s + a)(s + b)), P_v = c s P and V_d = s (s + 1) P by partial fractions: P' =
-/// P/(1 - K P_v), Pd' = Pd + K V_d P', with delays of fractions of a sample, whole ones, and a
-/// sensor whose delay completes a sample.
+/// P/(1 - K P_v), Pd' = Pd + K V_d P', with delays of fractions of a sample, of whole samples, and
+/// with a sensor whose delay completes a sample.
 #[test]
 fn it_is_the_closed_form_of_two_lags() {
     let (a, b, c, w) = (4.0, 30.0, 3.0, 90.0);
@@ -321,8 +321,9 @@ fn in_states(
     poles.iter().map(|pole| ln(magnitude(*pole)) / SAMPLE_TIME).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Random loops, 300, with delays of fractions of a sample and whole ones: the slowest pole is that
-/// of the loop in state space, and with hidden polynomials the count of unstable poles agrees.
+/// Three hundred random loops with delays of fractions of a sample and of whole samples: the
+/// slowest pole is that of the loop in state space, and with hidden polynomials the count of
+/// unstable poles agrees.
 #[test]
 fn its_poles_are_those_of_the_loop_in_states() {
     let mut state = 5;

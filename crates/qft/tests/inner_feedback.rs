@@ -221,8 +221,9 @@ fn in_states(plant: &Drawn, delay_s: f64, parts: [&TransferFunction; 2]) -> f64 
     poles.iter().map(|pole| ln(magnitude(*pole)) / SAMPLE_TIME).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Random loops, 200, with delays of fractions of a sample and whole ones: stable if the loop in
-/// state space is, and with hidden polynomials the count of unstable poles and the response agree.
+/// Two hundred random loops with delays of fractions of a sample and of whole samples: stable if
+/// the loop in state space is, and with hidden polynomials the count of unstable poles and the
+/// response agree.
 #[test]
 fn its_stability_is_that_of_the_loop_in_states() {
     let mut state = 7;

@@ -181,7 +181,7 @@ fn noise_limits_the_gain() {
     let limits = InnerLoopLimits { noise: Some([2.0, 1e-3]), ..FREE };
     let noisy = InnerLoopProblem { limits, ..quiet }.best().unwrap().unwrap();
     assert!(noisy.feedback.gain < 1e-2 * free.feedback.gain, "{noisy:?} {free:?}");
-    // so small a gain does not change its own noise, and |H| of a high pass is at most one
+    // so small a gain does not change the noise, and |H| of a high pass is at most one
     let least = 0.5e-3;
     assert!(noisy.feedback.gain >= least * 0.95, "{noisy:?}");
     assert!(noisy.reach.loop_gain < free.reach.loop_gain);

@@ -1,4 +1,4 @@
-//! Elements solved for a point really pass it, unreachable points are rejected, and every change
+//! Elements solved for a point pass through it, unreachable points are rejected, and every change
 //! can be undone.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
@@ -73,7 +73,8 @@ fn response(element: Element, timing: Timing, frequency: f64) -> Complex64 {
     of(vec![pair.clone(), element]) / of(vec![pair])
 }
 
-/// An element solved for a random point either passes it, or the point is outside its stated reach.
+/// Elements solved for a random point: an element either passes through it, or the point is outside
+/// the stated reach.
 #[test]
 fn every_solved_element_passes_its_point() {
     let mut shares = Shares(1);
@@ -159,7 +160,7 @@ fn the_ends_of_what_can_be_reached_are_where_they_are_said_to_be() {
     }
 }
 
-/// A first-order element reaches one curve: both coordinates are accepted on it, and nowhere else.
+/// A first-order element reaches one curve: both coordinates are accepted only on it.
 #[test]
 fn a_real_pole_reaches_its_curve_and_says_so() {
     let wanted = |magnitude_db| WantedPoint {

@@ -216,8 +216,8 @@ pub(crate) fn blind(problem: &RandomProblem, nominal: Vec<f64>) -> Audit {
     }
 }
 
-/// Number of results proven: (stable, unstable, upper limit), over these problems with this number
-/// of points each.
+/// Number of proven results (stable, unstable, upper limit) over these problems with this number of
+/// points each.
 pub(crate) fn sound(problems: std::ops::Range<u64>, points: usize, sampled: bool) -> [usize; 3] {
     let mut shown = [0; 3];
     for seed in problems {
@@ -280,7 +280,8 @@ fn never_contradicted(random: &RandomProblem, proof: &Proof, values: &[f64], fre
     }
 }
 
-/// Random problems, 100, with 500 random plants and frequencies each: no point contradicts a proof.
+/// One hundred random problems with 500 random plants and frequencies each: no point contradicts a
+/// proof.
 #[test]
 fn no_plant_contradicts_a_proof() {
     let [stable, unstable, limited] = sound(0..100, 500, false);

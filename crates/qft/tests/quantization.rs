@@ -166,7 +166,7 @@ fn a_loop_that_rounds_stays_within_the_peaks() {
 }
 
 /// A command finer than the measurement lets the loop come to rest; with a coarser one it
-/// alternates between two levels for ever.
+/// alternates between two levels indefinitely.
 #[test]
 fn a_coarse_command_makes_a_limit_cycle() {
     let controller = integral_controller();

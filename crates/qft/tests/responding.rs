@@ -176,10 +176,10 @@ fn poles_are_counted_as_those_of_the_polynomials() {
     assert!(found[0] > 100 && found[1] > 100 && found[2] > 1, "{found:?}");
 }
 
-/// A search counts the poles from a table of the plant that is accurate to 3 %. For every loop that
-/// such an error cannot destabilise, the count equals that of the polynomials, if the range of the
-/// plant covers the loop below and above its crossovers; otherwise no unstable loop counts as
-/// certain. More detailed results from the table agree with the count.
+/// A search counts the poles from a table of the plant that is accurate to 3 %. For every loop
+/// whose stability such an error cannot change, the result equals that of the polynomials, if the
+/// range of the plant covers the loop below and above its crossovers; otherwise no unstable loop is
+/// called stable. More detailed results from the table agree.
 #[test]
 fn a_search_counts_poles_as_those_of_the_polynomials() {
     let mut state = 17;

@@ -113,7 +113,7 @@ fn compare(member: &Member, compensation: &Compensation, tally: &mut Tally) {
     tally.asked += 1;
     tally.undecided += judgement.undecided_tables;
     match status {
-        // such as a pole at the origin itself
+        // such as a pole at the origin
         StabilityStatus::NotResolved(_) => {
             assert_eq!(judgement.unstable_plants, 1);
             tally.unresolved += 1;
@@ -260,7 +260,7 @@ fn the_real_part_of_a_delayed_loop() {
 #[test]
 fn answers_do_not_depend_on_their_order() {
     let compensation = around(TransferFunction::gain_only(1.0), None, 0.0);
-    // k/(s - a): stable for k > a; k/(s (s + 1) (s + b)): for k < b (1 + b)
+    // stable for k > a with k/(s - a), for k < b (1 + b) with k/(s (s + 1) (s + b))
     let member = |numerator: &[f64], denominator: &[f64]| {
         compensation.member(plant(numerator, denominator, 0.0)).unwrap()
     };
@@ -309,7 +309,8 @@ fn measured_plants_are_counted_by_nyquist() {
     assert_eq!((judgement.unstable_plants, judgement.largest_real_part), (1, 0.0));
 }
 
-/// No mode is cancelled, and a controller in another time domain is rejected.
+/// Modes in all parts of the loop, which are never cancelled, and a controller in another time
+/// domain, which is rejected.
 #[test]
 fn hidden_modes_and_other_times() {
     let compensation = around(TransferFunction::gain_only(1.0), None, 0.0);

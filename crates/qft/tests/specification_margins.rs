@@ -1,4 +1,4 @@
-//! Limits and the margins that they guarantee, against the loops themselves.
+//! Limits and the margins that they guarantee, against the loops.
 #![cfg(test)]
 
 use std::f64::consts::PI;

@@ -95,7 +95,7 @@ fn two_integrators_with_dead_time() {
     check_critical_delay(&[1.0, 1.0], &[1.0, 0.0, 0.0], atan2(w, 1.0) / w);
 }
 
-/// A loop with significant gain at infinity: k (2 s + 1)/(s + 1).
+/// A loop with as much gain at infinity as at middle frequencies: k (2 s + 1)/(s + 1).
 #[test]
 fn dead_time_around_a_gain_at_infinity() {
     let status = |gain: f64, delay| found(&[2.0 * gain, gain], &[1.0, 1.0], delay).status;

@@ -144,7 +144,8 @@ fn the_plant_that_tolerates_least_need_not_have_the_least_estimate() {
     }
 }
 
-/// An unstable mode of the controller cancelled by its zero also counts in a sampled loop.
+/// An unstable mode of the controller cancelled by a zero of the controller also counts in a
+/// sampled loop.
 #[test]
 fn nothing_is_cancelled() {
     let factor = num_complex::Complex64::new(1.5, 0.0);

@@ -1,4 +1,4 @@
-//! Plants that a search evaluates and leaves again.
+//! Plants that a search evaluates temporarily.
 #![cfg(test)]
 
 use num_complex::Complex64;

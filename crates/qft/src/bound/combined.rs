@@ -1,5 +1,5 @@
-//! All specifications at one frequency together: where the nominal loop may be, which specification
-//! forbids what, and which contradict each other.
+//! All specifications at one frequency together: the allowed region of the nominal loop, the gains
+//! forbidden by each specification, and contradictions between them.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -53,8 +53,7 @@ pub struct SpecificationBound {
     pub bound: Bound,
 }
 
-/// The bounds of several specifications at one frequency, all at the same phases, and what they
-/// forbid together.
+/// The bounds of several specifications at one frequency, at common phases, and their union.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CombinedBound {
     /// The gains forbidden by any specification.
@@ -70,19 +69,19 @@ pub struct CombinedBound {
 pub enum Feasibility {
     /// Some gain is allowed at every examined phase.
     Everywhere,
-    /// No gain is allowed at some phases.
+    /// Only some phases have allowed gains.
     Somewhere {
-        /// The phases at which nothing is allowed, in increasing order.
+        /// The phases without an allowed gain, in increasing order.
         collisions: Vec<Collision>,
     },
-    /// No gain is allowed at any examined phase.
+    /// None of the examined phases has an allowed gain.
     Nowhere {
         /// The phases and the conflicting specifications, in order of increasing phase.
         collisions: Vec<Collision>,
     },
 }
 
-/// Phases at which nothing is allowed, and the specifications that together exclude every gain.
+/// Phases without an allowed gain, and the specifications that together exclude every gain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collision {
     /// Frequency, rad/s.
@@ -164,8 +163,8 @@ impl FrequencyBounds {
 
     /// Position of a nominal loop relative to the bounds, exact at its own phase.
     ///
-    /// A loop that is zero or not finite has no phase: it is judged at phase 0, where only its gain
-    /// matters.
+    /// A loop that is zero or not finite has no phase: it is evaluated at phase 0, where only its
+    /// gain matters.
     pub fn placement(&self, nominal_loop: Complex64) -> Placement {
         let gain = portable::magnitude(nominal_loop);
         let phased = gain > 0.0 && gain.is_finite();

@@ -77,8 +77,7 @@ impl Edge {
         }
     }
 
-    /// The gains forbidden by the inner points of the edge; its ends are plants and are treated as
-    /// such.
+    /// The gains forbidden by the inner points of the edge; its ends count as plants.
     ///
     /// ```text
     /// t(g) = (kappa - (e_b - e_a) - 2 g (c_b - c_a))/(2 kappa) = t_0 + t_1 g     where the quadratic is least over t
@@ -119,12 +118,13 @@ impl Edge {
     }
 }
 
-/// The gains at which -L0 lies inside a closed polygon of q = P0/P: some plant between the plants
+/// The gains at which -L0 is inside a closed polygon of q = P0/P: some plant between the plants
 /// then has 1 + L = 0.
 ///
-/// The inside is whatever the polygon winds around: a polygon that overlaps itself, such as the
-/// outline of a template over more than a full turn of phase, encloses the overlap too. Far outside
-/// the winding number is zero, and each side that the ray crosses on its way in changes it by one.
+/// The inside is the region around which the polygon winds: a polygon that overlaps itself, such as
+/// the outline of a template over more than a full turn of phase, encloses the overlap too. Far
+/// outside the winding number is zero, and each side that the ray crosses on its way in changes it
+/// by one.
 pub(super) fn inside(polygon: &[Complex64], direction: Complex64) -> GainIntervals {
     let across = |point: &Complex64| point.re * direction.im - point.im * direction.re;
     let along = |point: &Complex64| -(point.re * direction.re + point.im * direction.im);

@@ -19,7 +19,7 @@ pub(super) enum InequalityForm {
     Spread,
 }
 
-/// One plant with its limit and weight, both divided by the same power of two so that neither
+/// One plant with its limit and weight, both divided by a common power of two so that neither
 /// square overflows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct WeightedPlant {

@@ -32,7 +32,7 @@ impl Borders {
         let [from, to] = ray.window;
         let idle = |is_idle: bool| if is_idle { f64::INFINITY } else { 0.0 };
         union.intervals().iter().map(move |&[low, high]| {
-            // With nothing above, any number will do for the end.
+            // Any number will do for the end if there is nothing above.
             let end = if high < to { high } else { low };
             Borders { ends: [low, end], beyond: [idle(low <= from), idle(high >= to)] }
         })
@@ -89,7 +89,7 @@ impl Leaf {
             let b = re * ray.direction.re + im * ray.direction.im - share * along;
             let c = constant - share * other;
             let within = lesser(borders.below(a, b, c), borders.above(a, b, c));
-            // Either the discriminant is negative or the roots lie between the borders.
+            // Either the discriminant is negative or the roots are between the borders.
             let slack = -lesser(-within, b * b - a * c);
             lesser(least, lesser(slack, a))
         });

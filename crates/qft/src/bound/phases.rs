@@ -26,7 +26,7 @@ pub struct PhaseGrid {
 }
 
 impl Default for PhaseGrid {
-    /// 2 degrees, 0.05 dB, 1e-5 rad.
+    /// Defaults: 2 degrees, 0.05 dB, 1e-5 rad.
     fn default() -> PhaseGrid {
         PhaseGrid { spacing_rad: 2.0_f64.to_radians(), tolerance_db: 0.05, finest_rad: 1e-5 }
     }
@@ -75,7 +75,8 @@ pub(super) fn sampled(grid: &PhaseGrid, functions: &[&BoundFunction]) -> Vec<Pha
     samples
 }
 
-/// Adds the left sample and all that are needed between it and the right one.
+/// Adds the sample at the lower phase and all that are needed between it and the sample at the
+/// upper phase.
 fn refine(
     grid: &PhaseGrid,
     sample: &impl Fn(f64) -> PhaseSample,

@@ -12,8 +12,8 @@ const NONE: [f64; 2] = [0.0, 0.0];
 ///
 /// `discriminant` is computed by the caller from the geometry, free of cancellation; it is needed
 /// only where a and c have the same sign, since otherwise b^2 - a c is a sum. The roots are
-/// (sqrt(D) - b)/a and c/(sqrt(D) - b), or their mirror images, whichever form adds magnitudes: a
-/// may pass through zero (a limit of exactly 1), where a root goes to infinity.
+/// (sqrt(D) - b)/a and c/(sqrt(D) - b), or their mirror images, using the form that adds
+/// magnitudes: a may pass through zero (a limit of exactly 1), where a root goes to infinity.
 pub(super) fn negative_gains(a: f64, b: f64, c: f64, discriminant: f64) -> [[f64; 2]; 2] {
     let discriminant = if a * c < 0.0 { b * b - a * c } else { discriminant };
     if discriminant.is_nan() || discriminant <= 0.0 {

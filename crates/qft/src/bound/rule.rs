@@ -1,4 +1,4 @@
-//! Limit and weight that a requirement puts on one plant, in the q-plane.
+//! Limit and weight that a requirement imposes on one plant, in the q-plane.
 
 use num_complex::Complex64;
 use phea_dynamics::closed_loop::PlantPath;
@@ -54,7 +54,7 @@ impl Rule {
         }
     }
 
-    /// True if more of a plant is needed than P H.
+    /// True if more than P H of a plant is needed.
     pub(super) fn needs_paths(&self) -> bool {
         matches!(self.closed_loop.plant_path(), PlantPath::Plant | PlantPath::LoadMotion)
     }

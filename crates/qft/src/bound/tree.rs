@@ -34,9 +34,9 @@ impl Tree {
 
     /// Adds to the union all gains that some plant of the tree forbids along the ray.
     ///
-    /// First the leaves that seem to reach lowest and highest, then those that bridge the gap
-    /// between them, each found by one descent: almost all forbidden gains are known by then, and
-    /// whole hulls can be skipped.
+    /// The search begins with the leaves that seem to reach lowest and highest, then those that
+    /// bridge the gap between them, each found by one descent: almost all forbidden gains are known
+    /// by then, and whole hulls can be skipped.
     pub(super) fn collect(&self, ray: &Ray, union: &mut GainIntervals) {
         let top = self.levels.len().saturating_sub(1);
         let Some(hull) = self.hull(top, 0) else { return };

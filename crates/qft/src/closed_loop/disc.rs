@@ -23,7 +23,7 @@ pub(crate) struct DiscFactors {
 impl DiscFactors {
     const OF_A_POINT: DiscFactors = DiscFactors { sensitivity: [1.0; 2], complementary: [1.0; 2] };
 
-    /// L within this disc.
+    /// Factors for L within this disc.
     pub(crate) fn of(centre: Complex64, radius: f64) -> DiscFactors {
         if radius.is_nan() || radius <= 0.0 {
             return DiscFactors::OF_A_POINT;

@@ -12,8 +12,8 @@
 //! zeros of P'; its dead time is only in P_v and V_d.
 //!
 //! In a sampled loop P and P_v are held and sampled, V_d is not: for a sinusoidal d the samples of
-//! v are those of a sine. H_v P_v has the poles of P, and P' those of 1 - K H_v P_v in their place.
-//! H belongs to the controller, in z: its poles are zeros of P' too.
+//! v are those of a sine. H_v P_v has the poles of P; in P' these are replaced by the zeros of 1 -
+//! K H_v P_v. H belongs to the controller, in z: its poles are zeros of P' too.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::RateSensor;

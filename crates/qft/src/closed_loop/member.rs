@@ -9,7 +9,7 @@ use super::images::SamplingImages;
 use super::{Member, MemberResponse, turned};
 
 impl MemberResponse {
-    /// This response with a feed-forward of the disturbance: Pd + K V_d P.
+    /// Response with an additional feed-forward of the disturbance: Pd + K V_d P.
     pub(super) fn fed(self, forward: Complex64) -> MemberResponse {
         MemberResponse { load_motion: self.load_motion + forward * self.plant, ..self }
     }
@@ -19,9 +19,8 @@ impl Member {
     /// Responses P, Pd and H at a frequency; `None` beyond the range of a measurement.
     ///
     /// Sampling folds the response of a measured plant beyond pi/T back: its images at w + 2 pi k/T
-    /// are summed as far as the measurement reaches. Where the part beyond it could still
-    /// contribute one hundredth (assuming that it is as large as at the end), the response is
-    /// unknown.
+    /// are summed as far as the measurement reaches. If the part beyond it could still contribute
+    /// one hundredth (assuming that it is as large as at the end), the response is unknown.
     pub fn response(&self, frequency_rad_per_s: f64) -> Option<MemberResponse> {
         match self {
             Member::Continuous { plant, sensor, fed_forward } => {

@@ -1,5 +1,5 @@
-//! A plant that a search evaluates and leaves again: for a sampled one, its response at a frequency
-//! from its modes, without the zeros of its factors.
+//! A plant that a search evaluates temporarily: for a sampled one, its response at a frequency from
+//! its modes, without the zeros of its factors.
 
 use std::cell::OnceCell;
 use std::rc::Rc;

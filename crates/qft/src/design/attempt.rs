@@ -36,7 +36,7 @@ use crate::verification::{Audit, AuditEffort, AuditProblem, TrackingJudgement, a
 /// Deficit of the worst margin of the samples beyond the tolerance, without the reserve, at which a
 /// structure counts as unable to meet the specifications, dB.
 const BEYOND_TOLERANCE_DB: f64 = 0.5e-3;
-/// Margin of a counterexample relative to all samples below which the gradients of the margins are
+/// Worst margin, relative to that before the last counterexamples, below which the gradients are
 /// misleading, dB.
 const ASTRAY_DB: f64 = -6.0;
 /// The plants of a counterexample are also evaluated at these multiples of its frequency.
@@ -80,7 +80,7 @@ pub(super) enum AttemptEnding {
     Met(Box<Audit>),
     /// The best worst margin over rate is this, dB; with its audit if one was requested.
     Missed { worst_margin_db: f64, audit: Option<Box<Audit>> },
-    /// No stable controller of the structure was found.
+    /// The search found no stable controller of the structure.
     NotStabilised,
     /// The structure does not improve the result enough to earn its poles.
     NotEarned,
@@ -190,7 +190,7 @@ impl Attempt {
     }
 
     /// Shapes the loop and audits it, again with every counterexample, until search and audit
-    /// agree. Plants that were sampled in the same loop are not sampled again.
+    /// agree. Plants that were already sampled in this loop are not sampled again.
     ///
     /// # Errors
     /// [`LoopDesignError::Stopped`] by the watch; the results until then remain.
@@ -230,8 +230,8 @@ impl Attempt {
         }
     }
 
-    /// This structure, abandoned once its samples show that it cannot reach this value of
-    /// [`Attempt::reached_db`].
+    /// Attempt at this structure that is abandoned once its samples show that it cannot reach this
+    /// value of [`Attempt::reached_db`].
     pub(super) fn that_earns(self, most_db: Option<f64>) -> Attempt {
         Attempt { earns: most_db, ..self }
     }
@@ -424,7 +424,7 @@ impl Attempt {
                 Some(frequency) => frequency,
             };
             news |= self.shaping.add(&example.plants, at)?;
-            // a peak moves with the next controller, so its neighbourhood is evaluated too
+            // a peak moves with the next controller, so that its neighbourhood is also evaluated
             for share in NEIGHBOURS.into_iter().filter(|_| example.frequency_rad_per_s.is_some()) {
                 self.shaping.add(&example.plants, (at * share).clamp(lowest, highest))?;
             }
@@ -443,9 +443,9 @@ impl Attempt {
         self.search_anew(watch)
     }
 
-    /// An added plant is unstable or nearly so with the present controller, and its margins cannot
-    /// be improved from there: starts again with all plants known by now, including the last point
-    /// where the margins could be improved.
+    /// Starts a new search with all plants known by now, for an added plant that is unstable or
+    /// nearly so with the present controller, so that its margins cannot be improved from there.
+    /// The starts include the last point where the margins could be improved.
     fn search_anew(&mut self, watch: Watch<'_>) -> Result<(), Leave> {
         self.restarts += 1;
         self.x.truncate(self.structure.dimension());
@@ -481,7 +481,7 @@ impl Attempt {
     }
 }
 
-/// The tracking specification, if there is one.
+/// The tracking specification, if any.
 fn tracks(problem: &DesignProblem) -> Option<&Specification> {
     problem.specifications.iter().find(|one| one.requirement.is_tracking())
 }

@@ -31,7 +31,7 @@ const DAMPING_RATIOS: [f64; 2] = [0.1, 20.0];
 /// Decades that the gain may extend beyond those that put the crossover on a frequency of the
 /// specifications.
 const GAIN_ROOM: f64 = 100.0;
-/// Two limits that differ by less than this fraction at low frequency demand a specific gain.
+/// Two limits that differ by less than this fraction at low frequency require a specific gain.
 const SAME: f64 = 1e-6;
 
 /// The sign that feedback needs to oppose the nominal plant, and a wide range for the gain k of a
@@ -95,12 +95,12 @@ impl Ground {
         let span = span(&problem.specifications);
         let low = LowFrequency::of(problem, span[0]);
         let wanted = problem.specifications.iter().map(wanted_type).max().unwrap_or(0);
-        // an integrator would cancel a zero of the plant at the origin, and the loop would keep a
+        // an integrator would cancel a zero of the plant at the origin, and the loop would retain a
         // pole there
         let integrators = usize::try_from(wanted - low.plant_type.max(0)).unwrap_or(0);
         let corner = [(BELOW_LOWEST * span[0]).max(BELOW_HIGHEST * span[1]), ABOVE * span[1]];
         let along = logarithmic_grid(span[0], span[1] * ABOVE.sqrt(), 30).unwrap_or_default();
-        // With k = w^integrators / |P(jw)| the loop of unit corners crosses over at w.
+        // Gain k = w^integrators / |P(jw)|, for which the loop of unit corners crosses over at w.
         let gains = |integrators: usize| {
             let crossover = |frequency: &f64| {
                 let plant = portable::magnitude(low.response(problem, *frequency)?);
@@ -114,14 +114,14 @@ impl Ground {
         Ground { integrators, sign: low.sign, corner, gain, gain_alone, poles: PoleRange::default() }
     }
 
-    /// This data with poles in this range.
+    /// Copy of this data with poles in this range.
     pub(super) fn with_poles(self, poles: PoleRange) -> Ground {
         Ground { poles, ..self }
     }
 
     /// Points at which a structure is equal to a simpler controller, or nearly: poles and zeros are
     /// added at one corner each, where they cancel if there are equally many; a surplus zero is
-    /// left out.
+    /// omitted.
     pub(super) fn grown(&self, structure: &Structure, simpler: &TransferFunction) -> Vec<Vec<f64>> {
         let middle =
             [self.corner[0].max(10.0 * BELOW_HIGHEST * self.corner[1] / ABOVE), 0.3 * self.corner[1]];
@@ -196,7 +196,7 @@ pub(super) struct Corners {
 }
 
 /// The point of a structure at which it equals a simpler controller with poles and zeros added at
-/// this corner; a surplus zero is left out.
+/// this corner; a surplus zero is omitted.
 fn grown_at(structure: &Structure, simpler: &TransferFunction, corner: f64) -> Option<Vec<f64>> {
     let mut gain = simpler.gain();
     let (mut zeros, mut poles) = (simpler.zeros().to_vec(), simpler.poles().to_vec());

@@ -63,7 +63,7 @@ pub(super) fn of_beside(index: usize, examples: Vec<Counterexample>) -> Vec<Coun
     examples.into_iter().map(named).collect()
 }
 
-/// The plant that makes a family unstable.
+/// The plant for which a family is unstable.
 pub(super) fn unstable_plant(audit: &Audit) -> Vec<Counterexample> {
     match audit.stability.verdict {
         Verdict::Violated => {

@@ -53,7 +53,7 @@ pub fn sample_beside_worst(shaping: &mut Shaping, x: &[f64]) -> Result<(), LoopD
 }
 
 impl Structure {
-    /// This structure with another range of poles in place of the original one.
+    /// Structure with another range of poles in place of the original one.
     ///
     /// # Example
     /// ```

@@ -37,7 +37,7 @@ impl DesignOutcome {
         self.known.samples.as_ref()
     }
 
-    /// If it was stopped before any design existed, audits the present controller, which becomes a
+    /// Audits the present controller, if the design was stopped before any result; it becomes a
     /// design that has not converged.
     ///
     /// # Errors

@@ -16,7 +16,8 @@ pub enum ControllerChoice {
     Named {
         /// The name.
         name: NamedStructure,
-        /// As for [`ControllerChoice::Any`], for the poles of a prefilter beyond the first.
+        /// Gain for the poles of a prefilter beyond the first, as for [`ControllerChoice::Any`],
+        /// dB.
         earned_per_pole_db: f64,
     },
     /// Every suitable named structure, the shortest first; if none meets every specification,
@@ -55,7 +56,7 @@ impl ControllerChoice {
 /// Selection of prefilters.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PrefilterChoice {
-    /// No prefilter: tracking is judged by its spread.
+    /// Tracking without a prefilter, assessed by its spread.
     None,
     /// A given prefilter.
     Given(TransferFunction),
@@ -91,7 +92,7 @@ pub struct DesignOptions {
     pub controller: ControllerChoice,
     /// Selection of prefilters.
     pub prefilter: PrefilterChoice,
-    /// Seed of the random starting points: the same seed gives the same design.
+    /// Seed of the random starting points: equal seeds give equal designs.
     pub seed: u64,
     /// A margin of minus this much still counts as met, dB.
     pub tolerance_db: f64,

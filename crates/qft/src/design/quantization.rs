@@ -41,7 +41,7 @@ pub enum QuantizationError {
     /// recursion.
     #[error("the effect of rounding is computed for sampled loops whose lines are lumped")]
     Continuous,
-    /// A coefficient beyond what its format can hold.
+    /// A coefficient beyond the range of its format.
     #[error(transparent)]
     TooLarge(#[from] CoefficientTooLarge),
     /// All coefficients of a numerator are rounded to zero.

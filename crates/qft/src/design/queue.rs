@@ -90,7 +90,7 @@ pub(super) fn structures_to_try(
 }
 
 /// The named structures that suit the problem: a pure gain if the specifications require no
-/// integrator, those with an integrator if they do, after a pure gain if that is included too.
+/// integrator, those with an integrator if they do, after a pure gain if that is also included.
 fn named(
     maximum_order: usize,
     ground: &Ground,

@@ -10,9 +10,9 @@ use super::run::DesignProgress;
 use crate::kept_plants::KeptPlants;
 use crate::loop_shaping::DesignProblem;
 
-/// The structure of a design for another problem, by a descent from its controller: for example the
-/// performance possible with another timing of the loop. It is not audited. `None` if no
-/// stabilising controller is found.
+/// Reshapes the structure of a design for another problem, by a descent from its controller: for
+/// example to find the performance possible with another timing of the loop. The result is not
+/// audited. `None` if no stabilising controller is found.
 ///
 /// # Errors
 /// Errors of [`design`](super::design), and [`LoopDesignError::Stopped`] by the watch.

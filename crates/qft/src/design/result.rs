@@ -13,15 +13,15 @@ use crate::verification::{Audit, SpecificationMargin, Verdict};
 pub enum DesignStatus {
     /// The audit finds that every specification is met.
     Met,
-    /// No controller found meets every specification; this is the smallest relaxation under which
-    /// one does.
+    /// The limits cannot be met by any controller found; this is the smallest relaxation under
+    /// which one meets them.
     Infeasible(Relaxation),
     /// Search and audit did not agree within the rounds allowed.
     NotConverged {
         /// Number of rounds.
         rounds: usize,
     },
-    /// No controller found stabilises the family.
+    /// The family is not stabilised by any controller found.
     NotStabilised,
 }
 
@@ -130,8 +130,8 @@ impl Design {
         self.audit.verdict == Verdict::NotProven
     }
 
-    /// This design with other free numbers and their audit, with the status that results; its
-    /// coefficients are not rounded.
+    /// Replaces the free numbers and their audit, and updates the status; coefficients are not
+    /// rounded.
     pub fn moved(
         self,
         shaping: &Shaping,

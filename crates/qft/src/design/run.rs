@@ -127,7 +127,7 @@ pub(super) fn design_knowing(
     let findings = diagnose(problem);
     let LearntPlants { samples, plants, rounds, tried } = known;
     let mut run = DesignProgress::new(problem, options, &plants);
-    // if no controller of any order suffices, the search determines by how much
+    // if no controller of any order suffices, the search determines the deficit
     run.relaxing = findings.iter().any(|finding| finding.severity() == FindingSeverity::Impossible);
     (run.samples, run.rounds, run.tried) = (samples, rounds, tried);
     if let Some(found) = found {

@@ -24,11 +24,11 @@ use crate::loop_shaping::DesignProblem;
 const SPEEDS: [f64; 7] = [0.7, 1.0, 1.5, 2.2, 3.3, 5.0, 8.0];
 /// Factors by which the observer poles are faster than those.
 const OBSERVER: [f64; 2] = [1.0, 4.0];
-/// A pole at the origin is moved to this fraction of the slowest other pole.
+/// Fraction of the slowest other pole to which a pole at the origin is moved.
 const SLOW: f64 = 0.3;
 
-/// A pole that is slower than this fraction of the fastest pole to be moved stays slow, at these
-/// multiples of its magnitude.
+/// Fraction of the fastest pole to be moved below which a pole stays slow, and multiples of its
+/// magnitude at which it is placed.
 const MUCH_SLOWER: f64 = 0.1;
 const SLOW_SPEEDS: [f64; 3] = [0.3, 1.0, 3.0];
 

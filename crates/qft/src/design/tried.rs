@@ -14,13 +14,13 @@ use crate::verification::SpecificationMargin;
 pub enum StructureEnding {
     /// The audit finds that every specification is met.
     Met,
-    /// No controller of the structure meets every specification.
+    /// None of the controllers of the structure meets every specification.
     Missed,
     /// The improvement over a shorter valid structure is not worth the additional poles.
     NotEarned,
     /// Search and audit did not agree.
     NotConverged,
-    /// No controller of the structure stabilises every plant.
+    /// None of the controllers of the structure stabilises every plant.
     NotStabilised,
 }
 

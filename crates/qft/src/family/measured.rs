@@ -12,12 +12,12 @@ pub struct MeasuredPlant {
     pub frequencies_rad_per_s: Vec<f64>,
     /// Response P(j w) at each frequency.
     pub command: Vec<Complex64>,
-    /// Load-motion path Pd(j w) at each frequency, if it was measured.
+    /// Load-motion path Pd(j w) at each frequency, if measured.
     pub disturbance: Option<Vec<Complex64>>,
     /// Radius of the disc around each P(j w) that contains the true response, for all points
     /// jointly with the confidence of the verdict; empty if the responses are exact.
     pub radii: Vec<f64>,
-    /// Number of open-loop poles in the right half plane, which cannot be seen from a response.
+    /// Number of open-loop poles in the right half plane, which a response does not show.
     pub unstable_poles: usize,
     /// Number of poles less zeros at the origin, if stated: otherwise inferred from the slope at
     /// the lowest frequencies.
@@ -39,8 +39,8 @@ pub enum MeasurementError {
     /// There is no plant.
     #[error("no response was measured")]
     Empty,
-    /// Frequencies must be positive, finite and increasing; responses must be finite, not zero, and
-    /// equal in number; radii are not negative.
+    /// An invalid point: frequencies must be positive, finite and increasing; responses must be
+    /// finite, not zero, and equal in number; radii must not be negative.
     #[error(
         "{plant}: point {point} is not one of increasing positive frequencies with a finite response that is not zero"
     )]

@@ -20,7 +20,7 @@ const CLOSEST: f64 = 1e-6;
 /// Frequency, rad/s, and both paths there.
 pub(crate) type TabulatedPoint = (f64, [Complex64; 2]);
 
-/// The response between two frequencies in rad/s, at points so dense that the value that
+/// The response between two frequencies, rad/s, at points so dense that the value that
 /// [`MeasuredPlant::response`] interpolates halfway between any two of them has at most this
 /// relative error ([`FINE`] is 0.2 %), for searches that evaluate it thousands of times.
 ///
@@ -86,7 +86,7 @@ pub(crate) fn table(found: Vec<TabulatedPoint>, unstable_poles: Option<usize>) -
     }
 }
 
-/// Both paths between two frequencies in rad/s, as dense as a table of this tolerance requires;
+/// Both paths between two frequencies, rad/s, as dense as a table of this tolerance requires;
 /// points without a response are omitted.
 pub(crate) fn points(
     response: impl Fn(f64) -> Option<[Complex64; 2]>,

@@ -1,5 +1,5 @@
-//! Search for gain and corner: a grid, then local maxima; over the binding plants, to which the
-//! plants worst with the feedback found are added.
+//! Search for gain and corner: a grid, then local maxima; over the binding plants, to which those
+//! that are worst with the feedback found are added.
 
 use phea_dynamics::controller::InnerFeedback;
 use phea_dynamics::linear::LinearError;

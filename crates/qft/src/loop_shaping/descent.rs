@@ -15,11 +15,11 @@ pub(super) use curvature::Curvature;
 pub use outcome::{Binding, DescentResult, DescentStatus, DescentWork};
 use place::DescentPoint;
 
-/// Initial and largest trust region, in units of x.
+/// Initial and largest radius of the trust region, in units of x.
 const RADIUS_FIRST: f64 = 0.3;
 const RADIUS_NEAR: f64 = 0.1;
 const RADIUS_LARGEST: f64 = 2.0;
-/// A trust region below this ends the descent.
+/// Radius of the trust region below which the descent ends.
 const RADIUS_LEAST: f64 = 1e-8;
 /// Fractions of the predicted decrease above which a step is accepted, the region is retained, and
 /// it may grow.
@@ -50,14 +50,13 @@ pub struct DescentOptions {
     /// those of tracking at low frequency, permit no reserve; a negative reserve, equal to the
     /// tolerance of an audit, accounts for this.
     pub reserve_db: f64,
-    /// Accuracy of the objective or the worst margin, and amount by which a margin may miss its
-    /// reserve, dB.
+    /// Accuracy of objective or worst margin, and amount by which a margin may miss its reserve,
+    /// dB.
     pub tolerance_db: f64,
     /// Largest number of steps.
     pub steps_maximum: usize,
     /// True if the start is near the end, as after a margin was added: objective and violation are
-    /// then reduced together from the beginning; reducing the worst violation first may lead far
-    /// away.
+    /// then reduced together from the beginning; reducing the worst violation first may diverge.
     pub is_near: bool,
 }
 
@@ -218,7 +217,8 @@ impl Descent {
         DescentResult { x: here.map_or(x, |here| here.x), judgement, status, binding, work }
     }
 
-    /// Makes one step, with a few evaluations; returns the status of the descent once it has ended.
+    /// Makes one step, with a few evaluations; returns the status of the descent once that is
+    /// final.
     pub(super) fn advance(&mut self, problem: &mut dyn SearchProblem) -> Option<DescentStatus> {
         if self.status.is_some() {
             return self.status;
@@ -376,7 +376,7 @@ impl Descent {
         Ok(answer)
     }
 
-    /// A smaller region and a curvature that is reset, after a subproblem without a solution.
+    /// Continues with a smaller region and a reset curvature after a subproblem without a solution.
     fn without_answer(&mut self, failure: SubproblemFailure, here: DescentPoint) -> DescentPoint {
         self.work.subproblems += 1;
         self.failures += 1;

@@ -57,8 +57,8 @@ pub(super) struct ColumnLoop {
 /// Tightening of the limits, and scaling of a margin between two of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Keeping {
-    /// Every limit is tightened by this much, dB; by a fraction of it if two limits are close
-    /// together, see [`fraction_kept`].
+    /// Tightening of every limit, dB; reduced to a fraction if two limits are close together, see
+    /// [`fraction_kept`].
     pub(super) reserve_db: f64,
     /// True if a margin counts as a fraction of the room between two limits, if that is less than 1
     /// dB. Otherwise limits that meet, as those of tracking do at zero frequency, would leave no

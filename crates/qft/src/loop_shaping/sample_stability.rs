@@ -1,4 +1,4 @@
-//! Stability of a sample of plants with a given controller: evaluated thousands of times in a
+//! Stability of a sample of plants with a given controller, evaluated thousands of times in a
 //! search.
 //!
 //! ```text
@@ -72,7 +72,7 @@ pub struct SampleStability {
 /// The stability of the plants with a controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleJudgement {
-    /// Number of plants that are unstable, or cannot be shown to be stable.
+    /// Number of plants that are unstable, or that cannot be shown to be stable.
     pub unstable_plants: usize,
     /// Bound, to one percent, on the real parts of the closed-loop poles of the unstable plants
     /// (ln|z|/T in a sampled loop), 1/s: the decay rate that the loop lacks. 0 if all are stable or
@@ -198,7 +198,7 @@ impl SampleStability {
         Ok(judgement)
     }
 
-    /// A bound, to one percent, of the real parts of all closed-loop poles, 1/s; 0 if none is
+    /// Bound, to one percent, on the real parts of all closed-loop poles, 1/s; 0 if none is
     /// positive. Dead time is replaced by its third-order Padé approximation: for ranking
     /// controllers that fail in a loop with dead time, where the poles themselves are expensive to
     /// compute. `None` if a plant is measured, the controller has dead time, or the loop is sampled
@@ -314,7 +314,7 @@ impl AskedController {
         }
     }
 
-    /// The first of the resolved real parts below which all poles lie.
+    /// The first of the resolved real parts above all poles.
     fn largest_real_part(&self, plant: &PlantInLoop) -> f64 {
         first_below(|real_part| self.lies_below(plant, real_part))
     }

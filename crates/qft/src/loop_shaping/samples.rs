@@ -101,7 +101,7 @@ pub(super) struct FrequencyColumn {
     /// True if every plant is evaluated here.
     grid: bool,
     pub(super) demands: Vec<Demand>,
-    /// Indices of the plants; the following fields are in their order.
+    /// Indices of the plants; the fields that follow are in this order.
     pub(super) plants: Vec<usize>,
     /// True if the plants are the first of all, each once, in their order.
     pub(super) in_order: bool,
@@ -185,7 +185,7 @@ impl Samples {
         self.look_closely_at(&point)
     }
 
-    /// Adds this plant at the frequencies where its own response bends, since a resonance may be
+    /// Adds this plant at the frequencies where its response bends, since a resonance may be
     /// between the frequencies of the grid.
     ///
     /// # Errors

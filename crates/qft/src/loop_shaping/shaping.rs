@@ -180,8 +180,8 @@ impl Shaping {
         Ok(new)
     }
 
-    /// These plants and frequencies with other limits, and with free numbers in the ranges of
-    /// another structure with equal factors.
+    /// Shaping of these plants and frequencies with other limits, and with free numbers in the
+    /// ranges of another structure with equal factors.
     #[must_use]
     pub fn with_limits(
         &self,

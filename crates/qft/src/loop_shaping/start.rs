@@ -24,7 +24,7 @@ const STEPS_ROUGH: usize = 12;
 /// A start whose worst margin is at least this counts as feasible, dB.
 const NEAR_DB: f64 = -3.0;
 /// Half of the starts are those of least objective among the samples above this worst margin, dB:
-/// the largest worst margins lie at high gain, from which a descent may not reach the least
+/// the largest worst margins occur at high gain, from which a descent may not reach the least
 /// objective.
 const MODEST_DB: f64 = -15.0;
 
@@ -74,7 +74,7 @@ impl SearchOptions {
 pub enum SearchStatus {
     /// The status of the best descent.
     Ended(DescentStatus),
-    /// None of the evaluated points is stable.
+    /// The search found no stable point.
     NotStabilised {
         /// The least [`Judgement::instability`].
         instability: f64,
@@ -124,7 +124,7 @@ pub(super) struct JudgedPoint {
 
 impl JudgedPoint {
     /// True if this point is better: stable before unstable. Among stable points the larger worst
-    /// margin is better or, where both nearly satisfy the limits and the objective is the aim, the
+    /// margin is better or, if both nearly satisfy the limits and the objective is the aim, the
     /// lesser objective; among unstable ones the lesser instability.
     pub(super) fn is_better_than(&self, other: &JudgedPoint, aim: Aim) -> bool {
         match (is_usable(&self.judgement), is_usable(&other.judgement)) {
@@ -248,7 +248,7 @@ pub(crate) fn search_seeing<P: SearchProblem + Clone + Sync>(
 /// Name of the stage in progress reports.
 const STAGE: &str = "search";
 
-/// Pieces into which the samples are divided.
+/// Number of pieces into which the samples are divided for parallel work.
 const PIECES: usize = 8;
 
 /// A search in progress.

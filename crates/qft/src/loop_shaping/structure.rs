@@ -14,7 +14,8 @@ pub use response::StructureResponse;
 /// Decibels per neper, 20/ln 10: the effect of a change of ln|G| by one.
 pub(super) const DECIBELS_PER_NEPER: f64 = 20.0 / std::f64::consts::LN_10;
 
-/// One factor of a structure. Every number has its least and greatest value; frequencies in rad/s.
+/// One factor of a structure. Every number is given by its least and greatest value; frequencies in
+/// rad/s.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StructureFactor {
     /// An element without free numbers, such as an integrator.
@@ -329,7 +330,7 @@ impl Structure {
     /// 20 log10 |lim s^r G(s)|,      r the relative degree
     /// ```
     ///
-    /// In a sampled loop it is that of the elements before sampling: by Tustin's rule s = (2/T)
+    /// In a sampled loop it applies to the elements before sampling: by Tustin's rule s = (2/T)
     /// (z - 1)/(z + 1) goes to infinity as the frequency goes to pi/T, where G has its r zeros; the
     /// remaining factor there is this limit.
     ///

@@ -64,12 +64,12 @@ pub(super) struct PredictedStep {
 pub(super) enum SubproblemFailure {
     /// A slope, a margin or a bound is NaN.
     NotFinite,
-    /// No coordinate can move, or there is no margin to improve.
+    /// Lack of free coordinates, or of a margin to improve.
     NothingToDo,
-    /// The interior-point method ended without a solution.
+    /// The interior-point method found no solution.
     NotSolved,
-    /// Its solution violates the optimality conditions by this amount, relative to the slopes in
-    /// them.
+    /// Solution of the interior-point method that violates the optimality conditions by this
+    /// amount, relative to the slopes in them.
     Inaccurate(f64),
 }
 
@@ -410,8 +410,8 @@ mod tests {
     }
 
     /// Maximum of x + 2 y below x + y <= 4 and y <= 2: the vertex (2, 2), each margin worth 1; a
-    /// far margin and one in the direction of the objective itself have no effect. In a box a
-    /// thousand times as small, the corner.
+    /// far margin and one in the direction of the objective have no effect. In a box a thousand
+    /// times smaller: the corner.
     #[test]
     fn vertex_of_a_linear_problem() {
         let rows = [

@@ -82,8 +82,8 @@ pub struct DesignMargin {
     /// The margin of the worst plant of the template.
     pub worst: SpecificationMargin,
     /// Position of the nominal loop relative to the gains that this specification allows at its
-    /// phase, with the interior of the template counting as plants: how far it may, or must, move.
-    /// Tracking is assessed by its spread.
+    /// phase, with the interior of the template counting as plants: the permitted, or required,
+    /// move. Tracking is assessed by its spread.
     pub placement: Placement,
 }
 

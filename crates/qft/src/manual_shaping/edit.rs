@@ -10,7 +10,7 @@ pub enum Edit {
     Add {
         /// Number of elements before it.
         at: usize,
-        /// The element, and whether it is enabled.
+        /// The element, with its enabled state.
         stage: Stage,
     },
     /// Removal of this element.
@@ -19,7 +19,7 @@ pub enum Edit {
     Replace(usize, Element),
     /// Enables or disables an element; a disabled one stays in the list.
     Enable(usize, bool),
-    /// Move of an element to another position; the others keep their order.
+    /// Move of an element to another position; the order of the others is unchanged.
     Move {
         /// Present position.
         from: usize,
@@ -45,7 +45,7 @@ pub enum EditError {
     /// An element that is not a transfer function.
     #[error("the element is not a transfer function: {0}")]
     Element(LinearError),
-    /// An element that makes the loop zero.
+    /// An element for which the loop is zero.
     #[error("the element is zero at every frequency")]
     Zero,
     /// A factor that is zero or not finite, or results in such a gain.

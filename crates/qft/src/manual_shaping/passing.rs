@@ -99,7 +99,7 @@ pub enum NeededCoordinate {
 /// tan(w T/2), so that w' replaces w.
 ///
 /// # Errors
-/// [`PassError`]; for a point out of reach, it states what is within reach.
+/// [`PassError`]; for a point out of reach, it states the reach.
 ///
 /// # Example
 /// A lead that raises a loop from -12 dB, -160 degrees to 0 dB, -120 degrees at 20 rad/s; and a

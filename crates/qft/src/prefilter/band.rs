@@ -67,7 +67,7 @@ impl PrefilterBandPoint {
     /// The unit of a margin to an edge: half the width, as far as it is resolved, and at most 1 dB.
     ///
     /// If both limits meet at zero frequency, all margins shrink there with the square of the
-    /// frequency; relative to the width they do not, and represent the requirement on the
+    /// frequency; relative to the width they do not shrink, and represent the requirement on the
     /// curvature.
     pub fn rate(&self) -> f64 {
         (self.width_db() / 2.0).clamp(RESOLVED_DB, AMPLE_DB)
@@ -136,7 +136,7 @@ impl PrefilterBand {
         PrefilterBand::new(&extremes, specification)?.with_ends(compensation, members, specification)
     }
 
-    /// This band with the conditions at the ends of the frequency axis.
+    /// Adds the conditions at the ends of the frequency axis.
     ///
     /// ```text
     /// w -> 0           F(0) between the limits over T(0); if both limits meet there, F(0) is that value even if the band of the
@@ -171,8 +171,8 @@ impl PrefilterBand {
         Ok(found.first().map(|extremes| PrefilterBandPoint::new(extremes, lower, upper)))
     }
 
-    /// This band for relaxed limits: every upper one raised and every lower one reduced by this,
-    /// dB. F(0) is unchanged.
+    /// Relaxes every limit: upper ones are raised and lower ones reduced by this, dB. F(0) is
+    /// unchanged.
     pub fn relaxed(mut self, relaxation_db: f64) -> PrefilterBand {
         for point in &mut self.points {
             point.least_db -= relaxation_db;

@@ -17,11 +17,11 @@ pub struct TrackingExtremes {
     pub frequency_rad_per_s: f64,
     /// Greatest magnitude, max |T|.
     pub greatest: f64,
-    /// Index of the member that has it.
+    /// Index of the member with the greatest magnitude.
     pub greatest_member: usize,
     /// Least magnitude, min |T|.
     pub least: f64,
-    /// Index of the member that has it.
+    /// Index of the member with the least magnitude.
     pub least_member: usize,
 }
 

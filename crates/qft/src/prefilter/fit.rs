@@ -22,7 +22,7 @@ const DECIBELS_PER_NEPER: f64 = 20.0 / std::f64::consts::LN_10;
 /// ```
 ///
 /// After this scaling every rate is 1, and there is no objective: the aim is the greatest worst
-/// margin, which lies in the middle of the band where it is narrow.
+/// margin, which is in the middle of the band where it is narrow.
 #[derive(Clone, Debug)]
 pub struct PrefilterFit {
     structure: Structure,

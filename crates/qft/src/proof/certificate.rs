@@ -150,7 +150,7 @@ pub enum Claim {
         /// Proof for each box.
         Vec<StableBox>,
     ),
-    /// With this plant the loop has a pole on the boundary of stability or beyond it.
+    /// The loop with this plant has a pole on the stability boundary or beyond it.
     Unstable {
         /// The plant.
         member: CertificateMember,

@@ -54,7 +54,7 @@ pub enum CertificateNumber {
     /// Dead time, s.
     #[error("a dead time")]
     DeadTime,
-    /// Number of the sampling data.
+    /// Number in the sampling data.
     #[error("of the sampling")]
     Sampling,
 }
@@ -83,7 +83,7 @@ pub enum Rejection {
     /// A panel or a band beyond the frequencies up to which a sampled loop is known.
     #[error("{0} rad/s is beyond half of the sampling frequency")]
     Beyond(f64),
-    /// Treatment of absent dead time, or one that such a panel does not allow.
+    /// Treatment of dead time that is absent, or in a way that such a panel does not allow.
     #[error("dead time is not taken as it is on the panel from {0} rad/s")]
     Late(f64),
     /// A tree that ends too early or too late, or halves an axis that does not exist.

@@ -31,7 +31,7 @@ pub enum CertificateDifference {
         /// Side of the limit.
         side: CertificateSide,
     },
-    /// No certificate can state the loop of the problem.
+    /// The loop of the problem cannot be stated in a certificate.
     NotStated(NotProven),
 }
 

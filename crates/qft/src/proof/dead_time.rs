@@ -46,7 +46,7 @@ impl<S: Decimal> InFrequency<S> {
         }
     }
 
-    /// This polynomial in powers of x, with the frequency `low + width x`: shifted, then scaled.
+    /// Polynomial in powers of x, with the frequency `low + width x`: shifted, then scaled.
     pub(super) fn along(&self, low: S, width: S) -> InFrequency<S> {
         let one = |of: &InS<S>| {
             let mut terms = of.0.clone();

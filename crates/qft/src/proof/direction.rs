@@ -1,5 +1,5 @@
-//! The direction that proves a leaf, or the axis across which it is better halved. Nothing here
-//! needs to be trusted: the checker verifies it.
+//! The direction that proves a leaf, or the axis across which it is better halved. This code need
+//! not be trusted: the checker verifies its result.
 //!
 //! A direction at the angle phi proves the pair (U_k, V_k) if |phi - arg U_k| <= acos(|V_k|/|U_k|).
 //! All pairs are proven if these arcs have a point in common; if they have none, two of them show
@@ -13,7 +13,7 @@ use super::points::{PanelPoint, Points};
 /// Result for a leaf.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum LeafOutcome {
-    /// This direction proves it.
+    /// Direction that proves the leaf.
     Shown([i16; 2]),
     /// The leaf is to be halved across this axis.
     Halve(usize),
@@ -121,7 +121,7 @@ fn shows(direction: [i16; 2], pairs: &[PanelPoint<f64>], room: f64) -> bool {
     })
 }
 
-/// The arc of directions that show a pair, relative to this one; `None` if there is none.
+/// The arc of directions that prove a pair, relative to this one; `None` if there is none.
 fn arc([ur, ui, vr, vi, rest]: &PanelPoint<f64>, middle: Complex64) -> Option<[f64; 2]> {
     let relative = Complex64::new(*ur, *ui) * middle.conj();
     let ratio = (portable::magnitude(Complex64::new(*vr, *vi)) + rest) / portable::magnitude(relative);

@@ -11,7 +11,7 @@ use super::polynomial::InS;
 pub(crate) enum RootLocation {
     /// All roots have negative real parts.
     AllLeft,
-    /// At least one root has a non-negative real part.
+    /// The polynomial has a root with a non-negative real part.
     SomeNotLeft,
     /// The location is hidden by rounding.
     Unknown,

@@ -1,4 +1,4 @@
-//! The images of a sampled plant: what its response at w + 2 pi k/T adds to that at w.
+//! The images of a sampled plant: the contribution of its response at w + 2 pi k/T to that at w.
 //!
 //! ```text
 //! R = sum over k != 0 of q_k,    q_k = w/w_k e^(-j k W tau) N/D(j w_k),      w_k = w + k W,   W = 2 pi/T,   0 <= w <= 0.51 W
@@ -197,7 +197,7 @@ impl<S: Decimal> PlantImages<S> {
         Some(each.fold([rest; 2], sum))
     }
 
-    /// Bound on the contribution of the images not enclosed individually, up to a frequency.
+    /// Upper bound on the contribution of the images not enclosed individually, up to a frequency.
     fn rest(&self, imaged: &ImagedQuotient<S>, frequency: S) -> S {
         let order = imaged.order;
         let own = S::from(self.count as f64 + INTEGRAL_BEGIN);

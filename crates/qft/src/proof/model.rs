@@ -98,7 +98,7 @@ enum Function {
     Logarithm,
 }
 
-/// Degree of the polynomials, and number of variables.
+/// Degree of the polynomials.
 struct Model {
     degree: usize,
 }
@@ -115,7 +115,7 @@ fn difference<S: Decimal>(one: &BoxPolynomial<S>, other: &BoxPolynomial<S>) -> B
     one.plus(&other.scaled(S::from(-1.0)))
 }
 
-/// The undecided greater, or lesser, of two polynomials: one of them or their mean, whichever has
+/// The undecided greater, or lesser, of two polynomials: one of them or their mean, the one with
 /// the smallest maximum deviation. `least` and `most` bound the first less the second.
 fn extremum<S: Decimal>(
     [one, other]: [&BoxPolynomial<S>; 2],

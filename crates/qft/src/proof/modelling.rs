@@ -101,7 +101,7 @@ fn cut(certificate: &Certificate, of_box: usize) -> Option<(Halves, [f64; 2])> {
 
 /// Both halves of a box across the variable that makes the remainders smallest, with these
 /// remainders; if no halves have polynomials, across the variable that needs the fewest halvings
-/// until a part has.
+/// until a part has them.
 fn halved(certificate: &Certificate, of_box: usize) -> Option<(Halves, [f64; 2])> {
     let own = certificate.plant.boxes.get(of_box)?;
     let mut alone = certificate.clone();

@@ -43,7 +43,7 @@ const POINTS_MAXIMUM: usize = 1 << 21;
 struct PanelTerms<S> {
     whole: [InFrequency<S>; 2],
     rests: Vec<(InFrequency<S>, S)>,
-    /// Polynomials whose degrees only matter.
+    /// Polynomials of which only the degrees matter.
     unused: Vec<InFrequency<S>>,
 }
 
@@ -179,7 +179,7 @@ impl<S: Decimal> Points<S> {
     pub(super) fn with_images(&self, images: &Points<S>, [of_u, of_v]: [ImageDisc<S>; 2]) -> Points<S> {
         let greatest = |disc: &ImageDisc<S>| size(disc.center) + disc.radius;
         let most = greatest(&of_u).maximum(greatest(&of_v));
-        // nothing is proven where a denominator of an image may vanish, even if the image is
+        // nothing is proven if a denominator of an image may vanish, even if the image is
         // multiplied by zero
         let is_known = [of_u, of_v].iter().all(|disc| disc.radius.most().is_finite());
         let unknown = S::from(if is_known { 0.0 } else { f64::INFINITY });
@@ -195,7 +195,7 @@ impl<S: Decimal> Points<S> {
         out
     }
 
-    /// U and V as powers of the frequency and of the variables, in these degrees.
+    /// U and V as powers of the frequency and of the variables, with these degrees.
     fn powers(pair: [&InFrequency<S>; 2], degrees: &[usize]) -> Option<Points<S>> {
         let count = degrees.iter().try_fold(1_usize, |count, degree| count.checked_mul(degree + 1))?;
         if count > POINTS_MAXIMUM {

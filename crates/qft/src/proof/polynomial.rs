@@ -19,7 +19,7 @@ pub(crate) trait Decimal: Scalar + PartialEq {
     fn uncertain(magnitude: f64) -> Self;
     /// An enclosure of pi.
     fn pi() -> Self;
-    /// An enclosure of both and everything between them; the other number if rounding is not
+    /// An enclosure of both numbers and all those between them; the other number if rounding is not
     /// tracked.
     fn up_to(self, other: Self) -> Self;
     /// A number in the middle of this enclosure.
@@ -65,7 +65,8 @@ impl Decimal for f64 {
 }
 
 impl Decimal for Interval {
-    /// A decimal that reads as this number is nearer to it than to its neighbours; zero is exact.
+    /// Interval up to both neighbours: a decimal that reads as this number is nearer to it than to
+    /// them; zero is exact.
     fn decimal(value: f64) -> Interval {
         if value == 0.0 { Interval::from(0.0) } else { Interval::new(value.next_down(), value.next_up()) }
     }
@@ -177,7 +178,7 @@ impl<S: Decimal> BoxPolynomial<S> {
         Some((variable, (S::from(1.0) - constant / slope).times(0.5)))
     }
 
-    /// This polynomial with an increased remainder.
+    /// Copy of this polynomial with an increased remainder.
     pub(super) fn with_rest(mut self, more: S) -> BoxPolynomial<S> {
         self.rest = self.rest + more;
         self
@@ -192,7 +193,8 @@ impl<S: Decimal> BoxPolynomial<S> {
         self.rest.most() != 0.0
     }
 
-    /// True if it has no term and no remainder. A sum of intervals that may vanish is not zero.
+    /// True if it has neither a term nor a remainder. A sum of intervals that may vanish is not
+    /// zero.
     pub(crate) fn is_zero(&self) -> bool {
         self.terms.is_empty() && !self.has_rest()
     }
@@ -276,7 +278,7 @@ impl<S: Decimal> BoxPolynomial<S> {
         out
     }
 
-    /// This polynomial with x = 2 t - 1 in place of every variable.
+    /// Substitution x = 2 t - 1 in place of every variable.
     pub(super) fn with_shares(&self) -> BoxPolynomial<S> {
         let mut out = BoxPolynomial { terms: vec![], rest: self.rest };
         for (exponents, value) in &self.terms {
@@ -292,7 +294,7 @@ impl<S: Decimal> BoxPolynomial<S> {
         out
     }
 
-    /// This polynomial, unless an exponent is greater than this.
+    /// Result: this polynomial, or `None` if an exponent is greater than this.
     pub(crate) fn up_to(self, greatest: u8) -> Option<BoxPolynomial<S>> {
         let fits = self.terms.iter().flat_map(|(exponents, _)| exponents).all(|one| *one <= greatest);
         fits.then_some(self)

@@ -134,7 +134,7 @@ pub fn prove(
     let mut prover = Prover { problem, certificate: certificate.clone(), options, effort };
     let stability = prover.stability(audit, &mut part(&mut *watch, "proving", [0.0, share]))?;
     let mut certified = prover.certificate;
-    // each specification is proven for the same loop, without the claims of others
+    // each specification is proven for one loop, without the claims of others
     let mut found: Vec<Option<(SpecificationProof, Vec<Claim>)>> = vec![None; problem.specifications.len()];
     let each = found.iter_mut().zip(&audit.specifications).enumerate();
     let pieces = each.map(|(index, (place, finding))| {

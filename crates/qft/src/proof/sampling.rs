@@ -1,5 +1,5 @@
-//! Checks for a sampled loop in addition to its claims: the controller is sampled, the prefilter is
-//! stable, and the images beyond those enclosed individually are bounded.
+//! Additional checks for a sampled loop: the controller is sampled, the prefilter is stable, and
+//! the images beyond those enclosed individually are bounded.
 
 use phea_dynamics::scalar::{Interval, Scalar};
 

@@ -76,7 +76,7 @@ fn law(function: &TransferFunction) -> ControlLaw {
     }
 }
 
-/// Polynomials in z - 1 with these roots, which come in conjugate pairs.
+/// Polynomials in z - 1 with these roots, which form conjugate pairs.
 ///
 /// ```text
 /// z - p = (z - 1) + (1 - p),    (z - p)(z - conj p) = (z - 1)^2 + 2 Re(1 - p) (z - 1) + |1 - p|^2

@@ -99,7 +99,7 @@ pub(super) fn enclose(
     Ok(Some(found))
 }
 
-/// Result of a claim in all boxes.
+/// Results of a claim in all boxes.
 enum Boxes {
     Shown(Vec<Vec<FrequencyPanel>>),
     Wrong { at: PlantAtFrequency, ratio: f64 },

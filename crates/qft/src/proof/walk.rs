@@ -14,7 +14,7 @@ use super::points::PanelRange;
 /// Result of a claim over a band.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum WalkOutcome {
-    /// These panels prove it.
+    /// Panels that prove the claim.
     Shown(Vec<FrequencyPanel>),
     /// The claim is refuted at this point: |V| is greater than |U| by this ratio.
     Wrong { at: Shares, ratio: f64 },

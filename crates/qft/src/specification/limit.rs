@@ -73,7 +73,7 @@ impl LimitTable {
 }
 
 impl Limit {
-    /// The limit at this frequency; `None` beyond the ends of a table, where there is no limit.
+    /// The limit at this frequency; `None` beyond the ends of a table, where no limit applies.
     ///
     /// # Example
     /// ```
@@ -93,7 +93,7 @@ impl Limit {
         }
     }
 
-    /// This limit multiplied by a factor at every frequency.
+    /// Multiplies the limit by a factor at every frequency.
     ///
     /// # Errors
     /// [`LinearError`] for a factor that is not finite.

@@ -1,9 +1,10 @@
 //! Stability margins and the limits that guarantee them, in both directions.
 //!
-//! A limit on |L/(1+L)| or |1/(1+L)| keeps L out of a circle near -1, and so guarantees margins:
-//! each formula here is the point where that circle meets the negative real axis, the unit circle,
-//! or the point nearest to -1. All are attained by some L, so none can be sharpened. They hold for
-//! a loop that is stable when closed and satisfies the limit at every frequency.
+//! A limit on |L/(1+L)| or |1/(1+L)| excludes L from a circle near -1, and thereby guarantees
+//! margins: each formula here gives the point where that circle meets the negative real axis, the
+//! unit circle, or the point nearest to -1. All are attained by some L, so that none can be
+//! sharpened. They hold for a loop that is stable when closed and satisfies the limit at every
+//! frequency.
 //!
 //! # Example
 //! The thesis' limit of 1.3 on |L/(1+L)| (6.30) corresponds to a gain margin of almost 5 dB:
@@ -220,7 +221,7 @@ pub fn robust_stability_limit_for_phase_margin(phase_rad: f64) -> Result<f64, Ma
     limit_for_phase_margin(phase_rad)
 }
 
-/// The limit on |L/(1+L)| that keeps |1 + L| at this distance (above zero, below one) or more.
+/// The limit on |L/(1+L)| that holds |1 + L| at this distance (above zero, below one) or more.
 ///
 /// ```text
 /// W = 1/distance - 1
@@ -294,13 +295,13 @@ pub fn sensitivity_limit_for_phase_margin(phase_rad: f64) -> Result<f64, MarginE
     limit_for_phase_margin(phase_rad)
 }
 
-/// The limit on |1/(1+L)| that keeps |1 + L| at this distance (above zero) or more.
+/// The limit on |1/(1+L)| that holds |1 + L| at this distance (above zero) or more.
 ///
 /// ```text
 /// W = 1/distance
 /// ```
 ///
-/// A loop that vanishes at high frequency cannot keep more than one.
+/// A loop that vanishes at high frequency cannot have a distance above one.
 ///
 /// # Errors
 /// Error [`MarginError::OutOfRange`] for a distance outside the range.

@@ -47,7 +47,7 @@ pub struct LowerWish {
 /// The zero added to the upper limit, (s + z)/z, or the pole added to the lower, p/(s + p).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ExtraRoot {
-    /// No extra root: both limits fall at 40 dB per decade.
+    /// Absence of an extra root: both limits fall at 40 dB per decade.
     None,
     /// Root at a given z or p.
     At {
@@ -71,7 +71,7 @@ pub enum Translation {
     Exact,
 }
 
-/// A limit of tracking, and its response in time.
+/// A tracking limit, and its response in time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackingLimit {
     /// Function B_U or B_L; its magnitude is the limit.
@@ -99,7 +99,7 @@ pub enum TimeDomainError {
         /// Range of the number.
         expected: RequiredRange,
     },
-    /// The rule of thumb applies to another band than the requirement.
+    /// The rule of thumb applies to a band other than that of the requirement.
     #[error("the rule of thumb is for a band of {rule_percent} %, the wish for {wish_percent} %")]
     RuleBand {
         /// Band of the rule, percent.

@@ -1,6 +1,6 @@
 //! The dead time that brings a loop to the stability boundary.
 //!
-//! Dead time rotates L and leaves |L| unchanged, so poles can cross only at frequencies
+//! Dead time rotates L and leaves |L| unchanged, so that poles can cross only at frequencies
 //! where |n| = |c|. These are roots of one real polynomial, in w^2 or in |z - 1|^2: none of them is
 //! missed between the points of a grid.
 

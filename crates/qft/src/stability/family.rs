@@ -19,9 +19,9 @@ use crate::kept_plants::KeptPlants;
 use crate::verdict::{Evidence, PlantPoint, Verdict};
 use judged::{JudgedFamily, StabilitySearch};
 
-/// Pieces into which the plants are divided for parallel work.
+/// Number of pieces into which the plants are divided for parallel work.
 const PIECES: usize = 8;
-/// Starts of the search for each worst case.
+/// Number of starts of the search for each worst case.
 const STARTS: usize = 4;
 /// Relative change of 1 + L by folding below which folding between the examined plants is ignored;
 /// number of plants for which it is computed.
@@ -42,7 +42,7 @@ pub struct FamilyStability {
 
 /// Stability of a family: every member, then the plants between the members.
 ///
-/// Over a box, searches start from the worst members for the largest real part (where there are
+/// Over a box, searches start from the worst members for the largest real part (if there are
 /// poles), for the smallest
 /// |1 + L|, and for the least critical delay.
 ///
@@ -185,8 +185,8 @@ impl<'a> StabilityAudit<'a> {
         Ok(())
     }
 
-    /// Over a box, searches from the worst plants, and determines if a pole passes through infinity
-    /// inside it.
+    /// Over a box, searches from the worst plants, and determines whether a pole passes through
+    /// infinity inside it.
     fn look_between(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         let Family::Uncertain(family) = self.around.family else { return Ok(()) };
         // an unstable plant decides the verdict, and without polynomials a search is expensive

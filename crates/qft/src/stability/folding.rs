@@ -1,4 +1,4 @@
-//! Plants between those of a sampled family, needed where modes beyond half the sampling rate move.
+//! Plants between those of a sampled family, needed if modes beyond half the sampling rate move.
 //!
 //! ```text
 //! z = e^(pT):   while Im p moves by 2 pi/T, the sampled mode passes through the whole band, up and down

@@ -2,7 +2,7 @@
 //!
 //! Between two plants a pole becomes unstable across the stability boundary, where 1 + L vanishes
 //! at some frequency, or through infinity, where the leading coefficient of the characteristic
-//! equation vanishes without a trace at any frequency:
+//! equation vanishes without any effect at finite frequencies:
 //!
 //! ```text
 //! c_0 s^N + ... + (n_0 s^M + ...) e^(-s T) = 0
@@ -44,12 +44,12 @@ const BETWEEN: usize = 12;
 /// Poles that pass through infinity inside the box.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Infinity {
-    /// No pole does: the coefficients keep their sign, as required.
+    /// All coefficients retain their sign, as required: no pole passes through infinity.
     Kept,
     /// A pole does: these plants, given by their fractions of the box, have the opposite sign to
     /// the first member, or are next to the change of sign.
     Changed(Vec<Vec<f64>>),
-    /// No pole does, according to a search from members and corners.
+    /// Searches from members and corners find no such pole.
     Searched(SearchedInfinity),
     /// Inconclusive: the search comes too close to zero.
     Open(SearchedInfinity),

@@ -84,7 +84,7 @@ pub(crate) fn points_with_sensor(member: &Member, compensation: &Compensation) -
     frequencies.filter_map(|&frequency| point_with_sensor(member, frequency)).collect()
 }
 
-/// Response P H; `None` where it is unknown.
+/// Response P H; `None` if it is unknown.
 fn point_with_sensor(member: &Member, frequency: f64) -> Option<LoopPoint> {
     let response = member.response(frequency)?;
     let radius = member.radius(frequency, &response) * portable::magnitude(response.sensor);
@@ -171,7 +171,7 @@ impl<'a> OpenLoop<'a> {
         }
     }
 
-    /// Open loop L at any frequency; `None` where it is unknown.
+    /// Open loop L at any frequency; `None` if it is unknown.
     fn at(&self, frequency: f64) -> Option<LoopPoint> {
         if self.around == MeasuredLoop::Rate {
             let back = self.member.fed_back(frequency)?;

@@ -55,7 +55,7 @@ impl RootProduct {
         terms
     }
 
-    /// This product with z = r z', divided by r to its degree, where `shift` is r - 1.
+    /// Product with z = r z', divided by r to its degree, where `shift` is r - 1.
     pub(super) fn moved(&self, shift: f64) -> RootProduct {
         let roots = self.roots.iter().map(|root| (root - shift) / (1.0 + shift)).collect();
         RootProduct { gain: self.gain, roots }

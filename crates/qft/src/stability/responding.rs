@@ -95,7 +95,7 @@ pub(super) fn first_look<'a>(member: &'a Member, compensation: &'a Compensation)
     Some(OpenLoop::new(member, compensation, MeasuredLoop::Output, &grid, true))
 }
 
-/// Frequencies of interest of the loop itself, rad/s: an integrator slower than the plant has its
+/// Frequencies of interest of the loop, rad/s: an integrator slower than the plant has its
 /// crossover below the range of the plant.
 fn range(member: &Member, plant: &dyn RespondingPlant, compensation: &Compensation) -> [f64; 2] {
     let [mut from, to] = plant.range_rad_per_s();

@@ -13,7 +13,7 @@ use super::{BuiltTemplate, Resolution, Template, TemplateError, TemplateOptions,
 use crate::closed_loop::{Compensation, MemberResponse};
 use crate::family::{Extent, Family, MeasuredFamily};
 
-/// The template of a family at one frequency.
+/// Builds the template of a family at one frequency.
 ///
 /// ```text
 /// template(w) = { P(jw) H(jw) : P in the family }                                                    thesis 3.1.1

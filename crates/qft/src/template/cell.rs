@@ -1,7 +1,7 @@
 //! Two-dimensional faces of the box: the region that their edges enclose is filled.
 //!
-//! A closed curve in the box can be contracted to a point within the box, so every response that
-//! its image winds around is the image of a plant. The image of a face without folds is the
+//! A closed curve in the box can be contracted to a point within the box, so that every response
+//! that its image winds around is the image of a plant. The image of a face without folds is the
 //! interior of the image of its four edges; a face that folds, or contains a resonance, is divided.
 
 use super::plants::{BoxLine, Plants, Stop};

@@ -146,8 +146,8 @@ fn empty_region(plants: &Plants) -> Region {
     Region::new(corner(f64::INFINITY, f64::min), corner(f64::NEG_INFINITY, f64::max), tolerance)
 }
 
-/// This polygon with places added between corners farther apart than the tolerance: seams along
-/// which a piece was cut.
+/// Polygon with places added between corners farther apart than the tolerance: seams along which a
+/// piece was cut.
 fn divided(plants: &Plants, piece: &[Corner]) -> Vec<Corner> {
     let mut corners = vec![];
     for (from, to) in piece.iter().zip(piece.iter().cycle().skip(1)) {

@@ -1,16 +1,15 @@
 //! Growth of the region: plants on its contour are pushed outward over all coordinates, and the
 //! region that they sweep is filled.
 //!
-//! The edges of two-dimensional faces do not reach points inside the box where magnitude and phase
-//! are stationary together (their gradients are parallel there). From a plant p on the contour,
-//! with outward normal n and tangent t in the plane of phase and magnitude z, the next one is the
-//! linear solution of
+//! The edges of two-dimensional faces do not reach folds inside the box, where the gradients of
+//! magnitude and phase are parallel. From a plant p on the contour, with outward normal n and
+//! tangent t in the plane of phase and magnitude z, the next one is the linear solution of
 //!
 //! ```text
 //! maximise n . dz     subject to t . dz = 0,   dz = sum_i (dz/dp_i) d_i,   p + d in the box, |d_i| <= reach
 //! ```
 //!
-//! accepted if the plant found there is really further out; the walk from the contour to the new
+//! accepted if the plant found there is indeed further out; the walk from the contour to the new
 //! plants and back is closed, so that the region it encloses is filled.
 
 use std::collections::BTreeSet;

@@ -34,7 +34,7 @@ impl PlantPosition {
         self.phase_deg.is_finite() && self.magnitude_db.is_finite()
     }
 
-    /// This response with the phase nearest to that of another position.
+    /// Response with the phase nearest to that of another position.
     pub(super) fn beside(self, other: PlantPosition) -> PlantPosition {
         PlantPosition { phase_deg: other.phase_deg + turned_deg(self.phase_deg - other.phase_deg), ..self }
     }

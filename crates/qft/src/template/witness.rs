@@ -1,4 +1,5 @@
-//! Witnesses: plants of the box that must be inside the region, and are added to it if they do not.
+//! Witnesses: plants of the box that must be inside the region, and are added to it if they are
+//! not.
 
 use super::plants::{PlantPosition, Plants, Stop};
 use super::region::{Corner, Region};

@@ -297,7 +297,8 @@ fn parts(
     })
 }
 
-/// True if the sensor of a rate that is fed forward rotates it relative to the rest of the loop.
+/// True if the sensor of a rate that is fed forward shifts its phase relative to the rest of the
+/// loop.
 fn fed_late(member: &Member) -> bool {
     match member {
         Member::Continuous { fed_forward, .. } | Member::Sampled { fed_forward, .. } => {

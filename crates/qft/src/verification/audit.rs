@@ -53,7 +53,7 @@ pub struct AuditWork {
 pub(crate) enum AuditEffort {
     /// Complete audit.
     Complete,
-    /// No search of the box for a specification with a known margin below this, dB.
+    /// Skips the search of the box for a specification with a known margin below this, dB.
     UntilBelow(f64),
     /// Only the plants of the family and the corners of its box at every frequency, without a
     /// search between them.

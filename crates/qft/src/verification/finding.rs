@@ -1,4 +1,4 @@
-//! Conversion of margins to findings.
+//! Findings derived from margins.
 
 use std::ops::Range;
 
@@ -16,7 +16,7 @@ const ROUNDING_DB: f64 = 1e-9;
 /// Relative accuracy of the ends of violated bands.
 const EDGE_TOLERANCE: f64 = 1e-4;
 
-/// Excess over the worst margin below which a margin counts as equally bad, dB.
+/// Excess over the worst margin up to which a margin counts as equally bad, dB.
 const AS_BAD_DB: f64 = 0.05;
 /// Relative difference of the frequencies of one minimum, and fraction of the box within which its
 /// plants count as near each other.
@@ -38,7 +38,7 @@ pub(super) struct SpecificationCriteria {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FoundMargin {
     pub(super) margin: SpecificationMargin,
-    /// Upper bound of the margin over the discs of a measurement, dB; the margin itself without
+    /// Upper bound on the margin over the discs of a measurement, dB; the margin itself without
     /// discs.
     pub(super) certain_db: f64,
     /// The criterion; both for a spread.

@@ -31,8 +31,8 @@ pub(super) struct Features {
     pub(super) frequencies: Vec<f64>,
     /// Smallest and largest magnitude of a root, rad/s.
     pub(super) range: Option<[f64; 2]>,
-    /// True if every resonance of the closed loop is among them; otherwise the turning of 1 + L
-    /// decides.
+    /// True if every resonance of the closed loop is among them; otherwise the phase changes of 1 +
+    /// L are decisive.
     pub(super) complete: bool,
     pub(super) dead_time_s: f64,
 }

@@ -16,7 +16,7 @@ use crate::closed_loop::Member;
 const TURN_COSINE: f64 = 0.5;
 /// Number of times an interval is halved in search of a resonance.
 pub(super) const HALVINGS: usize = 40;
-/// Factor of the squared excess, 1.5 dB, by which refinement might raise a peak to the worst.
+/// Factor of the squared excess, 1.5 dB, by which refinement may raise a peak to the worst.
 pub(super) const WORTH_POLISHING: f64 = 0.7;
 
 /// A plant that is examined.
@@ -28,7 +28,7 @@ pub(super) struct ScannedPlant {
     pub(super) features: Features,
 }
 
-/// The worst of the family at one frequency for one criterion.
+/// The worst plant of the family at one frequency for one criterion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct WorstPlant {
     /// Squared ratio (quantity/limit)^2, or its inverse.
@@ -78,7 +78,7 @@ impl Scan {
         }
     }
 
-    /// The common frequencies with the worst of each criterion.
+    /// The common frequencies with the worst plant for each criterion.
     pub(super) fn envelope(&self) -> impl Iterator<Item = (f64, &[Option<WorstPlant>])> {
         self.grid.iter().map(|point| point.0).zip(self.worst.iter().map(Vec::as_slice))
     }
@@ -112,7 +112,7 @@ impl Scan {
         self.worst.insert(place, worst);
     }
 
-    /// The worst of the family at any frequency, by criterion.
+    /// The worst plants of the family at any frequency, by criterion.
     pub(super) fn family_at(
         &mut self,
         evaluator: &Evaluator<'_>,

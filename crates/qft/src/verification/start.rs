@@ -7,7 +7,7 @@ use super::scan::{Scan, ScannedPlant};
 use super::search::SearchTask;
 use crate::family::UncertainFamily;
 
-/// Number of local minima of a family's margin, and of plants, that are followed.
+/// Number of local minima of a family's margin, and of plants, from which searches start.
 pub(super) const STARTS: usize = 4;
 /// Factor by which frequencies must differ to count as different.
 const FREQUENCY_RATIO: f64 = 1.1;
@@ -91,7 +91,7 @@ pub(super) fn tasks(
     tasks
 }
 
-/// Fractions of a plant in the box; the middle for one without.
+/// Fractions of a plant in the box; the middle for one outside.
 fn shares(family: &UncertainFamily, point: Option<&PlantPoint>) -> Vec<f64> {
     match point {
         Some(PlantPoint::Parameters(values)) => family.shares(values),

@@ -196,8 +196,8 @@ fn a_control_effort_at_the_gain_of_a_plant_is_a_half_plane() {
     }
 }
 
-/// Extreme limits: an infinite one forbids nothing, a limit of zero everything, and an identical
-/// pair of plants has no spread.
+/// Extreme limits: an infinite one forbids nothing, a limit of zero forbids everything, and an
+/// identical pair of plants has no spread.
 #[test]
 fn limits_at_the_ends_of_what_they_can_be() {
     let constant = Limit::Constant;
@@ -266,7 +266,7 @@ fn specifications_that_collide_are_named_with_their_phases() {
     assert_eq!(forbidding(0.1), [2]);
 }
 
-/// One specification that allows nothing anywhere is named as the only one.
+/// A specification that forbids every gain is named as the only one.
 #[test]
 fn a_specification_that_forbids_everything_stands_alone() {
     let impossible = specification(Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.0)));

@@ -1,4 +1,5 @@
-//! Properties of every design: equal seeds give equal results, and it may be stopped at any time.
+//! Properties of every design: equal seeds give equal results, and a design may be stopped at any
+//! time.
 
 use phea_qft::design::{ControllerChoice, DesignOptions, DesignStatus, design};
 use phea_qft::verification::{TrackingJudgement, Verdict};
@@ -19,7 +20,7 @@ fn the_same_seed_gives_the_same_design() {
 }
 
 /// Structures of growing order: stopped at any point, the result is audited, and a design that
-/// meets the limits is not given up for one that does not.
+/// meets the limits is not abandoned for one that does not.
 #[test]
 fn a_run_that_is_stopped_has_the_best_so_far() {
     let problem = example_d();

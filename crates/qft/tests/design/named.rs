@@ -86,8 +86,8 @@ fn names(outcome: &DesignOutcome) -> Vec<NamedStructure> {
     outcome.tried().iter().filter_map(|one| one.name).collect()
 }
 
-/// Errors that are to vanish with w need an integrator, so that a pure gain fails at low frequency;
-/// it is searched first if this is requested.
+/// Limits on the error that vanish with w require an integrator, so that a pure gain fails at low
+/// frequency; it is searched first if this is requested.
 #[test]
 fn a_gain_alone_is_tried_before_those_with_an_integrator() {
     let choice = |with_gain_alone| {
@@ -200,8 +200,9 @@ fn a_notch_is_its_closed_form() {
     }
 }
 
-/// No pole of a structure with its numbers at the ends of their ranges is beyond the bound: a pair
-/// has two real poles if its damping ratio is more than 1, one of them above its natural frequency.
+/// Poles of a structure with its numbers at the ends of their ranges, none of which is beyond the
+/// bound: a pair has two real poles if its damping ratio is more than 1, one of them above its
+/// natural frequency.
 #[test]
 fn no_pole_is_faster_than_may_be_built() {
     let fastest_rad_per_s = 40.0;

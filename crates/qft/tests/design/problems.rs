@@ -160,7 +160,7 @@ pub(crate) fn audited(problem: &DesignProblem, design: &Design, tracking: Tracki
     audit(&problem, &mut unwatched).unwrap()
 }
 
-/// Asserts that the design is met, by its own result and by an independent audit.
+/// Asserts that the design is met, by its result and by an independent audit.
 pub(crate) fn assert_met(problem: &DesignProblem, design: &Design, tracking: TrackingJudgement) {
     assert_eq!(design.status, DesignStatus::Met, "{:?}", design.rounds);
     let audit = audited(problem, design, tracking);

@@ -1,5 +1,5 @@
 //! Plants with unstable and undamped poles, which few random controllers stabilise: two magnetic
-//! suspensions, a pendulum on a cart, an unstable resonance behind a delay, and a missile.
+//! suspensions, a pendulum on a cart, an unstable resonance with a delay, and a missile.
 
 use phea_dynamics::controller::Timing;
 use phea_dynamics::expression::Recorded;
@@ -158,8 +158,8 @@ fn missile() -> DesignProblem {
     problem(boxed(plant, Spacing::Linear, 2), specifications)
 }
 
-/// Asserts that the problem is met from each of these seeds, by its own result and by an
-/// independent audit.
+/// Asserts that the problem is met from each of these seeds, by its result and by an independent
+/// audit.
 fn assert_met_from(
     seeds: &[u64],
     problem: &DesignProblem,

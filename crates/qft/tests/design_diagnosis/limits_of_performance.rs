@@ -189,7 +189,7 @@ fn zeros_of_sampling_cost_sensitivity() {
     }));
 }
 
-/// The sensor's dead time and zeros are within L and count like the plant's.
+/// The sensor's dead time and zeros are included in L and count like those of the plant.
 #[test]
 fn the_sensor_is_part_of_the_loop() {
     let slow = TransferFunction::gain_only(1.0).with_dead_time(0.3).unwrap();

@@ -1,4 +1,4 @@
-//! No false alarms on published problems that can be met.
+//! Published problems that can be met, without false alarms.
 
 use phea_dynamics::expression::Recorded;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, UncertainParameter, UncertainPlant};

@@ -92,8 +92,8 @@ fn a_static_gain_that_is_not_one() {
     assert_eq!(found[0].severity(), FindingSeverity::Warning);
 }
 
-/// Measured plant with a known response only, and the dead time of the loop: the waterbed effect is
-/// reported nevertheless.
+/// Measured plant with only a known response, and the dead time of the loop: the waterbed effect is
+/// nevertheless reported.
 #[test]
 fn measured_plants_have_a_water_bed_too() {
     let frequencies: Vec<f64> = (0..60).map(|index| 10f64.powf(-2.0 + 0.1 * f64::from(index))).collect();

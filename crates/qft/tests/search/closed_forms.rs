@@ -50,7 +50,7 @@ fn full_steps_are_taken_along_a_curved_margin() {
     assert!((multiplier - 1.5).abs() < 1e-2, "{multiplier}");
 }
 
-/// Two margins that exclude one another: the worst margin is greatest half-way, and the deficit is
+/// Two margins that exclude each other: the worst margin is greatest half-way, and the deficit is
 /// reported.
 #[test]
 fn contradiction_is_named() {

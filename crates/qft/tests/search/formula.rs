@@ -16,7 +16,7 @@ pub(crate) struct Formula {
     pub(crate) bounds: Vec<[f64; 2]>,
     pub(crate) objective: Objective,
     pub(crate) margins: Margins,
-    /// Measure of instability of a loop; where it is positive, margins are invalid.
+    /// Measure of instability of a loop; if it is positive, margins are invalid.
     pub(crate) instability: Objective,
 }
 

@@ -18,7 +18,7 @@ use super::formula::differences;
 /// Number of values of k and of a; of frequencies of |T|, and of its spread.
 const POINTS: usize = 7;
 const FREQUENCIES: [usize; 2] = [61, 41];
-/// Number of plants whose margins are given for each frequency, the worst ones.
+/// Number of the worst plants whose margins are given for each frequency.
 const PLANTS_GIVEN: usize = 3;
 
 #[derive(Clone)]

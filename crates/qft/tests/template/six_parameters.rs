@@ -12,7 +12,7 @@ fn actuator<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
     coefficients(numerator, denominator)
 }
 
-/// Ranges of thesis Table 6.3.
+/// Parameter ranges of thesis Table 6.3.
 const RANGES: [Range; 6] = [
     ("viscous_friction", 100.0, 3e4, Logarithmic),
     ("flow_gain", 3.23e-5, 5.61e-5, Linear),

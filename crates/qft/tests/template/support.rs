@@ -81,7 +81,7 @@ pub(crate) fn beyond(outlines: &[Vec<Complex64>], response: Complex64, options: 
     if inside { 0.0 } else { from_rim(outlines, response, options) }
 }
 
-/// Distance of a response from the outlines themselves, in tolerances.
+/// Distance of a response from the outlines, in tolerances.
 pub(crate) fn from_rim(outlines: &[Vec<Complex64>], response: Complex64, options: &TemplateOptions) -> f64 {
     let mut least = f64::INFINITY;
     for outline in outlines {

@@ -22,7 +22,7 @@ fn scaled<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
     }
 }
 
-/// A plant whose frequencies are those of another times 10 has the same peak of |S| there.
+/// A plant whose frequencies are those of another times 10 has an equal peak of |S| there.
 #[test]
 fn a_plant_scaled_in_frequency_is_as_bad() {
     let plant = UncertainPlant::record(vec![parameter("a", 1.0, 1.0, 10.0)], scaled).unwrap();

@@ -191,7 +191,7 @@ fn a_spread_has_limits_at_both_ends() {
     assert_eq!(findings[0].verdict, Verdict::Met);
 }
 
-/// Meaningless bands, limits and plants give a result, not `Met` and not a panic.
+/// Meaningless bands, limits and plants give a result other than `Met`, without a panic.
 #[test]
 fn senseless_demands_are_not_met() {
     let integrator = gain_times(&[1.0], &[1.0, 0.0], 0.0);

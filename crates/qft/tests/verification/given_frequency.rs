@@ -99,8 +99,8 @@ fn spread_left(case: &Case, frequency: f64, allowed: f64) -> f64 {
     20.0 * (allowed * least / greatest).log10()
 }
 
-/// Lightly damped boxes, 24, whose resonances pass the given frequencies: none of 7,200 plants is
-/// worse than the result.
+/// Lightly damped boxes whose resonances pass the given frequencies, 24 of them: none of 7,200
+/// plants is worse than the result.
 #[test]
 fn no_plant_of_a_close_look_is_worse_at_a_given_frequency() {
     let mut missed = Vec::new();

@@ -118,8 +118,8 @@ fn worst(finding: &SpecificationFinding) -> f64 {
     finding.worst.as_ref().unwrap().margin_db
 }
 
-/// Random boxes, 24, with 5 specifications each and 10,000 plants and frequencies each, evaluated
-/// by the specification's definition.
+/// Twenty-four random boxes with 5 specifications each and 10,000 plants and frequencies each,
+/// evaluated by the specification's definition.
 #[test]
 fn no_plant_and_frequency_drawn_at_random_is_worse_than_the_worst_case_found() {
     for seed in 0..24 {

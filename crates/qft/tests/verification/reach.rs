@@ -112,8 +112,8 @@ fn nothing_is_demanded_beyond_the_ends_of_a_table() {
     assert_eq!((outside.verdict, outside.worst), (Verdict::NotProven, None));
 }
 
-/// Load motion acts on the plant itself: |Pd/(1+L)|, with Pd = -2 s/(s + 10), is 2 at infinity and
-/// peaks where |S| does.
+/// Load motion acts directly on the plant: |Pd/(1+L)|, with Pd = -2 s/(s + 10), is 2 at infinity
+/// and peaks where |S| does.
 #[test]
 fn load_motion_has_a_path_of_its_own() {
     let requirement = Requirement::at_most(ClosedLoop::LoadMotion, Limit::Constant(1.0));

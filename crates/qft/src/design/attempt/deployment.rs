@@ -1,9 +1,9 @@
-//! The controller of an attempt as it is deployed, with the coefficients that the computer stores.
+//! Deployment of the controller of an attempt, with the coefficients that the computer stores.
 //!
 //! The search shapes a loop without rounding, for rounded coefficients have no slopes. The rounded
 //! controller is evaluated, audited and returned. If it violates a limit that the search satisfied,
 //! the limits of the search are tightened by the loss due to rounding, and a little more, until the
-//! rounded controller satisfies the limits too: rounding moves a controller by a limited amount in
+//! rounded controller also satisfies the limits: rounding moves a controller by a limited amount in
 //! an unpredictable direction.
 
 use phea_dynamics::controller::Controller;
@@ -23,8 +23,8 @@ const DRAWN_BLINDLY_DB: f64 = 0.1;
 const DRAWS_MAXIMUM: usize = 24;
 
 impl Attempt {
-    /// The controller as it is deployed: in z if the loop is sampled, with rounded coefficients if
-    /// a format is given.
+    /// The deployed controller: in z if the loop is sampled, with rounded coefficients if a format
+    /// is given.
     pub(in crate::design) fn deployed(&self) -> Result<Controller, LoopDesignError> {
         let law = self.shaping.controller(&self.x);
         if !self.rounds_coefficients() {
@@ -39,7 +39,7 @@ impl Attempt {
         Ok(Compensation::new(&self.deployed()?, problem.sensor.clone())?)
     }
 
-    /// The deployed controller, evaluated on the samples; unusable where its coefficients cannot be
+    /// The deployed controller, evaluated on the samples; unusable if its coefficients cannot be
     /// stored.
     pub(super) fn judgement(&mut self) -> Judgement {
         if !self.rounds_coefficients() {
@@ -53,7 +53,7 @@ impl Attempt {
         judgement
     }
 
-    /// Descends further inside its limits, as long as rounding violates one that the search
+    /// Descends further inside its limits, as long as rounding violates a limit that the search
     /// satisfied. This does not apply when the worst margin itself is maximised.
     pub(super) fn draw_in(&mut self, watch: Watch<'_>) -> Result<(), Leave> {
         if !self.rounds_coefficients() || self.aim == Aim::WorstMargin {

@@ -59,7 +59,7 @@ pub(super) struct FrequencyDemand {
     partners: Vec<MemberResponse>,
 }
 
-/// The demands on all candidates over all frequencies of a boundary.
+/// The requirements on all candidates over all frequencies of a boundary.
 #[derive(Clone, Debug)]
 pub(super) struct Ceilings<'a> {
     pub(super) boundary: &'a BoundaryCells,

@@ -84,7 +84,7 @@ pub enum Finding {
         /// The least relaxation of every limit that suffices, dB.
         relaxation_db: f64,
     },
-    /// At one design frequency every loop violates some bound.
+    /// The bounds at one design frequency together forbid every loop.
     Contradiction {
         /// Frequency, rad/s.
         frequency_rad_per_s: f64,
@@ -154,7 +154,7 @@ pub enum Finding {
     UnstableController {
         /// The plant.
         plant: PlantPoint,
-        /// An odd number of its real unstable poles lies between these zeros (the second may be
+        /// An odd number of its real unstable poles is between these zeros (the second may be
         /// infinite), rad/s.
         between_zeros_rad_per_s: [f64; 2],
     },

@@ -47,7 +47,7 @@ enum LimitKind {
     Point,
 }
 
-/// Limits at a point, without the fraction of the axis on which nothing is limited.
+/// Limits at a point, without the fraction of the axis without a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Left {
     sensitivity: f64,
@@ -71,7 +71,7 @@ impl Left {
     }
 }
 
-/// Mean logarithms of the limits in each cell; infinite where nothing is limited.
+/// Mean logarithms of the limits in each cell; infinite without a limit.
 type LimitCurve = Vec<[f64; 2]>;
 
 fn curve(ceilings: impl Iterator<Item = Ceiling>) -> LimitCurve {

@@ -106,7 +106,7 @@ const DECADES_MAXIMUM: f64 = 14.0;
 const REACH: f64 = 1e3;
 
 impl BoundaryCells {
-    /// Cells around these places, none of which lies inside a cell. On the first and the last cell
+    /// Cells around these places, none of which is inside a cell. On the first and the last cell
     /// the mean logarithm of a power of s is exact.
     pub(super) fn new(plane: Plane, places: &[f64]) -> BoundaryCells {
         let sound = |place: &&f64| **place > 0.0 && place.is_finite();
@@ -152,8 +152,8 @@ fn nodes([from, to]: [f64; 2]) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    /// ln|f| of a function without zeros in the right half plane is the mean of its boundary
-    /// values, in either plane.
+    /// The mean value theorem for harmonic functions: ln|f| of a function without zeros in the
+    /// right half plane is the mean of its boundary values, in either plane.
     #[test]
     fn the_mean_over_the_boundary_is_the_value_at_the_point() {
         for (sample_time_s, point) in [

@@ -5,7 +5,7 @@ use phea_dynamics::linear::{TimeDomain, TransferFunction};
 
 use super::QuantizationError;
 
-/// A controller as it is deployed.
+/// A deployed controller.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoundedController {
     /// The controller of these sections, to be audited: feedback and prefilter are in z, a
@@ -19,8 +19,8 @@ pub struct RoundedController {
 
 /// The controller with its coefficients rounded to this format, section by section.
 ///
-/// A continuous compensator is sampled first, by the controller's own timing. A section with a pole
-/// at z = 1 retains it: a_1 + a_2 = -1 also holds after rounding, since a leaking or growing
+/// A continuous compensator is first sampled with the controller's timing. A section with a pole at
+/// z = 1 retains it: a_1 + a_2 = -1 also holds after rounding, since a leaking or growing
 /// integrator would be another controller.
 ///
 /// # Errors
@@ -28,7 +28,7 @@ pub struct RoundedController {
 /// [`QuantizationError::TooLarge`], [`QuantizationError::Vanished`], and errors of sampling.
 ///
 /// # Example
-/// A lag of 20 rad/s at 1 kHz: its static gain is (b_0 + b_1)/(1 - p), where 1 - p = 0.02 has lost
+/// Lag of 20 rad/s at 1 kHz, whose static gain is (b_0 + b_1)/(1 - p), where 1 - p = 0.02 has lost
 /// two digits.
 /// ```
 /// use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
@@ -84,7 +84,7 @@ fn rounded_section(section: &Section, format: CoefficientFormat) -> Result<Secti
     if !integrates || format == CoefficientFormat::Double {
         return Ok(Section { numerator, denominator: plain });
     }
-    // one of the two differences is exact in every format that holds both ones
+    // one of the two differences is exact in every format that represents both ones
     let [first, second] = plain;
     let kept = [[first, -1.0 - first], [-1.0 - second, second]]
         .into_iter()

@@ -38,7 +38,8 @@ pub struct RateNoise {
 /// for a controller that cannot be run.
 ///
 /// # Example
-/// With almost no feedback the command is K n, and the output of a lag is its geometric series.
+/// Loop with almost no feedback: the command is K n, and the output of a lag is its geometric
+/// series.
 /// ```
 /// use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 /// use phea_dynamics::linear::TransferFunction;
@@ -83,7 +84,7 @@ pub fn rate_noise(
 /// Errors as for [`rate_noise`].
 ///
 /// # Example
-/// With no feedback the command is k n.
+/// Loop without feedback: the command is k n.
 /// ```
 /// use phea_dynamics::controller::{Compensator, Controller, Element, InnerFeedback, Timing};
 /// use phea_dynamics::linear::TransferFunction;

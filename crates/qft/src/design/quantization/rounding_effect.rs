@@ -33,7 +33,7 @@ pub struct RoundingEffect {
     pub rms_plant: usize,
 }
 
-/// Possibility of the loop to come to rest between the levels of its converters.
+/// Ability of the loop to come to rest between the levels of its converters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitCycle {
     /// The controller does not integrate, so that it need not find the one command without error.
@@ -45,8 +45,8 @@ pub enum LimitCycle {
         /// One step of the measurement.
         measurement_step: f64,
     },
-    /// For this plant there may be no such level: the command then alternates between two levels
-    /// for ever.
+    /// A plant without such a level is possible: the command then alternates between two levels
+    /// indefinitely.
     Expected {
         /// Index of the plant with the largest step.
         plant: usize,
@@ -67,18 +67,18 @@ pub struct RoundingEffects {
     pub force_from_measurement: Option<RoundingEffect>,
     /// Effect of the rounded measurement on the command.
     pub command_from_measurement: Option<RoundingEffect>,
-    /// Immediate change of the command in its own steps for one step of the measurement, |G(z =
-    /// infinity)| q_y/q_u: far above one, the last bit of the sensor shakes the valve; far below
-    /// one, the valve does not respond until the controller has integrated.
+    /// Immediate change of the command, in steps of the command, for one step of the
+    /// measurement, |G(z = infinity)| q_y/q_u: far above one, the last bit of the sensor shakes the
+    /// valve; far below one, the valve does not respond until the controller has integrated.
     pub command_steps_at_once: Option<f64>,
-    /// Possibility of the loop to come to rest.
+    /// Ability of the loop to come to rest.
     pub limit_cycle: Option<LimitCycle>,
 }
 
 /// Effects of rounding on the loops of these plants, at the samples.
 ///
 /// An integrating controller can rest if one step of the command moves the measurement by less than
-/// one of its own steps,
+/// one step of the measurement,
 ///
 /// ```text
 /// |P H (z = 1)| q_u < q_y

@@ -16,7 +16,7 @@ pub(super) fn has_to_move(pole: Complex64) -> bool {
     size > 0.0 && pole.re > -UNDAMPED * size
 }
 
-/// The mirror image of a pole in the left half plane, well damped; a slow pole for one at the
+/// The well-damped mirror image of a pole in the left half plane; a slow pole for one at the
 /// origin.
 pub(super) fn mirror(pole: Complex64, slow: f64) -> Complex64 {
     let size = portable::magnitude(pole);
@@ -106,8 +106,8 @@ mod tests {
         }
     }
 
-    /// A pair of undamped poles becomes one with a damping ratio of 0.7 and the same magnitude, an
-    /// unstable real pole its image.
+    /// A pair of undamped poles becomes one with a damping ratio of 0.7 and unchanged magnitude, an
+    /// unstable real pole its mirror image.
     #[test]
     fn poles_are_mirrored() {
         let pair = mirror(Complex64::new(0.0, -2.0), 0.1);

@@ -5,11 +5,10 @@ use crate::loop_shaping::search::Judgement;
 /// Final status of a descent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DescentStatus {
-    /// No small step gains more than the tolerance, and no margin misses its reserve by more: a
-    /// local optimum.
+    /// Optimum: smaller steps gain less than the tolerance, and every margin satisfies its reserve
+    /// within it; a local optimum.
     Converged,
-    /// No small step brings the worst margin nearer to the reserve, dB: a local optimum of the
-    /// worst margin.
+    /// Local optimum of the worst margin: small steps do not bring it nearer to the reserve, dB.
     Infeasible {
         /// The worst margin at the end, dB.
         worst_margin_db: f64,

@@ -53,7 +53,7 @@ impl DescentPoint {
         rows
     }
 
-    /// This point, with the margins that appear only at the end of a rejected step.
+    /// Copy of this point with the margins that appear only at the end of a rejected step.
     pub(super) fn with_rows_of(mut self, there: &DescentPoint) -> DescentPoint {
         let unknown = self.unknown_rows(there);
         self.beyond.retain(|row| unknown.iter().all(|new| new.sample != row.sample));

@@ -4,15 +4,16 @@
 //! delay = (arg L + pi)/w at each gain crossover w,      margin = 20 log10(least delay/required delay)
 //! ```
 //!
-//! Poles of a stable loop cross to the right half plane at a gain crossover only, so this is the
-//! complete requirement: it is exact except for the frequency of the crossover and the phase there,
-//! which are interpolated between the frequencies of the samples, ln|L| and arg L linearly in ln w.
-//! The margin is as steep for a violated requirement as for a satisfied one, and falls to minus
-//! infinity as a loop becomes unstable. In a sampled loop it refers to the sampled L, exact for a
-//! delay of whole samples. A crossover appears or vanishes when a peak of |L| passes through 1; so
-//! the peaks below 1 and the dips above it at which the phase would violate the requirement also
-//! give slopes of margins, but are not evaluated as margins. If |L| of a continuous loop is still
-//! above 1 at the highest column, it is assumed to fall as 1/w from there, with its phase.
+//! Poles of a stable loop cross to the right half plane only at a gain crossover, so that this is
+//! the complete requirement: it is exact except for the frequency of the crossover and the phase
+//! there, which are interpolated between the frequencies of the samples, ln|L| and arg L linearly
+//! in ln w. The margin is as steep for a violated requirement as for a satisfied one, and falls to
+//! minus infinity as a loop becomes unstable. In a sampled loop it refers to the sampled L, exact
+//! for a delay of whole samples. A crossover appears or vanishes when a peak of |L| passes through
+//! 1; therefore the peaks below 1 and the dips above it at which the phase would violate the
+//! requirement also give slopes of margins, but are not evaluated as margins. If |L| of a
+//! continuous loop is still above 1 at the highest column, it is assumed to fall as 1/w from there,
+//! with its phase.
 
 use std::f64::consts::PI;
 
@@ -128,7 +129,7 @@ struct Crossover {
     share_slopes: [f64; 2],
 }
 
-/// A number in dB that depends on G at some columns.
+/// A quantity in dB that depends on G at some columns.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ColumnDependence {
     pub(crate) value_db: f64,
@@ -141,7 +142,7 @@ pub(crate) struct ColumnDependence {
 pub(crate) enum AboveColumns {
     /// Decay as 1/w.
     Falling,
-    /// No response: the columns of a sampled loop end at pi/T.
+    /// End of the response: the columns of a sampled loop end at pi/T.
     Nothing,
 }
 
@@ -260,7 +261,7 @@ impl DelaySearch<'_> {
     }
 }
 
-/// The highest gain crossover of the nominal loop, 20 log10 of its frequency in rad/s; beyond the
+/// The highest gain crossover of the nominal loop, 20 log10 of its frequency, rad/s; beyond the
 /// columns |L| is assumed to fall as 1/w. `None` if the nominal plant is not evaluated.
 pub(crate) fn bandwidth(columns: &[FrequencyColumn], feedback: &[Complex64]) -> Option<ColumnDependence> {
     let path = nominal_path(columns, feedback);

@@ -12,7 +12,7 @@ const REACH: f64 = 0.5;
 const WINDOW: f64 = 16.0;
 /// Largest number of plants retained for one column and requirement.
 const PLANTS_MAXIMUM: usize = 4;
-/// Relative difference of two squares whose margins may round to the same number, and difference of
+/// Relative difference of two squares whose margins may round to equal numbers, and difference of
 /// two c that counts as rounding error.
 const ROUNDING: f64 = 1e-9;
 
@@ -101,7 +101,7 @@ impl LimitedPlants<'_> {
     }
 }
 
-/// dB of the magnitude with this square.
+/// Magnitude with this square, dB.
 pub(crate) fn half_decibels(squared: f64) -> f64 {
     DECIBELS_PER_NEPER * 0.5 * portable::ln(squared)
 }

@@ -13,9 +13,10 @@ pub(super) struct RoundedPolynomial {
 pub(super) enum Hurwitz {
     /// All roots have negative real parts.
     Yes,
-    /// At least one root has a non-negative real part, or is at infinity.
+    /// The polynomial has a root with a non-negative real part, or at infinity.
     No,
-    /// Undecided because of the errors of the coefficients or the rounding of the table.
+    /// The test is undecided because of the errors of the coefficients or the rounding of the
+    /// table.
     Undecided,
 }
 
@@ -77,7 +78,7 @@ impl RoundedPolynomial {
         }
     }
 
-    /// Routh's table: all roots lie in the left half plane if and only if its first column has one
+    /// Routh's table: all roots are in the left half plane if and only if its first column has one
     /// sign.
     ///
     /// ```text

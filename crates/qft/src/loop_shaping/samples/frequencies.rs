@@ -28,8 +28,8 @@ const PEAKS_MAXIMUM: usize = 80;
 /// rad/s.
 ///
 /// A band from 0 begins a factor 30 below the slowest root of a plant or a limit and the least
-/// design frequency, and one to infinity ends as far above the fastest; where every band ends, the
-/// grid continues a factor 30 further, so that a search sees how close to instability the loop
+/// design frequency, and one to infinity ends equally far above the fastest; if every band ends,
+/// the grid continues a factor 30 further, so that a search sees how close to instability the loop
 /// comes there. Beyond a factor 5, the grid is four times as coarse. A sampled loop ends at pi/T.
 /// Of crowded peaks some are omitted. If plants are given by their responses, the grid is limited
 /// to the range that all of them cover.

@@ -40,9 +40,9 @@ impl<P: SearchProblem + Clone + Sync> StartSearch<'_, P> {
         Ok(())
     }
 
-    /// Continues each descent to its end, or to the end of an earlier one that it comes near; runs
-    /// as many at once as there are workers, and truncates them afterwards where they would have
-    /// joined another.
+    /// Continues each descent to its end, or to the end of an earlier one that it approaches; runs
+    /// one per worker at a time, and truncates them afterwards where they would have joined
+    /// another.
     pub(super) fn descend_to_the_end(
         &mut self,
         descents: &mut [Descent],

@@ -63,7 +63,7 @@ impl Structure {
         }
         let all: Vec<f64> = std::iter::once(gain).chain(numbers).map(portable::ln).collect();
         let ranges: Vec<[f64; 2]> = self.ranges().map(|range| range.map(portable::ln)).collect();
-        // the ends of the range belong to it
+        // the ends of the range are included
         let inside = |(x, [low, high]): (&f64, &[f64; 2])| low - SAME <= *x && *x <= high + SAME;
         all.iter().zip(&ranges).all(inside).then(|| {
             let clamped = all.iter().zip(&ranges).map(|(x, [low, high])| x.max(*low).min(*high));
@@ -169,8 +169,7 @@ fn assigned(ranges: &[Vec<[f64; 2]>], roots: &[Complex64]) -> Option<Vec<Vec<f64
 }
 
 /// Natural frequency, damping ratio and depth of a notch within the ranges of this part, and its
-/// roots taken from the zeros and poles: the deepest one whose pairs have the same natural
-/// frequency.
+/// roots taken from the zeros and poles: the deepest one whose pairs have one natural frequency.
 fn taken_notch(part: &StructureFactor, [zeros, poles]: &mut [Vec<Complex64>; 2]) -> Option<[f64; 3]> {
     let ranges: Vec<[f64; 2]> = part.ranges().collect();
     let mut best: Option<([f64; 3], [[usize; 2]; 2])> = None;

@@ -8,7 +8,7 @@ use super::{LowerWish, TimeDomainError, UpperWish};
 /// and a requirement met to this accuracy is met.
 pub(super) const TOLERANCE: f64 = 1e-9;
 
-/// Required values.
+/// Values required.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wished {
     /// Largest overshoot, percent of the step.

@@ -10,7 +10,7 @@ use super::{TimeDomainError, TimeDomainNumber};
 /// Distance between the tracking limits over frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackingSpread {
-    /// Order of the limits.
+    /// Order of the two limits.
     pub order: LimitOrder,
     /// Frequency from which on upper/lower never falls again, rad/s; `None` if it falls at the end
     /// of the band.
@@ -22,7 +22,7 @@ pub struct TrackingSpread {
     pub at_end_db: f64,
 }
 
-/// Order of the limits: is the upper one above the lower one?
+/// Order of the two limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitOrder {
     /// The upper limit is above the lower one everywhere in the band, up to a billionth of a
@@ -44,8 +44,8 @@ pub enum LimitOrder {
     },
 }
 
-/// Compares two limits of tracking over a band `[from, to]`, rad/s (`to` may be infinite), where
-/// both apply: a table sets no limit beyond its ends.
+/// Compares two tracking limits over a band `[from, to]`, rad/s (`to` may be infinite), where both
+/// apply: a table sets no limit beyond its ends.
 ///
 /// ```text
 /// spread(w) = 20 log10(B_U(w)/B_L(w))
@@ -53,7 +53,7 @@ pub enum LimitOrder {
 ///
 /// The squared ratio is a rational function of x = w^2, times a power of x between the points of
 /// tables; between the roots of its derivative it rises or falls throughout, so those roots and the
-/// ends of the pieces determine everything.
+/// ends of the pieces determine the result.
 ///
 /// # Errors
 /// Errors [`TimeDomainError::OutOfRange`] for the band, [`TimeDomainError::NeverTogether`],

@@ -28,8 +28,8 @@ use super::{ExtraRoot, LowerWish, TimeDomainError, TimeDomainNumber, TrackingLim
 ///
 /// # Errors
 /// [`TimeDomainError::OutOfRange`], [`TimeDomainError::RuleBand`], and
-/// [`TimeDomainError::ExtraRootTooSlow`] if the slow decay due to a fixed zero keeps the response
-/// out of the band.
+/// [`TimeDomainError::ExtraRootTooSlow`] if the slow decay due to a fixed zero prevents the
+/// response from settling.
 ///
 /// # Example
 /// ```
@@ -184,7 +184,8 @@ fn upper_settles(
             false => (time <= first).then_some(first),
         }
     });
-    // half the tolerance of the check, so that the check accepts a result whose extreme just fits
+    // half the tolerance of the check, so that the check accepts a result whose extreme is just
+    // inside the band
     Ok(next.is_none_or(|next| extreme(ratio, share, next) <= band * (1.0 + 0.5 * TOLERANCE)))
 }
 

@@ -5,8 +5,8 @@
 //! ln|L| = a - m ln w          fitted over at least a factor of two in frequency
 //! ```
 //!
-//! The sign of k is chosen to make `off` small, so m and m + 2 fit one response: only the slope, or
-//! a statement, distinguishes them, and a wrong choice changes the count by one pole.
+//! The sign of k is chosen to make `off` small, so that m and m + 2 fit one response: only the
+//! slope, or a statement, distinguishes them, and a wrong choice changes the count by one pole.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
