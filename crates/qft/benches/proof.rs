@@ -209,7 +209,7 @@ fn bisected(uncertain: usize, ratio: f64) -> Result<Effort, Failure> {
     Ok(Effort { leaves, seconds: begun.elapsed().as_secs_f64(), shown })
 }
 
-/// |V| <= |U| on a part, by intervals.
+/// True if |V| <= |U| on a part, by intervals.
 fn satisfies(part: &[[f64; 2]], [numerator, denominator]: [&[f64]; 2], limit: f64) -> bool {
     let own: Vec<Interval> = PARAMETERS
         .iter()

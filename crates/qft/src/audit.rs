@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! stability -> unstable: nothing more to evaluate
-//!           -> specifications, at the plants nearest to instability too -> stability of the worst plants of each
+//!           -> specifications, also at the plants nearest to instability -> stability of the worst plants of each
 //! ```
 
 use phea_dynamics::pieces::Workers;

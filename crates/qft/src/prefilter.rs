@@ -38,7 +38,7 @@ pub enum PrefilterError {
     /// A family without members.
     #[error("a family without members leaves no band")]
     NoMember,
-    /// None of the frequencies is in the band of the tracking limits.
+    /// All frequencies are outside the band of the tracking limits.
     #[error("tracking is demanded at none of the frequencies")]
     NoFrequency,
     /// The closed loop of a member could not be evaluated.

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! poles:             zeros of c + n, of c z^k + n: their largest real part                  no dead time, or whole samples
-//! argument:          turns of c + n e^(-s T) on the boundary of stability                   every loop, dead time included
+//! argument:          turns of c + n e^(-s T) on the stability boundary                       every loop, including dead time
 //! Nyquist:           turns of 1 + L                                                         measured plants, and plants without
 //!                    polynomials, whose 1 + L is enclosed between successive frequencies
 //! zero exclusion:    min |1 + L| over box and frequency: while it is not zero, no pole crosses from one plant to the next
@@ -124,7 +124,7 @@ pub enum Irresolution {
     HighEnd {
         /// Frequency, rad/s.
         frequency_rad_per_s: f64,
-        /// |L|
+        /// Gain |L|.
         gain: f64,
     },
     /// The behaviour of the loop below the first measured point cannot be inferred from the
@@ -147,7 +147,7 @@ pub enum Irresolution {
     Confidence {
         /// Frequency, rad/s.
         frequency_rad_per_s: f64,
-        /// |1 + L| at its centre.
+        /// Distance |1 + L| at its centre.
         distance: f64,
         /// Radius of the disc, of L.
         radius: f64,
@@ -162,7 +162,7 @@ pub enum Irresolution {
 /// The smallest |1 + L| along the frequency axis, the inverse of the largest sensitivity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Approach {
-    /// |1 + L|
+    /// Distance |1 + L|.
     pub distance: f64,
     /// Frequency, rad/s; infinite for a limit.
     pub frequency_rad_per_s: f64,

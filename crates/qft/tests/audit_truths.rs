@@ -293,7 +293,8 @@ fn a_leading_coefficient_without_enclosures_is_searched_for() {
     assert!(value(&changed.stability.plant) > 0.8);
 }
 
-/// |L(inf)| = 1.001 - (x - 0.37)^2 exceeds one for |x - 0.37| < 0.0316: with dead time infinitely many poles are unstable there.
+/// Gain at infinity |L(inf)| = 1.001 - (x - 0.37)^2, which exceeds one for |x - 0.37| < 0.0316:
+/// with dead time infinitely many poles are unstable there.
 #[test]
 fn a_gain_at_infinity_that_passes_one_inside_the_box_is_met() {
     let build = |dead_time_s: f64| {

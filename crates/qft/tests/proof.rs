@@ -354,7 +354,8 @@ fn a_certificate_that_was_tampered_with_is_rejected() {
     assert!(altered(&|other| each_panel(other, &|panels| panels[0].late = Late::Less)));
 }
 
-/// |U| of a leaf is that of the loop: the enclosure of a single plant at a single peak is the closed form.
+/// Enclosure of the peak of a single plant, which is the closed form, since |U| of a leaf is that
+/// of the loop.
 // ORIGIN: analytic, |T| of w^2/(s^2 + 2 d w s + w^2) is greatest 1/(2 d sqrt(1 - d^2))
 #[test]
 fn the_peak_of_a_second_order_loop_is_enclosed() {

@@ -25,7 +25,8 @@ fn law() -> Compensation {
     compensation(law, rational(&[1.0], &[1.0]), Timing::default())
 }
 
-/// |L/(1 + L)| of all 3^6 plants of the grid stays below 1.3 at a hundred frequencies from 0.01 to 10,000 rad/s, and the loop seems correct. The proof refutes it with
+/// Magnitude |L/(1 + L)| of all 3^6 plants of the grid, which stays below 1.3 at a hundred
+/// frequencies from 0.01 to 10,000 rad/s, so that the loop seems correct. The proof refutes it with
 /// a plant and a frequency where the limit is exceeded by more than 1.5 dB.
 #[test]
 fn what_a_grid_flatters_is_refuted() {

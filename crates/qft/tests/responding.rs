@@ -66,7 +66,7 @@ impl RespondingPlant for Hidden {
         self.shown()
     }
 
-    /// |s^2 + ... + w^2| is at least v^2 - w^2.
+    /// Lower bound v^2 - w^2 of |s^2 + ... + w^2|.
     fn roll_off(&self, v: f64) -> Option<f64> {
         (v > self.natural).then(|| self.gain.abs() / (v * (v * v - self.natural * self.natural)))
     }

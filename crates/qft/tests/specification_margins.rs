@@ -210,7 +210,8 @@ fn an_integrator_bears_a_quarter_turn_and_is_promised_one_radian() {
     let gain = 7.0;
     let open = real_loop(gain, &[], &[0.0]);
     assert!(close(margins(&open).delay_margin_s(), PI / 2.0 / gain, 1e-12));
-    // |L/(1+L)| = k/sqrt(w^2 + k^2) tends to k/w from below: the limit 1/(w tau) with tau = 1/k is met, no longer delay's is
+    // |L/(1+L)| = k/sqrt(w^2 + k^2) tends to k/w from below: the limit 1/(w tau) is met with tau =
+    // 1/k, but with no longer delay
     let kept = |delay: f64| {
         let limit = delay_margin_limit(delay).unwrap();
         [1e-3, 1.0, 1e3, 1e6]

@@ -86,7 +86,7 @@ fn the_closest_approach_lies_inside() {
     assert_eq!(found.delay_margin.unwrap().delay_s, f64::INFINITY);
 }
 
-/// |L| reaches one, at 1e-3/d, near p = 0.3 only.
+/// Gain |L| reaches one, at 1e-3/d, only near p = 0.3.
 #[test]
 fn a_crossover_that_no_member_has_is_found() {
     let found = audited(&dip(0.0008, Extent::Box), vec![], Timing::default());

@@ -9,7 +9,7 @@ use super::quadratic::negative_gains;
 pub(super) struct CeilingPlant {
     /// Inverse plant ratio q.
     pub(super) inverse: Complex64,
-    /// |q|
+    /// Magnitude |q|.
     pub(super) modulus: f64,
     /// Weight r.
     pub(super) weight: f64,

@@ -49,7 +49,7 @@ pub struct FrequencyBounds {
 pub struct SpecificationBound {
     /// Index of the specification, from 0.
     pub specification: usize,
-    /// Its bound.
+    /// Bound of the specification.
     pub bound: Bound,
 }
 
@@ -74,7 +74,7 @@ pub enum Feasibility {
         /// The phases without an allowed gain, in increasing order.
         collisions: Vec<Collision>,
     },
-    /// None of the examined phases has an allowed gain.
+    /// Every examined phase is without an allowed gain.
     Nowhere {
         /// The phases and the conflicting specifications, in order of increasing phase.
         collisions: Vec<Collision>,
@@ -89,7 +89,7 @@ pub struct Collision {
     /// First and last of these neighbouring phases, rad.
     pub phases_rad: [f64; 2],
     /// The fewest specifications that together forbid every gain: a single one, or two that
-    /// contradict each other, in the order of the gains that they forbid, lowest first (it demands
+    /// contradict each other, in the order of the gains that they forbid, lowest first (it requires
     /// more gain); more than two only if no two of them suffice.
     pub specifications: Vec<usize>,
 }

@@ -161,7 +161,7 @@ impl BoundFunction {
                 }
             };
             if sine > 0.0 && sine < widest {
-                // Half of the arc is kept, so that the phase does not only touch the plant's arc.
+                // The arc is halved, so that the phase does not only touch the plant's arc.
                 let half = portable::asin(sine) / 2.0;
                 let middle = portable::argument(-plant.inverse);
                 let middle = if middle > 0.0 { middle - turn } else { middle };

@@ -25,7 +25,7 @@ pub(super) enum InequalityForm {
 pub(super) struct WeightedPlant {
     /// Inverse plant ratio q.
     pub(super) inverse: Complex64,
-    /// |q|
+    /// Magnitude |q|.
     pub(super) modulus: f64,
     /// Limit W.
     pub(super) limit: f64,
@@ -40,7 +40,7 @@ impl WeightedPlant {
         ratio * ratio
     }
 
-    /// |q|^2 (1 - (r/W)^2), free of cancellation.
+    /// Constant |q|^2 (1 - (r/W)^2), free of cancellation.
     pub(super) fn sensitivity_constant(&self) -> f64 {
         let ratio = self.weight / self.limit;
         (self.limit - self.weight) / self.limit * (1.0 + ratio) * self.modulus * self.modulus
@@ -56,7 +56,7 @@ pub(super) struct Ray {
     pub(super) direction: Complex64,
     /// Reference plant q_k; zero in forms other than `Spread`.
     pub(super) other: Complex64,
-    /// |q_k|
+    /// Magnitude |q_k|.
     pub(super) other_modulus: f64,
     /// Weight r_k of the reference plant; one in forms other than `Spread`.
     pub(super) other_weight: f64,

@@ -9,11 +9,10 @@ use super::interval::GainIntervals;
 ///
 /// Halfway between two phases the bound is compared with the straight line in dB between its values
 /// at both. Where it differs by more than the tolerance, or where an interval begins, ends or
-/// splits, both halves are treated in the same way, down to the finest spacing: a closed bound
-/// closes like a square root, so that a gap of 1e-5 rad at its tip leaves 0.04 dB, whereas a grid
-/// of 5 degrees is off by decibels. In addition, one phase is placed in every arc of phases that a
-/// plant forbids and that would otherwise fall between two phases, so that no island is missed,
-/// however small.
+/// splits, both halves are treated likewise, down to the finest spacing: a closed bound closes like
+/// a square root, so that a gap of 1e-5 rad at its tip leaves 0.04 dB, whereas a grid of 5 degrees
+/// is off by decibels. In addition, one phase is placed in every arc of phases that a plant forbids
+/// and that would otherwise fall between two phases, so that no island is missed, however small.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhaseGrid {
     /// Largest distance between two phases, rad. At most 100,000 equally spaced phases are used; if
@@ -102,8 +101,8 @@ fn refine(
     refine(grid, sample, middle, right, samples);
 }
 
-/// True if three unions have the same number of intervals and each middle end is on the straight
-/// line between its neighbours.
+/// True if three unions have equally many intervals and each middle end is on the straight line
+/// between its neighbours.
 fn is_straight(
     left: &GainIntervals,
     middle: &GainIntervals,

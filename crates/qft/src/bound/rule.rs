@@ -122,7 +122,7 @@ fn is_response(value: Complex64) -> bool {
     value.is_finite() && value != Complex64::new(0.0, 0.0)
 }
 
-/// |z|, by the short way unless it might overflow or lose digits.
+/// Magnitude |z|, by the fast formula unless it might overflow or lose digits.
 fn modulus(value: Complex64) -> f64 {
     let square = value.norm_sqr();
     if square > 1e-280 && square < 1e280 { square.sqrt() } else { portable::magnitude(value) }

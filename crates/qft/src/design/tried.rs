@@ -14,13 +14,13 @@ use crate::verification::SpecificationMargin;
 pub enum StructureEnding {
     /// The audit finds that every specification is met.
     Met,
-    /// None of the controllers of the structure meets every specification.
+    /// The audit finds that every controller of the structure violates a specification.
     Missed,
     /// The improvement over a shorter valid structure is not worth the additional poles.
     NotEarned,
     /// Search and audit did not agree.
     NotConverged,
-    /// None of the controllers of the structure stabilises every plant.
+    /// The search finds no controller of the structure that stabilises every plant.
     NotStabilised,
 }
 

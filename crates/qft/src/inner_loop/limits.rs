@@ -14,7 +14,7 @@ struct PlantBehind {
     index: usize,
     /// Points of the plant with H Q in place of Q.
     points: Vec<InnerPoint>,
-    /// |H| at the points.
+    /// Magnitudes |H| at the points.
     sizes: Vec<f64>,
     /// Reference point likewise.
     reference: InnerPoint,
@@ -143,7 +143,7 @@ impl PlantsBehind {
     }
 }
 
-/// |P'| at the reference.
+/// Magnitude |P'| at the reference.
 fn closed_reference(plant: &PlantBehind, gain: f64) -> f64 {
     let reference = &plant.reference;
     portable::magnitude(reference.plant / (1.0 + gain * reference.signal))

@@ -14,7 +14,7 @@ const CORNERS: usize = 17;
 /// Number of gains of the grid at each corner, and ratio of the largest to the least.
 const GAINS: usize = 20;
 const GAIN_RATIO: f64 = 3000.0;
-/// |k Q| at the reference up to which gains are searched if nothing limits them.
+/// Magnitude |k Q| at the reference up to which gains are searched if nothing limits them.
 const BEYOND_REFERENCE: f64 = 100.0;
 /// Fraction of a cell of the grid to which a maximum is located.
 const CELL_SHARE: f64 = 1e-3;

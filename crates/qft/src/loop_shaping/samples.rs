@@ -108,11 +108,11 @@ pub(super) struct FrequencyColumn {
     /// Real part of P H.
     pub(super) loop_re: Vec<f64>,
     pub(super) loop_im: Vec<f64>,
-    /// |P H|^2
+    /// Squared magnitude |P H|^2.
     pub(super) loop_squared: Vec<f64>,
-    /// |P|^2
+    /// Squared magnitude |P|^2.
     pub(super) plant_squared: Vec<f64>,
-    /// |Pd|^2
+    /// Squared magnitude |Pd|^2.
     pub(super) load_motion_squared: Vec<f64>,
 }
 

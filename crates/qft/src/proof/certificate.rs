@@ -224,7 +224,8 @@ pub struct Sampling {
     pub bounds: Vec<Vec<RollOffBound>>,
 }
 
-/// |P(jw)| <= `ratio`/w^m from a frequency below those of all images not enclosed individually.
+/// Bound |P(jw)| <= `ratio`/w^m from a frequency below those of all images not enclosed
+/// individually.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RollOffBound {
     /// Order m, at least 1: the degree of the denominator less that of the numerator.

@@ -14,7 +14,8 @@
 //! |F T| >= W/r     U = r Wd Fn N Gn Hd             V = Wn Fd (n E + c)
 //! ```
 //!
-//! |E| = 1 on the boundary of stability, so that it is dropped if it is a factor. Powers of s that divide both are dropped.
+//! |E| = 1 on the stability boundary, so that it is dropped if it is a factor. Powers of s that
+//! divide both are dropped.
 //!
 //! In a sampled loop G and F are functions of z, and P is the plant after its hold, the sum of its
 //! images:

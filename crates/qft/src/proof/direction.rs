@@ -21,7 +21,7 @@ pub(crate) enum LeafOutcome {
     Wrong {
         /// Corner, one bit for each axis; the lowest bit is that of the frequency.
         corner: u64,
-        /// |V|/|U|
+        /// Ratio |V|/|U|.
         ratio: f64,
     },
 }

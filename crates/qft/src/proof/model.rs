@@ -279,7 +279,7 @@ impl Function {
         out
     }
 
-    /// |f_k| at most, for every center between two numbers.
+    /// Upper bound of |f_k| for every centre between two numbers.
     fn beyond<S: Decimal>(self, [least, most]: [S; 2], order: usize) -> S {
         let nearest = if least.least() > 0.0 { least } else { -most };
         let power = |of: S| (0..order).fold(S::from(1.0), |product, _| product * of);

@@ -105,7 +105,8 @@ impl<S: Decimal> ImagedPlant<S> {
     }
 }
 
-/// |U| at most and |V| at least, at a frequency or in the limit towards infinity; coefficients are numbers.
+/// Upper bound of |U| and lower bound of |V|, at a frequency or in the limit towards infinity;
+/// coefficients are numbers.
 pub(super) fn at_point<S: Decimal>(claimed: &Claimed<S>, frequency_rad_per_s: f64) -> Option<[S; 2]> {
     // the first control point over a panel is the value at its start
     let is_late = !claimed.dead_time.value.is_zero();

@@ -171,7 +171,7 @@ pub(super) fn corners(certificate: &Certificate, of_box: usize) -> impl Iterator
     })
 }
 
-/// |V|/|U| at a frequency; towards infinity the limit, where dead time does not matter there.
+/// Ratio |V|/|U| at a frequency; its limit towards infinity, if dead time does not matter there.
 fn ratio_at(claimed: &Claimed<f64>, frequency_rad_per_s: f64) -> f64 {
     let size = |value: Option<[f64; 2]>| {
         value.map_or(f64::NAN, |[re, im]| portable::magnitude(Complex64::new(re, im)))

@@ -82,7 +82,7 @@ impl Characteristic {
         Ok(angles.collect())
     }
 
-    /// |p|^2 on the stability boundary as a polynomial in q = |s|^2 or q = |v|^2.
+    /// Squared magnitude |p|^2 on the stability boundary as a polynomial in q = |s|^2 or q = |v|^2.
     ///
     /// ```text
     /// continuous:  s^2 = -q:          p = a(q) + b(q) s,    |p|^2 = a^2 + b^2 q

@@ -4,7 +4,7 @@
 //! ```text
 //! f(s) = c(s) + n(s) e^(-s T)          has no poles, so neither integrators nor an unstable plant need a detour
 //! Z = N/2 - (1/pi) (change of arg f(j w), w = 0 .. infinity)       N = degree of c
-//! Z = N - (1/pi) (change of arg f, w T = 0 .. pi)                  sampled: zeros on or outside of the unit circle
+//! Z = N - (1/pi) (change of arg f, w T = 0 .. pi)                  sampled: zeros on or outside the unit circle
 //! ```
 //!
 //! The steps are chosen so that f, expanded at the left end, stays within a disc that does not
@@ -81,7 +81,7 @@ impl Characteristic {
         Err(Irresolution::Budget { frequency_rad_per_s: self.frequency(angle) })
     }
 
-    /// |1 + L|; infinite at a pole of L.
+    /// Distance |1 + L|; infinite at a pole of L.
     pub(super) fn distance(&self, angle: f64) -> f64 {
         let (denominator, numerator) = self.at(angle);
         let distance = portable::magnitude(denominator + numerator) / portable::magnitude(denominator);
@@ -231,7 +231,7 @@ impl Expansion {
     }
 }
 
-/// |Re| + |Im|, which is never below the magnitude.
+/// Bound |Re| + |Im|, which is never below the magnitude.
 fn size(value: &Complex64) -> f64 {
     value.re.abs() + value.im.abs()
 }

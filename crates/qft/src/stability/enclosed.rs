@@ -23,7 +23,7 @@ const STEPS_MAXIMUM: usize = 100_000;
 /// Step, as a fraction of its frequency, at which a loop that is still not enclosed counts as being
 /// on the boundary.
 const SHORTEST: f64 = 1e-10;
-/// |L| that is never reached beyond the last frequency.
+/// Gain |L| that is never reached beyond the last frequency.
 const SMALL_GAIN: f64 = 0.5;
 /// Factor above the range of the plant up to which the loop is followed.
 const FAR_ABOVE: f64 = 1e4;

@@ -81,7 +81,7 @@ pub enum StabilityMethod {
 /// The smallest |1 + L| over family and frequency, the inverse of the largest sensitivity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosestApproach {
-    /// |1 + L|
+    /// Distance |1 + L|.
     pub distance: f64,
     /// Frequency, rad/s; infinite for a limit.
     pub frequency_rad_per_s: f64,

@@ -26,9 +26,9 @@ const TURN_MAXIMUM: f64 = std::f64::consts::FRAC_PI_3;
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
 /// Least distance of points of a resolved response, as a fraction of their frequency.
 const CLOSEST: f64 = 1e-9;
-/// |L| that is well below one.
+/// Gain |L| that counts as well below one.
 const SMALL_GAIN: f64 = 0.5;
-/// |L| that is well above one.
+/// Gain |L| that counts as well above one.
 const LARGE_GAIN: f64 = 2.0;
 /// Relative accuracy of the frequency of the least |1 + L|.
 const POLISHED: f64 = 1e-7;

@@ -13,7 +13,8 @@ use crate::family::{COARSE, tabulated};
 
 /// Points per decade of a first evaluation, which does not count poles.
 const POINTS_PER_DECADE: f64 = 30.0;
-/// |L| reached by integrators at the start of an evaluation, and number of decades searched below the range of the plant.
+/// Gain |L| reached by integrators at the start of an evaluation, and number of decades searched
+/// below the range of the plant.
 const LARGE_GAIN: f64 = 2.0;
 const DECADES_BELOW: i32 = 9;
 

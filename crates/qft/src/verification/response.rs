@@ -271,7 +271,7 @@ impl LoopAt {
         })
     }
 
-    /// |Pd a|^2; a denominator that Pd shares with P drops out.
+    /// Squared magnitude |Pd a|^2; a denominator shared by Pd and P cancels.
     fn load_motion_squared(&self, closed: &LoopAround) -> f64 {
         let Fraction { numerator, denominator } = closed.load_motion;
         if denominator == closed.loop_denominator {

@@ -124,7 +124,8 @@ fn between_its_phases_a_bound_is_as_straight_as_promised() {
     assert!(worst < 0.11 && compared > 1000, "{worst} dB, {compared} compared");
 }
 
-/// |S| <= 800 forbids a disc of a fourteenth of a degree around each plant, far below the spacing of the grid.
+/// Limit |S| <= 800, which forbids a disc of a fourteenth of a degree around each plant, far below
+/// the spacing of the grid.
 #[test]
 fn no_small_island_is_overlooked() {
     let plants = [(1.0, 0.0), (0.2, 1.3), (2.0, -0.7), (1.0, 2.9)].map(|(magnitude, angle): (f64, f64)| {
@@ -180,7 +181,8 @@ fn limits_at_and_beside_one_lose_no_digit() {
     }
 }
 
-/// |G/(1 + L)| <= W with W |P| = 1: the quadratic becomes a line, and the bound -|q|/(2 cos) and above.
+/// Limit |G/(1 + L)| <= W with W |P| = 1: the quadratic becomes a line, and the bound -|q|/(2 cos)
+/// and above.
 #[test]
 fn a_control_effort_at_the_gain_of_a_plant_is_a_half_plane() {
     for gain in [3.0, 0.7, 1e-6, 1e9] {
@@ -228,7 +230,8 @@ fn limits_at_the_ends_of_what_they_can_be() {
     assert!(matches!(refused(&none, constant(1.0)), BoundError::NoPlants { .. }));
 }
 
-/// |S| <= W and |T| <= W with W < 1: both reach their limits where |L| = 1 and 2 |cos(phi/2)| = 1/W; nearer to -180 degrees no gain remains.
+/// Limits |S| <= W and |T| <= W with W < 1: both reach their limits where |L| = 1 and
+/// 2 |cos(phi/2)| = 1/W; nearer to -180 degrees no gain remains.
 #[test]
 fn specifications_that_collide_are_named_with_their_phases() {
     let limit = Limit::Constant(0.9);
@@ -279,7 +282,7 @@ fn a_specification_that_forbids_everything_stands_alone() {
     assert_eq!((collisions[0].specifications.as_slice(), collisions[0].phases_rad), (&[1][..], [-TAU, 0.0]));
 }
 
-/// |T| <= 2 forbids (2/3, 2) at -180 degrees.
+/// Limit |T| <= 2, which forbids (2/3, 2) at -180 degrees.
 #[test]
 fn a_loop_is_placed_with_its_distance_in_db() {
     let bounds = FrequencyBounds::new(

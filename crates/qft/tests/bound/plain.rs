@@ -61,7 +61,7 @@ fn plain(template: &Template, requirement: &Requirement, phase_rad: f64) -> Gain
     GainIntervals::union_of(found)
 }
 
-/// |P_i G/(1 + L_i)| <= d |P_k G/(1 + L_k)| with x = P H/(P0 H0).
+/// Inequality |P_i G/(1 + L_i)| <= d |P_k G/(1 + L_k)| with x = P H/(P0 H0).
 fn pair(
     template: &Template,
     i: &TemplatePoint,

@@ -160,7 +160,7 @@ fn inside(outline: &[Complex64], nominal: Complex64, point: Complex64) -> bool {
     })
 }
 
-/// |G/(1 + L)| over a square of the plane of P, sampled densely.
+/// Control effort |G/(1 + L)| over a square of the plane of P, sampled densely.
 #[test]
 fn a_filled_bound_of_the_control_effort_serves_the_region_in_the_plane_of_the_plant() {
     let mut numbers = Numbers(0x1234_5678_9ABC_DEF1);

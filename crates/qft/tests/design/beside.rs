@@ -22,7 +22,7 @@ fn lagging([gain, lag]: [f64; 2]) -> UncertainPlant {
 const QUICK: [f64; 2] = [1.0, 0.01];
 const LATE: [f64; 2] = [4.0, 0.2];
 
-/// |T| <= 1.3 and |S| <= 2 |s/(s + 3)|, for the fast plant and these others.
+/// Limits |T| <= 1.3 and |S| <= 2 |s/(s + 3)|, for the fast plant and these others.
 fn regulation(others: &[[f64; 2]]) -> DesignProblem {
     let frequencies = [0.1, 1.0, 10.0];
     let sensitivity = Requirement::at_most(ClosedLoop::Sensitivity, rational(&[2.0, 0.0], &[1.0, 3.0]));

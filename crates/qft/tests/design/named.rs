@@ -30,7 +30,8 @@ fn family(denominator: [f64; 2]) -> Family {
     boxed(plant, Spacing::Linear, 3)
 }
 
-/// |S| <= w/corner up to 0.4 of the corner, which requires one integrator of at least this gain.
+/// Limit |S| <= w/corner up to 0.4 of the corner, which requires one integrator of at least this
+/// gain.
 fn slow_errors(corner: f64) -> Specification {
     let requirement = Requirement::at_most(ClosedLoop::Sensitivity, rational(&[1.0, 0.0], &[corner]));
     demand(requirement, &[0.1 * corner, 0.2 * corner, 0.4 * corner], [0.0, 0.4 * corner])
@@ -65,7 +66,7 @@ fn ending(outcome: &DesignOutcome, name: NamedStructure) -> Option<StructureEndi
     outcome.tried().iter().find(|one| one.name == Some(name)).map(|one| one.ending)
 }
 
-/// Integral control alone gives T = k K/(s (s + 1) + k K) for the lag, whose peak is 1.2 at k K =
+/// Pure integral control gives T = k K/(s (s + 1) + k K) for the lag, whose peak is 1.2 at k K =
 /// 1.12: it satisfies the limits up to a corner of 1, and with a zero at -1 beyond.
 #[test]
 fn any_takes_the_shortest_that_is_met() {

@@ -26,7 +26,7 @@ fn lag() -> Family {
     boxed(plant, Spacing::Linear, 3)
 }
 
-/// |T| <= 1.3 and |S| <= 2 |s/(s + 3)| at 100 Hz.
+/// Limits |T| <= 1.3 and |S| <= 2 |s/(s + 3)| at 100 Hz.
 fn regulation() -> DesignProblem {
     let frequencies = [0.1, 1.0, 10.0];
     let sensitivity = Requirement::at_most(ClosedLoop::Sensitivity, rational(&[2.0, 0.0], &[1.0, 3.0]));

@@ -225,9 +225,9 @@ fn a_missile_is_met() {
     assert_met_from(&[1], &missile(), with_prefilter, TrackingJudgement::Magnitude);
 }
 
-/// |1/(1+L)| <= 0.6 and |L/(1+L)| <= 0.6 up to infinity keep L between 2/3 and 3/2 wherever it is real: no pure gain does so for a plant that
-/// falls from 1 to 0.2 between two frequencies, and no controller with fewer zeros than poles has a
-/// nonzero L at infinity.
+/// Limits |1/(1+L)| <= 0.6 and |L/(1+L)| <= 0.6 up to infinity, which confine L to between 2/3 and
+/// 3/2 wherever it is real: no pure gain does so for a plant that falls from 1 to 0.2 between two
+/// frequencies, and no controller with fewer zeros than poles has a nonzero L at infinity.
 #[test]
 fn a_pair_of_zeros_over_a_pair_of_poles_is_tried() {
     let plant = uncertain(&[("k", 1.0, 0.98, 1.02)], |p| {

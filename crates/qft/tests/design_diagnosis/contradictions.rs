@@ -5,7 +5,8 @@ use phea_qft::specification::{ClosedLoop, Limit, Requirement};
 
 use super::problems::{boxed, decibels, demand, impossibilities, plain, problem, rational, single};
 
-/// |S| + |T| >= 1: a fraction of each is missing, and a common factor brings the sum to 1.
+/// Constraint |S| + |T| >= 1: a fraction of each is missing, and a common factor brings the sum
+/// to 1.
 #[test]
 fn sensitivity_against_complementary_sensitivity() {
     let of = |limit_of_s: f64| {
@@ -78,7 +79,7 @@ fn spread_against_stability_takes_two_plants() {
         let effort = Requirement::at_most(ClosedLoop::ControlEffort, Limit::Constant(0.5));
         problem(family, vec![demand(tracking, &[1.0], [1.0, 1.0]), demand(effort, &[1.0], [1.0, 1.0])])
     };
-    // |G| must be small: the spread stays near 10, whatever the limits of |T|
+    // |G| must be small: the spread stays near 10, for any limit on |T|
     let found = impossibilities(&of(1.2));
     let Some(Finding::Contradiction { conflicts, relaxation_db, frequency_rad_per_s: 1.0, .. }) =
         found.first()

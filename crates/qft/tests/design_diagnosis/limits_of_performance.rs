@@ -42,7 +42,7 @@ fn zero(z: f64) -> ConstraintPlace {
     ConstraintPlace::RightHalfPlaneZero(Complex64::new(z, 0.0))
 }
 
-/// |T| >= e^(p T_d) |z + p|/|z - p|, and likewise without dead time for S.
+/// Least peak |T| >= e^(p T_d) |z + p|/|z - p|, and likewise without dead time for S.
 #[test]
 fn pole_zero_and_dead_time_raise_the_least_peak() {
     check(&single(&[1.0], &[1.0, -2.0], 0.3), limit_of_t, (0.6_f64).exp(), pole(2.0));
@@ -60,14 +60,16 @@ fn a_complex_pair_counts_twice() {
     check(&single(&[1.0, -3.0], &[1.0, -2.0, 5.0], 0.0), limit_of_s, 2.5, zero(3.0));
 }
 
-/// |G S| >= 1/|P_s(p)| with P_s = k/(s + p): 2 p/k for k/(s - p), which proportional control reaches.
+/// Least control effort |G S| >= 1/|P_s(p)| with P_s = k/(s + p): 2 p/k for k/(s - p), which
+/// proportional control reaches.
 #[test]
 fn an_unstable_plant_costs_control_effort() {
     let effort = |limit: f64| Requirement::at_most(ClosedLoop::ControlEffort, Limit::Constant(limit));
     check(&single(&[5.0], &[1.0, -3.0], 0.0), effort, 6.0 / 5.0, pole(3.0));
 }
 
-/// |P S| >= |P_m(z)| with P_m the plant without its zero: 4/(z + 1) (2 z) for 4 (z - s)/(s + 1)^2 with the zero reflected.
+/// Least disturbance response |P S| >= |P_m(z)| with P_m the plant without its zero: 4/(z + 1) (2
+/// z) for 4 (z - s)/(s + 1)^2 with the zero reflected.
 #[test]
 fn a_zero_costs_disturbance_rejection() {
     // ORIGIN: analytic, P = 4 (2 - s)/(s + 1)^2: |P_m(2)| = 4 (2 + 2)/9

@@ -88,7 +88,7 @@ fn resonant() {
 }
 
 /// Plant k (s + a)/(s^2 - 2.5) with |T| <= 2.1: the published controller fails, but an unstable
-/// pole alone requires only |T| = 1.
+/// pole requires only |T| = 1.
 #[test]
 fn unstable() {
     let of = |dead_time_s: f64| {

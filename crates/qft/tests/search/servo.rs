@@ -62,7 +62,7 @@ impl Servo {
         }
     }
 
-    /// |T| of a plant, dB.
+    /// Magnitude |T| of a plant, dB.
     fn closed_db(x: &[f64], [k, a]: [f64; 2], frequency: f64) -> f64 {
         let s = Complex64::new(0.0, frequency);
         let [g, z, p, q] = [x[0].exp(), x[1].exp(), x[2].exp(), x[3].exp()];

@@ -152,7 +152,8 @@ impl PlantWithinLoop {
         })
     }
 
-    /// |S| at a point of the half plane over its mean on the boundary; the zeros are the unstable poles.
+    /// Magnitude |S| at a point of the half plane over its mean on the boundary; the zeros are the
+    /// unstable poles.
     pub(super) fn sensitivity_factor(&self, point: Complex64) -> f64 {
         vanishing(point, &self.poles)
     }

@@ -32,7 +32,7 @@ use crate::verification::{PlantPoint, SpecificationMargin};
 const FREQUENCIES_MAXIMUM: usize = 64;
 /// Phase spacing of the first search, rad.
 const COARSE_RAD: f64 = PI / 36.0;
-/// |e| (1 + |T|) between two phases of the fine grid.
+/// Spacing |e| (1 + |T|) between two phases of the fine grid.
 const FINE: f64 = 0.008;
 /// Loops with a larger |T| than this are not considered.
 const COMPLEMENTARY_MAXIMUM: f64 = 60.0;

@@ -93,8 +93,8 @@ pub struct RoundingEffects {
 /// for a controller that cannot be run.
 ///
 /// # Example
-/// k/s with the gain g closes to z - 1 + K, K = g k T. A rounded command moves the output by k T (1
-/// - K)^n, in all by 1/g:
+/// Plant k/s with the gain g, which closes to z - 1 + K with K = g k T. A rounded command moves the
+/// output by k T (1 - K)^n, in total by 1/g:
 /// ```
 /// use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 /// use phea_dynamics::linear::TransferFunction;

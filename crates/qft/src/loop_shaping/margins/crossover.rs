@@ -35,11 +35,12 @@ struct LoopValue {
     /// Frequency, rad/s.
     frequency: f64,
     open: Complex64,
-    /// |L|^2
+    /// Squared magnitude |L|^2.
     square: f64,
 }
 
-/// |L|^2 of each plant at the last two columns where it was evaluated; NaN before them.
+/// Squared magnitude |L|^2 of each plant at the last two columns where it was evaluated; NaN before
+/// them.
 struct Trails {
     before: Vec<f64>,
     last: Vec<f64>,
@@ -371,7 +372,7 @@ fn bend([low, here, high]: [f64; 3]) -> Option<Bend> {
     }
 }
 
-/// |L| at a peak or dip, where the phase would not tolerate the delay.
+/// Margin of |L| at a peak or dip where the phase would not tolerate the delay.
 fn peak(bend: Bend, point: &LoopValue, delay_s: f64) -> Option<ColumnDependence> {
     let size = point.size();
     if size.abs() >= NEAR {

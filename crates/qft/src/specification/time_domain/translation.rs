@@ -155,7 +155,7 @@ fn with_pole(model: &SecondOrder, pole: Option<f64>) -> Result<TransferFunction,
     Ok(function.series(&lag)?)
 }
 
-/// |1 - y(t)| of the unit step response.
+/// Deviation |1 - y(t)| of the unit step response.
 fn deviation(function: &TransferFunction, time_s: f64) -> Result<f64, TimeDomainError> {
     let value = step_response(function, &[time_s])?.iter().sum::<f64>();
     Ok((1.0 - value).abs())
