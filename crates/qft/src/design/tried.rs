@@ -14,7 +14,7 @@ use crate::verification::SpecificationMargin;
 pub enum StructureEnding {
     /// The audit finds that every specification is met.
     Met,
-    /// The audit finds that every controller of the structure violates a specification.
+    /// Every controller of the structure violates a specification.
     Missed,
     /// The improvement over a shorter valid structure is not worth the additional poles.
     NotEarned,
