@@ -35,7 +35,7 @@ pub use trial::{HeldResponse, ModalPlant, TrialPlant};
 ///
 /// ```text
 /// P/(1 - K H_v P_v)    the plant seen by the loop if a rate v = P_v u + V_d d, which the command also moves, is fed forward
-/// Pd + K H_v V_d P     the path of its disturbance, P with its hold and delay; V_d = s where v is the rate of d itself
+/// Pd + K H_v V_d P     the path of its disturbance, P with its hold and delay; V_d = s if v is the rate of d itself
 /// P/(1 + H_p P_p)      the plant of a sampled loop with inner feedback of p = P_p u + I_d d; its disturbance path is Pd - H_p I_d P
 /// ```
 ///

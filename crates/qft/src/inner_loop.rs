@@ -6,7 +6,7 @@
 //! maximise over k, w_h   K(k, w_h) min |P'(j w_0)|                    over all plants, w_0 below the resonances
 //! K      largest gain up to which  |1 + K P'| >= m,  |K P'/(1 + K P')| <= 1/sqrt(2) from w_b on,
 //!        and no delay up to T_m makes H Q + K P reach -1
-//! k      up to where these limits also hold for H Q, and the noise moves the command by no more than allowed
+//! k      up to where the loop H Q also satisfies these limits, and its noise moves the command by no more than allowed
 //! ```
 //!
 //! The design proceeds from the inside out: the inner loop is fast and has separate margins, so

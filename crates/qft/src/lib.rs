@@ -7,12 +7,12 @@
 //! ClosedLoop, Limit -> Requirement; with a band -> Specification               the requirements on it
 //! Family at a frequency -> Template; with a Requirement -> Bound               the forbidden region of the nominal loop
 //! Family, Compensation -> FamilyStability                                      the stability of every plant
-//! AuditProblem -> audit -> Audit                                               stability and the worst margins: searched
+//! AuditProblem -> audit -> Audit                                               search for instability and the worst margins
 //! AuditProblem, Audit -> prove -> Certificate -> check                         proof of both for every plant
-//! Compensator -> Edit -> Compensator -> DesignChart                            shaped by hand
+//! Compensator -> Edit -> Compensator -> DesignChart                            shaping by hand
 //! DesignProblem -> diagnose -> Finding                                         limits that no controller can meet
 //! DesignProblem -> Structure -> Shaping -> search -> PrefilterBand -> fit -> Audit -> Design
-//!                                 ^---------- counterexamples ----------------'       shaped automatically
+//!                                 ^---------- counterexamples ----------------'       automatic shaping
 //! ```
 //!
 //! Frequencies in rad/s, angles in radians and gains as ratios, unless a name ends in `_deg` or

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! poles:             zeros of c + n, of c z^k + n: their largest real part                  no dead time, or whole samples
-//! argument:          turns of c + n e^(-s T) on the stability boundary                       every loop, including dead time
+//! argument:          turns of c + n e^(-s T) on the stability boundary                      every loop, including dead time
 //! Nyquist:           turns of 1 + L                                                         measured plants, and plants without
 //!                    polynomials, whose 1 + L is enclosed between successive frequencies
 //! zero exclusion:    min |1 + L| over box and frequency: while it is not zero, no pole crosses from one plant to the next

@@ -56,7 +56,7 @@ impl MeasuredFamily {
     /// A family of these plants.
     ///
     /// # Errors
-    /// Error [`MeasurementError`] for an empty or invalid family.
+    /// [`MeasurementError`] for an empty or invalid family.
     pub fn new(plants: Vec<MeasuredPlant>) -> Result<MeasuredFamily, MeasurementError> {
         if plants.is_empty() {
             return Err(MeasurementError::Empty);

@@ -15,7 +15,7 @@ const AMPLE_DB: f64 = 1.0;
 /// The least and the greatest |F| at one frequency, each with the member that sets it.
 ///
 /// ```text
-/// width = upper/lower - max|T|/min|T|, in dB: the allowed spread less the actual one        thesis (3.24), corrected
+/// width = upper/lower - max|T|/min|T|, in dB: allowed less actual spread               thesis (3.24), corrected
 /// allowed = upper/lower, in dB                                                        thesis (3.25), corrected
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,7 +79,7 @@ impl PrefilterBand {
     /// frequencies without a limit are omitted.
     ///
     /// # Errors
-    /// Errors [`PrefilterError::NotTracking`], [`PrefilterError::NoFrequency`].
+    /// [`PrefilterError::NotTracking`], [`PrefilterError::NoFrequency`].
     ///
     /// # Example
     /// Closed loops T between 0.5 and 0.8 with limits of 0.4 and 1 leave 0.8 to 1.25:

@@ -177,7 +177,7 @@ pub fn check(certificate: &Certificate) -> Result<(), (usize, Rejection)> {
 /// Checks one claim.
 ///
 /// # Errors
-/// Error [`Rejection`] of the claim.
+/// [`Rejection`] of the claim.
 pub(crate) fn check_claim(certificate: &Certificate, claim: &Claim) -> Result<(), Rejection> {
     check_numbers(certificate)?;
     check_sampling(certificate)?;

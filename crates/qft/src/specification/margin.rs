@@ -175,7 +175,7 @@ pub fn guaranteed_margins(requirement: &Requirement) -> Result<Option<Guaranteed
 /// ```
 ///
 /// # Errors
-/// Error [`MarginError::OutOfRange`] for a factor outside the range.
+/// [`MarginError::OutOfRange`] for a factor outside the range.
 ///
 /// # Example
 /// ```
@@ -192,7 +192,7 @@ pub fn robust_stability_limit_for_gain_increase(factor: f64) -> Result<f64, Marg
 /// ```
 ///
 /// # Errors
-/// Error [`MarginError::OutOfRange`] for a factor outside the range.
+/// [`MarginError::OutOfRange`] for a factor outside the range.
 ///
 /// # Example
 /// ```
@@ -209,7 +209,7 @@ pub fn robust_stability_limit_for_gain_reduction(factor: f64) -> Result<f64, Mar
 /// ```
 ///
 /// # Errors
-/// Error [`MarginError::OutOfRange`] for an angle outside the range.
+/// [`MarginError::OutOfRange`] for an angle outside the range.
 ///
 /// # Example
 /// ```
@@ -228,7 +228,7 @@ pub fn robust_stability_limit_for_phase_margin(phase_rad: f64) -> Result<f64, Ma
 /// ```
 ///
 /// # Errors
-/// Error [`MarginError::OutOfRange`] for a distance outside the range.
+/// [`MarginError::OutOfRange`] for a distance outside the range.
 ///
 /// # Example
 /// ```
@@ -246,7 +246,7 @@ pub fn robust_stability_limit_for_modulus_margin(distance: f64) -> Result<f64, M
 /// ```
 ///
 /// # Errors
-/// Error [`MarginError::OutOfRange`] for a factor outside the range.
+/// [`MarginError::OutOfRange`] for a factor outside the range.
 ///
 /// # Example
 /// ```
@@ -264,7 +264,7 @@ pub fn sensitivity_limit_for_gain_increase(factor: f64) -> Result<f64, MarginErr
 /// ```
 ///
 /// # Errors
-/// Error [`MarginError::OutOfRange`] for a factor outside the range.
+/// [`MarginError::OutOfRange`] for a factor outside the range.
 ///
 /// # Example
 /// ```
@@ -283,7 +283,7 @@ pub fn sensitivity_limit_for_gain_reduction(factor: f64) -> Result<f64, MarginEr
 /// ```
 ///
 /// # Errors
-/// Error [`MarginError::OutOfRange`] for an angle outside the range.
+/// [`MarginError::OutOfRange`] for an angle outside the range.
 ///
 /// # Example
 /// ```
@@ -304,7 +304,7 @@ pub fn sensitivity_limit_for_phase_margin(phase_rad: f64) -> Result<f64, MarginE
 /// A loop that vanishes at high frequency cannot have a distance above one.
 ///
 /// # Errors
-/// Error [`MarginError::OutOfRange`] for a distance outside the range.
+/// [`MarginError::OutOfRange`] for a distance outside the range.
 ///
 /// # Example
 /// ```
@@ -342,7 +342,7 @@ fn limit_for_phase_margin(phase_rad: f64) -> Result<f64, MarginError> {
 /// Sufficient, by the small gain theorem: the loop may tolerate more.
 ///
 /// # Errors
-/// Error [`MarginError::OutOfRange`] for a delay outside the range.
+/// [`MarginError::OutOfRange`] for a delay outside the range.
 ///
 /// # Example
 /// ```

@@ -37,7 +37,7 @@ impl Characteristic {
     /// Walks along the stability boundary.
     ///
     /// # Errors
-    /// Errors [`Irresolution::NearBoundary`] if |f| does not exceed its rounding error,
+    /// [`Irresolution::NearBoundary`] if |f| does not exceed its rounding error,
     /// [`Irresolution::Budget`], [`Irresolution::GainAtInfinity`] for a delayed loop with |L| >= 1
     /// at infinite frequency.
     pub(super) fn encirclement(&self) -> Result<Encirclement, Irresolution> {

@@ -56,7 +56,7 @@ pub enum LimitOrder {
 /// ends of the pieces determine the result.
 ///
 /// # Errors
-/// Errors [`TimeDomainError::OutOfRange`] for the band, [`TimeDomainError::NeverTogether`],
+/// [`TimeDomainError::OutOfRange`] for the band, [`TimeDomainError::NeverTogether`],
 /// [`TimeDomainError::NotContinuous`], and roots that cannot be found.
 ///
 /// # Example
