@@ -78,7 +78,7 @@ pub enum FamilyError {
 /// Largest number of members that a family may have.
 pub const MEMBERS_MAXIMUM: usize = 2_000_000;
 
-/// Corners of a box are examined up to this dimension.
+/// Largest dimension of a box whose corners are examined.
 const CORNERS_DIMENSION_MAXIMUM: usize = 8;
 
 /// An uncertain plant, the coordinates that span its box, and the members that are examined; the

@@ -143,7 +143,7 @@ pub struct Audit {
     pub verdict: Verdict,
     /// The weakest evidence that the verdict needs.
     pub evidence: Evidence,
-    /// A margin of minus this much still counts as met, dB.
+    /// Violation up to which a margin counts as met, dB.
     pub tolerance_db: f64,
     /// Stability of the family.
     pub stability: StabilityFinding,

@@ -39,7 +39,7 @@ const BEYOND_TOLERANCE_DB: f64 = 0.5e-3;
 /// Worst margin, relative to that before the last counterexamples, below which the gradients are
 /// misleading, dB.
 const ASTRAY_DB: f64 = -6.0;
-/// The plants of a counterexample are also evaluated at these multiples of its frequency.
+/// Multiples of a counterexample's frequency at which its plants are also evaluated.
 pub(super) const NEIGHBOURS: [f64; 4] = [0.94, 0.97, 1.03, 1.06];
 /// Largest number of audits of one structure.
 const ROUNDS_MAXIMUM: usize = 40;

@@ -28,10 +28,10 @@ const CORNERS: usize = 9;
 const BEYOND_FASTEST: [f64; 2] = [3.0, 20.0];
 /// Damping ratios of free pairs; beyond 1 a pair is two real roots.
 const DAMPING_RATIOS: [f64; 2] = [0.1, 20.0];
-/// Decades that the gain may extend beyond those that put the crossover on a frequency of the
-/// specifications.
+/// Factor by which the gain may exceed, or fall below, the values that put the crossover at a
+/// frequency of the specifications.
 const GAIN_ROOM: f64 = 100.0;
-/// Two limits that differ by less than this fraction at low frequency require a specific gain.
+/// Relative difference of two limits at low frequency below which they require a specific gain.
 const SAME: f64 = 1e-6;
 
 /// The sign that feedback needs to oppose the nominal plant, and a wide range for the gain k of a

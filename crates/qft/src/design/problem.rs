@@ -94,7 +94,7 @@ pub struct DesignOptions {
     pub prefilter: PrefilterChoice,
     /// Seed of the random starting points: equal seeds give equal designs.
     pub seed: u64,
-    /// A margin of minus this much still counts as met, dB.
+    /// Violation up to which a margin counts as met, dB.
     pub tolerance_db: f64,
     /// Margin of the design to every limit, also between its samples, dB; for two limits close
     /// together, [`Requirement::reserve_at_db`](crate::specification::Requirement::reserve_at_db).

@@ -21,11 +21,10 @@ use spread::AdditiveRecurrence;
 const DISTINCT: f64 = 0.05;
 /// Number of steps of each descent before the better ones are chosen.
 const STEPS_ROUGH: usize = 12;
-/// A start whose worst margin is at least this counts as feasible, dB.
+/// Worst margin from which a start counts as feasible, dB.
 const NEAR_DB: f64 = -3.0;
-/// Half of the starts are those of least objective among the samples above this worst margin, dB:
-/// the largest worst margins occur at high gain, from which a descent may not reach the least
-/// objective.
+/// Worst margin above which half of the starts are chosen by least objective, dB: the largest worst
+/// margins occur at high gain, from which a descent may not reach the least objective.
 const MODEST_DB: f64 = -15.0;
 
 /// Width of a search.

@@ -8,8 +8,8 @@ use crate::closed_loop::{Compensation, Member};
 use crate::specification::{Limit, Specification};
 use crate::verification::{AxisEnd, tracking_ratio};
 
-/// Edges whose curvature changes by less than this fraction of their distance from one decade to
-/// the next have settled.
+/// Change of the edges' curvature from one decade to the next, as a fraction of their distance,
+/// below which the edges have settled.
 const SETTLED_SHARE: f64 = 0.01;
 /// Decades that are examined below the lowest frequency and above the highest.
 const DECADES: [usize; 2] = [9, 3];

@@ -23,7 +23,7 @@ pub struct PrefilterOptions {
     pub maximum_order: usize,
     /// Least relative degree (poles less zeros), as far as the band allows it.
     pub least_relative_degree: usize,
-    /// A margin of minus this much still counts as met, dB.
+    /// Violation up to which a margin counts as met, dB.
     pub tolerance_db: f64,
     /// Seed of the starting points: equal seeds give equal prefilters.
     pub seed: u64,

@@ -40,7 +40,7 @@ use super::part::{OfFrequency, PolynomialProduct, Straight, law, number, quotien
 use super::polynomial::{BoxPolynomial, Decimal, InS, expanded};
 use crate::specification::ClosedLoop;
 
-/// The greatest exponent of a variable in a dead time; its powers are needed.
+/// Greatest exponent of a variable in a dead time, whose powers are needed.
 const DEAD_TIME_EXPONENT_MAXIMUM: u8 = 4;
 
 /// Distance that the panels of a sampled loop extend beyond pi/T, as a fraction of it.

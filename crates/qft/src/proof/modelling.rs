@@ -10,8 +10,8 @@ use phea_dynamics::order::sort_by_number;
 /// Degrees of the polynomials that replace such coefficients: the first with a small remainder is
 /// used, otherwise the last.
 const DEGREES: [usize; 3] = [3, 5, 8];
-/// The number of terms grows with the number of variables: the last degree for this number of
-/// variables, and for more.
+/// Last degree for each number of variables, and for more: the number of terms grows with the
+/// number of variables.
 const LAST_DEGREES: [usize; 5] = [8, 8, 8, 6, 5];
 const MANY_VARIABLES_DEGREE: usize = 4;
 /// Remainder of a coefficient, relative to it, that needs no smaller box.

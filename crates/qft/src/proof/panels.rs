@@ -17,7 +17,7 @@ const POINTS_PER_DECADE: f64 = 24.0;
 const TURN: f64 = 1.0;
 /// Fraction of that angle allowed for functions of the samples.
 const SAMPLED_TURN: f64 = 0.5;
-/// The greatest ratio of the ends of a panel over which a power of the frequency is expanded.
+/// Greatest ratio of the ends of a panel over which a power of the frequency is expanded.
 const POWER_PANEL: f64 = 1.6;
 /// Ratio of the ends of a panel below which it is not divided further.
 const NARROWEST: f64 = 1.02;

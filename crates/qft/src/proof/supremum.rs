@@ -46,8 +46,8 @@ const BELOW: f64 = 1.0 - 1e-7;
 pub(super) struct SoughtSupremum<'a> {
     /// Largest ratio of the two ends of the enclosure.
     pub(super) width: f64,
-    /// A ratio that decides: the search ends once it is proven or refuted, even if the enclosure
-    /// could be narrower.
+    /// Decisive ratio: the search ends once it is proven or refuted, even if the enclosure could be
+    /// narrower.
     pub(super) decisive: f64,
     pub(super) effort: ProofEffort<'a>,
     /// True if only points are evaluated.

@@ -15,7 +15,7 @@ use crate::family::{Family, UncertainFamily, corners};
 use crate::kept_plants::KeptPlants;
 use crate::specification::Specification;
 
-/// A margin of minus this much still counts as met, unless another tolerance is requested, dB.
+/// Violation up to which a margin counts as met, unless another tolerance is requested, dB.
 pub const TOLERANCE_DB: f64 = 0.001;
 
 /// Evaluation of a tracking specification.
@@ -71,7 +71,7 @@ pub struct AuditProblem<'a> {
     pub specifications: &'a [Specification],
     /// Evaluation of tracking.
     pub tracking: TrackingJudgement,
-    /// A margin of minus this much still counts as met, dB.
+    /// Violation up to which a margin counts as met, dB.
     pub tolerance_db: f64,
 }
 

@@ -14,7 +14,7 @@ use crate::closed_loop::Compensation;
 use crate::design::quantization::{CoefficientFormat, rounded};
 use crate::loop_shaping::{Aim, Judgement, SearchProblem};
 
-/// The limits of the search are tightened by this multiple of the deficit.
+/// Multiple of the deficit by which the limits of the search are tightened.
 const DRAWN: f64 = 1.25;
 /// Tightening of the limits if the rounded controller is not stable or cannot be stored, dB;
 /// doubled each time.

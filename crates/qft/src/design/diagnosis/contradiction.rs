@@ -34,9 +34,9 @@ const FREQUENCIES_MAXIMUM: usize = 64;
 const COARSE_RAD: f64 = PI / 36.0;
 /// Spacing |e| (1 + |T|) between two phases of the fine grid.
 const FINE: f64 = 0.008;
-/// Loops with a larger |T| than this are not considered.
+/// Largest |T| of the loops considered.
 const COMPLEMENTARY_MAXIMUM: f64 = 60.0;
-/// Contradictions smaller than this are left to the search, dB.
+/// Least contradiction that is not left to the search, dB.
 const TOLERANCE_DB: f64 = 0.01;
 const RELAXATION_MAXIMUM_DB: f64 = 200.0;
 

@@ -154,8 +154,8 @@ pub enum Finding {
     UnstableController {
         /// The plant.
         plant: PlantPoint,
-        /// An odd number of its real unstable poles is between these zeros (the second may be
-        /// infinite), rad/s.
+        /// Zeros (the second may be infinite) between which there is an odd number of its real
+        /// unstable poles, rad/s.
         between_zeros_rad_per_s: [f64; 2],
     },
     /// Design frequencies beyond the range of the loop or of a measurement: there are no data

@@ -17,14 +17,14 @@ use super::ceiling::{Ceiling, Ceilings};
 use super::finding::{Constraint, ConstraintPlace, Finding};
 use super::plane::{Plane, share};
 
-/// Deficits below this, 0.1 dB, are left to the search, since the discretisation error of the cells
-/// can be as large.
+/// Least deficit that is not left to the search, 0.1 dB, since the discretisation error of the
+/// cells can be as large.
 const TOLERANCE: f64 = 0.0115;
 /// Error of the cells elsewhere.
 const ROUNDING: f64 = 1e-6;
-/// Peaks below this are not reported, dB.
+/// Least peak that is reported, dB.
 const PEAK_DB: f64 = 6.0;
-/// A fraction of the axis that counts as zero.
+/// Fraction of the axis that counts as zero.
 const NOTHING: f64 = 1e-9;
 /// Fraction of the axis below which a specification whose limit is the lowest there is not named.
 const NAMED: f64 = 0.01;

@@ -10,7 +10,7 @@ use super::interpolation::least_relaxation_db;
 use crate::closed_loop::Compensation;
 use crate::specification::{ClosedLoop, Specification};
 
-/// The deficit of two limits below which nothing is reported, dB: each verdict tolerates 0.001 dB.
+/// Least deficit of two limits that is reported, dB: each verdict tolerates 0.001 dB.
 const TOLERANCE_DB: f64 = 0.002;
 const RELAXATION_MAXIMUM_DB: f64 = 400.0;
 

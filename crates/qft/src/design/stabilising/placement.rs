@@ -7,7 +7,7 @@ use phea_dynamics::portable;
 
 /// Least damping ratio of mirrored pairs.
 const DAMPING_RATIO: f64 = 0.7;
-/// A pole damped less than this counts as undamped: the loop has to move it.
+/// Damping ratio below which a pole counts as undamped: the loop has to move it.
 const UNDAMPED: f64 = 1e-3;
 
 /// True if a loop has to move a pole: it is unstable or undamped, and not at the origin.

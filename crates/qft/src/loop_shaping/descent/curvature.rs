@@ -6,7 +6,7 @@ use super::super::subproblem::dot;
 /// the expected change (Powell 1978).
 const DAMPING: f64 = 0.2;
 
-/// An entry beyond this indicates a kink, not a curvature, dB per square neper.
+/// Largest entry due to curvature, dB per square neper; a larger one indicates a kink.
 const LARGEST: f64 = 1e6;
 
 /// A positive definite matrix B, updated by the damped BFGS formula.
