@@ -72,8 +72,8 @@ fn integrator_and_lag_are_held_exactly() {
     });
 }
 
-/// Before the sampling a/(s + a) is a/(jw + a) at every frequency; for a step of the reference it
-/// acts as (1 - e)/(z - e), e = exp(-a T).
+/// Prefilter a/(s + a) before the sampling: a/(jw + a) at every frequency; for a step of the
+/// reference it acts as (1 - e)/(z - e), e = exp(-a T).
 #[test]
 fn a_prefilter_before_the_samples_is_not_sampled() {
     let a = 200.0;

@@ -67,14 +67,14 @@ pub struct CombinedBound {
 /// Existence of allowed gains at one frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Feasibility {
-    /// Some gain is allowed at every examined phase.
+    /// Allowed gains exist at every examined phase.
     Everywhere,
-    /// Only some phases have allowed gains.
+    /// Allowed gains exist only at some phases.
     Somewhere {
         /// The phases without an allowed gain, in increasing order.
         collisions: Vec<Collision>,
     },
-    /// Every examined phase is without an allowed gain.
+    /// Allowed gains exist at no examined phase.
     Nowhere {
         /// The phases and the conflicting specifications, in order of increasing phase.
         collisions: Vec<Collision>,

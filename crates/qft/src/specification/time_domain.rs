@@ -129,7 +129,7 @@ pub enum TimeDomainError {
         /// Real part of the pole, 1/s.
         real_part: f64,
     },
-    /// So little damping that the response would have to be computed for too many periods.
+    /// Damping so low that the response would have to be computed for too many periods.
     #[error("the limit rings with a damping ratio of {damping_ratio}: too long to be followed")]
     RingsTooLong {
         /// The least damping ratio among its poles.

@@ -46,7 +46,7 @@ impl Characteristic {
         Ok(Encirclement { unstable_poles, closest: self.closest(&visited) })
     }
 
-    /// Only the number Z of unstable poles.
+    /// Number Z of unstable poles, without the closest approach.
     ///
     /// # Errors
     /// Errors of [`Characteristic::encirclement`].

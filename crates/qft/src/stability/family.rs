@@ -185,7 +185,7 @@ impl<'a> StabilityAudit<'a> {
         Ok(())
     }
 
-    /// Over a box, searches from the worst plants, and determines whether a pole passes through
+    /// Searches from the worst plants of a box, and determines whether a pole passes through
     /// infinity inside it.
     fn look_between(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         let Family::Uncertain(family) = self.around.family else { return Ok(()) };

@@ -198,8 +198,7 @@ fn a_sampled_prefilter_has_the_margins_that_were_searched() {
     }
 }
 
-/// Before the sampling the prefilter is fitted as in a continuous loop, with the band of the
-/// sampled one.
+/// Prefilter before the sampling, fitted as in a continuous loop, with the band of the sampled one.
 #[test]
 fn a_prefilter_before_the_samples_is_fitted_in_s() {
     let lag = Element::RealPole { frequency: 2.0 }.transfer_function().unwrap();

@@ -44,8 +44,8 @@ fn equal_seeds_give_equal_bytes() {
     assert_ne!(format!("{first:?}"), format!("{other:?}"));
 }
 
-/// Only a ball is stable, which contains the smaller ball allowed by the margin, as with the loops
-/// of a controller. It occupies a six-thousandth of the box: no sample is expected there, evolution
+/// Stable ball that contains the smaller ball allowed by the margin, as with the loops of a
+/// controller. It occupies a six-thousandth of the box: no sample is expected there, and evolution
 /// follows the instability.
 #[test]
 fn evolution_finds_a_small_stable_region() {

@@ -129,7 +129,7 @@ fn no_plant_of_a_close_look_is_worse_at_a_given_frequency() {
     assert!(missed.is_empty(), "{missed:#?}");
 }
 
-/// Likewise for both plants of a spread.
+/// Spread of both plants over twelve boxes of this kind: none is worse than the result.
 #[test]
 fn no_two_plants_of_a_close_look_spread_further_at_a_given_frequency() {
     let mut missed = Vec::new();

@@ -150,7 +150,7 @@ pub enum Finding {
         /// The least peak, dB.
         peak_db: f64,
     },
-    /// Only a controller that is unstable itself can stabilise the plant.
+    /// The plant can be stabilised only by an unstable controller.
     UnstableController {
         /// The plant.
         plant: PlantPoint,
