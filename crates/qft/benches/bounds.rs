@@ -1,10 +1,10 @@
-//! Bounds of ten thousand plants beside NumPy, one core each, in one run:
+//! Bounds of ten thousand plants compared with NumPy, one core each, in one run:
 //! `cargo bench -p phea-qft --bench bounds`.
 //!
 //! The peer is `benches/peers/bounds.py`, run by the Python in `target/venv` (made by
-//! `cargo xtask ci comparisons`) or by the one that `PHEA_PYTHON` names. Both evaluate the plants k
-//! a/(s (s + a)) and bound them at the same phases; every value of the peer is compared, and a
-//! difference fails the bench. Times are printed and never asserted.
+//! `cargo xtask ci comparisons`) or the one named by `PHEA_PYTHON`. Both evaluate the plants k a/(s
+//! (s + a)) and bound them at common phases; every value of the peer is compared, and a difference
+//! fails the bench. Times are printed and never asserted.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a bench talks to the person who started it")]
 #![allow(missing_docs, reason = "a program of its own")]
 
@@ -20,18 +20,17 @@ use phea_qft::bound::{BoundError, BoundFunction, GainIntervals, TemplateFill};
 use phea_qft::specification::{ClosedLoop, Limit, Requirement};
 use phea_qft::template::{Resolution, Template, TemplatePoint};
 
-/// Values of k and of a.
+/// Number of values of k and of a.
 const SIDE: u32 = 100;
 
-/// Runs here, together about as long as one of the peer: on a machine that is shared a short run is
-/// either undisturbed or not.
+/// Number of runs here, together about as long as one of the peer: on a shared machine a short run
+/// is either undisturbed or not.
 const RUNS: usize = 50;
 
-/// Runs of the peer, by its processor time. The fastest of each side counts.
+/// Number of runs of the peer, timed by its processor time. The fastest run of each side counts.
 const PEER_RUNS: usize = 9;
 
-/// What is bounded, at which frequencies in rad/s, at how many phases, and the drivers that do the
-/// same.
+/// Requirement, frequencies in rad/s, number of phases, and the matching drivers of the peer.
 struct Task {
     name: &'static str,
     drivers: &'static [&'static str],
@@ -85,7 +84,7 @@ fn tasks() -> Result<[Task; 2], phea_dynamics::linear::LinearError> {
     ])
 }
 
-/// Runs both, prints times and ratio, and whether all values agree.
+/// Runs both, prints times and ratio; returns true if all values agree.
 fn compare(task: &Task) -> bool {
     let (mut seconds, mut bounds) = (f64::INFINITY, Vec::new());
     for _ in 0..RUNS {
@@ -110,7 +109,7 @@ fn compare(task: &Task) -> bool {
     task.drivers.iter().all(|driver| beside(task, driver, seconds, &ours))
 }
 
-/// Runs one driver.
+/// Compares with one driver.
 fn beside(task: &Task, driver: &str, seconds: f64, ours: &[GainIntervals]) -> bool {
     let mut fastest = f64::INFINITY;
     let mut values = Vec::new();
@@ -181,7 +180,7 @@ fn difference_db(ours: &GainIntervals, theirs: &[f64]) -> f64 {
     })
 }
 
-/// Processor time in seconds and the bounds in dB of the peer.
+/// Processor time, s, and the bounds, dB, of the peer.
 fn peer(driver: &str, phases: u32) -> Result<(f64, Vec<Vec<f64>>), String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join("..");
     let usual = root.join("target").join("venv").join("bin").join("python");

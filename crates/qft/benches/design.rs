@@ -1,12 +1,12 @@
-//! Example D beside differential evolution in NumPy, one core each, in one run:
+//! Example D compared with differential evolution in NumPy, one core each, in one run:
 //! `cargo bench -p phea-qft --bench design`.
 //!
-//! P = k a/(s (s + a)): the controller of one zero and two poles with the least high-frequency
-//! gain, real and complex poles, from three seeds. The peer is `benches/peers/design.py`, run by
-//! the Python in `target/venv` (made by `cargo xtask ci comparisons`) or by the one that
-//! `PHEA_PYTHON` names. What phea finds must be met by its audit over the whole box and lie within
-//! 0.1 dB of the least gain; the peer looks at 81 plants and 180 frequencies alone, and so may find
-//! less. Times are printed and never asserted.
+//! Plant P = k a/(s (s + a)): the controller of one zero and two real or complex poles with the
+//! least high-frequency gain, from three seeds. The peer is `benches/peers/design.py`, run by the
+//! Python in `target/venv` (made by `cargo xtask ci comparisons`) or the one named by
+//! `PHEA_PYTHON`. The design of phea must pass its audit over the whole box and be within 0.1 dB of
+//! the least gain; the peer evaluates only 81 plants and 180 frequencies, and so may find less.
+//! Times are printed and never asserted.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a bench talks to the person who started it")]
 #![allow(missing_docs, reason = "a program of its own")]
 
@@ -33,14 +33,14 @@ use phea_qft::verification::TOLERANCE_DB;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// Runs from each seed here; the fastest counts.
+/// Number of runs from each seed here; the fastest counts.
 const RUNS: usize = 5;
 
-/// How far from the least gain an answer may lie, dB.
+/// Allowed distance of a result from the least gain, dB.
 const ALLOWED_DB: f64 = 0.1;
 
-/// What is asked of both: the peer's word for it, the damping ratios of the poles, and the least
-/// gain of a dense search over the whole box.
+/// Problem for both sides: its name at the peer, the damping ratios of the poles, and the least
+/// gain found by a dense search over the whole box.
 struct Task {
     poles: &'static str,
     damping_ratio: [f64; 2],
@@ -76,8 +76,8 @@ fn run() -> Result<bool, Failure> {
     Ok(all_reached)
 }
 
-/// Runs both from one seed, prints times, gains and ratio, and whether phea's answer is met and as
-/// low as it can be.
+/// Runs both from one seed, prints times, gains and ratio; returns true if phea's result meets the
+/// limits with nearly the least gain.
 fn beside(task: &Task, problem: &DesignProblem, seed: u64) -> Result<bool, Failure> {
     let (seconds, design) = timed(task, problem, seed)?;
     println!(
@@ -101,7 +101,7 @@ fn beside(task: &Task, problem: &DesignProblem, seed: u64) -> Result<bool, Failu
     Ok(is_reached)
 }
 
-/// The fastest of the runs from one seed, and what they found.
+/// The fastest of the runs from one seed, and its result.
 fn timed(task: &Task, problem: &DesignProblem, seed: u64) -> Result<(f64, Design), Failure> {
     let mut fastest = f64::INFINITY;
     let mut found = None;
@@ -132,7 +132,7 @@ fn options(task: &Task, seed: u64) -> DesignOptions {
     }
 }
 
-/// Processor time in seconds and the gain in dB of the peer.
+/// Processor time, s, and the gain, dB, of the peer.
 fn peer(poles: &str, seed: u64) -> Result<(f64, f64), Failure> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join("..");
     let usual = root.join("target").join("venv").join("bin").join("python");

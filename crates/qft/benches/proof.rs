@@ -1,11 +1,11 @@
 //! Leaves and seconds of a proof against the margin and against the number of uncertain parameters,
-//! beside plain interval arithmetic: `taskset -c 0 cargo bench -p phea-qft --bench proof`.
+//! compared with plain interval arithmetic: `taskset -c 0 cargo bench -p phea-qft --bench proof`.
 //!
-//! The claim is |L/(1 + L)| <= r |W| from 1 to 10,000 rad/s under the controller that phea designs
-//! for the rig of the thesis. r is the greatest ratio that is reached, times the margin. Interval
+//! The claim is |L/(1 + L)| <= r |W| from 1 to 10,000 rad/s for the controller that phea designs
+//! for the rig of the thesis. r is the greatest ratio reached, times the margin. Interval
 //! arithmetic evaluates the same polynomials on a box of frequencies and parameters, and halves the
-//! box across its widest side until |V| <= |U| on each part. What it has not shown when its boxes
-//! are used up, it has not shown. The table is written to `benches/peers/proof_leaves.csv` with
+//! box across its widest side until |V| <= |U| on each part. A claim not proven when its boxes are
+//! used up counts as not proven. The table is written to `benches/peers/proof_leaves.csv` with
 //! `-- --save`; times are printed and never asserted.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a bench talks to the person who started it")]
 #![allow(missing_docs, reason = "a program of its own")]
@@ -39,11 +39,11 @@ type Failure = Box<dyn std::error::Error>;
 
 const LIMIT: f64 = 1.3;
 const BAND_RAD_PER_S: [f64; 2] = [1.0, 1e4];
-/// Boxes that interval arithmetic may look at.
+/// Number of boxes that interval arithmetic may evaluate.
 const BOXES_MAXIMUM: usize = 3_000_000;
 
 /// Name, least and greatest value of each parameter: those of Table 6.3 first, then mass and
-/// stiffness of the load cell. The first is nominal.
+/// stiffness of the load cell. The least value is nominal.
 const PARAMETERS: [(&str, f64, f64); 8] = [
     ("viscous_friction", 100.0, 3e4),
     ("flow_gain", 3.23e-5, 5.61e-5),
@@ -55,12 +55,12 @@ const PARAMETERS: [(&str, f64, f64); 8] = [
     ("sensor_stiffness", 1.9e7, 2.1e7),
 ];
 
-/// Margins in dB of the first series, with all parameters of Table 6.3.
+/// Margins of the first series, with all parameters of Table 6.3, dB.
 const MARGINS_DB: [f64; 7] = [3.0, 1.0, 0.3, 0.1, 0.03, 0.01, 0.003];
-/// The margin of the second, dB.
+/// The margin of the second series, dB.
 const MARGIN_DB: f64 = 0.5;
 
-/// G: numerator and denominator.
+/// Controller G: numerator and denominator.
 const CONTROLLER: [&[f64]; 2] = [&[0.7217, 1567.86, 37200.8], &[1.0, 624.8, 1.077485e6, 0.0]];
 
 fn main() -> ExitCode {
@@ -73,8 +73,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// What one method needed: leaves and seconds, or the fraction of the boxes that it showed before
-/// they were used up.
+/// Effort of one method: leaves and seconds, or the fraction of the box proven before the budget
+/// was used up.
 struct Effort {
     leaves: usize,
     seconds: f64,
@@ -135,8 +135,8 @@ fn rational(coefficients: [&[f64]; 2]) -> Result<TransferFunction, Failure> {
     Ok(TransferFunction::from_polynomials(&numerator, &denominator)?)
 }
 
-/// The leaves of the claim from above, seconds to prove everything and to check it again, and the
-/// ratio that was claimed.
+/// The leaves of the upper claim, seconds to prove everything and to check it, and the claimed
+/// ratio.
 fn proved(uncertain: usize, margin_db: f64) -> Result<(Effort, f64, f64), Failure> {
     let family = family(uncertain)?;
     let law = Element::General(rational(CONTROLLER)?);
@@ -180,7 +180,7 @@ fn proved(uncertain: usize, margin_db: f64) -> Result<(Effort, f64, f64), Failur
 /// A part of the box: the logarithm of the frequency, then the parameters.
 type Part = Vec<[f64; 2]>;
 
-/// Halves the box until interval arithmetic shows |L/(1 + L)| <= ratio LIMIT on each part.
+/// Halves the box until interval arithmetic proves |L/(1 + L)| <= ratio LIMIT on each part.
 fn bisected(uncertain: usize, ratio: f64) -> Result<Effort, Failure> {
     let [numerator, denominator] = CONTROLLER;
     let mut whole: Part = vec![BAND_RAD_PER_S.map(portable::ln)];
@@ -209,7 +209,7 @@ fn bisected(uncertain: usize, ratio: f64) -> Result<Effort, Failure> {
     Ok(Effort { leaves, seconds: begun.elapsed().as_secs_f64(), shown })
 }
 
-/// |V| <= |U| on a part, by intervals.
+/// True if |V| <= |U| on a part, by intervals.
 fn satisfies(part: &[[f64; 2]], [numerator, denominator]: [&[f64]; 2], limit: f64) -> bool {
     let own: Vec<Interval> = PARAMETERS
         .iter()

@@ -2,8 +2,8 @@
 //! one verdict.
 //!
 //! ```text
-//! stability -> unstable: nothing more to look at
-//!           -> specifications, at the plants nearest to instability too -> stability of the worst plants of each
+//! stability -> unstable: nothing more to evaluate
+//!           -> specifications, also at the plants nearest to instability -> stability of the worst plants of each
 //! ```
 
 use phea_dynamics::pieces::Workers;
@@ -69,7 +69,7 @@ pub fn audit(problem: &AuditProblem<'_>, watch: Watch<'_>) -> Result<Audit, Stop
     audit_by(problem, Workers::CALLER, watch)
 }
 
-/// The same on the threads of an owner: what is found does not depend on them.
+/// Audits as [`audit`] does, on the given worker threads; the result does not depend on them.
 ///
 /// # Errors
 /// [`Stopped`] by the watch.
@@ -77,15 +77,15 @@ pub fn audit_by(problem: &AuditProblem<'_>, workers: Workers, watch: Watch<'_>) 
     audit_with(problem, (&KeptPlants::of(workers), AuditEffort::Complete), watch).map(|(audit, _)| audit)
 }
 
-/// The same of the members and corners of the family alone, without a search between them: for a
-/// search that looks often, and audits what it ends with completely.
+/// Audits only the members and corners of the family, without a search between them. Meant for a
+/// design search that audits often and audits its final result in full.
 ///
 /// # Errors
 /// [`Stopped`] by the watch.
 ///
 /// # Example
 /// An integrator of gain 1/2 or 2 in a loop of gain 1: |T| = k/sqrt(w^2 + k^2) is at most 1, as the
-/// complete audit says too.
+/// complete audit also finds.
 /// ```
 /// use phea_dynamics::controller::Controller;
 /// use phea_dynamics::linear::TransferFunction;
@@ -128,7 +128,8 @@ pub fn audit_of_known_plants(problem: &AuditProblem<'_>, watch: Watch<'_>) -> Re
     audit_of_known_plants_by(problem, Workers::CALLER, watch)
 }
 
-/// The same on the threads of an owner: what is found does not depend on them.
+/// Audits as [`audit_of_known_plants`] does, on the given worker threads; the result does not
+/// depend on them.
 ///
 /// # Errors
 /// [`Stopped`] by the watch.
@@ -141,9 +142,9 @@ pub fn audit_of_known_plants_by(
     audit_with(problem, (&KeptPlants::of(workers), effort), watch).map(|(audit, _)| audit)
 }
 
-/// The same, given plants of this family that were already sampled in the same loop (with any
-/// controller), so that none is sampled twice, and the part of the specifications' audit that is
-/// done. Also returns whether it is complete.
+/// Audits to the given extent, with plants of this family already sampled in the same loop (with
+/// any controller), so that none is sampled twice. Returns the audit and true if no search was
+/// skipped.
 pub(crate) fn audit_with(
     problem: &AuditProblem<'_>,
     (kept, effort): (&KeptPlants, AuditEffort),
@@ -157,7 +158,7 @@ pub(crate) fn audit_with(
     }
     let found = stability.result();
     if is_unstable(&found.finding) {
-        // an unstable loop has no margins to look for
+        // an unstable loop has no margins to search for
         return Ok((joined(problem, found, problem.unexamined()), true));
     }
     let between = if searches { stability.plants_between() } else { vec![] };
@@ -169,7 +170,7 @@ pub(crate) fn audit_with(
     Ok((joined(problem, stability.result(), specifications), work.skipped == 0))
 }
 
-/// One verdict of both.
+/// Combines stability and specifications into one verdict.
 fn joined(
     problem: &AuditProblem<'_>,
     stability: FamilyStability,
@@ -193,7 +194,7 @@ fn joined(
 }
 
 impl Audit {
-    /// The audit of the first specifications alone, and the findings for the others.
+    /// The audit of the first `count` specifications, and the findings for the rest.
     pub fn split_off(&self, count: usize) -> (Audit, Vec<SpecificationFinding>) {
         let mut own = self.clone();
         let others = own.specifications.split_off(count.min(own.specifications.len()));
@@ -202,14 +203,14 @@ impl Audit {
     }
 }
 
-/// The worst verdict on stability and specifications, and the weakest evidence.
+/// The worst verdict over stability and specifications, and the weakest evidence.
 fn together(stability: &StabilityFinding, specifications: &[SpecificationFinding]) -> (Verdict, Evidence) {
     let verdicts = specifications.iter().map(|finding| finding.verdict);
     let evidences = specifications.iter().map(|finding| finding.evidence);
     (verdicts.fold(stability.verdict, Verdict::max), evidences.fold(stability.evidence, Evidence::min))
 }
 
-/// The plants at which specifications are worst, each once.
+/// The plants at which the specifications are worst, without duplicates.
 fn suspects(findings: &[SpecificationFinding]) -> Vec<PlantPoint> {
     let mut plants: Vec<PlantPoint> = Vec::new();
     for finding in findings {
@@ -222,7 +223,7 @@ fn suspects(findings: &[SpecificationFinding]) -> Vec<PlantPoint> {
     plants
 }
 
-/// Whether a loop of the family is unstable. If stability is violated although all poles of the
+/// True if a loop of the family is unstable. If stability is violated although all poles of the
 /// loop decay, the prefilter is unstable; only the reference passes through it.
 fn is_unstable(stability: &StabilityFinding) -> bool {
     let decays = stability.largest_real_part.is_some_and(|real| real < 0.0);
@@ -230,7 +231,7 @@ fn is_unstable(stability: &StabilityFinding) -> bool {
 }
 
 /// The magnitudes of an unstable loop do not describe a response: it satisfies no specification and
-/// has no margin. The same may hold for a loop that is not known to be stable.
+/// has no margin. This may also be true of a loop that is not known to be stable.
 fn without_stability(finding: &mut SpecificationFinding, stability: &StabilityFinding) {
     let tracks = finding.requirement.is_tracking();
     match stability.verdict {

@@ -26,8 +26,7 @@ pub use fed_forward::{FedForward, InnerPath};
 pub(crate) use fed_forward::{closed, closed_at_rest, moved_rate};
 pub use trial::{HeldResponse, ModalPlant, TrialPlant};
 
-/// The part of the loop that is the same for every plant: G, F, H, the delay of the loop, and its
-/// sampling.
+/// The part of the loop common to every plant: G, F, H, the delay of the loop, and its sampling.
 ///
 /// ```text
 /// continuous:  L = P G H e^(-s T_d),  T = P G e^(-s T_d)/(1 + L)                                   thesis 3.1, 3.2
@@ -35,19 +34,19 @@ pub use trial::{HeldResponse, ModalPlant, TrialPlant};
 /// ```
 ///
 /// ```text
-/// P/(1 - K H_v P_v)    the plant that the loop sees where a rate v = P_v u + V_d d is fed forward that the command moves too
-/// Pd + K H_v V_d P     the path of its disturbance, P with its hold and delay; V_d = s where v is the rate of d itself
-/// P/(1 + H_p P_p)      the plant of a sampled loop where an inner signal p = P_p u + I_d d is fed back, its path Pd - H_p I_d P
+/// P/(1 - K H_v P_v)    the plant seen by the loop if a rate v = P_v u + V_d d, which the command also moves, is fed forward
+/// Pd + K H_v V_d P     the path of its disturbance, P with its hold and delay; V_d = s if v is the rate of d itself
+/// P/(1 + H_p P_p)      the plant of a sampled loop with inner feedback of p = P_p u + I_d d; its disturbance path is Pd - H_p I_d P
 /// ```
 ///
 /// H_v is the sensor of that rate: its filter and its dead time, before the samples.
 ///
-/// The samples of the output follow this exactly for a sine of the disturbance: P and P_v are those
-/// of the samples.
+/// For a sinusoidal disturbance the samples of the output obey this exactly: P and P_v are the
+/// sampled responses.
 ///
-/// The prefilter of a sampled loop is F(z), or F(s) where it acts on the reference before this is
-/// sampled. Of a sine of the reference below pi/T the samples behind F(s) are those of F(jw) times
-/// the sine: F T is taken with F(jw), and holds for references without parts beyond pi/T.
+/// The prefilter of a sampled loop is F(z), or F(s) if it acts on the reference before sampling.
+/// For a sinusoidal reference below pi/T the samples after F(s) are F(jw) times the samples of the
+/// sine: F T is evaluated with F(jw), and holds for references without content beyond pi/T.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compensation {
     feedback: TransferFunction,
@@ -57,16 +56,16 @@ pub struct Compensation {
     delay_s: f64,
     rate_feed_forward: f64,
     rate_sensor: RateSensor,
-    /// H_p in z; `None` where no inner signal is fed back, or the plant has it.
+    /// Inner feedback H_p in z; `None` if no inner signal is fed back, or the plant includes it.
     inner_feedback: Option<TransferFunction>,
 }
 
-/// G, F at one frequency.
+/// Responses G and F at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompensationResponse {
-    /// G
+    /// Feedback G.
     pub feedback: Complex64,
-    /// F
+    /// Prefilter F.
     pub prefilter: Complex64,
 }
 
@@ -75,11 +74,11 @@ pub struct CompensationResponse {
 pub enum Member {
     /// A rational plant with dead time in a continuous loop.
     Continuous {
-        /// P and Pd as coefficients, the dead time that of plant and loop together.
+        /// P and Pd as coefficients, with the dead time of plant and loop together.
         plant: PlantCoefficients<f64>,
-        /// H
+        /// Sensor H.
         sensor: TransferFunction,
-        /// K H_v V_d
+        /// Feed-forward path K H_v V_d.
         fed_forward: FedForward,
     },
     /// A plant held by a zero-order hold and sampled.
@@ -88,64 +87,65 @@ pub enum Member {
         command: TransferFunction,
         /// P H with hold and delay, in z.
         with_sensor: TransferFunction,
-        /// Pd, continuous: the motion acts on the plant itself.
+        /// Path Pd, continuous: the motion acts on the plant itself.
         disturbance: Option<RationalCoefficients<f64>>,
-        /// K H_v V_d; what it feeds back is within P.
+        /// Feed-forward path K H_v V_d; its feedback part is within P.
         fed_forward: FedForward,
-        /// H_v P_v/(1 - K H_v P_v) with hold and delay, in z; `None` where nothing is fed back.
+        /// Rate path H_v P_v/(1 - K H_v P_v) with hold and delay, in z; `None` if nothing is fed
+        /// back.
         rate: Option<TransferFunction>,
-        /// P_p/(1 + H_p P_p) likewise.
+        /// Inner signal P_p/(1 + H_p P_p) with hold and delay, in z.
         inner: Option<TransferFunction>,
     },
-    /// A plant without polynomials, with the delay of the loop; sampling adds the lag of its hold.
+    /// A plant without polynomials, with the delay of the loop; sampling adds the lag of the hold.
     Responding {
         /// The plant.
         plant: Arc<dyn RespondingPlant>,
-        /// H
+        /// Sensor H.
         sensor: TransferFunction,
-        /// Delay of the loop and, when it samples, half a sample, s.
+        /// Delay of the loop plus, if it is sampled, half a sample, s.
         delay_s: f64,
-        /// For the magnitude of the hold.
+        /// Sample time for the magnitude of the hold, s.
         sample_time_s: Option<f64>,
-        /// K
+        /// Feed-forward gain K.
         rate_feed_forward: f64,
-        /// H_v
+        /// Sensor H_v of the rate.
         rate_sensor: RateSensor,
-        /// H_p in z
+        /// Inner feedback H_p in z.
         inner_feedback: Option<TransferFunction>,
     },
-    /// A measured plant, with the delay of the loop; sampling adds the lag of its hold.
+    /// A measured plant, with the delay of the loop; sampling adds the lag of the hold.
     Measured {
         /// The measurement.
         plant: MeasuredPlant,
-        /// H
+        /// Sensor H.
         sensor: TransferFunction,
-        /// Delay of the loop and, when it samples, half a sample, s.
+        /// Delay of the loop plus, if it is sampled, half a sample, s.
         delay_s: f64,
-        /// For the magnitude of the hold.
+        /// Sample time for the magnitude of the hold, s.
         sample_time_s: Option<f64>,
     },
 }
 
-/// P, Pd and H of one member at one frequency; delay and hold are within P.
+/// P, Pd and H of one member at one frequency; delay and hold are included in P.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MemberResponse {
-    /// P
+    /// Plant P.
     pub plant: Complex64,
-    /// Pd with what is fed forward of the disturbance's rate; zero where the plant has no such
-    /// path.
+    /// Load-motion path Pd, including the feed-forward of the disturbance's rate; zero if the plant
+    /// has no such path.
     pub load_motion: Complex64,
-    /// H
+    /// Sensor H.
     pub sensor: Complex64,
 }
 
 impl Compensation {
-    /// The loop of a controller with this sensor (1 where the output itself is fed back).
+    /// The loop of a controller with this sensor (1 if the output itself is fed back).
     ///
     /// # Errors
     /// [`LinearError`] if a part is not a transfer function or cannot be sampled;
-    /// [`LinearError::DomainMismatch`] for a controller or prefilter in z whose samples are not
-    /// those of the loop; [`LinearError::WrongDomain`] for a sensor in z.
+    /// [`LinearError::DomainMismatch`] for a controller or prefilter in z with another sample time
+    /// than the loop's; [`LinearError::WrongDomain`] for a sensor in z.
     ///
     /// # Example
     /// The published force controller with 1 ms of delay: at 100 rad/s L lags by 0.1 rad more.
@@ -194,22 +194,21 @@ impl Compensation {
         })
     }
 
-    /// G, sampled where the loop samples.
+    /// Feedback G, sampled if the loop is.
     pub fn feedback(&self) -> &TransferFunction {
         &self.feedback
     }
 
-    /// F, sampled where the loop samples it.
+    /// Prefilter F, in z if the loop samples it.
     pub fn prefilter(&self) -> &TransferFunction {
         &self.prefilter
     }
 
-    /// F as a step of the reference passes through it, in the domain of the loop: where it acts
-    /// before the sampling, the F(z) whose step response has the samples of the step response of
-    /// F(s).
+    /// Prefilter F as a step of the reference passes through it, in the domain of the loop: if it
+    /// acts before the sampling, the F(z) whose step response matches that of F(s) at the samples.
     ///
     /// # Errors
-    /// [`LinearError`] where F(s) cannot be sampled.
+    /// [`LinearError`] if F(s) cannot be sampled.
     ///
     /// # Example
     /// ```
@@ -234,17 +233,17 @@ impl Compensation {
         }
     }
 
-    /// H, continuous.
+    /// Sensor H, continuous.
     pub fn sensor(&self) -> &TransferFunction {
         &self.sensor
     }
 
-    /// Whether H = 1.
+    /// True if H = 1.
     fn senses_the_output(&self) -> bool {
         self.sensor == TransferFunction::gain_only(1.0)
     }
 
-    /// s; `None` for a continuous loop.
+    /// Sample time, s; `None` for a continuous loop.
     pub fn sample_time_s(&self) -> Option<f64> {
         self.sample_time_s
     }
@@ -254,39 +253,39 @@ impl Compensation {
         self.delay_s
     }
 
-    /// K: the gain from the rate of a disturbance to the command.
+    /// Gain K from the rate of a disturbance to the command.
     pub fn rate_feed_forward(&self) -> f64 {
         self.rate_feed_forward
     }
 
-    /// H_v: the sensor of that rate.
+    /// Sensor H_v of that rate.
     pub fn rate_sensor(&self) -> RateSensor {
         self.rate_sensor
     }
 
-    /// H_p in z: what a sampled controller feeds back of an inner signal.
+    /// Inner feedback H_p in z of a sampled controller.
     pub fn inner_feedback(&self) -> Option<&TransferFunction> {
         self.inner_feedback.as_ref()
     }
 
-    /// The same loop with no rate fed forward and no inner signal fed back.
+    /// Copy of this loop without rate feed-forward and inner feedback.
     #[must_use]
     pub fn without_inner_paths(&self) -> Compensation {
         Compensation { rate_feed_forward: 0.0, inner_feedback: None, ..self.clone() }
     }
 
-    /// The same loop with no inner signal fed back.
+    /// Copy of this loop without inner feedback.
     #[must_use]
     pub fn without_inner_feedback(&self) -> Compensation {
         Compensation { inner_feedback: None, ..self.clone() }
     }
 
-    /// The same loop with another delay.
+    /// Copy of this loop with another delay.
     pub fn with_delay(&self, delay_s: f64) -> Compensation {
         Compensation { delay_s, ..self.clone() }
     }
 
-    /// The same loop with another controller.
+    /// Copy of this loop with another controller.
     pub(crate) fn with_feedback(&self, feedback: TransferFunction) -> Result<Compensation, LinearError> {
         if feedback.domain() != self.feedback.domain() {
             return Err(LinearError::DomainMismatch);
@@ -294,7 +293,7 @@ impl Compensation {
         Ok(Compensation { feedback, ..self.clone() })
     }
 
-    /// Whether its controller has a root at zero frequency: s = 0, or z = 1.
+    /// True if the controller has a root at zero frequency: s = 0, or z = 1.
     pub(crate) fn is_at_zero_frequency(&self, root: Complex64) -> bool {
         root == Complex64::new(if self.sample_time_s.is_some() { 1.0 } else { 0.0 }, 0.0)
     }
@@ -330,8 +329,8 @@ impl Compensation {
         let rate = rate_path(gain, rate_sensor, &plant)?;
         let inner = inner_path(inner_feedback, &plant)?;
         let rational = plant.command.transfer_function()?;
-        // The dead time of the plant acts after the hold; in front of the sensor's own it adds to
-        // it.
+        // The dead time of the plant acts after the hold; for the sensor signal it adds to that of
+        // the sensor.
         let held = |function: TransferFunction| {
             let dead_time_s = function.dead_time_s() + plant.dead_time_s;
             function.with_dead_time(dead_time_s)?.discretized(sample_time_s, Discretization::ZeroOrderHold)
@@ -355,7 +354,7 @@ impl Compensation {
     /// The plant of a family with these parameter values within this loop.
     ///
     /// # Errors
-    /// Those of [`Compensation::member`], and [`LinearError::NoPlant`].
+    /// Errors of [`Compensation::member`], and [`LinearError::NoPlant`].
     pub fn member_of(&self, plant: &UncertainPlant, values: &[f64]) -> Result<Member, LinearError> {
         self.around(plant.member(values).ok_or(LinearError::NoPlant)?)
     }
@@ -363,7 +362,7 @@ impl Compensation {
     /// A plant of a family within this loop.
     ///
     /// # Errors
-    /// Those of [`Compensation::member`].
+    /// Errors of [`Compensation::member`].
     ///
     /// # Example
     /// An integrator of 4/s at 2 rad/s
@@ -390,7 +389,7 @@ impl Compensation {
     /// P, Pd and H of the plant of a family with these parameter values at one frequency.
     ///
     /// # Errors
-    /// Those of [`Compensation::member_of`].
+    /// Errors of [`Compensation::member_of`].
     pub fn response_of(
         &self,
         plant: &UncertainPlant,
@@ -429,7 +428,7 @@ impl Compensation {
     }
 }
 
-/// A part of the controller in the domain of its timing.
+/// A part of the controller, converted to the domain of its timing.
 fn deployed(function: TransferFunction, timing: &Timing) -> Result<TransferFunction, LinearError> {
     match (timing.sample_time_s, function.domain()) {
         (None, TimeDomain::Continuous) => Ok(function),
@@ -451,7 +450,7 @@ fn check_dead_time(dead_time_s: f64) -> Result<(), LinearError> {
     }
 }
 
-/// e^(-j w T)
+/// Phase factor e^(-j w T) of a delay.
 fn turned(frequency_rad_per_s: f64, delay_s: f64) -> Complex64 {
     if delay_s == 0.0 {
         return Complex64::new(1.0, 0.0);

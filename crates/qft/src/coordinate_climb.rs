@@ -1,11 +1,10 @@
-//! The largest value of a function over the unit box, climbed to along its coordinates from one
-//! start.
+//! The largest value of a function over the unit box: a climb along its coordinates from one start.
 
-/// The first step of a climb, as a share of the box.
+/// The first step of a climb, as a fraction of the box.
 pub(crate) const LONGEST_STEP: f64 = 0.25;
-/// The smallest step of a climb, as a share of the box.
+/// The smallest step of a climb, as a fraction of the box.
 const SMALLEST_STEP: f64 = 1e-7;
-/// The smallest step of a climb that has ended in a corner.
+/// The smallest step of a climb that ends in a corner, as a fraction of the box.
 const SMALL_STEP: f64 = 1e-3;
 /// Largest number of values that one climb may evaluate.
 const VALUES_MAXIMUM: usize = 2000;
@@ -25,7 +24,7 @@ pub(crate) fn climb(start: &[f64], objective: &mut dyn FnMut(&[f64]) -> f64) -> 
     climb_by(LONGEST_STEP, start, objective)
 }
 
-/// The same with another first step.
+/// Climbs as [`climb`] does, with another first step.
 pub(crate) fn climb_by(
     first_step: f64,
     start: &[f64],
@@ -49,7 +48,7 @@ pub(crate) fn climb_by(
 }
 
 impl Climb<'_> {
-    /// Moves along one coordinate, and returns how far.
+    /// Moves along one coordinate; returns the distance.
     fn along(&mut self, coordinate: usize, step: f64) -> f64 {
         let Some(&centre) = self.shares.get(coordinate) else { return 0.0 };
         let here = self.value;
@@ -57,7 +56,7 @@ impl Climb<'_> {
         let at_low = if low < centre { self.visit(coordinate, low) } else { f64::NEG_INFINITY };
         let at_high = if high > centre { self.visit(coordinate, high) } else { f64::NEG_INFINITY };
         if here >= at_low && here >= at_high {
-            // Newton's form of the parabola through the three points points
+            // Newton's form of the parabola through the three points
             let (left, right) = ((here - at_low) / (centre - low), (at_high - here) / (high - centre));
             let top = 0.5 * (low + centre) + 0.5 * (high - low) * left / (left - right);
             if top > low && top < high && top != centre {
@@ -67,7 +66,7 @@ impl Climb<'_> {
         self.shares.get(coordinate).map_or(0.0, |share| (share - centre).abs())
     }
 
-    /// The value with this share in one coordinate; kept when it is the best.
+    /// Evaluates the point with this fraction in one coordinate; retains it if it is the best.
     fn visit(&mut self, coordinate: usize, share: f64) -> f64 {
         let mut shares = self.shares.clone();
         if let Some(slot) = shares.get_mut(coordinate) {
@@ -86,7 +85,7 @@ impl Climb<'_> {
 mod tests {
     use super::climb;
 
-    /// A ridge with its top inside along one coordinate and at the border along the other.
+    /// A ridge with its top inside along one coordinate and on the border along the other.
     #[test]
     fn the_top_is_found_inside_and_at_the_border() {
         let mut asked = 0;

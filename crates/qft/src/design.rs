@@ -2,12 +2,12 @@
 //! counterexample, until both agree.
 //!
 //! ```text
-//! diagnose      a limit that no controller meets: the structures below are tried for the smallest relaxation alone
-//! named         the controllers of a manual, the shortest first, until one meets every limit; longer ones that earn it
-//! grow          structures of growing order, each begun from the controller before, until one meets every limit
-//! fewer zeros   of the order that was found, as long as every limit is still met: the last such design is kept
-//! relax         where none was found: the structure that came nearest, for the smallest relaxation
-//! again         where that relaxation turns out to be none: this structure for the objective, then fewer zeros
+//! diagnose      a limit that no controller meets: the structures below are searched for the smallest relaxation only
+//! named         the controllers of a manual, the shortest first, until one meets every limit; then longer ones that earn their poles
+//! grow          structures of growing order, each starting from the controller before, until one meets every limit
+//! fewer zeros   at the order found, as long as every limit is still met: the last such design is retained
+//! relax         if no design was found: the nearest structure, for the smallest relaxation
+//! again         if that relaxation is zero: this structure for the objective, then fewer zeros
 //! ```
 
 mod attempt;

@@ -1,8 +1,8 @@
-//! Families of plants: the members that are examined, and what lies between them.
+//! Families of plants: the members that are examined, and the plants between them.
 //!
-//! A family over a box has members at grid points, corners, random points or given cases, and
-//! everything between them belongs to it too; a family of explicit cases or of measured responses
-//! consists of its members only.
+//! A family over a box has members at grid points, corners, random points or given cases, and every
+//! plant between them also belongs to it; a family of explicit cases or of measured responses
+//! consists only of its members.
 
 mod coordinate;
 mod measured;
@@ -23,51 +23,51 @@ use phea_dynamics::uncertain_plant::UncertainPlant;
 pub enum Family {
     /// An uncertain plant and the members of its family.
     Uncertain(UncertainFamily),
-    /// Measured frequency responses: nothing can be claimed between two of them.
+    /// Measured frequency responses: no conclusion is possible between two of them.
     Measured(MeasuredFamily),
 }
 
-/// Which plants belong to the family.
+/// Plants that belong to the family.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
-    /// Every point of the box that the coordinates span, the members being samples of it.
+    /// Every point of the box that the coordinates span, of which the members are samples.
     Box,
-    /// The members and nothing between them.
+    /// Only the members, without plants between them.
     Members,
 }
 
-/// Why there is no family.
+/// Reason why there is no family.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FamilyError {
-    /// A member with another number of values than the plant has parameters.
+    /// A member with a number of values other than the plant's number of parameters.
     #[error("member {member} has {found} values, the plant has {expected} parameters")]
     Values {
         /// Index of the member, from 0.
         member: usize,
-        /// Its number of values.
+        /// Number of values of the member.
         found: usize,
         /// The plant's number of parameters.
         expected: usize,
     },
-    /// A value that is not finite, or lies outside of its parameter's bounds.
+    /// A value that is not finite, or is outside its parameter's bounds.
     #[error("member {member}: `{parameter}` = {value} lies outside of {minimum} to {maximum}")]
     Outside {
         /// Index of the member, from 0.
         member: usize,
         /// The parameter's name.
         parameter: String,
-        /// Its value there.
+        /// Value of the parameter.
         value: f64,
         /// The parameter's lower bound.
         minimum: f64,
         /// The parameter's upper bound.
         maximum: f64,
     },
-    /// A coordinate that moves a parameter which does not exist, or which another coordinate moves
-    /// already.
+    /// A coordinate that moves a nonexistent parameter, or one that another coordinate already
+    /// moves.
     #[error("a coordinate moves parameter {0}, which does not exist or is moved already")]
     Coordinate(usize),
-    /// Equal factors need positive bounds.
+    /// A parameter with logarithmic spacing whose bounds are not positive.
     #[error("parameter `{0}` cannot be spaced by equal factors: its lower bound is not positive")]
     Logarithmic(String),
     /// More members than can be examined.
@@ -78,7 +78,7 @@ pub enum FamilyError {
 /// Largest number of members that a family may have.
 pub const MEMBERS_MAXIMUM: usize = 2_000_000;
 
-/// Corners of a box are examined up to this dimension.
+/// Largest dimension of a box whose corners are examined.
 const CORNERS_DIMENSION_MAXIMUM: usize = 8;
 
 /// An uncertain plant, the coordinates that span its box, and the members that are examined; the
@@ -132,7 +132,7 @@ impl UncertainFamily {
         Ok(UncertainFamily { plant, coordinates, members, extent })
     }
 
-    /// The nominal plant alone.
+    /// Family of only the nominal plant.
     pub fn of_nominal(plant: UncertainPlant) -> UncertainFamily {
         let members = vec![plant.nominal()];
         UncertainFamily { plant, coordinates: vec![], members, extent: Extent::Members }
@@ -148,7 +148,7 @@ impl UncertainFamily {
         &self.members
     }
 
-    /// What belongs to the family.
+    /// Plants that belong to the family.
     pub fn extent(&self) -> Extent {
         self.extent
     }
@@ -158,13 +158,13 @@ impl UncertainFamily {
         &self.coordinates
     }
 
-    /// Parameter values at a point of the box, given by a share in [0, 1] of each coordinate.
-    /// Shares outside this range are set to the nearest end, and missing ones count as zero.
+    /// Parameter values at a point of the box, given by a fraction in [0, 1] of each coordinate.
+    /// Fractions outside this range are set to the nearest end, and missing ones count as zero.
     pub fn values(&self, shares: &[f64]) -> Vec<f64> {
         coordinate::values(&self.plant, &self.coordinates, shares)
     }
 
-    /// The shares nearest to these parameter values, one for each coordinate.
+    /// The fractions nearest to these parameter values, one for each coordinate.
     pub fn shares(&self, values: &[f64]) -> Vec<f64> {
         self.coordinates.iter().map(|coordinate| coordinate.share(&self.plant, values)).collect()
     }

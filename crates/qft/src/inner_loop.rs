@@ -1,19 +1,20 @@
-//! The feedback of an inner signal, found before the loop around it: gain and corner of its high
-//! pass with which a proportional loop around every plant may have the largest gain.
+//! Design of inner feedback, before the loop around it: gain and corner of its high pass for the
+//! largest gain of a proportional loop around every plant.
 //!
 //! ```text
 //! u = -K y - H p,   y = P u,   p = Q u        P' = P/(1 + H Q)        H(s) = k s/(s + w_h) w_l/(s + w_l)
 //! maximise over k, w_h   K(k, w_h) min |P'(j w_0)|                    over all plants, w_0 below the resonances
 //! K      largest gain up to which  |1 + K P'| >= m,  |K P'/(1 + K P')| <= 1/sqrt(2) from w_b on,
 //!        and no delay up to T_m makes H Q + K P reach -1
-//! k      up to where the same holds of H Q alone, and its noise moves the command by no more than allowed
+//! k      up to where the loop H Q also satisfies these limits, and its noise moves the command by no more than allowed
 //! ```
 //!
-//! Inside out: the inner loop is fast and has its own margins, so that it remains stable where the
-//! outer one is opened, limited or shaped anew. A plant with one lightly damped resonance
-//! w behind an integrator reaches a loop gain of 2 xi w (1 - m): there the measure is the damping.
-//! Both limits on a gain are closed forms at each frequency, so no loop is searched for: a
-//! search that closes whole designs would repeat minutes of work for each corner.
+//! The design proceeds from the inside out: the inner loop is fast and has separate margins, so
+//! that it remains stable if the outer one is opened, limited or reshaped. A plant with one lightly
+//! damped resonance w in series with an integrator reaches a loop gain of 2 xi w (1 - m): there the
+//! criterion amounts to the damping. Both limits on a gain are closed forms at each frequency, so
+//! no search over loops is needed: one that completes whole designs would repeat minutes of work
+//! for each corner.
 
 mod limits;
 mod search;
@@ -25,11 +26,11 @@ use phea_dynamics::linear::{LinearError, TransferFunction};
 /// A plant at one frequency, with hold and delay of the loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InnerPoint {
-    /// rad/s
+    /// Frequency, rad/s.
     pub frequency_rad_per_s: f64,
-    /// P: from the command to the output.
+    /// Response P from the command to the output.
     pub plant: Complex64,
-    /// Q: from the command to the inner signal.
+    /// Response Q from the command to the inner signal.
     pub signal: Complex64,
 }
 
@@ -38,74 +39,74 @@ pub struct InnerPoint {
 pub struct InnerPlant {
     /// Frequencies dense enough for its resonances, up to pi/T of a sampled loop.
     pub points: Vec<InnerPoint>,
-    /// The frequency w_0 at which loop gains are compared, the same for every plant.
+    /// The frequency w_0 at which loop gains are compared, common to every plant.
     pub reference: InnerPoint,
 }
 
-/// What both loops must keep.
+/// Limits on both loops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InnerLoopLimits {
-    /// m: least distance of either loop from -1.
+    /// Least distance m of either loop from -1.
     pub modulus_margin: f64,
-    /// T_m: delay that both loops together must tolerate, s.
+    /// Delay T_m that both loops together must tolerate, s.
     pub delay_margin_s: f64,
-    /// w_b in rad/s, from where on the outer loop has fallen to -3 dB; infinite where it may have
-    /// any bandwidth.
+    /// Frequency w_b above which the outer loop must be below -3 dB, rad/s; infinite if any
+    /// bandwidth is allowed.
     pub highest_bandwidth_rad_per_s: f64,
-    /// Noise of the inner signal at the samples and the command that it may cause, both as root
-    /// mean squares; `None` where there is no noise or no limit.
+    /// Noise of the inner signal at the samples and the command that it may cause, both rms; `None`
+    /// without noise or without a limit.
     pub noise: Option<[f64; 2]>,
 }
 
-/// Plants and limits among which the feedback is found.
+/// Plants and limits for which the feedback is designed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InnerLoopProblem {
     /// The plants.
     pub plants: Vec<InnerPlant>,
-    /// Samples of the loop, and the rule by which H is sampled.
+    /// Sampling of the loop, and the rule by which H is discretised.
     pub timing: Timing,
-    /// w_l in rad/s; `None` without a low pass.
+    /// Corner w_l of the low pass, rad/s; `None` without a low pass.
     pub low_pass_rad_per_s: Option<f64>,
-    /// Least and greatest w_h, rad/s.
+    /// Least and greatest corner w_h of the high pass, rad/s.
     pub high_pass_rad_per_s: [f64; 2],
-    /// What both loops must keep.
+    /// Limits on both loops.
     pub limits: InnerLoopLimits,
 }
 
-/// What a feedback makes of the plants.
+/// Performance of the plants with an inner feedback.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InnerLoopReach {
-    /// K min |P'(j w_0)|.
+    /// Least loop gain K min |P'(j w_0)|.
     pub loop_gain: f64,
-    /// K
+    /// Outer gain K.
     pub outer_gain: f64,
     /// The plant that limits K.
     pub plant: usize,
-    /// Where it does, rad/s.
+    /// Frequency at which the plant limits K, rad/s.
     pub frequency_rad_per_s: f64,
 }
 
 /// The best feedback.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FoundInnerFeedback {
-    /// H
+    /// Inner feedback H.
     pub feedback: InnerFeedback,
-    /// With it.
+    /// Performance with the feedback.
     pub reach: InnerLoopReach,
-    /// Without.
+    /// Performance without the feedback.
     pub without: InnerLoopReach,
 }
 
 impl InnerLoopProblem {
-    /// What a feedback makes of the plants; `None` where the inner loop alone breaks a limit, and
+    /// Performance of the plants with this feedback; `None` if the inner loop violates a limit, and
     /// without plants.
     ///
     /// # Errors
     /// [`LinearError`] for a feedback that cannot be sampled.
     ///
     /// # Example
-    /// A resonance of 10 rad/s, damped by 0.01, behind an integrator reaches 2 xi w (1 - m) = 0.1
-    /// rad/s; reference 1 rad/s.
+    /// A resonance of 10 rad/s with a damping ratio of 0.01, in series with an integrator, reaches
+    /// 2 xi w (1 - m) = 0.1 rad/s; reference 1 rad/s.
     /// ```
     /// use num_complex::Complex64;
     /// use phea_dynamics::controller::{InnerFeedback, Timing};
@@ -132,14 +133,14 @@ impl InnerLoopProblem {
         Ok(unit.reach(feedback.gain))
     }
 
-    /// The feedback with the largest loop gain, the inner loop keeping its limits for every plant;
-    /// `None` without plants, or where no positive gain keeps them.
+    /// The feedback with the largest loop gain, with the inner loop within its limits for every
+    /// plant; `None` without plants, or if no positive gain satisfies the limits.
     ///
     /// # Errors
     /// [`LinearError`] for a feedback that cannot be sampled.
     ///
     /// # Example
-    /// A mass on two springs, one of them of oil: feeding the pressure back damps it.
+    /// A mass on two springs, one of them of oil: feedback of the pressure damps it.
     /// ```
     /// use num_complex::Complex64;
     /// use phea_dynamics::controller::Timing;
@@ -166,7 +167,7 @@ impl InnerLoopProblem {
         search::best(self)
     }
 
-    /// H as the loop runs it.
+    /// Inner feedback H as deployed.
     fn deployed(&self, feedback: &InnerFeedback) -> Result<TransferFunction, LinearError> {
         let function = feedback.transfer_function()?;
         match self.timing.sample_time_s {

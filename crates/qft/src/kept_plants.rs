@@ -1,4 +1,4 @@
-//! Plants within a loop, with what was already found of them.
+//! Plants within a loop, with their stored results.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -13,27 +13,28 @@ use phea_dynamics::watch::{Stopped, Watch};
 
 use super::closed_loop::{Compensation, Member, TrialPlant};
 
-/// Plants that are kept, of less than a kilobyte each.
+/// Number of plants that are stored, of less than a kilobyte each.
 const PLANTS_MAXIMUM: usize = 100_000;
 
-/// Plants within their loop, or why they have none, by the bits of their parameter values.
+/// Plants within their loop, or the reason why they have none, by the bits of their parameter
+/// values.
 type SampledPlants = BTreeMap<Vec<u64>, Result<Member, LinearError>>;
 
-/// Plants of one family within one loop. Plants that were already sampled are kept, by the bits of
-/// their parameter values: sampling costs more than a thousand responses. A clone has the same
-/// plants, and what either adds.
+/// Plants of one family within one loop. Plants already sampled are stored by the bits of their
+/// parameter values: sampling costs more than a thousand responses. A clone shares its plants,
+/// including later additions.
 #[derive(Clone, Debug)]
 pub(crate) struct KeptPlants {
     sampled: Rc<RefCell<PlantStore>>,
-    /// Plants that a search tried, likewise.
+    /// Plants that a search evaluated, likewise.
     tried: Rc<RefCell<BTreeMap<Vec<u64>, Option<TrialPlant>>>>,
-    /// The last of them that was built: the next one has nearly the same poles.
+    /// The last plant that was built: the next one has nearly equal poles.
     last: RefCell<Option<TrialPlant>>,
     memo: RefCell<EvaluationMemo>,
     workers: Workers,
 }
 
-/// Plants that were sampled: those that pieces of work share, and those that came since.
+/// Plants that were sampled: those shared between tasks, and those added since.
 #[derive(Debug, Default)]
 struct PlantStore {
     shared: Arc<SampledPlants>,
@@ -45,7 +46,7 @@ impl PlantStore {
         self.shared.len() + self.new.len()
     }
 
-    /// All plants, to be read by several threads.
+    /// All plants, readable by several threads.
     fn share(&mut self) -> Arc<SampledPlants> {
         if !self.new.is_empty() {
             Arc::make_mut(&mut self.shared).append(&mut self.new);
@@ -61,7 +62,7 @@ impl Default for KeptPlants {
 }
 
 impl KeptPlants {
-    /// No plant yet, with the owner of the threads that look for more.
+    /// An empty store, with the workers that evaluate more plants.
     pub(crate) fn of(workers: Workers) -> KeptPlants {
         KeptPlants {
             sampled: Rc::default(),
@@ -72,13 +73,13 @@ impl KeptPlants {
         }
     }
 
-    /// The owner of the threads.
+    /// The worker threads.
     pub(crate) fn workers(&self) -> Workers {
         self.workers
     }
 
-    /// Results of tasks, in their order. Each has the plants that are known and tried plants of its
-    /// own, so that its result does not depend on the others.
+    /// Results of tasks, in their order. Each task has the known plants and separate trial plants,
+    /// so that its result does not depend on the others.
     pub(crate) fn each<T: Send, R: Send>(
         &self,
         tasks: Vec<T>,
@@ -109,12 +110,12 @@ impl KeptPlants {
         Ok(results)
     }
 
-    /// How many plants were sampled.
+    /// Number of sampled plants.
     pub(crate) fn sampled(&self) -> usize {
         self.sampled.borrow().len()
     }
 
-    /// How many plants were tried, and of how many of them all factors were needed.
+    /// Number of plants evaluated by searches, and number of those whose factors were all needed.
     pub(crate) fn tried(&self) -> [usize; 2] {
         let is_whole = |one: &&TrialPlant| match one {
             TrialPlant::Whole(_) => true,
@@ -149,7 +150,7 @@ impl KeptPlants {
         sampled.new.entry(key).or_insert_with(build).clone()
     }
 
-    /// The same plant for a search, which evaluates it at a few frequencies; `None` if it cannot be
+    /// A trial plant for a search, which evaluates it at a few frequencies; `None` if it cannot be
     /// sampled.
     pub(crate) fn trial(
         &self,

@@ -4,19 +4,19 @@
 //! ```text
 //! UncertainPlant, members -> Family                                            the plants to be controlled
 //! Controller, sensor -> Compensation; with a plant -> Member -> LoopResponse   the loop around each of them
-//! ClosedLoop, Limit -> Requirement; with a band -> Specification               what is demanded of it
-//! Family at a frequency -> Template; with a Requirement -> Bound               where the nominal loop may not be
-//! Family, Compensation -> FamilyStability                                      whether every plant is stable
-//! AuditProblem -> audit -> Audit                                               stability and the worst margins: searched
-//! AuditProblem, Audit -> prove -> Certificate -> check                         the same for every plant: proven
-//! Compensator -> Edit -> Compensator -> DesignChart                            shaped by hand
-//! DesignProblem -> diagnose -> Finding                                         what no controller can achieve
+//! ClosedLoop, Limit -> Requirement; with a band -> Specification               the requirements on it
+//! Family at a frequency -> Template; with a Requirement -> Bound               the forbidden region of the nominal loop
+//! Family, Compensation -> FamilyStability                                      the stability of every plant
+//! AuditProblem -> audit -> Audit                                               search for instability and the worst margins
+//! AuditProblem, Audit -> prove -> Certificate -> check                         proof of both for every plant
+//! Compensator -> Edit -> Compensator -> DesignChart                            shaping by hand
+//! DesignProblem -> diagnose -> Finding                                         limits that no controller can meet
 //! DesignProblem -> Structure -> Shaping -> search -> PrefilterBand -> fit -> Audit -> Design
-//!                                 ^---------- counterexamples ----------------'       shaped automatically
+//!                                 ^---------- counterexamples ----------------'       automatic shaping
 //! ```
 //!
 //! Frequencies in rad/s, angles in radians and gains as ratios, unless a name ends in `_deg` or
-//! `_db`. Results are values: sentences about them are made in the crates above.
+//! `_db`. Results are values: the crates above word them.
 //!
 //! This crate knows plants only as `phea_dynamics::uncertain_plant::UncertainPlant` or as measured
 //! responses; it never sees a valve or a hose.

@@ -1,5 +1,5 @@
 //! Loop shaping by hand: edits of a controller as values, elements solved so that the loop passes
-//! through a wanted point, and the resulting margins of every plant.
+//! through a required point, and the resulting margins of every plant.
 //!
 //! ```text
 //! elements -> edit -> elements -> G(j w) -> margin of every specification at every design frequency -> edit -> ...

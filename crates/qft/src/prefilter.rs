@@ -1,5 +1,5 @@
-//! The prefilter: the band that the closed loop leaves for it, and the one of least order that
-//! stays within it (thesis 3.1.5).
+//! The prefilter: the band that the closed loop leaves for it, and the prefilter of least order
+//! within that band (thesis 3.1.5).
 //!
 //! The controller determines the spread of the plants of a family, the prefilter its position. At
 //! each frequency
@@ -8,9 +8,9 @@
 //! lower/min|T| <= |F| <= upper/max|T|,      T = P G/(1+L)          over the family, so that lower <= |F T| <= upper (3.18)
 //! ```
 //!
-//! is the only condition on F: a band for its magnitude. Where the band has no width, no prefilter
-//! of any order satisfies it, and the two conflicting plants can be named. Otherwise a stable F of
-//! minimum phase is fitted into it.
+//! is the only condition on F: a band for its magnitude. If the band has no width, no prefilter of
+//! any order satisfies it, and the two conflicting plants are identified. Otherwise a stable
+//! minimum-phase F is fitted into it.
 
 mod band;
 mod ends;
@@ -29,7 +29,7 @@ pub use synthesis::{FittedPrefilter, PrefilterOptions, PrefilterOutcome, fit_pre
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::watch::Stopped;
 
-/// Why there is no band for a prefilter, or no search in it.
+/// Reason why there is no band for a prefilter, or no search in it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PrefilterError {
     /// A specification that the prefilter does not affect.
@@ -38,7 +38,7 @@ pub enum PrefilterError {
     /// A family without members.
     #[error("a family without members leaves no band")]
     NoMember,
-    /// None of the frequencies lies where tracking is demanded.
+    /// All frequencies are outside the band of the tracking limits.
     #[error("tracking is demanded at none of the frequencies")]
     NoFrequency,
     /// The closed loop of a member could not be evaluated.
@@ -46,10 +46,10 @@ pub enum PrefilterError {
     NoResponse {
         /// Index of the member.
         member: usize,
-        /// rad/s
+        /// Frequency, rad/s.
         frequency_rad_per_s: f64,
     },
-    /// A prefilter that cannot be sampled in the way of the loop.
+    /// A prefilter that cannot be sampled by the rule of the loop.
     #[error(transparent)]
     Linear(#[from] LinearError),
     /// The watch stopped the synthesis.

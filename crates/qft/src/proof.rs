@@ -1,22 +1,22 @@
-//! Proof: the result that an audit found by searching is shown for every plant of the box and every
-//! frequency of the band, as a certificate that a sceptic can check again.
+//! Proof: the result of an audit, found by searching, is proven for every plant of the box and
+//! every frequency of the band, as a certificate that a sceptic can check.
 //!
 //! ```text
 //! loop and box -> polynomials in s and the variables -> control points -> tree of leaves -> certificate        the prover, not trusted
 //!                                                            certificate -> polynomials -> control points -> checked        the checker
 //! ```
 //!
-//! Every claim is |V(jw, p)| <= |U(jw, p)| with two polynomials, see the table of `claimed`. Over a
-//! box of plants and a panel of frequencies both are means of their control points, with the same
-//! weights. A leaf is shown by one direction d:
+//! Every claim is |V(jw, p)| <= |U(jw, p)| with two polynomials, see the table in `claimed`. Over a
+//! box of plants and a panel of frequencies both are weighted means of their control points, with
+//! equal weights for both. A leaf is proven by one direction d:
 //!
 //! ```text
 //! Re(conj(d) U_k) >= |d| |V_k| for every control point   ->   |V| <= |U| on the whole leaf
 //! ```
 //!
-//! A loop is stable where n + c, the numerator of 1 + L, has no zero on the imaginary axis nor at
-//! infinity for any plant of the box, and the roots of one plant lie to the left of it: roots move
-//! continuously, so none can cross.
+//! A loop is stable if n + c, the numerator of 1 + L, has no zero on the imaginary axis or at
+//! infinity for any plant of the box, and the roots for one plant are to the left of the axis:
+//! roots move continuously, so none can cross.
 
 mod bounds;
 mod certificate;
@@ -54,39 +54,39 @@ pub use walk::ProofRegion;
 
 use crate::verification::{SpecificationMargin, Verdict};
 
-/// What was shown about a loop.
+/// Results of a proof about a loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proof {
-    /// All claims that hold; `None` where nothing can be stated about such a loop.
+    /// All claims that hold; `None` if no certificate can state such a loop.
     pub certificate: Option<Certificate>,
-    /// That every plant is stable.
+    /// Claim that every plant is stable.
     pub stability: Standing,
-    /// That every specification is satisfied, in their order.
+    /// Claims that each specification is satisfied, in order.
     pub specifications: Vec<SpecificationProof>,
 }
 
-/// What was shown about a specification.
+/// Results of a proof about a specification.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpecificationProof {
-    /// Whether it is satisfied by every plant, up to the tolerance.
+    /// Claim that every plant satisfies it, up to the tolerance.
     pub standing: Standing,
-    /// Lower bound of the greatest ratio of closed loop to limit, dB: this value is reached
+    /// Lower bound on the greatest ratio of closed loop to limit, dB: this value is reached
     /// somewhere.
     pub least_db: Option<f64>,
-    /// Upper bound of this ratio, dB.
+    /// Upper bound on this ratio, dB.
     pub most_db: Option<f64>,
-    /// Where the least is reached.
+    /// Point where the least value is reached.
     pub worst: Option<SpecificationMargin>,
 }
 
-/// Whether a claim is shown.
+/// Status of a claim.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Standing {
-    /// For every plant and every frequency.
+    /// The claim holds for every plant and every frequency.
     Proven,
-    /// At least one plant, at one frequency, contradicts it.
+    /// The claim is contradicted by at least one plant, at one frequency.
     Refuted,
-    /// Neither.
+    /// The claim is neither proven nor refuted.
     NotProven(NotProven),
 }
 
@@ -101,15 +101,15 @@ impl Standing {
     }
 }
 
-/// Why a claim is neither shown nor refuted.
+/// Reason why a claim is neither proven nor refuted.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NotProven {
-    /// The plants were measured: nothing can be claimed between two of them.
+    /// The plants were measured: no claim is possible between two of them.
     Measured,
     /// The loop is sampled, and no bound was found on the images of the plant: its response does
-    /// not fall with the frequency, or too late.
+    /// not fall with the frequency, or only at too high a frequency.
     Images,
-    /// The band lies beyond half of the sampling frequency.
+    /// The band extends beyond half of the sampling frequency.
     BeyondSampling,
     /// The load's velocity is fed forward.
     RateFedForward,
@@ -125,16 +125,16 @@ pub enum NotProven {
     TableLimit,
     /// There is no prefilter: the spread of a family is not a ratio at one plant.
     Spread,
-    /// The loop is not shown to be stable, so that closed loops have no meaning.
+    /// The loop is not shown to be stable, so that closed loops are meaningless.
     Unstable,
-    /// This number of leaves did not suffice; this part remains.
+    /// The budget of leaves did not suffice; this part remains.
     Budget(ProofRegion),
     /// The ratio grows, and no maximum was found.
     Unbounded,
-    /// No plant of the box could be shown to be stable or unstable.
+    /// The search found no plant of the box that could be shown to be stable or unstable.
     NoStableMember,
-    /// The search has found a violation of what seems to be proven.
+    /// The search has found a violation of a claim that seems to be proven.
     Contradicted,
-    /// The checker, which rounds outwards, could not confirm what the prover found.
+    /// The checker, which rounds outwards, could not confirm the prover's result.
     Rounding,
 }

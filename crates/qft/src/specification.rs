@@ -26,7 +26,7 @@ pub use time_domain::{
     tracking_upper,
 };
 
-/// Which closed loop is limited, and how.
+/// Closed loop that is limited, and its limits.
 ///
 /// ```text
 /// robust stability          |L/(1+L)|  <= limit              thesis (3.14), (6.30)
@@ -42,39 +42,40 @@ pub use time_domain::{
 #[derive(Clone, Debug, PartialEq)]
 pub struct Requirement {
     closed_loop: ClosedLoop,
-    /// Of tracking, and of no other.
+    /// Lower limit; only for tracking.
     lower: Option<Limit>,
     upper: Limit,
 }
 
 impl Requirement {
-    /// This closed loop at most this large; of tracking, the least magnitude is zero.
+    /// Requirement that this closed loop is at most this large; for tracking, the lower limit is
+    /// zero.
     pub fn at_most(closed_loop: ClosedLoop, upper: Limit) -> Requirement {
         let lower = (closed_loop == ClosedLoop::Tracking).then_some(Limit::Constant(0.0));
         Requirement { closed_loop, lower, upper }
     }
 
-    /// What follows the reference, between these limits.
+    /// Requirement that the response to the reference is between these limits.
     pub fn tracking(lower: Limit, upper: Limit) -> Requirement {
         Requirement { closed_loop: ClosedLoop::Tracking, lower: Some(lower), upper }
     }
 
-    /// Which closed loop it limits.
+    /// The limited closed loop.
     pub fn closed_loop(&self) -> ClosedLoop {
         self.closed_loop
     }
 
-    /// Whether it limits what follows the reference, which alone has a lower limit.
+    /// True if it limits the response to the reference, the only requirement with a lower limit.
     pub fn is_tracking(&self) -> bool {
         self.closed_loop == ClosedLoop::Tracking
     }
 
-    /// The lower limit, of tracking alone, and the upper one.
+    /// The lower limit, only for tracking, and the upper one.
     pub fn limits(&self) -> (Option<&Limit>, &Limit) {
         (self.lower.as_ref(), &self.upper)
     }
 
-    /// The same with an upper limit larger by a factor, and a lower one smaller by it.
+    /// Widens the requirement: an upper limit larger by a factor, and a lower one smaller by it.
     ///
     /// # Errors
     /// [`LinearError`] for a factor that is not finite.
@@ -95,8 +96,8 @@ impl Requirement {
         })
     }
 
-    /// The part of a reserve in dB that a design keeps to every limit at a frequency: all of it, or
-    /// less where two limits are less than 1 dB apart, or less than four reserves.
+    /// Reserve of a design to every limit at a frequency, dB: the full reserve, or less if the
+    /// distance between two limits is less than 1 dB or less than four reserves.
     pub fn reserve_at_db(&self, reserve_db: f64, frequency_rad_per_s: f64) -> f64 {
         let lower = self.lower.as_ref().and_then(|limit| limit.magnitude(frequency_rad_per_s));
         let ratio = self.upper.magnitude(frequency_rad_per_s).zip(lower).map(|(upper, lower)| upper / lower);
@@ -104,8 +105,9 @@ impl Requirement {
     }
 }
 
-/// The fraction of a reserve that is kept where two limits leave this room between them, in dB: all
-/// of it where the room is 1 dB and four reserves, so that both together take half of it at most.
+/// The fraction of a reserve that applies if two limits leave this room between them, dB: the full
+/// reserve if the room is at least 1 dB and four reserves, so that both together use at most half
+/// of it.
 pub(crate) fn fraction_kept(reserve_db: f64, room_db: Option<f64>) -> f64 {
     room_db.map_or(1.0, |room_db| (room_db / (4.0 * reserve_db).max(1.0)).clamp(0.0, 1.0))
 }
@@ -114,23 +116,23 @@ pub(crate) fn fraction_kept(reserve_db: f64, room_db: Option<f64>) -> f64 {
 /// hold, rad/s.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Specification {
-    /// What is limited, and by how much.
+    /// Closed loop and limits.
     pub requirement: Requirement,
     /// Design frequencies, rad/s, increasing.
     pub frequencies_rad_per_s: Vec<f64>,
-    /// The band `[from, to]` in rad/s over which it must hold; `to` may be infinite.
+    /// The band `[from, to]` over which it must hold, rad/s; `to` may be infinite.
     pub band_rad_per_s: [f64; 2],
 }
 
 impl Specification {
-    /// The margin of the loop to the limit at this frequency, in dB; negative where the limit is
+    /// The margin of the loop to the limit at this frequency, dB; negative if the limit is
     /// violated.
     ///
     /// ```text
     /// margin = 20 log10(limit / |closed loop|)              for tracking the smaller of the margins to both limits
     /// ```
     ///
-    /// `None` where a limit given as a table does not cover the frequency.
+    /// `None` if a limit given as a table does not cover the frequency.
     ///
     /// # Example
     /// ```

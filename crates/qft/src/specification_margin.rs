@@ -12,9 +12,9 @@ use crate::verdict::PlantPoint;
 pub struct SpecificationMargin {
     /// Index of the specification.
     pub specification: usize,
-    /// rad/s; zero or infinite for a limit.
+    /// Frequency, rad/s; zero or infinite for a limit.
     pub frequency_rad_per_s: f64,
-    /// dB; negative where the specification is violated.
+    /// Margin, dB; negative if the specification is violated.
     pub margin_db: f64,
     /// The plant; for a spread, the one with the greatest |T|.
     pub plant: PlantPoint,

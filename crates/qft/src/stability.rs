@@ -1,18 +1,18 @@
-//! Whether every plant of a family is stable within its loop, how close it comes to instability,
-//! and how much more dead time it tolerates.
+//! Stability of every plant of a family within its loop, distance from instability, and tolerance
+//! of additional dead time.
 //!
 //! ```text
 //! poles:             zeros of c + n, of c z^k + n: their largest real part                  no dead time, or whole samples
-//! argument:          turns of c + n e^(-s T) on the boundary of stability                   every loop, dead time included
-//! Nyquist:           turns of 1 + L                                                         measured plants, and those without
-//!                    polynomials, whose 1 + L is enclosed from each frequency to the next
+//! argument:          turns of c + n e^(-s T) on the stability boundary                      every loop, including dead time
+//! Nyquist:           turns of 1 + L                                                         measured plants, and plants without
+//!                    polynomials, whose 1 + L is enclosed between successive frequencies
 //! zero exclusion:    min |1 + L| over box and frequency: while it is not zero, no pole crosses from one plant to the next
 //! leading coefficient:   enclosed over the box: while it is not zero, no pole passes through infinity
 //! ```
 //!
 //! Nothing is cancelled: an unstable mode of plant, controller or sensor that the loop does not
-//! move counts. Prefilter and load-motion path lie outside the loop; the audit of the family
-//! requires that the prefilter be stable by itself.
+//! move is counted. Prefilter and load-motion path are outside the loop; the audit of the family
+//! requires a stable prefilter.
 
 mod badness;
 mod characteristic;
@@ -50,112 +50,111 @@ pub(crate) use responding::own_poles;
 /// Stability of one loop.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StabilityStatus {
-    /// All closed-loop poles lie inside the stable region.
+    /// All closed-loop poles are inside the stable region.
     Stable,
-    /// At least one does not.
+    /// The loop has a closed-loop pole outside the stable region.
     Unstable(Instability),
-    /// It could not be decided.
+    /// The stability could not be decided.
     NotResolved(Irresolution),
 }
 
-/// How a loop is unstable.
+/// Kind of instability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Instability {
-    /// A closed-loop pole with this real part, 1/s, not negative.
+    /// A closed-loop pole with a non-negative real part.
     Pole {
-        /// ln|z|/T in a sampled loop.
+        /// Real part, or ln|z|/T in a sampled loop, 1/s.
         real_part: f64,
     },
     /// Number of closed-loop poles outside the stable region.
     Poles {
-        /// Their number.
+        /// Number of poles.
         count: usize,
     },
-    /// Dead time in a loop whose gain stays above one however high the frequency: infinitely many
-    /// unstable poles.
+    /// Dead time in a loop whose gain stays above one at arbitrarily high frequency: infinitely
+    /// many unstable poles.
     GainAtInfinity,
 }
 
-/// Why the stability of a loop could not be decided.
+/// Reason why the stability of a loop could not be decided.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Irresolution {
     /// The loop is not valid, or cannot be computed.
     Linear(LinearError),
-    /// A closed-loop pole lies so near the boundary of stability that rounding hides on which side
-    /// it lies.
+    /// A closed-loop pole is so near the stability boundary that rounding hides its side.
     NearBoundary {
-        /// Where on the boundary, rad/s.
+        /// Frequency on the boundary, rad/s.
         frequency_rad_per_s: f64,
     },
-    /// Too many steps along the boundary of stability.
+    /// Too many steps along the stability boundary.
     Budget {
-        /// Where the count stopped, rad/s.
+        /// Frequency at which the count stopped, rad/s.
         frequency_rad_per_s: f64,
     },
-    /// Dead time in a loop whose gain tends to one: its poles approach the boundary of stability.
+    /// Dead time in a loop whose gain tends to one: its poles approach the stability boundary.
     GainAtInfinity,
-    /// Plants of the box between which a pole passes through infinity, and none of which was found
-    /// to be unstable.
+    /// A pole passes through infinity between plants of the box, none of which was found to be
+    /// unstable.
     PoleThroughInfinity,
-    /// Modes beyond half the sampling rate pass through the band more often than plants in between
-    /// can be examined.
+    /// Modes beyond half the sampling rate pass through the band more often than can be resolved by
+    /// the plants examined.
     Folding,
-    /// Plants without polynomials in a sampled loop, between which modes may fold.
+    /// Plants without polynomials in a sampled loop, with modes between them that may fold.
     FoldingUnknown,
     /// The enclosures of the coefficients that must not vanish, so that no pole passes through
-    /// infinity, still contain zero, and a search comes near to it.
+    /// infinity, still contain zero, and a search comes close to zero.
     InfinityOpen(SearchedInfinity),
-    /// A controller or sensor with undamped poles away from the origin, in a loop that is known by
-    /// measured points only.
+    /// A controller or sensor with undamped poles away from the origin, in a loop known only by
+    /// measured points.
     UndampedController,
-    /// A plant whose own unstable poles cannot be counted.
+    /// A plant whose unstable poles cannot be counted.
     OpenLoopPoles,
     /// Fewer than two points were measured below half the sampling rate.
     Points,
-    /// Between two measured points 1 + L turns further than can be followed.
+    /// The angle of 1 + L changes between two measured points by more than can be followed.
     Coarse {
-        /// rad/s
+        /// Lower of the two frequencies, rad/s.
         from_rad_per_s: f64,
-        /// rad/s
+        /// Upper of the two frequencies, rad/s.
         to_rad_per_s: f64,
         /// The angle, degrees.
         turn_deg: f64,
     },
-    /// The measurement ends while the gain is not small.
+    /// The measurement ends before the gain is small.
     HighEnd {
-        /// rad/s
+        /// Frequency, rad/s.
         frequency_rad_per_s: f64,
-        /// |L|
+        /// Gain |L|.
         gain: f64,
     },
-    /// The behaviour of the loop below the first measured point cannot be concluded from the
+    /// The behaviour of the loop below the first measured point cannot be inferred from the
     /// measurement.
     LowEnd {
-        /// rad/s
+        /// Frequency, rad/s.
         frequency_rad_per_s: f64,
-        /// Interval of d ln|L|/d ln w from there on; `None` where the points do not reach over a
-        /// factor of two.
+        /// Interval of d ln|L|/d ln w from there on; `None` if the points do not cover a factor of
+        /// two.
         slope: Option<[f64; 2]>,
     },
     /// The slope at the lowest frequencies contradicts the stated integrators of the plant.
     Integrators {
-        /// rad/s
+        /// Frequency, rad/s.
         frequency_rad_per_s: f64,
-        /// Those of the loop, by the statement.
+        /// Stated number of integrators of the loop.
         integrators: f64,
     },
-    /// The disc around a measured response is so wide that 1 + L may turn either way round.
+    /// The disc around a measured response is so wide that 1 + L may turn in either direction.
     Confidence {
-        /// rad/s
+        /// Frequency, rad/s.
         frequency_rad_per_s: f64,
-        /// |1 + L| of its centre.
+        /// Distance |1 + L| at its centre.
         distance: f64,
-        /// Its radius, of L.
+        /// Radius of the disc, of L.
         radius: f64,
     },
-    /// The turns do not add up to a number of poles.
+    /// The turns do not amount to a whole number of poles.
     Count {
-        /// What they add up to.
+        /// Number of poles that the turns amount to.
         count: f64,
     },
 }
@@ -163,21 +162,21 @@ pub enum Irresolution {
 /// The smallest |1 + L| along the frequency axis, the inverse of the largest sensitivity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Approach {
-    /// |1 + L|
+    /// Distance |1 + L|.
     pub distance: f64,
-    /// rad/s; infinite where it is a limit.
+    /// Frequency, rad/s; infinite for a limit.
     pub frequency_rad_per_s: f64,
 }
 
-/// What was found about one loop.
+/// Stability results of one loop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MemberStability {
-    /// Stable or not.
+    /// Status of the loop.
     pub status: StabilityStatus,
-    /// Largest real part of a closed-loop pole in 1/s, ln|z|/T in a sampled loop; minus infinity
-    /// where there are no poles, `None` where dead time or measurement leave none to be computed.
+    /// Largest real part of a closed-loop pole (ln|z|/T in a sampled loop), 1/s; minus infinity
+    /// without poles, `None` if dead time or a measurement prevents their computation.
     pub largest_real_part: Option<f64>,
-    /// How near L comes to -1; for a stable loop.
+    /// Closest approach of L to -1; for a stable loop.
     pub closest_approach: Option<Approach>,
     /// The additional dead time that it tolerates; for a stable loop.
     pub critical_delay: Option<CriticalDelay>,
@@ -185,15 +184,15 @@ pub struct MemberStability {
 
 /// Stability of one plant within its loop.
 ///
-/// For a rational loop both the poles and the turns of the characteristic function must show
+/// For a rational loop both the poles and the turns of the characteristic function must indicate
 /// stability; otherwise it is not resolved. In a sampled loop the critical delay is phase over
-/// frequency at the crossovers of the sampled L: exact where it is a whole number of samples;
-/// between whole samples a delay also changes the sampled plant. [`family_stability`] samples the
-/// worst plants anew, except where a rate is fed back within the plant: for such a plant it is the
-/// delay of the controller's own path.
+/// frequency at the crossovers of the sampled L: exact if it is a whole number of samples; between
+/// whole samples a delay also changes the sampled plant. [`family_stability`] resamples the worst
+/// plants, unless a rate is fed back within the plant: for such a plant it is the delay of the
+/// controller's path.
 ///
 /// # Example
-/// k e^(-s)/s is stable for 0 < k < pi/2, and tolerates pi/(2 k) of dead time:
+/// Plant k e^(-s)/s, stable for 0 < k < pi/2, which tolerates pi/(2 k) of dead time:
 /// ```
 /// use phea_dynamics::controller::Controller;
 /// use phea_dynamics::linear::TransferFunction;
@@ -233,7 +232,7 @@ fn of_member(member: &Member, compensation: &Compensation, path: &FeedbackPath) 
     }
 }
 
-/// `None` for a plant without polynomials.
+/// Characteristic equation; `None` for a plant without polynomials.
 fn characteristic(member: &Member, path: &FeedbackPath) -> Option<Result<Characteristic, Irresolution>> {
     match member {
         Member::Continuous { plant, .. } => Some(path.around(plant)),
@@ -242,9 +241,9 @@ fn characteristic(member: &Member, path: &FeedbackPath) -> Option<Result<Charact
     }
 }
 
-/// Whether all closed-loop poles of a rational plant have real parts below this one in 1/s (ln|z|/T
-/// in a sampled loop), dead time included: by the turns of the characteristic function on a
-/// parallel to the boundary of stability.
+/// True if all closed-loop poles of a rational plant have real parts below this one (ln|z|/T in a
+/// sampled loop), 1/s, including dead time: determined by the turns of the characteristic function
+/// on a parallel to the stability boundary.
 pub(crate) fn poles_lie_below(
     member: &Member,
     path: &FeedbackPath,
@@ -293,7 +292,7 @@ fn of_characteristic(characteristic: &Characteristic) -> MemberStability {
             Err(reason) => found(StabilityStatus::NotResolved(reason)),
         },
         (count, None) => found(StabilityStatus::Unstable(Instability::Poles { count })),
-        // the poles show stability and the turns do not: rounding
+        // the poles indicate stability and the turns do not: rounding
         (_, Some(_)) => {
             found(StabilityStatus::NotResolved(Irresolution::NearBoundary { frequency_rad_per_s }))
         }

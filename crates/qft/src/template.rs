@@ -3,7 +3,7 @@
 //! The members come first. A family over a box is then refined: lines along the edges of the box
 //! until neighbouring plants are close, the regions enclosed by the edges of its two-dimensional
 //! faces, growth of these regions over all coordinates, and witnesses (members and evenly spread
-//! probes) that must lie within it.
+//! probes) that must be inside it.
 
 mod build;
 mod cell;
@@ -25,25 +25,25 @@ pub(crate) use build::around_disc;
 pub use build::template;
 use build::template_watched;
 
-/// How finely a template is resolved.
+/// Resolution of a template, and limits of its refinement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TemplateOptions {
     /// Largest distance of neighbouring plants, degrees; above 0 and below 90.
     pub phase_deg: f64,
     /// Largest distance of neighbouring plants, dB; above 0.
     pub magnitude_db: f64,
-    /// Number of plants, in addition to the members, after which refinement gives up.
+    /// Number of plants, in addition to the members, after which refinement is abandoned.
     pub evaluations_maximum: usize,
-    /// Number of plants, spread evenly over the box, that must lie within the outline in addition
-    /// to the members.
+    /// Number of plants, spread evenly over the box, that must be inside the outline in addition to
+    /// the members.
     pub probes: usize,
-    /// Number of rounds of growth after which refinement gives up; each extends the contour of the
-    /// previous round.
+    /// Number of rounds of growth after which refinement is abandoned; each extends the contour of
+    /// the previous round.
     pub rounds_maximum: usize,
 }
 
 impl Default for TemplateOptions {
-    /// 2 degrees, 0.5 dB, 50000 plants, 128 probes, 16 rounds.
+    /// Defaults: 2 degrees, 0.5 dB, 50000 plants, 128 probes, 16 rounds.
     fn default() -> TemplateOptions {
         TemplateOptions {
             phase_deg: 2.0,
@@ -55,61 +55,62 @@ impl Default for TemplateOptions {
     }
 }
 
-/// Why there is no template.
+/// Reason why there is no template.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TemplateError {
     /// A tolerance that is not a positive number, or a phase tolerance of 90 degrees and more.
     #[error("templates cannot be refined to {phase_deg} degrees and {magnitude_db} dB")]
     Tolerance {
-        /// The tolerance asked for, degrees.
+        /// The requested tolerance, degrees.
         phase_deg: f64,
-        /// The tolerance asked for, dB.
+        /// The requested tolerance, dB.
         magnitude_db: f64,
     },
-    /// A plant that cannot be put into the loop.
+    /// A plant that does not fit the loop.
     #[error("the plant with parameters {values:?} cannot be sampled: {reason}")]
     Plant {
-        /// Its parameters.
+        /// Parameters of the plant.
         values: Vec<f64>,
-        /// Why.
+        /// Reason for the failure.
         reason: LinearError,
     },
-    /// A measurement that does not reach the frequency.
+    /// A measurement that does not cover the frequency.
     #[error("a measured response does not reach {frequency_rad_per_s} rad/s")]
     OutOfReach {
-        /// rad/s
+        /// Frequency, rad/s.
         frequency_rad_per_s: f64,
     },
-    /// The watch stopped it.
+    /// The watch stopped the refinement.
     #[error(transparent)]
     Stopped(#[from] Stopped),
-    /// A response that is zero or not finite, of the nominal plant or in a family that consists of
-    /// members only.
+    /// A response that is zero or not finite, of the nominal plant or in a family that consists
+    /// only of members.
     #[error("member {member} has the response {response} at {frequency_rad_per_s} rad/s")]
     NotFinite {
         /// Index of the member in its family.
         member: usize,
-        /// P H there.
+        /// Response P H of the member.
         response: Complex64,
-        /// rad/s
+        /// Frequency, rad/s.
         frequency_rad_per_s: f64,
     },
 }
 
-/// A template and the work that it took.
+/// A template and the number of plants evaluated for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BuiltTemplate {
     /// The template.
     pub template: Template,
-    /// Plants evaluated, members included.
+    /// Number of plants evaluated, including members.
     pub evaluations: usize,
 }
 
-/// Templates of a family at many frequencies: an iterator, so that whoever owns the loop decides
-/// when the next one is built.
+/// Templates of a family at many frequencies: an iterator, so that the caller decides when the next
+/// one is built.
 ///
 /// # Example
-/// A gain between 1 and 2 before an integrator is a segment of the negative imaginary axis:
+/// Template of an integrator with a gain between 1 and 2, which is a segment of the negative
+/// imaginary axis:
 /// ```
 /// # use phea_dynamics::controller::Controller;
 /// # use phea_dynamics::linear::TransferFunction;
@@ -160,7 +161,7 @@ impl<'a> Templates<'a> {
 }
 
 impl Templates<'_> {
-    /// The next template, under this watch; `None` behind the last one.
+    /// The next template, under this watch; `None` after the last one.
     pub fn next_watched(&mut self, watch: Watch<'_>) -> Option<Result<BuiltTemplate, TemplateError>> {
         let &frequency_rad_per_s = self.frequencies_rad_per_s.next()?;
         Some(template_watched((self.family, self.compensation), frequency_rad_per_s, &self.options, watch))
@@ -175,13 +176,13 @@ impl Iterator for Templates<'_> {
     }
 }
 
-/// The response of the family at one frequency: points that are plants, and the region that they
-/// fill.
+/// The response of the family at one frequency: points that represent plants, and the region that
+/// they fill.
 ///
 /// # Example
-/// Why the region has to be known as filled. P = k e^(-sT) with k between 1 and 2 is a bent strip;
-/// a controller puts the plant in its middle on L = -1, and yet every plant on the outline
-/// satisfies |T| <= 4:
+/// The region must be known to be filled. The template of P = k e^(-sT) with k between 1 and 2 is a
+/// curved strip; a controller places the plant in its middle at L = -1, although every plant on the
+/// outline satisfies |T| <= 4:
 /// ```
 /// # use num_complex::Complex64;
 /// # use phea_dynamics::controller::Controller;
@@ -217,28 +218,27 @@ impl Iterator for Templates<'_> {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Template {
-    /// rad/s
+    /// Frequency, rad/s.
     pub frequency_rad_per_s: f64,
-    /// P0 H0, the nominal plant with its sensor.
+    /// Nominal response P0 H0, the nominal plant with its sensor.
     pub nominal: Complex64,
-    /// Plants: the members in order, the nominal one first, then those that refinement found on the
-    /// outlines.
+    /// Plants: the members in order, the nominal one first, then those found on the outlines by
+    /// refinement.
     pub points: Vec<TemplatePoint>,
-    /// Closed polygons of responses P H (the last point joins the first) around the region whose
-    /// interior is known to be filled: without holes, side by side, corners no farther apart than
-    /// the tolerance. There are several where the family is disconnected or has a hole, a line
-    /// traversed in both directions where it has no area, and none for a family that has nothing
-    /// between its members.
+    /// Closed polygons of responses P H (the last point joins the first) around the region known to
+    /// be filled: without holes, adjacent, with corners no farther apart than the tolerance. There
+    /// are several if the region is disconnected or has a hole, a line traversed in both directions
+    /// if it has no area, and none for a family that consists only of its members.
     pub outlines: Vec<Vec<Complex64>>,
-    /// How well the region is known.
+    /// Resolution of the region.
     pub resolution: Resolution,
 }
 
 impl Template {
-    /// Area of the region that is known to be filled, in degrees times dB.
+    /// Area of the region known to be filled, degrees times dB.
     ///
     /// # Example
-    /// The square between 0 and -90 degrees, and between 0 and 20 dB:
+    /// Square between 0 and -90 degrees, and between 0 and 20 dB:
     /// ```
     /// # use num_complex::Complex64;
     /// # use phea_qft::template::{Resolution, Template};
@@ -273,22 +273,22 @@ fn area(outline: &[Complex64]) -> f64 {
 /// One plant of a template.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TemplatePoint {
-    /// Index of the member in its family; `None` for a plant that refinement added.
+    /// Index of the member in its family; `None` for a plant added by refinement.
     pub member: Option<usize>,
-    /// Its parameters; empty for a measured plant.
+    /// Parameters of the plant; empty for a measured plant.
     pub values: Vec<f64>,
-    /// P H, delay and hold within it.
+    /// Response P H, including delay and hold.
     pub response: Complex64,
-    /// Pd; zero where there is no such path.
+    /// Load-motion path Pd; zero if there is no such path.
     pub load_motion: Complex64,
-    /// H
+    /// Sensor H.
     pub sensor: Complex64,
 }
 
-/// How far apart neighbouring plants of a template lie.
+/// Distance between neighbouring plants of a template.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Resolution {
-    /// Neighbours are closer than the tolerance everywhere along the outlines, and no witness lies
+    /// Neighbours are closer than the tolerance everywhere along the outlines, and no witness is
     /// farther outside.
     Resolved {
         /// Largest distance of two neighbours, degrees.
@@ -297,15 +297,15 @@ pub enum Resolution {
         magnitude_db: f64,
     },
     /// A gap did not close (an undamped resonance inside the family never does), or the plants or
-    /// rounds allowed were spent. The outlines contain what was found until then.
+    /// rounds allowed are used up. The outlines contain the region found until then.
     NotResolved {
-        /// Largest distance of two neighbours, degrees; 180 where a response is infinite or zero.
+        /// Largest distance of two neighbours, degrees; 180 if a response is infinite or zero.
         phase_deg: f64,
-        /// Largest distance of two neighbours, dB; infinite where a response is infinite or zero.
+        /// Largest distance of two neighbours, dB; infinite if a response is infinite or zero.
         magnitude_db: f64,
         /// Parameters of the plant next to the widest gap.
         near: Vec<f64>,
     },
-    /// Nothing lies between the members.
+    /// The family consists only of its members.
     Members,
 }

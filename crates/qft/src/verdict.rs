@@ -1,4 +1,4 @@
-//! A verdict, what it rests on, and the plant that it names.
+//! Verdict, its evidence, and the plant that it names.
 
 use crate::family::{Extent, Family};
 
@@ -9,21 +9,21 @@ use crate::family::{Extent, Family};
 /// greatest: a violation outweighs an unproven result, which outweighs a requirement that is met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
-    /// Every plant satisfies it.
+    /// Every plant satisfies the requirement.
     Met,
-    /// It could not be resolved.
+    /// The requirement could not be resolved.
     NotProven,
-    /// At least one plant, named with its frequency, does not.
+    /// The requirement is violated by at least one plant, named with its frequency.
     Violated,
 }
 
-/// What a verdict rests on.
+/// Evidence for a verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Evidence {
-    /// The members, at the frequencies of a grid: nothing is claimed between them.
+    /// The members, at the frequencies of a grid: no claim is made between them.
     Grid,
-    /// The worst case was searched for continuously over the box and the band, and nothing worse
-    /// was found; this is not a proof.
+    /// The worst case was searched for continuously over the box and the band, without finding a
+    /// worse one; this is not a proof.
     Search,
     /// Proven for every plant and every frequency.
     Proof,
@@ -34,7 +34,7 @@ impl Evidence {
     pub(crate) fn of(family: &Family) -> Evidence {
         match family {
             Family::Uncertain(family) if family.extent() == Extent::Box => Evidence::Search,
-            // given plants and measurements are examined one by one
+            // given plants and measurements are examined individually
             Family::Uncertain(_) | Family::Measured(_) => Evidence::Grid,
         }
     }

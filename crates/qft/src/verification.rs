@@ -1,4 +1,4 @@
-//! Verification: whether every plant of a family satisfies every specification at every required
+//! Verification that every plant of a family satisfies every specification at every required
 //! frequency.
 
 mod asymptote;
@@ -25,100 +25,100 @@ pub use crate::verdict::{Evidence, PlantPoint, Verdict};
 
 use crate::specification::Requirement;
 
-/// What was found about one specification.
+/// Results for one specification.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpecificationFinding {
-    /// What was limited.
+    /// Limited closed loop and limits.
     pub requirement: Requirement,
-    /// Whether it is met.
+    /// Verdict on the specification.
     pub verdict: Verdict,
-    /// What the verdict rests on.
+    /// Evidence for the verdict.
     pub evidence: Evidence,
-    /// The worst margin over the band and the family; `None` where there is nothing by which to
-    /// judge a specification.
+    /// The worst margin over the band and the family; `None` if there is no basis for a verdict.
     pub worst: Option<SpecificationMargin>,
-    /// The worst minimum that the margin of one plant has inside the band, where the worst one lies
-    /// at an end of it: the margin of the family may fall further towards that end.
+    /// The worst minimum of the margin of one plant inside the band, if the worst margin is at an
+    /// end of the band: the margin of the family may fall further towards that end.
     pub interior: Option<SpecificationMargin>,
-    /// Other minima whose margin is that of the worst to within 0.05 dB, the worst first: at
-    /// another frequency, or with a plant elsewhere in the box.
+    /// Other minima whose margin equals the worst to within 0.05 dB, the worst first: at another
+    /// frequency, or with a plant elsewhere in the box.
     pub as_bad: Vec<SpecificationMargin>,
-    /// Bands in which some plant that was examined violates it, with the worst case of each: others
-    /// of a box may do so a little beyond.
+    /// Bands in which some examined plant violates it, with the worst case of each: other plants of
+    /// a box may violate it slightly beyond.
     pub violations: Vec<ViolatedBand>,
     /// The worst margin of the family at each design frequency.
     pub at_design_frequencies: Vec<SpecificationMargin>,
-    /// The worst margin over the family at each frequency of a grid, for drawing: (rad/s, dB).
+    /// The worst margin over the family at each frequency of a grid, for plotting: (rad/s, dB).
     pub envelope: Vec<(f64, f64)>,
-    /// What was not examined; empty if everything was.
+    /// Limitations of the examination; empty if there are none.
     pub remarks: Vec<Remark>,
 }
 
 impl SpecificationFinding {
-    /// The worst margins: over the band, inside of it, and of each violated band.
+    /// The worst margins: over the band, inside it, and in each violated band.
     pub fn worst_margins(&self) -> impl Iterator<Item = &SpecificationMargin> {
         let bands = self.violations.iter().map(|band| &band.worst);
         self.worst.iter().chain(&self.interior).chain(bands)
     }
 }
 
-/// What the verdict on a specification leaves out, or how it was found.
+/// Limitation of the verdict on a specification, or of the method.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Remark {
-    /// The band reaches beyond pi/T, in rad/s, above which a sampled loop has no frequencies.
+    /// The band extends beyond pi/T, rad/s, above which a sampled loop has no frequencies.
     BandEndsAtNyquist {
-        /// pi/T
+        /// End of the band pi/T, rad/s.
         nyquist_rad_per_s: f64,
     },
-    /// The table of a limit does not reach over the band: nothing is demanded beyond it.
+    /// The table of a limit does not cover the band: there is no limit beyond it.
     TableEnds {
-        /// From and to.
+        /// Ends of the table, rad/s.
         table_rad_per_s: [f64; 2],
     },
-    /// A lower limit reaches pi/T, where prefilter or controller have a zero: no lower limit can be
-    /// met there.
+    /// A lower limit extends to pi/T, where prefilter or controller have a zero: no lower limit can
+    /// be met there.
     ZeroAtNyquist {
-        /// pi/T
+        /// End of the band pi/T, rad/s.
         nyquist_rad_per_s: f64,
     },
     /// There is no limit within the band.
     NothingDemanded,
-    /// A design frequency lies outside of the band.
+    /// A design frequency is outside the band.
     DesignFrequencyOutside {
         /// The design frequency.
         frequency_rad_per_s: f64,
     },
-    /// Judged by the spread of |T|, without a prefilter; the worst case has both its plants.
+    /// Tracking is assessed by the spread of |T|, without a prefilter; the worst case names both
+    /// plants.
     JudgedBySpread,
-    /// Between two frequencies of a measurement the response is interpolated.
+    /// The response is interpolated between two frequencies of a measurement.
     Interpolated,
     /// The margin is that of the worst plant within the confidence discs of a measurement.
     WorstWithinDiscs,
     /// Some plants within the confidence discs violate the specification, and others do not.
     OpenWithinDiscs {
-        /// Worst margin that every plant within them has at most, dB.
+        /// Upper bound on the worst margin for every plant within the discs, dB.
         certain_margin_db: f64,
     },
     /// The band extends beyond the range in which every plant was measured.
     BeyondMeasurements {
-        /// From and to.
+        /// Range of the measurements, rad/s.
         measured_rad_per_s: [f64; 2],
     },
-    /// A plant that cannot be sampled has no response that could be judged.
+    /// A plant that cannot be sampled has no response that could be evaluated.
     NotSampled {
-        /// Where this was met.
+        /// Frequency at which this occurred, rad/s.
         frequency_rad_per_s: f64,
     },
-    /// A plant has no response that could be judged.
+    /// A plant has no response that could be evaluated.
     NoResponse {
-        /// Where this was met.
+        /// Frequency at which this occurred, rad/s.
         frequency_rad_per_s: f64,
-        /// The plant, where it is known.
+        /// The plant, if known.
         plant: Option<PlantPoint>,
     },
-    /// A plant inside the box, found in a search, cannot be judged.
+    /// A plant inside the box, found in a search, cannot be evaluated.
     UndefinedInBox {
-        /// Where this was met.
+        /// Frequency at which this occurred, rad/s.
         frequency_rad_per_s: f64,
     },
     /// The loop is unstable, so that it has no margin.
@@ -130,7 +130,7 @@ pub enum Remark {
 /// A band of frequencies in which a specification is violated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ViolatedBand {
-    /// From and to, rad/s.
+    /// Ends of the band, rad/s.
     pub band_rad_per_s: [f64; 2],
     /// The worst case within it.
     pub worst: SpecificationMargin,
@@ -143,7 +143,7 @@ pub struct Audit {
     pub verdict: Verdict,
     /// The weakest evidence that the verdict needs.
     pub evidence: Evidence,
-    /// A margin of minus this much still counts as met, dB.
+    /// Violation up to which a margin counts as met, dB.
     pub tolerance_db: f64,
     /// Stability of the family.
     pub stability: StabilityFinding,

@@ -1,4 +1,4 @@
-//! An audit made of two.
+//! An audit composed of two.
 
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::linear::TransferFunction;
@@ -15,7 +15,7 @@ use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::stability::family_stability;
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement, Verdict, audit_specifications};
 
-/// k/(s^2 + 0.4 s + 1) under integral control, sampled ten times a second.
+/// Plant k/(s^2 + 0.4 s + 1) under integral control, sampled ten times per second.
 fn family(extent: Extent) -> Family {
     let gain = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 0.5, maximum: 2.0 };
     let plant = UncertainPlant::record(vec![gain], |p| PlantCoefficients {
@@ -50,7 +50,8 @@ fn specifications() -> [Specification; 1] {
     }]
 }
 
-/// Handing plants on from one audit to the other saves work and changes nothing.
+/// Transfer of plants from one audit to the other, which saves work and does not change the
+/// results.
 #[test]
 fn both_audits_find_what_they_find_alone() {
     for extent in [Extent::Box, Extent::Members] {
@@ -72,13 +73,13 @@ fn both_audits_find_what_they_find_alone() {
     }
 }
 
-/// Workers that take the pieces from the last to the first.
+/// Workers that take the tasks from the last to the first.
 fn backwards(pieces: Vec<WorkPiece<'_>>, _: &'static str, watch: Watch<'_>) -> Result<(), Stopped> {
     pieces.into_iter().rev().try_for_each(|piece| piece(&mut *watch))
 }
 
-/// Plants, searches and specifications need nothing of one another: whoever works on how many of
-/// them at once, in whatever order, finds and proves the same.
+/// Plants, searches and specifications are independent of each other: any number of workers, in any
+/// order, gives identical findings and proofs.
 #[test]
 fn audit_and_proof_do_not_depend_on_the_workers() {
     for extent in [Extent::Box, Extent::Members] {
@@ -106,7 +107,8 @@ fn audit_and_proof_do_not_depend_on_the_workers() {
     }
 }
 
-/// Wherever its watch stops it, an audit stops at once, and shows its progress until then.
+/// Stopped audits: an audit stops at once when its watch requests it, and reports its progress
+/// until then.
 #[test]
 fn an_audit_stops_where_it_is_told() {
     let (family, around) = (family(Extent::Box), sampled_loop());

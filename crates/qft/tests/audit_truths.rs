@@ -1,4 +1,4 @@
-//! Audits of plants that once were judged falsely: poles that die within a sample, modes that fold
+//! Audits of plants with formerly wrong verdicts: poles that decay within a sample, modes that fold
 //! through the sampled band, poles that pass through infinity.
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
@@ -49,7 +49,7 @@ fn rational<'t>(
     PlantCoefficients { command, disturbance: None, dead_time_s: dead_time_s.into(), rate: None }
 }
 
-/// A plant of numbers alone.
+/// A plant with constant coefficients.
 fn fixed(gain: f64, factors: &[&[f64]]) -> Family {
     let product = factors.iter().fold(Polynomial::new(vec![1.0]), |product, factor| {
         product.product(&Polynomial::new(factor.to_vec()))
@@ -60,7 +60,7 @@ fn fixed(gain: f64, factors: &[&[f64]]) -> Family {
     })
 }
 
-/// gain times a quotient of polynomials in z, highest power first.
+/// Controller of a gain times a quotient of polynomials in z, highest power first.
 fn sampled(gain: f64, numerator: &[f64], denominator: &[f64], sample_time_s: f64) -> Controller {
     let polynomial = |coefficients: &[f64]| Polynomial::new(coefficients.to_vec());
     let function =
@@ -74,7 +74,7 @@ fn sampled(gain: f64, numerator: &[f64], denominator: &[f64], sample_time_s: f64
     }
 }
 
-/// gain/s by Tustin's rule.
+/// Integrator gain/s by Tustin's rule.
 fn sampled_integrator(gain: f64, sample_time_s: f64) -> Controller {
     let timing = Timing { sample_time_s: Some(sample_time_s), ..Timing::default() };
     let feedback = Compensator::new(vec![Element::Gain(gain), Element::Integrator]);
@@ -119,7 +119,7 @@ fn value(plant: &PlantPoint) -> f64 {
     }
 }
 
-/// Poles of 3740 and 6800 rad/s at 10 ms leave exp(-37) of themselves.
+/// Poles of 3740 and 6800 rad/s at 10 ms decay to exp(-37).
 // ORIGIN: recomputed by comparisons/recompute_sampling.py
 #[test]
 fn two_fast_poles_are_a_delay_of_one_sample() {
@@ -195,8 +195,8 @@ fn a_mode_that_folds_is_unstable_in_a_hundredth_of_the_box() {
     assert!(found.stability.largest_real_part.unwrap() > 0.00415);
 }
 
-/// Three modes that fold by themselves pass through the band in more combinations than can be
-/// looked at.
+/// Three modes that fold independently pass through the band in more combinations than can be
+/// examined.
 #[test]
 fn modes_that_fold_too_often_leave_the_verdict_open() {
     let ranges = [("u", 10.0, 10.0, 40.0), ("v", 50.0, 50.0, 90.0), ("w", 100.0, 100.0, 150.0)];
@@ -225,8 +225,8 @@ fn leading<'t>(p: &[Recorded<'t>]) -> Recorded<'t> {
     from * from - 0.001.into()
 }
 
-/// ((x - 0.37)^2 - 0.001) s^2 + s: a pole at 1/(0.001 - (x - 0.37)^2), unstable for |x - 0.37| <
-/// 0.0316.
+/// Plant with ((x - 0.37)^2 - 0.001) s^2 + s: a pole at 1/(0.001 - (x - 0.37)^2), unstable for |x -
+/// 0.37| < 0.0316.
 #[test]
 fn a_pole_that_passes_through_infinity_is_met() {
     let plant = family(&[("x", 0.0, 0.0, 1.0)], Spacing::Linear, |p| {
@@ -239,18 +239,18 @@ fn a_pole_that_passes_through_infinity_is_met() {
     let specifications = [robust_stability(2.0), sensitivity(3.0)];
     let found = audit(&plant, &controller, &specifications);
     assert_eq!(found.stability.verdict, Verdict::Violated);
-    // the pole at x = 0.37 is 1000, and larger ones lie nearer to the change
+    // the pole at x = 0.37 is 1000, and larger ones are nearer to the change
     assert!((value(&found.stability.plant) - 0.37).abs() < 0.001_f64.sqrt());
     assert!(found.stability.largest_real_part.unwrap() > 999.0);
-    // sampled every 10 ms, where a pole of 70,000 leaves the range of numbers within one sample
+    // sampled every 10 ms, where a pole of 70,000 exceeds the range of numbers within one sample
     let found = audit(&plant, &sampled(4.0, &[1.0], &[1.0], 0.01), &specifications);
     assert_eq!(found.stability.verdict, Verdict::Violated);
     assert!((value(&found.stability.plant) - 0.37).abs() < 0.001_f64.sqrt());
 }
 
-/// (x - 0.5)^2 s^2 + s loses its highest power for one plant, without a change of sign: its pole is
-/// at -1/(x - 0.5)^2. Multiplied out the square can be distinguished from a change of sign by no
-/// enclosure.
+/// Denominator (x - 0.5)^2 s^2 + s, which loses its highest power for one plant without a change of
+/// sign: its pole is at -1/(x - 0.5)^2. No enclosure can distinguish the expanded square from a
+/// change of sign.
 #[test]
 fn a_pole_that_touches_infinity_is_told_where_the_square_is_recorded() {
     let build = |expanded: bool| {
@@ -271,8 +271,8 @@ fn a_pole_that_touches_infinity_is_told_where_the_square_is_recorded() {
     };
 }
 
-/// A leading coefficient 1 - x share, recorded so that no enclosure over a part of the box has an
-/// end: the two squares are equal, and their difference keeps the width of both.
+/// A leading coefficient 1 - x share, recorded so that the enclosure over a part of the box is
+/// unbounded: the two squares are equal, and their difference retains the width of both.
 #[test]
 fn a_leading_coefficient_without_enclosures_is_searched_for() {
     let build = |share: f64| {
@@ -293,7 +293,8 @@ fn a_leading_coefficient_without_enclosures_is_searched_for() {
     assert!(value(&changed.stability.plant) > 0.8);
 }
 
-/// |L(inf)| = 1.001 - (x - 0.37)^2 exceeds one for |x - 0.37| < 0.0316: with dead time infinitely many poles are unstable there.
+/// Gain at infinity |L(inf)| = 1.001 - (x - 0.37)^2, which exceeds one for |x - 0.37| < 0.0316:
+/// with dead time infinitely many poles are unstable there.
 #[test]
 fn a_gain_at_infinity_that_passes_one_inside_the_box_is_met() {
     let build = |dead_time_s: f64| {
@@ -313,9 +314,9 @@ fn a_gain_at_infinity_that_passes_one_inside_the_box_is_met() {
     assert_eq!(found.verdict, Verdict::Met);
 }
 
-/// Damping that is negative for |x - 0.37| < 0.002 only: no search for the largest real part starts
-/// there, but the resonance passes the design frequency there. What the one audit meets the other
-/// judges.
+/// Damping that is negative only for |x - 0.37| < 0.002: no search for the largest real part starts
+/// there, but the resonance passes the design frequency there. A plant found by one audit is
+/// evaluated by the other.
 #[test]
 fn the_worst_plant_of_a_specification_is_judged_for_stability() {
     let plant = family(&[("x", 0.0, 0.0, 1.0)], Spacing::Linear, |p| {
@@ -335,7 +336,7 @@ fn the_worst_plant_of_a_specification_is_judged_for_stability() {
     assert!(found.specifications[0].worst.is_none());
 }
 
-/// Five parameters, sampled slower than half of the modes.
+/// Five parameters, sampled more slowly than half of the modes.
 #[test]
 fn five_parameters_sampled() {
     let ranges = [
@@ -374,7 +375,7 @@ fn five_parameters_sampled() {
     };
     let found = audit(&plant, &controller, &[specification]);
     assert_eq!(found.verdict, Verdict::Met, "{:?}", found.stability);
-    // the worst of 20,000 random plants and as many around their worst has -0.0009
+    // the worst of 20,000 random plants, and as many around their worst, has -0.0009
     let largest = found.stability.largest_real_part.unwrap();
     assert!(largest > -0.0009 && largest < 0.0, "{largest}");
 }

@@ -1,5 +1,4 @@
-//! Bounds: against published examples, against the plain method, and against the closed loops
-//! themselves.
+//! Bounds: against published examples, against the elementary method, and against the closed loops.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod phases;

@@ -11,7 +11,7 @@ use phea_qft::closed_loop::{Compensation, MemberResponse};
 use phea_qft::family::MeasuredPlant;
 
 const SAMPLE_TIME: f64 = 0.01;
-/// rad/s, up to the highest a sampled loop has.
+/// Frequencies up to the highest of a sampled loop, rad/s.
 const FREQUENCIES: [f64; 6] = [0.01, 1.0, 17.0, 99.0, 250.0, 314.0];
 
 fn rational(numerator: &[f64], denominator: &[f64]) -> TransferFunction {
@@ -43,7 +43,7 @@ fn close(found: Complex64, expected: Complex64) {
     assert!(error < 1e-12, "{found} is not {expected}: {error:e}");
 }
 
-/// Looks at a member of a sampled loop at every frequency.
+/// Checks a member of a sampled loop at every frequency.
 fn sampled(
     plant: PlantCoefficients<f64>,
     delay_s: f64,
@@ -60,7 +60,7 @@ fn unity() -> TransferFunction {
     TransferFunction::gain_only(1.0)
 }
 
-/// 1/s becomes T/(z - 1), and a/(s + a) becomes (1 - e)/(z - e) with e = exp(-a T).
+/// Plant 1/s becomes T/(z - 1), and a/(s + a) becomes (1 - e)/(z - e) with e = exp(-a T).
 #[test]
 fn integrator_and_lag_are_held_exactly() {
     let integrator = plant(&[1.0], &[1.0, 0.0], 0.0);
@@ -72,8 +72,8 @@ fn integrator_and_lag_are_held_exactly() {
     });
 }
 
-/// Before the samples a/(s + a) is a/(jw + a) at every frequency; a step of the reference meets it
-/// as (1 - e)/(z - e), e = exp(-a T).
+/// Prefilter a/(s + a) before the sampling: a/(jw + a) at every frequency; for a step of the
+/// reference it acts as (1 - e)/(z - e), e = exp(-a T).
 #[test]
 fn a_prefilter_before_the_samples_is_not_sampled() {
     let a = 200.0;
@@ -95,7 +95,7 @@ fn a_prefilter_before_the_samples_is_not_sampled() {
     assert_eq!(refused.unwrap_err(), LinearError::DomainMismatch);
 }
 
-/// A dead time d of a share of a sample splits the step: with r = exp(-a (T - d)), a/(s + a)
+/// A dead time d of a fraction of a sample splits the step: with r = exp(-a (T - d)), a/(s + a)
 /// becomes (1 - r + (r - e)/z)/(z - e). Plant and loop delay add up, whole samples are powers of
 /// 1/z.
 #[test]
@@ -117,8 +117,8 @@ fn fractions_of_a_sample_are_exact() {
     }
 }
 
-/// P H is held as one: b/(s (s + b)) becomes ((bT - 1 + e) z + 1 - e - bT e)/(b (z - 1)(z - e)).
-/// The dead time of the sensor adds to the loop's.
+/// Plant and sensor P H are held together: b/(s (s + b)) becomes ((bT - 1 + e) z + 1 - e - bT e)/(b
+/// (z - 1)(z - e)). The dead time of the sensor adds to the loop's.
 #[test]
 fn plant_and_sensor_are_held_together() {
     let b = 80.0;
@@ -151,9 +151,9 @@ fn a_continuous_loop_carries_delay_and_sensor() {
     }
 }
 
-/// K in U = G (F R - Y) + K s D is a path parallel to Pd: Pd + K jw P, with P late in a continuous
-/// loop, and that of the samples in a sampled one, a/(s + a) being (1 - r + (r - e)/z)/(z (z - e))
-/// behind a sample and a share of one. The loop itself stays.
+/// Gain K in U = G (F R - Y) + K s D gives a path parallel to Pd: Pd + K jw P, with P delayed in a
+/// continuous loop, and sampled in a sampled one, where a/(s + a) becomes (1 - r + (r - e)/z)/(z
+/// (z - e)) after a sample and a fraction of one. The loop is unchanged.
 #[test]
 fn a_rate_that_is_fed_forward_is_a_path_of_the_disturbance() {
     let (a, gain, share) = (30.0, 0.7, 0.0037);
@@ -188,7 +188,7 @@ fn measured_lag(a: f64) -> MeasuredPlant {
     measured_lag_at(a, 500)
 }
 
-/// Measured at this number of points, from 0.5 rad/s in steps of 1.3 %.
+/// Measurement of a lag at this number of points, from 0.5 rad/s in steps of 1.3 %.
 fn measured_lag_at(a: f64, points: i32) -> MeasuredPlant {
     let frequencies_rad_per_s: Vec<f64> =
         (0..points).map(|k| 0.5 * portable::exp(f64::from(k) * 0.013)).collect();
@@ -206,8 +206,8 @@ fn measured_lag_at(a: f64, points: i32) -> MeasuredPlant {
     }
 }
 
-/// A measured plant is the same plant where it was measured, close to it between, and nothing
-/// beyond.
+/// A measured plant equals the plant at its points, is close to it between them, and does not exist
+/// beyond them.
 #[test]
 fn a_measured_plant_stands_for_the_plant() {
     let (a, sensor) = (30.0, rational(&[80.0], &[1.0, 80.0]));
@@ -218,17 +218,17 @@ fn a_measured_plant_stands_for_the_plant() {
     let (found, expected) = (measured.response(point).unwrap(), exact.response(point).unwrap());
     close(found.plant, expected.plant);
     close(found.sensor, expected.sensor);
-    // Straight over a step h of ln w: the error is below h^2/8 times the second derivative of ln P,
-    // at most 1/2.
+    // Linear interpolation over a step h of ln w: the error is below h^2/8 times the second
+    // derivative of ln P, at most 1/2.
     let between = point * 1.0065;
     let ratio = measured.response(between).unwrap().plant / exact.response(between).unwrap().plant;
     assert!(portable::magnitude(ratio - 1.0) < 0.013 * 0.013 / 16.0, "{ratio}");
     assert_eq!([0.4, 400.0].map(|frequency| measured.response(frequency)), [None, None]);
 }
 
-/// Sampled, a measured plant has the hold's lag and droop; only the images above pi/T are not
-/// there. Those of a lag a/(s + a) sum up to w a T^2/12 of its gain at low frequency: the sum of a
-/// (w T)/(w - 2 pi n/T)^2 over all n but zero.
+/// A sampled measured plant has the hold's lag and droop; only the images above pi/T are missing.
+/// For a lag a/(s + a) their sum is w a T^2/12 of its gain at low frequency: the sum of a (w
+/// T)/(w - 2 pi n/T)^2 over all n but zero.
 #[test]
 fn a_measured_plant_is_held_up_to_its_images() {
     let a = 30.0;
@@ -243,8 +243,9 @@ fn a_measured_plant_is_held_up_to_its_images() {
     }
 }
 
-/// Measured up to many times pi/T its images are summed too, and what is left beyond falls with the
-/// square of the reach; measured too short for them, the response near pi/T is not known.
+/// Images of a measurement up to many times pi/T: they are also summed, and the remainder falls
+/// with the square of the range; if the range is too short for them, the response near pi/T is
+/// unknown.
 #[test]
 fn the_images_of_a_measured_plant_are_summed() {
     let a = 30.0;

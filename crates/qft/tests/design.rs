@@ -1,5 +1,5 @@
-//! Designs whose truth is known: published examples, closed forms, and what an independent search
-//! finds.
+//! Designs with known results: published examples, closed forms, and results of an independent
+//! search.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]

@@ -1,4 +1,4 @@
-//! What is said of a design problem before any search.
+//! Findings on a design problem before any search.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]

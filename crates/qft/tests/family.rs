@@ -1,4 +1,4 @@
-//! Families: coordinates of the box, members, and what lies between measured points.
+//! Families: coordinates of the box, members, and interpolation between measured points.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, reason = "helpers of tests may fail the test")]
 
@@ -12,7 +12,7 @@ use phea_qft::family::{
     UncertainFamily, grid, random, vertices,
 };
 
-/// p0/(s + p1 + p2 + p3), each parameter between 1 and 100 but the last, which is 5.
+/// Plant p0/(s + p1 + p2 + p3), each parameter between 1 and 100 except the last, which is 5.
 fn plant() -> UncertainPlant {
     let parameter = |name: &str, minimum: f64, maximum: f64| UncertainParameter {
         name: name.into(),
@@ -50,7 +50,7 @@ fn coordinate(parameters: &[usize], opposed: &[usize], spacing: &[Spacing], poin
 const LOG: Spacing = Spacing::Logarithmic;
 const LINEAR: Spacing = Spacing::Linear;
 
-/// k by itself, and b against a.
+/// Coordinates for k, and for b opposed to a.
 fn coordinates() -> Vec<Coordinate> {
     vec![coordinate(&[0], &[], &[LOG], 5), coordinate(&[3, 1, 2], &[2], &[LINEAR, LINEAR, LOG], 4)]
 }
@@ -68,7 +68,8 @@ fn shares_and_values_are_inverse_to_each_other() {
         assert!((shares[1] - (values[1] - 1.0) / 99.0).abs() < 1e-14);
         assert!((shares[1] - (1.0 - portable::ln(values[2]) / portable::ln(100.0))).abs() < 1e-13);
     }
-    // Shares beyond the ends are brought to them, missing ones count as zero; the ends are exact.
+    // Fractions beyond the ends are clamped to them, missing ones count as zero; the ends are
+    // exact.
     assert_eq!(family.values(&[2.0, -1.0]), [100.0, 1.0, 100.0, 5.0]);
     assert_eq!(family.values(&[]), [1.0, 1.0, 100.0, 5.0]);
 }
@@ -81,12 +82,12 @@ fn a_grid_holds_its_corners_and_stays_within_the_box() {
     assert!(corners.iter().all(|corner| all.contains(corner)));
     let inside = |values: &Vec<f64>| values[..3].iter().all(|value| (1.0..=100.0).contains(value));
     assert!(all.iter().all(inside));
-    // Equal factors: the fourth root of 100 from point to point, the last coordinate running
+    // Equal factors: the fourth root of 100 from point to point, the last coordinate varying
     // fastest.
     for index in 0..4 {
         assert!((all[4 * (index + 1)][0] / all[4 * index][0] - 10.0_f64.sqrt()).abs() < 1e-13);
     }
-    // Without coordinates the plant is alone.
+    // A grid without coordinates consists of one plant.
     assert_eq!(grid(&plant(), &[]).unwrap(), [[5.0; 4]]);
 }
 
@@ -121,8 +122,8 @@ fn measured(frequencies: &[f64], command: Vec<Complex64>) -> MeasuredPlant {
     }
 }
 
-/// Straight lines in dB and phase over the logarithm of frequency: c (jw)^n is met between its
-/// points.
+/// Linear interpolation in dB and phase over the logarithm of frequency: c (jw)^n is exact between
+/// its points.
 #[test]
 fn powers_of_s_are_met_between_the_points() {
     let power = |w: f64| 3.0 / (Complex64::new(0.0, w) * Complex64::new(0.0, w) * Complex64::new(0.0, w));
@@ -135,7 +136,7 @@ fn powers_of_s_are_met_between_the_points() {
     assert_eq!([0.099, 41.0].map(|w| plant.response(w)), [None, None]);
 }
 
-/// From 170 to -170 degrees the shorter way leads over 180.
+/// The shorter way from 170 to -170 degrees passes through 180.
 #[test]
 fn the_phase_goes_the_shorter_way() {
     let turn = |degrees: f64| {
@@ -146,7 +147,7 @@ fn the_phase_goes_the_shorter_way() {
     plant.disturbance = Some(vec![Complex64::new(0.0, 0.0), Complex64::new(2.0, 0.0)]);
     let (command, disturbance) = plant.response(10.0).unwrap();
     assert!(portable::magnitude(command - 2.0 * turn(180.0)) < 1e-14);
-    // Zero has no logarithm: the way from it is straight.
+    // Zero has no logarithm: interpolation from it is linear.
     assert!(portable::magnitude(disturbance.unwrap() - 1.0) < 1e-14);
 }
 

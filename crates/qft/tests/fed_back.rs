@@ -1,6 +1,6 @@
-//! A rate that is fed forward and that the command moves too: the plant that a sampled loop sees
-//! then, against closed forms, against the loop assembled in states, and against the same plant
-//! with its polynomials hidden.
+//! A rate that is fed forward and that the command also moves: the plant seen by a sampled loop,
+//! against closed forms, against the loop in state space, and against the plant with its
+//! polynomials hidden.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -37,16 +37,15 @@ fn fed(rate_feed_forward: f64, delay_s: f64) -> Timing {
     Timing { sample_time_s: Some(SAMPLE_TIME), delay_s, rate_feed_forward, ..Timing::default() }
 }
 
-/// w/(s + w), behind this time.
+/// Lag w/(s + w) with this dead time.
 fn lagging(w: f64, dead_time_s: f64) -> TransferFunction {
     let polynomial = |coefficients: &[f64]| Polynomial::new(coefficients.to_vec());
     let lag = TransferFunction::from_polynomials(&polynomial(&[w]), &polynomial(&[1.0, w])).unwrap();
     lag.with_dead_time(dead_time_s).unwrap()
 }
 
-/// The sum of r/(s + p) over these (r, p), held and sampled behind a delay: r/p
-/// (1 - q + (q - e)/z)/((z - e) z^k), e = exp(-p T), q = exp(-p (T - d)) with the rest d of a
-/// sample.
+/// The sum of r/(s + p) over these (r, p), held and sampled with a delay: r/p (1 - q + (q -
+/// e)/z)/((z - e) z^k), e = exp(-p T), q = exp(-p (T - d)) with the remainder d of a sample.
 fn held(parts: &[(f64, f64)], delay_s: f64, z: Complex64) -> Complex64 {
     let whole = (delay_s / SAMPLE_TIME + 1e-9).floor();
     let rest = (delay_s - whole * SAMPLE_TIME).max(0.0);
@@ -64,9 +63,9 @@ fn close(found: Complex64, expected: Complex64, tolerance: f64) {
     assert!(error < tolerance, "{found} is not {expected}: {error:e}");
 }
 
-/// P = 1/((s + a)(s + b)), P_v = c s P and V_d = s (s + 1) P by partial fractions: P' = P/(1 - K
-/// P_v), Pd' = Pd + K V_d P', behind shares of a sample, whole ones, and a sensor that makes a
-/// share whole.
+/// Plants P = 1/((s + a)(s + b)), P_v = c s P and V_d = s (s + 1) P by partial fractions: P' =
+/// P/(1 - K P_v), Pd' = Pd + K V_d P', with delays of fractions of a sample, of whole samples, and
+/// with a sensor whose delay completes a sample.
 #[test]
 fn it_is_the_closed_form_of_two_lags() {
     let (a, b, c, w) = (4.0, 30.0, 3.0, 90.0);
@@ -105,7 +104,7 @@ fn it_is_the_closed_form_of_two_lags() {
     let late = Timing { rate_feed_forward: 1.0, delay_s: 0.1, ..Timing::default() };
     let refused = compensation(late, vec![], TransferFunction::gain_only(1.0)).member(plant.clone());
     assert!(matches!(refused, Err(LinearError::NotRational { .. })));
-    // at once it is a quotient in continuous time
+    // without delay it is a quotient in continuous time
     let at_once = Timing { rate_feed_forward: 2.0, ..Timing::default() };
     let around = compensation(at_once, vec![], TransferFunction::gain_only(1.0));
     let s = Complex64::new(0.0, 7.0);
@@ -113,9 +112,9 @@ fn it_is_the_closed_form_of_two_lags() {
     close(around.member(plant).unwrap().response(7.0).unwrap().plant, expected, 1e-13);
 }
 
-/// The same with a sensor of the rate: c s w/((s + a)(s + b)(s + w)) by partial fractions, behind a
-/// delay of its own. The zeros that P' has there, at z = exp(-w T) and for each sample of that
-/// delay, are those of the closed form.
+/// Plant with a sensor of the rate: c s w/((s + a)(s + b)(s + w)) by partial fractions, with a
+/// separate delay. The zeros that P' has there, at z = exp(-w T) and for each sample of that delay,
+/// are those of the closed form.
 #[test]
 fn a_sensor_of_the_rate_is_a_path_of_its_own() {
     let (a, b, c, w) = (4.0, 30.0, 3.0, 55.0);
@@ -159,7 +158,7 @@ fn a_sensor_of_the_rate_is_a_path_of_its_own() {
             }
         }
     }
-    // at once it is a quotient in continuous time
+    // without delay it is a quotient in continuous time
     let rate_sensor = RateSensor { filter, delay_s: 0.0 };
     let at_once = |rate_sensor| Timing { rate_feed_forward: 2.0, rate_sensor, ..Timing::default() };
     let around = |timing| compensation(timing, vec![], TransferFunction::gain_only(1.0));
@@ -174,12 +173,13 @@ fn a_sensor_of_the_rate_is_a_path_of_its_own() {
     assert!(matches!(late, Err(LinearError::NotRational { .. })));
 }
 
-/// N/D, N_v/D and V_d with two modes; P and P_v have the states of one companion form.
+/// Polynomials of N/D, N_v/D and V_d with two modes; P and P_v have the states of one companion
+/// form.
 #[derive(Clone, Debug)]
 struct Drawn {
     numerator: [f64; 3],
     rate: [f64; 3],
-    /// Below s^4.
+    /// Coefficients below s^4.
     denominator: [f64; 4],
 }
 
@@ -214,7 +214,7 @@ impl Drawn {
         }
     }
 
-    /// Both outputs from one input, the rate behind a lag w/(s + w) where there is one.
+    /// Both outputs from one input, with the rate after a lag w/(s + w) if there is one.
     fn states(&self, lag: Option<f64>) -> StateSpace {
         let count = if lag.is_some() { 5 } else { 4 };
         let mut a = DMatrix::zeros(count, count);
@@ -287,7 +287,8 @@ impl RespondingPlant for Drawn {
     }
 }
 
-/// The largest ln|z|/T of the loop in states: u = -G y + K v, v behind a lag and whole samples.
+/// The largest ln|z|/T of the loop in state space: u = -G y + K v, with v after a lag and whole
+/// samples.
 fn in_states(
     plant: &Drawn,
     gain: f64,
@@ -320,8 +321,9 @@ fn in_states(
     poles.iter().map(|pole| ln(magnitude(*pole)) / SAMPLE_TIME).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// 300 loops, behind shares of a sample and whole ones: the slowest pole is that of the loop in
-/// states, and where the polynomials are hidden the count of unstable poles says the same.
+/// Three hundred random loops with delays of fractions of a sample and of whole samples: the
+/// slowest pole is that of the loop in state space, and with hidden polynomials the count of
+/// unstable poles agrees.
 #[test]
 fn its_poles_are_those_of_the_loop_in_states() {
     let mut state = 5;
@@ -335,7 +337,7 @@ fn its_poles_are_those_of_the_loop_in_states() {
             proportional_gain: 0.02 + 0.6 * share(&mut state),
             integral_gain: 1.0 + 5.0 * share(&mut state),
         };
-        // every other loop with a sensor of its rate
+        // every second loop with a sensor of its rate
         let sensed = (number % 2 == 1).then(|| (exp(2.0 + 4.0 * share(&mut state)), (number / 2) % 4));
         let (lag, samples) = (sensed.map(|(w, _)| w), sensed.map_or(0, |(_, samples)| samples));
         let rate_sensor = RateSensor {
@@ -380,7 +382,7 @@ fn its_poles_are_those_of_the_loop_in_states() {
     assert!(hidden_seen.iter().all(|count| *count > 5), "{hidden_seen:?}");
 }
 
-/// Folded from their responses, P', H and Pd' are those of the polynomials.
+/// Folded from their responses, P', H and Pd' equal those of the polynomials.
 #[test]
 fn hidden_polynomials_fold_onto_the_same() {
     let mut state = 9;
@@ -408,7 +410,7 @@ fn hidden_polynomials_fold_onto_the_same() {
     }
 }
 
-/// The audit of a family finds on its own what a dense grid of responses shows.
+/// The audit of a family finds the result of a dense grid of responses.
 #[test]
 fn an_audit_sees_it() {
     let gains = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 2.0 };

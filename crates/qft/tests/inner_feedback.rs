@@ -1,6 +1,5 @@
-//! An inner signal that a sampled controller feeds back: the plant that its loop sees then, against
-//! a closed form, against the loop assembled in states, and against the same plant with its
-//! polynomials hidden.
+//! Inner feedback in a sampled loop: the plant seen by the loop, against a closed form, against the
+//! loop in state space, and against the plant with its polynomials hidden.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -30,12 +29,12 @@ fn around(timing: Timing, feedback: Vec<Element>) -> Compensation {
     Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap()
 }
 
-/// H by Tustin's rule, s = 2/T (z - 1)/(z + 1).
+/// Inner feedback H by Tustin's rule, s = 2/T (z - 1)/(z + 1).
 fn by_tustin(feedback: &InnerFeedback, z: Complex64) -> Complex64 {
     feedback.response(2.0 / SAMPLE_TIME * (z - 1.0) / (z + 1.0))
 }
 
-/// The sum of r/(s + p) over these (r, p), held and sampled behind a delay.
+/// The sum of r/(s + p) over these (r, p), held and sampled with a delay.
 fn held(parts: &[(f64, f64)], delay_s: f64, z: Complex64) -> Complex64 {
     let whole = (delay_s / SAMPLE_TIME + 1e-9).floor();
     let rest = (delay_s - whole * SAMPLE_TIME).max(0.0);
@@ -53,8 +52,8 @@ fn close(found: Complex64, expected: Complex64, tolerance: f64) {
     assert!(error < tolerance, "{found} is not {expected}: {error:e}");
 }
 
-/// P = 1/((s + a)(s + b)), P_p = (c s + d) P and I_d = (s + 2) P by partial fractions: P' = P/(1 +
-/// H P_p), Pd' = Pd - H I_d P'.
+/// Plants P = 1/((s + a)(s + b)), P_p = (c s + d) P and I_d = (s + 2) P by partial fractions: P' =
+/// P/(1 + H P_p), Pd' = Pd - H I_d P'.
 #[test]
 fn it_is_the_closed_form_of_two_lags() {
     let (a, b, c, d) = (4.0, 30.0, 3.0, 20.0);
@@ -92,7 +91,7 @@ fn it_is_the_closed_form_of_two_lags() {
             }
         }
     }
-    // with a rate that the command moves too there are two paths, which it does not close
+    // with a rate that the command also moves there are two paths, which it does not close
     let rate = plant.rate.clone().map(|rate| RateNumerators { command: vec![1.0, 0.0], ..rate });
     let feedback = InnerFeedback { gain: 1.0, ..InnerFeedback::default() };
     let both = Timing { rate_feed_forward: 2.0, ..timing(feedback, 0.0) };
@@ -100,11 +99,11 @@ fn it_is_the_closed_form_of_two_lags() {
     assert!(matches!(refused, Err(LinearError::NotRational { .. })));
 }
 
-/// Two oscillators in series, the output and the inner signal read off their states.
+/// Two oscillators in series, with the output and the inner signal taken from their states.
 #[derive(Clone, Debug)]
 struct Drawn {
     numerators: [[f64; 4]; 2],
-    /// Below s^4.
+    /// Coefficients below s^4.
     denominator: [f64; 4],
 }
 
@@ -203,7 +202,7 @@ impl RespondingPlant for Drawn {
     }
 }
 
-/// The largest ln|z|/T of the loop in states: u = -G y - H p.
+/// The largest ln|z|/T of the loop in state space: u = -G y - H p.
 fn in_states(plant: &Drawn, delay_s: f64, parts: [&TransferFunction; 2]) -> f64 {
     let held = plant.states().held_with_dead_time(SAMPLE_TIME, delay_s).unwrap();
     let parts = parts.map(|part| StateSpace::from_transfer_function(part).unwrap());
@@ -222,8 +221,9 @@ fn in_states(plant: &Drawn, delay_s: f64, parts: [&TransferFunction; 2]) -> f64 
     poles.iter().map(|pole| ln(magnitude(*pole)) / SAMPLE_TIME).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// 200 loops, behind shares of a sample and whole ones: stable where the loop in states is, and
-/// where the polynomials are hidden the count of unstable poles and the response say the same.
+/// Two hundred random loops with delays of fractions of a sample and of whole samples: stable if
+/// the loop in state space is, and with hidden polynomials the count of unstable poles and the
+/// response agree.
 #[test]
 fn its_stability_is_that_of_the_loop_in_states() {
     let mut state = 7;

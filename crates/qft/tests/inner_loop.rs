@@ -1,5 +1,5 @@
-//! The feedback of an inner signal that is found before the loop around it: against closed forms, a
-//! grid of gains and corners, and the order of the plants.
+//! Inner feedback designed before the loop around it: against closed forms, a grid of gains and
+//! corners, and the order of the plants.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
@@ -74,8 +74,8 @@ fn problem(rigs: &[Rig], limits: InnerLoopLimits) -> InnerLoopProblem {
     }
 }
 
-/// 2 xi w = f/M + k K_H^2/(K_S + K_H) without leakage, and a resonance behind an integrator bears a
-/// loop gain of 2 xi w (1 - m): the measure is the damping that is added.
+/// Damping 2 xi w = f/M + k K_H^2/(K_S + K_H) without leakage; a resonance in series with an
+/// integrator tolerates a loop gain of 2 xi w (1 - m): the criterion equals the added damping.
 #[test]
 fn the_loop_gain_is_the_damping_that_is_added() {
     for gain in [0.0, 1e-3, 4e-3] {
@@ -89,7 +89,7 @@ fn the_loop_gain_is_the_damping_that_is_added() {
     }
 }
 
-/// An integrator with a gain K tolerates a delay of pi/(2 K), one with a delay d that less d.
+/// An integrator with a gain K tolerates a delay of pi/(2 K), one with a delay d tolerates d less.
 #[test]
 fn a_delay_limits_the_gain_of_an_integrator() {
     for delay in [0.0, 0.03] {
@@ -108,7 +108,7 @@ fn a_delay_limits_the_gain_of_an_integrator() {
     }
 }
 
-/// An integrator falls to -3 dB of 1/(1 + s/K) at K.
+/// An integrator with a gain K falls to -3 dB of 1/(1 + s/K) at K.
 #[test]
 fn a_bandwidth_limits_the_gain_of_an_integrator() {
     let at = |frequency: f64| InnerPoint {
@@ -133,7 +133,8 @@ fn family() -> Vec<Rig> {
         .collect()
 }
 
-/// No gain and corner of a fine grid is better by more than a hundredth, and it helps.
+/// The result is within one hundredth of the best gain and corner of a fine grid, and better than
+/// no feedback.
 #[test]
 fn it_is_as_good_as_the_best_of_a_grid() {
     let limits = InnerLoopLimits { delay_margin_s: 0.02, ..FREE };
@@ -166,7 +167,7 @@ fn the_order_of_the_plants_does_not_matter() {
     }
 }
 
-/// A plant whose signal does not answer the command passes the noise as it is: k = u/n.
+/// A plant whose signal does not respond to the command passes the noise unchanged: k = u/n.
 #[test]
 fn noise_limits_the_gain() {
     let deaf = |rig: &Rig| {
@@ -180,7 +181,7 @@ fn noise_limits_the_gain() {
     let limits = InnerLoopLimits { noise: Some([2.0, 1e-3]), ..FREE };
     let noisy = InnerLoopProblem { limits, ..quiet }.best().unwrap().unwrap();
     assert!(noisy.feedback.gain < 1e-2 * free.feedback.gain, "{noisy:?} {free:?}");
-    // so small a gain does not change its own noise, and |H| of a high pass is at most one
+    // so small a gain does not change the noise, and |H| of a high pass is at most one
     let least = 0.5e-3;
     assert!(noisy.feedback.gain >= least * 0.95, "{noisy:?}");
     assert!(noisy.reach.loop_gain < free.reach.loop_gain);

@@ -1,5 +1,5 @@
-//! Elements solved for a point really pass it, what cannot be reached is refused, and every change
-//! can be taken back.
+//! Elements solved for a point pass through it, unreachable points are rejected, and every change
+//! can be undone.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
@@ -21,7 +21,7 @@ use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::template::{TemplateOptions, template};
 use phea_qft::verification::TrackingJudgement;
 
-/// Shares in [0, 1) from a linear congruential generator (Knuth 1997, MMIX).
+/// Fractions in [0, 1) from a linear congruential generator (Knuth 1997, MMIX).
 struct Shares(u64);
 
 impl Shares {
@@ -61,8 +61,8 @@ fn polar(decibels: f64, degrees: f64) -> Complex64 {
     Complex64::new(size * angle.cos(), size * angle.sin())
 }
 
-/// What an element makes of a loop that samples, or does not, as loop and verification see it: next
-/// to a pair of poles, without which a zero could not be sampled.
+/// Response of an element in a continuous or sampled loop, as in loop and verification: together
+/// with a pair of poles, without which a zero could not be sampled.
 fn response(element: Element, timing: Timing, frequency: f64) -> Complex64 {
     let pair = Element::ComplexPoles { natural_frequency: 300.0, damping_ratio: 0.7 };
     let of = |elements| {
@@ -73,8 +73,8 @@ fn response(element: Element, timing: Timing, frequency: f64) -> Complex64 {
     of(vec![pair.clone(), element]) / of(vec![pair])
 }
 
-/// An element solved for a random point either passes it, or the point lies outside of what it says
-/// it can reach.
+/// Elements solved for a random point: an element either passes through it, or the point is outside
+/// the stated reach.
 #[test]
 fn every_solved_element_passes_its_point() {
     let mut shares = Shares(1);
@@ -129,8 +129,8 @@ fn every_solved_element_passes_its_point() {
     }
 }
 
-/// Points on the boundary of what an element can do, at 10 rad/s from L = 1: refused there, solved
-/// a little inside.
+/// Points on the boundary of an element's reach, at 10 rad/s from L = 1: rejected there, solved
+/// slightly inside.
 #[test]
 fn the_ends_of_what_can_be_reached_are_where_they_are_said_to_be() {
     let at = |pattern, magnitude_db: f64, phase_deg: f64| {
@@ -160,7 +160,7 @@ fn the_ends_of_what_can_be_reached_are_where_they_are_said_to_be() {
     }
 }
 
-/// A first-order element reaches one curve: both coordinates are accepted on it, and nowhere else.
+/// A first-order element reaches one curve: both coordinates are accepted only on it.
 #[test]
 fn a_real_pole_reaches_its_curve_and_says_so() {
     let wanted = |magnitude_db| WantedPoint {
@@ -181,7 +181,7 @@ fn a_real_pole_reaches_its_curve_and_says_so() {
     assert!(raise.map(|end| (end + 10.0 * 2_f64.log10()).abs() < 1e-12) == [true; 2], "{raise:?}");
 }
 
-/// k/(s + a), k from 1 to 4 and a from 1 to 3.
+/// Plant k/(s + a), k from 1 to 4 and a from 1 to 3.
 fn box_family() -> Family {
     let range =
         |name: &str, maximum| UncertainParameter { name: name.into(), nominal: 1.0, minimum: 1.0, maximum };
@@ -208,8 +208,8 @@ fn loop_of(elements: Vec<Element>) -> Compensation {
     Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap()
 }
 
-/// Two independent ways to judge a loop agree: a plant with a negative margin means a forbidden
-/// loop, and the loop that was raised or lowered as far as it has to be has none.
+/// Two independent evaluations of a loop agree: a plant with a negative margin means a forbidden
+/// loop, and after the required change of gain no margin is negative.
 #[test]
 fn what_a_margin_asks_for_brings_it_to_zero() {
     let family = box_family();
@@ -274,8 +274,8 @@ fn random_edit(shares: &mut Shares, count: usize) -> Edit {
     }
 }
 
-/// A hundred random sequences of edits: the response is at each step that of the elements
-/// multiplied one by one.
+/// A hundred random sequences of edits: at each step the response equals the product of the
+/// elements' responses.
 #[test]
 fn edited_elements_multiply() {
     let mut shares = Shares(2);

@@ -1,5 +1,5 @@
-//! Measured plants that are known within discs: verdicts hold for every response within them, and
-//! the turns below the first point are those of the integrators that noise does not hide.
+//! Measured plants known within discs: verdicts hold for every response within them, and the turns
+//! below the first point are those of the integrators visible despite noise.
 
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 
@@ -22,7 +22,7 @@ use phea_qft::verification::{
     audit_specifications,
 };
 
-/// A closed loop of a plant and a gain.
+/// A closed loop as a function of plant and gain.
 type Closed = fn(Complex64, f64) -> Complex64;
 
 fn unity() -> Compensation {
@@ -72,7 +72,7 @@ fn specification(requirement: Requirement, band: [f64; 2]) -> Specification {
     Specification { requirement, frequencies_rad_per_s: vec![band[0]], band_rad_per_s: band }
 }
 
-/// k (s/z + 1)^(m - 1 or 0)/(s^m (s/60 + 1)(s/80 + 1)), its sign and gain drawn.
+/// Plant k (s/z + 1)^(m - 1 or 0)/(s^m (s/60 + 1)(s/80 + 1)) with random sign and gain.
 fn drawn(state: &mut u64, integrators: usize) -> TransferFunction {
     let sign = if share(state) < 0.25 { -1.0 } else { 1.0 };
     let crossover = exp(3.5 * share(state));
@@ -88,13 +88,13 @@ fn drawn(state: &mut u64, integrators: usize) -> TransferFunction {
     function(&numerator, &denominator)
 }
 
-/// Of sixty measurements with noise of 3 % in every row none gets a false verdict, of stability or
-/// of a limit, and at least fifty get one. The truth is that of the poles and of the closed form.
+/// Sixty measurements with noise of 3 % in every row: none gets a false verdict, of stability or of
+/// a limit, and at least fifty get one. The truth is given by the poles and the closed form.
 #[test]
 fn noise_makes_no_verdict_false_and_few_impossible() {
     let frequencies = logarithmic_grid(0.1, 300.0, 200).unwrap();
     let (noise, rows) = (0.03, 200.0);
-    // with 1 - 0.05/n each row is inside, with 95 % all of them
+    // with 1 - 0.05/n each row is inside, with 95 % probability all of them
     let wide = noise * (rows / 0.05_f64).ln().sqrt();
     let (mut resolved, mut outcomes) = (0, [0; 3]);
     for draw in 0..60 {
@@ -137,8 +137,8 @@ fn noise_makes_no_verdict_false_and_few_impossible() {
     assert!(resolved >= 50 && met >= 10 && violated >= 10, "{outcomes:?}");
 }
 
-/// Each closed loop over a disc: the worst and the certain margin are those of the greatest and the
-/// least magnitude of plants sampled within it.
+/// Each closed loop over a disc: the worst and the certain margin correspond to the greatest and
+/// the least magnitude of plants sampled within it.
 #[test]
 fn a_disc_is_judged_like_its_plants() {
     // ORIGIN: analytic, images and supports of a circle, sampled
@@ -203,8 +203,8 @@ fn finding(family: &Family, compensation: &Compensation, one: Specification) -> 
     audit_specifications(&problem, &mut unwatched).unwrap().0.remove(0)
 }
 
-/// The template of a disc is a polygon around it, and its bound forbids what any plant of the disc
-/// forbids.
+/// The template of a disc is a polygon around it, and its bound forbids every loop that any plant
+/// of the disc forbids.
 #[test]
 fn the_template_of_a_disc_encloses_it() {
     // ORIGIN: analytic, images and supports of a circle, sampled
@@ -217,7 +217,7 @@ fn the_template_of_a_disc_encloses_it() {
     for one in 0..360 {
         let angle = f64::from(one).to_radians();
         let direction = Complex64::new(angle.cos(), angle.sin());
-        // the support of the polygon in every direction is that of the disc, or little more
+        // the support of the polygon in every direction is that of the disc, or slightly more
         let along = |point: &Complex64| ((point - centre) * direction.conj()).re;
         let reach = outline.iter().map(along).fold(f64::NEG_INFINITY, f64::max);
         assert!(reach >= radius * (1.0 - 1e-12) && reach < 1.021 * radius, "{one} {reach}");
@@ -228,9 +228,9 @@ fn found(plant: &MeasuredPlant) -> MemberStability {
     member_stability(&unity().measured(plant), &unity())
 }
 
-/// A row that is off by up to a tenth changes neither integrators nor sign: a double integrator
-/// with positive feedback keeps one unstable pole, with negative feedback none, whichever row it
-/// is; likewise with one integrator and with none.
+/// A row with an error of up to a tenth changes neither integrators nor sign: a double integrator
+/// with positive feedback still has one unstable pole, with negative feedback none, for any such
+/// row; likewise with one integrator and with none.
 #[test]
 fn one_row_does_not_make_an_integrator() {
     let frequencies = logarithmic_grid(0.1, 300.0, 200).unwrap();
@@ -259,8 +259,8 @@ fn one_row_does_not_make_an_integrator() {
     }
 }
 
-/// Where too few rows show the slope nothing is concluded; a statement decides, and one that the
-/// slope contradicts is refused.
+/// Too few rows to show the slope allow no conclusion; a statement decides, and one that the slope
+/// contradicts is rejected.
 #[test]
 fn integrators_are_shown_or_stated() {
     let double = function(&[4.0, 20.0], &[1.0 / 4800.0, 140.0 / 4800.0, 1.0, 0.0, 0.0]);
@@ -277,7 +277,7 @@ fn integrators_are_shown_or_stated() {
     assert!(low < -2.0 && -2.0 < high, "{low} {high}");
     sparse.integrators = Some(2);
     assert_eq!(found(&sparse).status, StabilityStatus::Stable);
-    // the phase decides between an even and an odd number
+    // the phase distinguishes even from odd numbers
     sparse.integrators = Some(1);
     assert!(matches!(found(&sparse).status, StabilityStatus::NotResolved(Irresolution::LowEnd { .. })));
     let dense = logarithmic_grid(0.1, 300.0, 200).unwrap();
@@ -290,8 +290,8 @@ fn integrators_are_shown_or_stated() {
     }
 }
 
-/// A disc that holds -1 leaves stability open; one that does not leaves the least distance and the
-/// least delay of its plants.
+/// A disc that contains -1 leaves stability open; otherwise the results are the least distance and
+/// the least delay of its plants.
 #[test]
 fn stability_is_that_of_every_plant_of_the_discs() {
     // ORIGIN: analytic, images and supports of a circle, sampled
@@ -311,7 +311,8 @@ fn stability_is_that_of_every_plant_of_the_discs() {
     let distance = all().map(|open| magnitude(1.0 + open)).fold(f64::INFINITY, f64::min);
     let nearest = stable.closest_approach.unwrap().distance;
     assert!(nearest <= distance && nearest > distance - 1e-4, "{nearest} {distance}");
-    // w where |L| = 1 is possible, and the least angle to -1 there, by sampling the disc
+    // frequencies w where |L| = 1 is possible, and the least angle to -1 there, by sampling the
+    // disc
     let delay = frequencies
         .iter()
         .filter_map(|&w| {

@@ -1,5 +1,5 @@
-//! Proofs against what is known: published numbers, random problems that must not contradict them,
-//! certificates that were tampered with.
+//! Proofs against known results: published numbers, random problems that must not contradict them,
+//! tampered certificates.
 #![cfg(test)]
 
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
@@ -38,7 +38,7 @@ fn thesis(delay_s: f64) -> Proof {
     thesis_in(&thesis_loop(delay_s))
 }
 
-/// The thesis' family under another loop.
+/// The thesis' family in another loop.
 pub(crate) fn thesis_in(compensation: &Compensation) -> Proof {
     let family = thesis_family([2; 6]);
     let specifications = thesis_specifications();
@@ -47,8 +47,8 @@ pub(crate) fn thesis_in(compensation: &Compensation) -> Proof {
     prove(&problem, &found, ProofOptions::default(), &mut unwatched).unwrap()
 }
 
-/// The published controller is stable with every plant, and violates each specification by what is
-/// known; no enclosure is wider than 0.1 dB.
+/// The published controller is stable with every plant, and violates each specification by the
+/// known amount; no enclosure is wider than 0.1 dB.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
 fn the_published_controller_is_refuted() {
@@ -67,8 +67,8 @@ fn the_published_controller_is_refuted() {
     assert!(certificate.leaves() < 200, "{}", certificate.leaves());
 }
 
-/// With 1 ms of delay the lightly damped piston no longer rings with the loop: |T| reaches 1.134 of
-/// the 1.3 that are allowed.
+/// Published controller with 1 ms of delay, for which the lightly damped piston no longer rings
+/// with the loop: |T| reaches 1.134 of the allowed 1.3.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
 fn delay_belongs_to_what_is_proven() {
@@ -82,7 +82,7 @@ fn delay_belongs_to_what_is_proven() {
     assert_eq!(check(&proof.certificate.unwrap()), Ok(()));
 }
 
-/// A random problem: a plant of two or three poles over a box, under a controller with as many.
+/// A random problem: a plant of two or three poles over a box, with a controller of as many.
 pub(crate) struct RandomProblem {
     pub(crate) family: Family,
     pub(crate) compensation: Compensation,
@@ -151,7 +151,8 @@ pub(crate) fn random_problem(seed: u64, sampled: bool) -> RandomProblem {
     RandomProblem { family, compensation, specifications: six_specifications() }
 }
 
-/// From a few samples a second to hundreds; the prefilter at times before them.
+/// Sample times from a few samples per second to hundreds; the prefilter sometimes before the
+/// sampling.
 fn timing(state: &mut u64, sampled: bool) -> Timing {
     if !sampled {
         return Timing::default();
@@ -160,7 +161,7 @@ fn timing(state: &mut u64, sampled: bool) -> Timing {
     Timing { sample_time_s, continuous_prefilter: share(state) < 0.3, ..Timing::default() }
 }
 
-/// One of each kind.
+/// One specification of each kind.
 fn six_specifications() -> Vec<Specification> {
     let whole = [0.0, f64::INFINITY];
     let specification = |requirement, band_rad_per_s| Specification {
@@ -182,7 +183,7 @@ fn six_specifications() -> Vec<Specification> {
     ]
 }
 
-/// An audit that has looked at nothing: the prover has to find everything itself.
+/// An audit without any examination: the prover has to find everything itself.
 pub(crate) fn blind(problem: &RandomProblem, nominal: Vec<f64>) -> Audit {
     let finding = |specification: &Specification| SpecificationFinding {
         requirement: specification.requirement.clone(),
@@ -215,8 +216,8 @@ pub(crate) fn blind(problem: &RandomProblem, nominal: Vec<f64>) -> Audit {
     }
 }
 
-/// How often something was shown: (stable, unstable, limited from above), over this number of
-/// problems with this number of points of each.
+/// Number of proven results (stable, unstable, upper limit) over these problems with this number of
+/// points each.
 pub(crate) fn sound(problems: std::ops::Range<u64>, points: usize, sampled: bool) -> [usize; 3] {
     let mut shown = [0; 3];
     for seed in problems {
@@ -226,13 +227,13 @@ pub(crate) fn sound(problems: std::ops::Range<u64>, points: usize, sampled: bool
         let asked = problem(&random.family, &random.compensation, &random.specifications);
         let options = ProofOptions { width_db: 0.2, leaves_maximum: 1000, ..ProofOptions::default() };
         let proof = prove(&asked, &blind(&random, plant.nominal()), options, &mut unwatched).unwrap();
-        // what is claimed was checked already, claim by claim
+        // every claim was already checked, one by one
         if seed % 20 == 0 {
             assert_eq!(check(proof.certificate.as_ref().unwrap()), Ok(()), "seed {seed}");
         }
         let state = &mut stream(21, seed);
         for point in 0..points {
-            // a third of the points stand at corners
+            // a third of the points are at corners
             let mut coordinate = || match point % 3 {
                 0 => share(state).round(),
                 _ => share(state),
@@ -279,16 +280,16 @@ fn never_contradicted(random: &RandomProblem, proof: &Proof, values: &[f64], fre
     }
 }
 
-/// 100 random problems, 500 random plants and frequencies of each: nothing contradicts what was
-/// shown of them.
+/// One hundred random problems with 500 random plants and frequencies each: no point contradicts a
+/// proof.
 #[test]
 fn no_plant_contradicts_a_proof() {
     let [stable, unstable, limited] = sound(0..100, 500, false);
     assert!(stable > 50 && unstable > 2 && limited > 250, "{stable} {unstable} {limited}");
 }
 
-/// The same with 10 million points and another million of sampled loops, in the release profile:
-/// `cargo xtask ci soak`.
+/// Random problems with 10 million points, and another million of sampled loops, in the release
+/// profile: `cargo xtask ci soak`.
 #[test]
 #[ignore = "takes minutes; run before a release"]
 fn no_plant_of_ten_million_contradicts_a_proof() {
@@ -296,7 +297,7 @@ fn no_plant_of_ten_million_contradicts_a_proof() {
     sound(2000..2100, 10_000, true);
 }
 
-/// What is true of the proof of the published loop is true of none that says more.
+/// Certificate of the published loop: valid as proven, and rejected if it claims more.
 #[test]
 fn a_certificate_that_was_tampered_with_is_rejected() {
     let genuine = thesis(0.0).certificate.unwrap();
@@ -305,8 +306,7 @@ fn a_certificate_that_was_tampered_with_is_rejected() {
         change(&mut other);
         check(&other).is_err()
     };
-    // a greater mass of the piston's ratio: every limit that is shown is lowered below what is
-    // reached
+    // a greater mass ratio of the piston: every proven limit is reduced below the value reached
     for (index, claim) in genuine.claims.iter().enumerate() {
         if let Claim::Limited { ratio, .. } = claim {
             let lowered = ratio / 1.01;
@@ -325,7 +325,7 @@ fn a_certificate_that_was_tampered_with_is_rejected() {
             }));
         }
     }
-    // a box three times as wide, in which the leak is greater and the loop slower
+    // a box three times as wide, in which the leakage is greater and the loop slower
     assert!(altered(&|other| other.plant.boxes[0][2].high *= 3.0));
     assert!(altered(&|other| other.plant.boxes[0][0].low /= 10.0));
     // another controller
@@ -343,7 +343,7 @@ fn a_certificate_that_was_tampered_with_is_rejected() {
             }
         }
     };
-    // a gap, a tree that ends, a direction that is turned around, dead time where there is none
+    // a gap, a truncated tree, a reversed direction, dead time where there is none
     assert!(altered(&|other| each_panel(other, &|panels| drop(panels.remove(1)))));
     assert!(altered(&|other| each_panel(other, &|panels| panels[0].tree.truncate(4))));
     assert!(altered(&|other| each_panel(other, &|panels| {
@@ -354,7 +354,8 @@ fn a_certificate_that_was_tampered_with_is_rejected() {
     assert!(altered(&|other| each_panel(other, &|panels| panels[0].late = Late::Less)));
 }
 
-/// |U| of a leaf is that of the loop: the enclosure of a single plant at a single peak is the closed form.
+/// Enclosure of the peak of a single plant, which is the closed form, since |U| of a leaf is that
+/// of the loop.
 // ORIGIN: analytic, |T| of w^2/(s^2 + 2 d w s + w^2) is greatest 1/(2 d sqrt(1 - d^2))
 #[test]
 fn the_peak_of_a_second_order_loop_is_enclosed() {
@@ -385,7 +386,7 @@ fn the_peak_of_a_second_order_loop_is_enclosed() {
     assert!(own.most_db.unwrap() - own.least_db.unwrap() < 0.0021);
 }
 
-/// A table is straight between its points in a double logarithmic diagram.
+/// A table is linear between its points in a double logarithmic diagram.
 // ORIGIN: analytic, w |k/(jw + k)| grows with w and k: at 100 rad/s and k = 2 it is 200/sqrt(10004)
 #[test]
 fn a_limit_given_as_a_table_is_that_of_the_audit() {
@@ -414,7 +415,7 @@ fn a_limit_given_as_a_table_is_that_of_the_audit() {
     let own = &proof.specifications[0];
     let (least, most) = (own.least_db.unwrap(), own.most_db.unwrap());
     assert!(least <= truth_db && truth_db <= most && most - least < 0.051, "{least} {truth_db} {most}");
-    // a point that is raised, and one that is left out
+    // a raised point, and a missing one
     let genuine = proof.certificate.unwrap();
     type Points = Vec<(f64, f64)>;
     let altered = |change: &dyn Fn(&mut Points)| {
@@ -433,8 +434,7 @@ fn a_limit_given_as_a_table_is_that_of_the_audit() {
     assert!(altered(&|points| points[1].0 = 0.5).is_err());
 }
 
-/// Where parameters move together, a nominal plant away from their line belongs to the family all
-/// the same.
+/// Correlated parameters: a nominal plant away from their line nevertheless belongs to the family.
 #[test]
 fn a_plant_beside_the_box_is_in_the_proof() {
     let parameter =
@@ -470,8 +470,8 @@ fn a_plant_beside_the_box_is_in_the_proof() {
     assert_eq!(proof.certificate.unwrap().plant.boxes.len(), 2);
 }
 
-/// What a checker computes with must not run over: powers beyond a byte, binomials beyond a double,
-/// division by nothing.
+/// Overflow in the checker, which must not occur: powers beyond a byte, binomials beyond a double,
+/// division by zero.
 #[test]
 fn a_certificate_that_overflows_is_rejected() {
     let genuine = thesis(0.0).certificate.unwrap();

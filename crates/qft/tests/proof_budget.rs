@@ -1,4 +1,4 @@
-//! Proofs that may spend little.
+//! Proofs with a small budget.
 
 use phea_dynamics::watch::unwatched;
 use phea_qft::family::Family;
@@ -6,8 +6,8 @@ use phea_qft::proof::{NotProven, ProofOptions, Standing, check, prove};
 
 use crate::proof::{blind, problem, random_problem};
 
-/// Whatever budget a proof has, it says what remains: from a frequency on, or nothing; more of it
-/// never shows less, and none makes a claim that does not hold.
+/// A proof with any budget reports the remainder: from a frequency on, or nothing; a larger budget
+/// never proves less, and no budget leads to a false claim.
 #[test]
 fn a_proof_within_a_budget_says_what_remains() {
     let mut last = 0;

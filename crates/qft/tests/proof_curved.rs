@@ -1,4 +1,4 @@
-//! Proofs of plants whose coefficients are no polynomials in their parameters, and of parameters
+//! Proofs of plants whose coefficients are not polynomials in their parameters, and of parameters
 //! that move together by equal factors: against random plants.
 #![cfg(test)]
 
@@ -22,8 +22,8 @@ fn parameter(name: &str, minimum: f64, maximum: f64) -> UncertainParameter {
     UncertainParameter { name: name.into(), nominal: minimum, minimum, maximum }
 }
 
-/// Every operation that is recorded, with a choice that is decided on the whole box and one that is
-/// not.
+/// Plant with every recorded operation, with a choice that is decided on the whole box and one that
+/// is not.
 fn curved<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
     let (pressure, length, heat) = (p[0], p[1], p[2]);
     let flow = (pressure - 1.0.into()).sqrt();
@@ -43,7 +43,7 @@ fn curved<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
     }
 }
 
-/// A stiffness that climbs over a step whose ends lie within the box.
+/// Plant whose stiffness rises over a step with both ends inside the box.
 fn stepped<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
     let (length, heat) = (p[1], p[2]);
     let (zero, one) = (Recorded::from(0.0), Recorded::from(1.0));
@@ -156,7 +156,7 @@ fn enclosures_hold_for_coefficients_that_are_no_polynomials() {
     }
 }
 
-/// Boxes end where a choice turns: on either side of it the coefficients are smooth.
+/// Boxes end where a choice switches: on either side of it the coefficients are smooth.
 #[test]
 fn a_step_within_the_box_is_divided_at_its_ends() {
     let proof = proven(&family_of(stepped, false), &around(None));
@@ -170,13 +170,13 @@ fn a_step_within_the_box_is_divided_at_its_ends() {
     let volume = |one: &Vec<ParameterSegment>| one.iter().map(|one| one.high - one.low).product::<f64>();
     let filled: f64 = certificate.plant.boxes.iter().map(volume).sum();
     assert!((filled - 0.5 * 0.8).abs() < 1e-12, "{filled}");
-    // and none of them straddles an end
+    // and none of them contains an end of the step in its interior
     let straddles =
         |one: &Vec<ParameterSegment>, end: f64| one[2].low < end - 1e-12 && one[2].high > end + 1e-12;
     assert!(!certificate.plant.boxes.iter().any(|one| straddles(one, 0.43) || straddles(one, 0.49)));
 }
 
-/// A certificate of such a plant that says more is rejected.
+/// A certificate of such a plant that claims more is rejected.
 #[test]
 fn a_model_of_another_plant_is_rejected() {
     let genuine = proven(&family(true), &around(None)).certificate.unwrap();
@@ -187,11 +187,11 @@ fn a_model_of_another_plant_is_rejected() {
         change(&mut other);
         check(&other).is_err()
     };
-    // remainders that are too great, and no remainders at all
+    // remainders that are too large, and no remainders
     assert!(altered(&|other| other.plant.model_degree = 1));
     assert!(altered(&|other| other.plant.model_degree = 0));
     assert!(altered(&|other| other.plant.model_degree = 100));
-    // a box that is wider, or of another shape
+    // a wider box, or one of another shape
     assert!(altered(&|other| other.plant.boxes[0][0].low = 1.0));
     assert!(altered(&|other| other.plant.boxes[0][0].high *= 3.0));
     assert!(altered(&|other| other.plant.boxes[0][2].low = -1.0));

@@ -25,8 +25,9 @@ fn published(sample_time_s: f64, delay_s: f64) -> Compensation {
     Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap()
 }
 
-/// The published law at three rates and delays, a fraction of a sample among them: every enclosure
-/// holds what the audit finds by another way of sampling, and stability is proven in a few leaves.
+/// The published law at three rates and delays, including a fraction of a sample: every enclosure
+/// contains the result of the audit by another method of sampling, and stability is proven in a few
+/// leaves.
 #[test]
 fn enclosures_of_the_published_controller_hold_what_the_audit_finds() {
     for (sample_time_s, delay_s) in [(0.001, 0.0), (0.001, 0.001), (0.0005, 0.0002)] {
@@ -56,14 +57,14 @@ fn enclosures_of_the_published_controller_hold_what_the_audit_finds() {
     }
 }
 
-/// Random plants, rates, delays and prefilters in z and in s.
+/// Random plants, sampling rates, delays and prefilters in z and in s.
 #[test]
 fn no_plant_contradicts_a_proof_of_a_sampled_loop() {
     let [stable, _, limited] = sound(0..15, 500, true);
     assert!(stable > 10 && limited > 60, "{stable} {limited}");
 }
 
-/// An integrator k/s under a gain of one: L = k T/(z - 1).
+/// An integrator k/s with a gain of one: L = k T/(z - 1).
 fn integrator(gains: [f64; 2], limit: f64, band_rad_per_s: [f64; 2]) -> Proof {
     let [minimum, maximum] = gains;
     let parameter = UncertainParameter { name: "k".into(), nominal: minimum, minimum, maximum };
@@ -78,7 +79,7 @@ fn integrator(gains: [f64; 2], limit: f64, band_rad_per_s: [f64; 2]) -> Proof {
     proven(plant.unwrap(), 1.0, requirement, band_rad_per_s, options)
 }
 
-/// A box over the first parameter, under a proportional gain, sampled once a second.
+/// A box over the first parameter, with a proportional gain, sampled once per second.
 fn proven(
     plant: UncertainPlant,
     gain: f64,
@@ -129,7 +130,7 @@ fn poles_of_a_sampled_loop_are_counted() {
 }
 
 /// A mode that is folded onto frequencies at which the loop has gain is unstable for some of its
-/// frequencies and none of its ends: what the ends say is not taken for the box.
+/// frequencies and none of its ends: the result at the ends is not taken for the box.
 #[test]
 fn a_folded_mode_that_passes_the_band_is_not_proven() {
     let turn = 2.0 * std::f64::consts::PI;
@@ -159,7 +160,7 @@ fn a_folded_mode_that_passes_the_band_is_not_proven() {
     assert!(found.stability != Standing::Proven, "{:?}", found.stability);
 }
 
-/// What is true of the proof of the published loop is true of none that says more.
+/// Certificate of a sampled loop: valid as proven, and rejected if it claims more.
 #[test]
 fn a_certificate_of_a_sampled_loop_that_was_tampered_with_is_rejected() {
     let genuine = thesis_in(&published(0.001, 0.0003)).certificate.unwrap();
@@ -187,7 +188,7 @@ fn a_certificate_of_a_sampled_loop_that_was_tampered_with_is_rejected() {
             sections.denominator.push(vec![1.0, 2.0]);
         }
     }));
-    // images that were left out, and bounds that are not reached
+    // omitted images, and bounds that are not reached
     assert!(altered(&|other| other.sampling.as_mut().unwrap().images = 0));
     assert!(altered(&|other| other.sampling.as_mut().unwrap().images = 1));
     assert!(altered(&|other| other.sampling.as_mut().unwrap().bounds[0][0].ratio *= 0.5));

@@ -1,4 +1,4 @@
-//! A controller that a grid of plants and frequencies flatters.
+//! A controller that appears better on a grid of plants and frequencies than it is.
 #![cfg(test)]
 
 use phea_dynamics::controller::Timing;
@@ -13,7 +13,7 @@ use crate::verification::thesis::thesis_family;
 
 const LIMIT: f64 = 1.3;
 
-/// Proportional and integral action with a roll-off of second order, which resonates between the
+/// Proportional and integral action with a second-order roll-off, which resonates between the
 /// frequencies of the grid.
 fn law() -> Compensation {
     let [gain, zero, natural_frequency, damping_ratio]: [f64; 4] = [9.6e-5, 2.0, 56.0, 0.18];
@@ -25,7 +25,8 @@ fn law() -> Compensation {
     compensation(law, rational(&[1.0], &[1.0]), Timing::default())
 }
 
-/// |L/(1 + L)| of all 3^6 plants of the grid stays below 1.3 at a hundred frequencies from 0.01 to 10,000 rad/s, and the loop looks right. The proof refutes it with
+/// Magnitude |L/(1 + L)| of all 3^6 plants of the grid, which stays below 1.3 at a hundred
+/// frequencies from 0.01 to 10,000 rad/s, so that the loop seems correct. The proof refutes it with
 /// a plant and a frequency where the limit is exceeded by more than 1.5 dB.
 #[test]
 fn what_a_grid_flatters_is_refuted() {

@@ -1,5 +1,5 @@
-//! Converters and coefficients of finite resolution against closed forms and against loops that
-//! round.
+//! Converters and coefficients of finite resolution against closed forms and against loops with
+//! rounding.
 #![cfg(test)]
 
 use num_complex::Complex64;
@@ -45,8 +45,8 @@ fn close(found: f64, expected: f64, tolerance: f64) {
     assert!((found / expected - 1.0).abs() < tolerance, "{found} is not {expected}");
 }
 
-/// k/s with the gain g: z - 1 + K with K = g k T, for which every sum is a geometric series. One
-/// plant answers faster than it settles (K > 1).
+/// Plant k/s with the gain g: z - 1 + K with K = g k T, for which every sum is a geometric series.
+/// One plant oscillates before it settles (K > 1).
 #[test]
 fn an_integrator_under_proportional_control() {
     let gain = 4.0;
@@ -77,8 +77,8 @@ fn an_integrator_under_proportional_control() {
     assert_eq!((force.peak_plant, command.peak_plant, command.rms_plant), (2, 2, 2));
 }
 
-/// An error of bounded rms cannot make more than the largest magnitude over frequency, a white one
-/// not more than that, an arbitrary one of bounded size not less.
+/// An error of bounded rms has at most the effect of the largest magnitude over frequency, a white
+/// one no more than that, an arbitrary one of bounded size no less.
 #[test]
 fn sums_enclose_the_largest_magnitude() {
     let integral = Element::ProportionalIntegral { proportional_gain: 0.5, integral_gain: 1.0 };
@@ -135,8 +135,8 @@ fn integral_controller() -> Controller {
     controller(vec![Element::ProportionalIntegral { proportional_gain: 1.0, integral_gain: 3.0 }], SAMPLE)
 }
 
-/// The loop that rounds stays as near to the one that does not as the peaks say; and comes near
-/// enough to show that they are not far off.
+/// The loop with rounding deviates from the one without by no more than the peaks, and by enough to
+/// show that they are not far too large.
 #[test]
 fn a_loop_that_rounds_stays_within_the_peaks() {
     let controller = integral_controller();
@@ -165,8 +165,8 @@ fn a_loop_that_rounds_stays_within_the_peaks() {
     }
 }
 
-/// With a command finer than the measurement the loop comes to rest; with a coarser one it wanders
-/// between two levels for ever.
+/// A command finer than the measurement lets the loop come to rest; with a coarser one it
+/// alternates between two levels indefinitely.
 #[test]
 fn a_coarse_command_makes_a_limit_cycle() {
     let controller = integral_controller();
@@ -197,8 +197,8 @@ fn a_coarse_command_makes_a_limit_cycle() {
     }
 }
 
-/// The last commands of a loop whose reference is a level of the measurement, and between two of a
-/// coarse command.
+/// The last commands of a loop whose reference is a level of the measurement, between two levels of
+/// a coarse command.
 fn settled_commands(controller: &Controller, quantization: &Quantization) -> Vec<f64> {
     let sampled = controller.sampled(SAMPLE).unwrap();
     let mut state = sampled.at_rest();
@@ -217,7 +217,7 @@ fn settled_commands(controller: &Controller, quantization: &Quantization) -> Vec
 }
 
 /// Single precision would move the integrator of (z - 1)(z - p): 1 + p and p are not rounded alike.
-/// It stays where it is, and so does the limit of the loop at zero frequency.
+/// It remains an integrator, and the limit of the loop at zero frequency is unchanged.
 #[test]
 fn an_integrator_stays_one() {
     for frequency in [3.0, 11.0, 70.0, 500.0] {
@@ -233,7 +233,7 @@ fn an_integrator_stays_one() {
             assert!(compensation.feedback().poles().contains(&Complex64::new(1.0, 0.0)));
         }
     }
-    // coefficient by coefficient it would have moved
+    // rounded coefficient by coefficient it would have moved
     let kept = |frequency| {
         let controller = controller(vec![Element::Integrator, Element::RealPole { frequency }], 0.0);
         let [a1, a2] = Section::in_series(around(&controller).feedback()).unwrap()[0].denominator;
@@ -242,8 +242,8 @@ fn an_integrator_stays_one() {
     assert!(!(kept(3.0) && kept(11.0) && kept(70.0)));
 }
 
-/// What is audited has the response of the sections that are run, and more bits come closer to the
-/// controller that was designed.
+/// The audited controller has the response of the deployed sections, and more bits bring it closer
+/// to the controller designed.
 #[test]
 fn what_is_verified_is_what_is_deployed() {
     let elements = vec![

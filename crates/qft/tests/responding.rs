@@ -1,5 +1,5 @@
-//! Plants without polynomials: one that has polynomials after all, and hides them, must be judged
-//! as the same plant that shows them.
+//! Plants without polynomials: a plant that hides its polynomials must give the results of the
+//! plant that shows them.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -24,7 +24,7 @@ use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::stability::{Instability, MemberStability, StabilityStatus, member_stability};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement, Verdict, audit_specifications};
 
-/// k/((s + slow)(s^2 + 2 d w s + w^2)), with dead time.
+/// Plant k/((s + slow)(s^2 + 2 d w s + w^2)), with dead time.
 #[derive(Clone, Copy, Debug)]
 struct Hidden {
     gain: f64,
@@ -66,7 +66,7 @@ impl RespondingPlant for Hidden {
         self.shown()
     }
 
-    /// |s^2 + ... + w^2| is at least v^2 - w^2.
+    /// Lower bound v^2 - w^2 of |s^2 + ... + w^2|.
     fn roll_off(&self, v: f64) -> Option<f64> {
         (v > self.natural).then(|| self.gain.abs() / (v * (v * v - self.natural * self.natural)))
     }
@@ -108,8 +108,9 @@ fn compensation(state: &mut u64, natural: f64) -> Compensation {
     Compensation::new(&controller, sensor.unwrap()).unwrap()
 }
 
-/// Folding changes the return difference by no more than its bound, at any frequency, wherever a
-/// mode beyond pi/T folds to; 200 loops, and where the mode is what matters, not much less.
+/// Folding changes the return difference by no more than its bound, at any frequency, for any
+/// folded frequency of a mode beyond pi/T; 200 loops, with a nearly tight bound if the mode
+/// dominates.
 #[test]
 fn folding_changes_no_more_than_its_bound() {
     let mut state = 5;
@@ -175,10 +176,10 @@ fn poles_are_counted_as_those_of_the_polynomials() {
     assert!(found[0] > 100 && found[1] > 100 && found[2] > 1, "{found:?}");
 }
 
-/// A search counts the poles of a table of the plant, which it looks at to 3 %. Of every loop that
-/// such an error cannot turn over it says what the polynomials say, if the range of the plant shows
-/// the loop below its crossovers and above them; if not, it is sure of none that is unstable. What
-/// it says is also said of the same table where more than the count is asked for.
+/// A search counts the poles from a table of the plant that is accurate to 3 %. For every loop
+/// whose stability such an error cannot change, the result equals that of the polynomials, if the
+/// range of the plant covers the loop below and above its crossovers; otherwise no unstable loop is
+/// called stable. More detailed results from the table agree.
 #[test]
 fn a_search_counts_poles_as_those_of_the_polynomials() {
     let mut state = 17;
@@ -215,7 +216,7 @@ fn a_search_counts_poles_as_those_of_the_polynomials() {
     assert!(found[0] > 100 && found[1] > 100, "{found:?}");
 }
 
-/// The table of a response is that response to 0.2 %, between its points too.
+/// The table of a response equals that response to 0.2 %, also between its points.
 #[test]
 fn tables_hold_what_is_between_their_points() {
     let mut state = 5;
@@ -258,8 +259,8 @@ fn specifications() -> Vec<Specification> {
     all.into_iter().map(specification).collect()
 }
 
-/// The search of the box, between its corners, finds the same worst plants with polynomials and
-/// without.
+/// The search of the box, between its corners, finds equal worst plants with and without
+/// polynomials.
 #[test]
 fn a_box_is_searched_as_that_of_the_polynomials() {
     let parameter = |name: &str, minimum: f64, maximum: f64| UncertainParameter {
@@ -321,7 +322,7 @@ fn a_box_is_searched_as_that_of_the_polynomials() {
     assert!(shown.iter().any(|finding| finding.verdict == Verdict::Violated));
 }
 
-/// Sampled, a plant that hides its polynomials folds onto itself as that which shows them.
+/// A sampled plant that hides its polynomials folds to the response of the plant that shows them.
 #[test]
 fn samples_are_those_of_the_polynomials() {
     let mut state = 3;

@@ -1,10 +1,10 @@
-//! The rig of the thesis as numbers, for tests of a crate that knows no hydraulics.
+//! The rig of the thesis as numbers, for tests of a crate without hydraulics.
 
 use phea_dynamics::scalar::Scalar;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 
 /// Command to force by equation 6.7 with A = 1.58336e-3 m2; parameters f_v, K_qU, K_c, K_H, w_nv,
-/// xi_v, then M and K_S, which are 13.1 kg and 2e7 N/m where absent.
+/// xi_v, then M and K_S, by default 13.1 kg and 2e7 N/m.
 pub(crate) fn force<S: Scalar>(p: &[S]) -> RationalCoefficients<S> {
     let &[friction, flow_gain, leakage, stiffness, w, damping, ref others @ ..] = p else {
         panic!("six parameters or eight")

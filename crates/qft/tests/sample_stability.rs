@@ -1,5 +1,5 @@
-//! A sample of plants asked about one controller after another, against the stability of each plant
-//! and against closed forms.
+//! A sample of plants with one controller after another, against the stability of each plant and
+//! against closed forms.
 #![cfg(test)]
 
 use std::f64::consts::PI;
@@ -52,7 +52,7 @@ impl Random {
         ((self.next() * end as f64) as usize).min(end - 1)
     }
 
-    /// Roots over five decades, some of them hardly damped, some to the right.
+    /// Roots over five decades, some of them lightly damped, some in the right half plane.
     fn roots(&mut self, count: usize, right: f64) -> Vec<Complex64> {
         let mut roots = Vec::new();
         while roots.len() < count {
@@ -94,7 +94,7 @@ impl Random {
     }
 }
 
-/// What a comparison over random loops found.
+/// Results of a comparison over random loops.
 #[derive(Debug, Default)]
 struct Tally {
     asked: usize,
@@ -103,7 +103,7 @@ struct Tally {
     unresolved: usize,
 }
 
-/// One plant in a loop whose controller changes, judged both ways.
+/// One plant in a loop whose controller changes, evaluated in both ways.
 fn compare(member: &Member, compensation: &Compensation, tally: &mut Tally) {
     let status = member_stability(member, compensation).status;
     let other =
@@ -113,7 +113,7 @@ fn compare(member: &Member, compensation: &Compensation, tally: &mut Tally) {
     tally.asked += 1;
     tally.undecided += judgement.undecided_tables;
     match status {
-        // such as a pole at the origin itself
+        // such as a pole at the origin
         StabilityStatus::NotResolved(_) => {
             assert_eq!(judgement.unstable_plants, 1);
             tally.unresolved += 1;
@@ -138,7 +138,7 @@ fn continuous_loops_are_judged_as_by_their_poles() {
     assert_eq!(tally.undecided, 0, "{tally:?}");
 }
 
-/// Fractions of a sample of delay, and whole ones.
+/// Delays of fractions of a sample, and of whole samples.
 #[test]
 fn sampled_loops_are_judged_as_by_their_poles() {
     let (mut random, mut tally) = (Random(2), Tally::default());
@@ -191,8 +191,8 @@ fn a_millionth_of_damping_is_told() {
     assert_eq!((tally.asked, tally.undecided, tally.unresolved), (400, 0, 0), "{tally:?}");
 }
 
-/// k/(s (s + 1) (s + 2)) is stable up to k = 6, k/s in samples up to k T = 2, k e^(-s)/s up to
-/// k = pi/2: to the last digits.
+/// Stability limits to the last digits: k = 6 for k/(s (s + 1) (s + 2)), k T = 2 for sampled k/s,
+/// k = pi/2 for k e^(-s)/s.
 #[test]
 fn the_boundary_is_where_it_is() {
     let cubic = plant(&[1.0], &[1.0, 3.0, 2.0, 0.0], 0.0);
@@ -214,9 +214,9 @@ fn the_boundary_is_where_it_is() {
     }
 }
 
-/// x(n + 1) = x(n) - k T x(n - d) is stable for 0 < k T < 2 sin(pi/(4 d + 2)) (Levin and May 1976):
-/// by the table for a few samples of delay, by turns for many; the real part is that of the roots
-/// of z^(d + 1) - z^d + k T.
+/// System x(n + 1) = x(n) - k T x(n - d), stable for 0 < k T < 2 sin(pi/(4 d + 2)) (Levin and May
+/// 1976): by the table for a few samples of delay, by turns for many; the real part is that of the
+/// roots of z^(d + 1) - z^d + k T.
 #[test]
 fn samples_of_delay_and_the_real_part() {
     for samples in [0_u32, 1, 3, 20, 40, 300] {
@@ -238,7 +238,7 @@ fn samples_of_delay_and_the_real_part() {
     }
 }
 
-/// s + k e^(-s) = 0 has the root a + j w where a = -w/tan w and k = w e^a/sin w.
+/// Equation s + k e^(-s) = 0, which has the root a + j w with a = -w/tan w and k = w e^a/sin w.
 #[test]
 fn the_real_part_of_a_delayed_loop() {
     let mut judged = gain_around(plant(&[1.0], &[1.0, 0.0], 1.0), None);
@@ -247,19 +247,20 @@ fn the_real_part_of_a_delayed_loop() {
         let (stable, real_part) = judged(w * exp(expected) / sin(w));
         assert!(!stable && (real_part / expected - 1.0).abs() < 0.01, "{real_part} is not {expected}");
     }
-    // of k s e^(-s)/(s + 1) infinitely many poles near the real part ln k; of k s e^(-s) no end
+    // for k s e^(-s)/(s + 1) infinitely many poles near the real part ln k; for k s e^(-s) an
+    // unbounded sequence
     let (stable, real_part) = gain_around(plant(&[1.0, 0.0], &[1.0, 1.0], 1.0), None)(1.5);
     assert!(!stable && (real_part / ln(1.5) - 1.0).abs() < 0.01);
     let mut improper = gain_around(plant(&[1.0, 0.0], &[1.0], 1.0), None);
     assert_eq!(improper(1.5), (false, f64::INFINITY));
 }
 
-/// Plants around which a gain must lie between two limits: answers do not depend on what was asked
-/// before, and the plant that fails is found at once.
+/// Plants around which a gain must lie between two limits: results do not depend on earlier
+/// evaluations, and the plant that fails is found at once.
 #[test]
 fn answers_do_not_depend_on_their_order() {
     let compensation = around(TransferFunction::gain_only(1.0), None, 0.0);
-    // k/(s - a): stable for k > a; k/(s (s + 1) (s + b)): for k < b (1 + b)
+    // stable for k > a with k/(s - a), for k < b (1 + b) with k/(s (s + 1) (s + b))
     let member = |numerator: &[f64], denominator: &[f64]| {
         compensation.member(plant(numerator, denominator, 0.0)).unwrap()
     };
@@ -284,8 +285,7 @@ fn answers_do_not_depend_on_their_order() {
     }
 }
 
-/// A lag that was measured at 500 points: k a/(s + a) with a negative gain is stable down to
-/// k = -1.
+/// A lag measured at 500 points: k a/(s + a) with a negative gain is stable down to k = -1.
 #[test]
 fn measured_plants_are_counted_by_nyquist() {
     let compensation = around(TransferFunction::gain_only(1.0), None, 0.0);
@@ -309,7 +309,8 @@ fn measured_plants_are_counted_by_nyquist() {
     assert_eq!((judgement.unstable_plants, judgement.largest_real_part), (1, 0.0));
 }
 
-/// Nothing is cancelled, and a controller of another time is refused.
+/// Modes in all parts of the loop, which are never cancelled, and a controller in another time
+/// domain, which is rejected.
 #[test]
 fn hidden_modes_and_other_times() {
     let compensation = around(TransferFunction::gain_only(1.0), None, 0.0);

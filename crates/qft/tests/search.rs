@@ -1,4 +1,4 @@
-//! The search against problems whose optimum is known.
+//! The search against problems with a known optimum.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::disallowed_methods, reason = "expected numbers have a tolerance")]
 

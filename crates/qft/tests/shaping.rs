@@ -1,4 +1,4 @@
-//! What a search of a loop sees: structures, samples, margins and their slopes, against plain
+//! Interface of a search to a loop: structures, samples, margins and their slopes, against plain
 //! evaluations.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]

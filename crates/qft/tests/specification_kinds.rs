@@ -1,4 +1,4 @@
-//! Which closed loop each kind of specification limits.
+//! Closed loop limited by each kind of specification.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -18,8 +18,8 @@ fn margin(requirement: Requirement) -> f64 {
     specification.margin_db(&response, 1.0).unwrap()
 }
 
-/// With L = 3 every closed loop is a plain fraction: T = 3/4, S = 1/4, P S = 3/4, G S = 1/4, Pd
-/// S = 2, F T = 3/2.
+/// Closed loops for L = 3, all simple fractions: T = 3/4, S = 1/4, P S = 3/4, G S = 1/4, Pd S = 2,
+/// F T = 3/2.
 #[test]
 fn each_kind_limits_its_own_closed_loop() {
     let limit = Limit::Constant;

@@ -1,4 +1,4 @@
-//! Limits and the margins they guarantee, against the loops themselves.
+//! Limits and the margins that they guarantee, against the loops.
 #![cfg(test)]
 
 use std::f64::consts::PI;
@@ -40,8 +40,8 @@ fn sensitivity(open: Complex64) -> f64 {
     1.0 / magnitude(1.0 + open)
 }
 
-/// Whether a loop through this point satisfies the limit is read off the margins alone, on the
-/// whole negative axis and the whole unit circle.
+/// Equivalence of limit and margins: whether a loop through a point satisfies the limit follows
+/// from the margins, on the whole negative axis and the whole unit circle.
 fn margins_draw_the_line(closed: fn(Complex64) -> f64, limit: f64, guaranteed: &GuaranteedMargins) {
     for step in 1..4000 {
         let crossing = 0.002 * f64::from(step) - 0.0007;
@@ -125,7 +125,7 @@ fn no_loop_has_less_than_its_own_peaks_guarantee() {
         for share in [0.01, 0.1, 0.3, 0.6, 0.8, 0.9] {
             let open = real_loop(top * share, &[], &poles);
             let grid = logarithmic_grid(1e-4, 1e4, 40_000).unwrap();
-            // the peak between the points of the grid is higher by less than this
+            // the peak between the points of the grid is higher by no more than this
             let peak = |closed: fn(Complex64) -> f64| {
                 grid.iter().map(|w| closed(open.at_frequency(*w))).fold(0.0, f64::max) * (1.0 + 1e-4)
             };
@@ -139,7 +139,7 @@ fn no_loop_has_less_than_its_own_peaks_guarantee() {
                 assert!(actual.modulus_margin.distance >= guaranteed.modulus);
                 gains_bound += usize::from(actual.gain_increase_factor().is_finite());
             }
-            // the modulus margin is the sensitivity's peak, neither more nor less
+            // the modulus margin is exactly the inverse peak of the sensitivity
             assert!(close(of_sensitivity.modulus, actual.modulus_margin.distance, 2e-4));
         }
     }
@@ -191,7 +191,7 @@ fn the_delay_limit_allows_no_loop_more_delay_than_it_bears() {
         let closed = open.feedback(&TransferFunction::gain_only(1.0)).unwrap();
         assert!(closed.is_stable());
         let true_margin = margins(&open).delay_margin_s();
-        // the longest delay whose limit it satisfies, by halving
+        // the longest delay whose limit it satisfies, by bisection
         let keeps = |delay: f64| {
             let limit = delay_margin_limit(delay).unwrap();
             grid.iter().all(|w| complementary(open.at_frequency(*w)) <= limit.magnitude(*w).unwrap())
@@ -210,7 +210,8 @@ fn an_integrator_bears_a_quarter_turn_and_is_promised_one_radian() {
     let gain = 7.0;
     let open = real_loop(gain, &[], &[0.0]);
     assert!(close(margins(&open).delay_margin_s(), PI / 2.0 / gain, 1e-12));
-    // |L/(1+L)| = k/sqrt(w^2 + k^2) tends to k/w from below: the limit 1/(w tau) with tau = 1/k is met, no longer delay's is
+    // |L/(1+L)| = k/sqrt(w^2 + k^2) tends to k/w from below: the limit 1/(w tau) is met with tau =
+    // 1/k, but with no longer delay
     let kept = |delay: f64| {
         let limit = delay_margin_limit(delay).unwrap();
         [1e-3, 1.0, 1e3, 1e6]

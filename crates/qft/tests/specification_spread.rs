@@ -1,4 +1,4 @@
-//! The two limits of tracking against each other.
+//! The two tracking limits against each other.
 #![cfg(test)]
 
 use phea_dynamics::frequency::logarithmic_grid;
@@ -34,7 +34,7 @@ impl Numbers {
     }
 }
 
-/// The spread over a band is what a dense scan sees.
+/// The spread over a band equals that of a dense scan.
 fn as_scanned(lower: &Limit, upper: &Limit, band: [f64; 2]) -> TrackingSpread {
     let spread = tracking_spread(lower, upper, band).unwrap();
     let grid = logarithmic_grid(band[0], band[1], 20_001).unwrap();
@@ -51,7 +51,7 @@ fn as_scanned(lower: &Limit, upper: &Limit, band: [f64; 2]) -> TrackingSpread {
             assert!(first == 0 || from_rad_per_s >= grid[first - 1]);
         }
     }
-    // the last place where the scan falls
+    // the last point where the scan falls
     let falls = (1..grid.len()).rev().find(|index| scan[*index] < scan[index - 1] - 1e-12);
     match (spread.grows_from_rad_per_s, falls) {
         (Some(from), None) => assert_eq!(from, band[0]),
@@ -91,14 +91,14 @@ fn limits_that_cross_say_where_and_how_far() {
         }
         kept => panic!("{kept:?}"),
     }
-    // up to infinity the crossing is the same, and the limits end at the ratio of their
+    // up to infinity the crossing is unchanged, and the limits end at the ratio of their
     // high-frequency gains
     let spread = tracking_spread(&lower, &upper, EVERYWHERE).unwrap();
     assert!(matches!(spread.order, LimitOrder::Crossed { from_rad_per_s, frequency_rad_per_s, .. }
         if (from_rad_per_s - 12.65701387).abs() < 1e-8 && frequency_rad_per_s == f64::INFINITY));
     assert!((spread.at_end_db + 20.0 * log10(9.0)).abs() < 1e-12);
     assert_eq!(spread.grows_from_rad_per_s, None);
-    // where they are not yet crossed the limits are sound
+    // before they cross, the limits are consistent
     assert!(matches!(tracking_spread(&lower, &upper, [0.0, 12.0]).unwrap().order, LimitOrder::Kept { .. }));
     // crossed from the first frequency on
     let swapped = tracking_spread(&upper, &lower, [1.0, 10.0]).unwrap().order;
@@ -141,19 +141,20 @@ fn tables_and_constants_are_compared_between_their_points_too() {
         }
     }
     assert!(crossed > 10 && crossed < 80, "{crossed}");
-    // the resonance 100/(s^2 + 6 s + 100) over a limit that falls as 1/w^2: the turn lies between
-    // the points of the table
+    // the resonance 100/(s^2 + 6 s + 100) over a limit that falls as 1/w^2: the turning point is
+    // between the points of the table
     let falling = table(&[(1.0, 100.0), (1000.0, 1e-4)]);
     let spread = tracking_spread(&falling, &function(&[100.0], &[1.0, 6.0, 100.0]), [0.0, 1e9]).unwrap();
     assert_eq!(spread.grows_from_rad_per_s, None);
-    // w^4/((100 - w^2)^2 + 36 w^2) rises to its one turn at w^2 = 10^4/82, w = 11.04, and falls
+    // w^4/((100 - w^2)^2 + 36 w^2) rises to its only turning point at w^2 = 10^4/82, w = 11.04, and
+    // falls
     let up_to =
         |end: f64| tracking_spread(&falling, &function(&[100.0], &[1.0, 6.0, 100.0]), [0.0, end]).unwrap();
     assert_eq!(up_to(11.1).grows_from_rad_per_s, None);
     let short = up_to(11.0);
     assert_eq!(short.grows_from_rad_per_s, Some(1.0));
     assert!(matches!(short.order, LimitOrder::Crossed { from_rad_per_s: 1.0, .. }));
-    // beyond a table nothing is demanded
+    // there is no limit beyond a table
     let apart = [table(&[(1.0, 1.0), (2.0, 1.0)]), table(&[(3.0, 1.0), (4.0, 1.0)])];
     assert_eq!(tracking_spread(&apart[0], &apart[1], EVERYWHERE), Err(TimeDomainError::NeverTogether));
 }

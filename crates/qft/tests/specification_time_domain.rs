@@ -1,4 +1,4 @@
-//! A wish in time, the limits made of it, and what those do in time.
+//! A requirement in time, the limits derived from it, and their response in time.
 #![cfg(test)]
 
 use num_complex::Complex64;
@@ -119,7 +119,7 @@ fn exact_limits_meet_any_wish_whatever_the_extra_root() {
             assert_eq!(limit.check.outcome(), WishOutcome::Met, "{wish:?} {zero:?} {limit:?}");
             let overshoot = limit.check.reached.overshoot_percent;
             assert!(close(overshoot, overshoot_percent, 1e-7), "{overshoot} {wish:?} {zero:?}");
-            // a little slower in frequency is too late in time
+            // slightly slower in frequency is too late in time
             let (settled, slower) = (settling(&limit.check), 1.0 - 1e-6);
             assert!(settled <= settling_time_s * (1.0 + 1e-9));
             if zero == ExtraRoot::None {
@@ -139,7 +139,7 @@ fn exact_limits_meet_any_wish_whatever_the_extra_root() {
 }
 
 /// The settling time jumps where an extreme of the response reaches the band; no natural frequency
-/// settles at the wished time then, and the faster side of the jump is taken.
+/// then settles at exactly the required time, and the faster side of the jump is used.
 #[test]
 fn where_the_settling_time_jumps_the_wish_is_met_with_time_to_spare() {
     let wish = UpperWish { overshoot_percent: 99.9, settling_time_s: 0.1, settling_band_percent: 1.0 };
@@ -170,7 +170,7 @@ fn a_wish_ten_times_as_fast_has_limits_ten_times_as_fast() {
         let ratio = fast.natural_frequency_rad_per_s / slow.natural_frequency_rad_per_s;
         assert!(close(ratio, 10.0, 1e-8), "{ratio}");
     }
-    // a zero that stays where it is, far above, is as good as none; so the damping changes
+    // a fixed zero far above has almost no effect; so the damping changes
     let fixed = ExtraRoot::At { rad_per_s: 75.0 };
     let [slow, fast] = [UPPER, fast].map(|wish| tracking_upper(&wish, fixed, Translation::Exact).unwrap());
     assert!((fast.damping_ratio - slow.damping_ratio).abs() > 0.01);
@@ -202,7 +202,7 @@ fn rules_of_thumb_follow_the_thesis_and_keep_to_their_band() {
     let upper = tracking_upper(&UPPER, ExtraRoot::At { rad_per_s: 75.0 }, rule).unwrap();
     assert!(close(upper.natural_frequency_rad_per_s * upper.damping_ratio * 0.1, 5.0, 1e-12));
     assert_eq!(upper.extra_root_rad_per_s, Some(75.0));
-    // the zero adds overshoot that the rule does not see
+    // the zero adds overshoot that the rule ignores
     assert!(matches!(upper.check.outcome(), WishOutcome::Missed { settling_excess_s: 0.0, .. }));
     // critical damping settles later than an envelope of the same sigma
     let lower = tracking_lower(&LOWER, ExtraRoot::None, rule).unwrap();
@@ -217,11 +217,11 @@ fn rules_of_thumb_follow_the_thesis_and_keep_to_their_band() {
 #[test]
 fn a_root_too_slow_is_refused_at_its_own_settling_time() {
     let lower = |pole: f64| tracking_lower(&LOWER, ExtraRoot::At { rad_per_s: pole }, Translation::Exact);
-    // the lag alone settles after ln(100)/p
+    // the lag by itself would settle after ln(100)/p
     let fastest = ln(100.0) / LOWER.settling_time_s;
     assert!(lower(fastest * (1.0 + 1e-4)).is_ok());
     assert!(matches!(lower(fastest * (1.0 - 1e-4)), Err(TimeDomainError::ExtraRootTooSlow { .. })));
-    // the tail behind a zero is as large as the overshoot: it takes ln(overshoot/band)/z
+    // the tail due to a zero is as large as the overshoot: it takes ln(overshoot/band)/z
     let upper = |zero: f64, overshoot_percent: f64| {
         let wish = UpperWish { overshoot_percent, ..UPPER };
         tracking_upper(&wish, ExtraRoot::At { rad_per_s: zero }, Translation::Exact)
@@ -238,7 +238,7 @@ fn the_check_agrees_with_dense_samples_of_any_response() {
         let (natural, ratio) = (numbers.between(2.0, 40.0), numbers.between(0.08, 0.95));
         let imaginary = natural * (1.0 - ratio * ratio).sqrt();
         poles.extend([c(-natural * ratio, imaginary), c(-natural * ratio, -imaginary)]);
-        // as many zeros as poles now and then: a response that jumps
+        // sometimes as many zeros as poles: a response that jumps
         let zeros: Vec<Complex64> =
             (0..(4.0 * numbers.next()) as usize).map(|_| c(-numbers.between(5.0, 60.0), 0.0)).collect();
         let unscaled = factored(1.0, &zeros, &poles);
@@ -258,7 +258,7 @@ fn the_check_agrees_with_dense_samples_of_any_response() {
 
 #[test]
 fn modes_far_apart_and_light_damping_are_followed_to_the_end() {
-    // a lag of ten seconds behind one of ten microseconds
+    // a lag of ten seconds in series with one of ten microseconds
     let spread = factored(0.1 * 1e5, &[], &[c(-0.1, 0.0), c(-1e5, 0.0)]);
     let check =
         check_lower(&spread, &LowerWish { settling_time_s: 50.0, settling_band_percent: 1.0 }).unwrap();

@@ -44,8 +44,8 @@ fn is_stable(found: &MemberStability) -> bool {
     }
 }
 
-/// Just below the critical delay a loop is stable and just above it is not; the margin from below
-/// is what is left.
+/// Critical delay: a loop is stable just below it and unstable just above it; the margin from below
+/// is the remainder.
 fn check_critical_delay(numerator: &[f64], denominator: &[f64], critical: f64) {
     let prompt = found(numerator, denominator, 0.0).critical_delay.unwrap();
     assert!((prompt.delay_s / critical - 1.0).abs() < 1e-12, "{} against {critical}", prompt.delay_s);
@@ -55,7 +55,7 @@ fn check_critical_delay(numerator: &[f64], denominator: &[f64], critical: f64) {
     assert!(!is_stable(&found(numerator, denominator, critical * (1.0 + 1e-6))));
 }
 
-/// k e^(-s T)/s: two more poles become unstable each time k T passes pi/2 + 2 pi i.
+/// Plant k e^(-s T)/s: two more poles become unstable each time k T passes pi/2 + 2 pi i.
 #[test]
 fn an_integrator_with_dead_time() {
     for (gain, delay) in [(1.0, 1.0), (1e-4, 30.0), (5e5, 1e-3), (7.8, 1.0), (7.9, 1.0), (50.0, 1.0)] {
@@ -72,7 +72,8 @@ fn an_integrator_with_dead_time() {
     }
 }
 
-/// k e^(-s T)/(s + a) with k > |a|: |L| = 1 at w = sqrt(k^2 - a^2), where the lag is atan2(w, a).
+/// Plant k e^(-s T)/(s + a) with k > |a|: |L| = 1 at w = sqrt(k^2 - a^2), where the lag is atan2(w,
+/// a).
 #[test]
 fn a_first_order_plant_with_dead_time() {
     for (gain, pole) in [(2.0, 1.0), (1.001, 1.0), (100.0, 1e-3), (3.0, -1.0), (1.5, -1.4)] {
@@ -87,14 +88,14 @@ fn a_first_order_plant_with_dead_time() {
     assert!(!is_stable(&found(&[0.99], &[1.0, -1.0], 0.1)));
 }
 
-/// (s + 1) e^(-s T)/s^2: |L| = 1 where w^4 = w^2 + 1, w^2 the golden ratio.
+/// Loop (s + 1) e^(-s T)/s^2: |L| = 1 where w^4 = w^2 + 1, so that w^2 is the golden ratio.
 #[test]
 fn two_integrators_with_dead_time() {
     let w = (0.5 * (1.0 + 5_f64.sqrt())).sqrt();
     check_critical_delay(&[1.0, 1.0], &[1.0, 0.0, 0.0], atan2(w, 1.0) / w);
 }
 
-/// A loop that is as large at infinity as it is in the middle: k (2 s + 1)/(s + 1).
+/// A loop with as much gain at infinity as at middle frequencies: k (2 s + 1)/(s + 1).
 #[test]
 fn dead_time_around_a_gain_at_infinity() {
     let status = |gain: f64, delay| found(&[2.0 * gain, gain], &[1.0, 1.0], delay).status;
@@ -112,7 +113,7 @@ fn dead_time_around_a_gain_at_infinity() {
     assert!((approach.distance - 0.2).abs() < 1e-3);
 }
 
-/// A sensor acts as the same factor of the plant would, its dead time too.
+/// A sensor acts like an equal factor of the plant, including its dead time.
 #[test]
 fn a_sensor_is_part_of_the_loop() {
     let sensor = function(&[3.0], &[1.0, 5.0]);
@@ -126,7 +127,7 @@ fn a_sensor_is_part_of_the_loop() {
     }
 }
 
-/// Modes that the loop does not move count, wherever they hide.
+/// Modes that the loop does not move are counted in every part of the loop.
 #[test]
 fn nothing_is_cancelled() {
     let one = || function(&[1.0], &[1.0]);
@@ -139,7 +140,7 @@ fn nothing_is_cancelled() {
     }
     let plant = found(&[1.0, -1.0], &[1.0, 1.0, -2.0], 0.1);
     assert_eq!(plant.status, StabilityStatus::Unstable(Instability::Poles { count: 1 }));
-    // a zero at the origin under an integrator leaves a pole there
+    // a zero at the origin with an integrator leaves a pole there
     let integrator = loop_of(function(&[1.0], &[1.0, 0.0]), one());
     let washed_out = found_in(&integrator, &[1.0, 0.0], &[1.0, 1.0], 0.0);
     assert_eq!(washed_out.status, StabilityStatus::Unstable(Instability::Pole { real_part: 0.0 }));
@@ -164,7 +165,7 @@ fn a_loop_that_has_no_solution_is_not_resolved() {
     assert!(matches!(status, StabilityStatus::NotResolved(Irresolution::Linear(_))), "{status:?}");
 }
 
-/// Closed-loop poles over nine decades, the slowest of them the one that decides.
+/// Closed-loop poles over nine decades, of which the slowest one decides.
 #[test]
 fn slow_poles_beside_fast_ones() {
     let slow = [1e-3, 0.1, 1.0, 1e2, 1e4, 1e6];
@@ -177,8 +178,8 @@ fn slow_poles_beside_fast_ones() {
     assert!((found.largest_real_part.unwrap() / -1e-3 - 1.0).abs() < 1e-12);
 }
 
-/// A lightly damped resonance, stable as long as its peak k/(2 zeta) stays below one, whatever the
-/// dead time.
+/// A lightly damped resonance, stable as long as its peak k/(2 zeta) stays below one, for any dead
+/// time.
 #[test]
 fn a_sharp_resonance_is_not_stepped_over() {
     let damping = 1e-5;
@@ -198,7 +199,7 @@ fn a_sharp_resonance_is_not_stepped_over() {
     assert!((half.distance - 0.5).abs() < 1e-5 && (half.frequency_rad_per_s - 1.0).abs() < 1e-5);
 }
 
-/// The critical delay is that of the margins of a loop known by its factors.
+/// The critical delay is that of the margins of a loop given by its factors.
 #[test]
 fn critical_delays_are_those_of_the_margins() {
     // ORIGIN: Knuth (1997), the constants of the random numbers
@@ -226,8 +227,8 @@ fn critical_delays_are_those_of_the_margins() {
     }
 }
 
-/// e^(-s T) replaced by Pade's approximant of order six has as many unstable poles, where all of
-/// them are slow against 1/T.
+/// Padé approximants of order six for e^(-s T) have as many unstable poles, if all of them are slow
+/// relative to 1/T.
 #[test]
 fn pade_approximants_have_as_many_unstable_poles() {
     let pade = |delay: f64| {

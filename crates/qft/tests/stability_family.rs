@@ -1,4 +1,4 @@
-//! What lies between the members of a family.
+//! Plants between the members of a family.
 #![cfg(test)]
 
 use num_complex::Complex64;
@@ -15,8 +15,8 @@ use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, gri
 use phea_qft::stability::{FamilyStability, family_stability};
 use phea_qft::verification::{Evidence, PlantPoint, StabilityReason, Verdict};
 
-/// 1e-3/(s^2 + d s + 1) with d = (p - 0.3)^2 + least: among members at p = 0, 0.5 and 1 nothing
-/// shows how small d becomes.
+/// Plant 1e-3/(s^2 + d s + 1) with d = (p - 0.3)^2 + least: the members at p = 0, 0.5 and 1 do not
+/// show how small d becomes.
 fn dip(least: f64, extent: Extent) -> Family {
     let parameter = UncertainParameter { name: "p".into(), nominal: 1.0, minimum: 0.0, maximum: 1.0 };
     let plant = UncertainPlant::record(vec![parameter], |p| {
@@ -57,7 +57,7 @@ fn an_unstable_plant_between_stable_members_is_found() {
         assert_eq!((found.verdict, found.evidence), (Verdict::Violated, Evidence::Search), "{timing:?}");
         let PlantPoint::Parameters(values) = found.plant else { panic!("a plant of the box") };
         assert!((values[0] - 0.3).abs() < 0.1, "{values:?}");
-        // the members alone are stable, and nothing more is claimed of them
+        // the members are stable, and no further claim is made
         let members = audited(&dip(-0.01, Extent::Members), vec![], timing).finding;
         assert_eq!((members.verdict, members.evidence), (Verdict::Met, Evidence::Grid));
     }
@@ -73,8 +73,8 @@ fn the_largest_real_part_lies_inside() {
     assert!((values[0] - 0.3).abs() < 1e-5, "{values:?}");
 }
 
-/// With dead time the smallest |1 + L| leads there: 1 - 1e-3/d at the resonance, after a quarter of
-/// a turn.
+/// Plant with dead time: the smallest |1 + L| leads to the interior, 1 - 1e-3/d at the resonance,
+/// after a quarter of a turn.
 #[test]
 fn the_closest_approach_lies_inside() {
     let timing = Timing { delay_s: std::f64::consts::FRAC_PI_2, ..Timing::default() };
@@ -86,12 +86,12 @@ fn the_closest_approach_lies_inside() {
     assert_eq!(found.delay_margin.unwrap().delay_s, f64::INFINITY);
 }
 
-/// |L| reaches one, at 1e-3/d, near p = 0.3 only.
+/// Gain |L| reaches one, at 1e-3/d, only near p = 0.3.
 #[test]
 fn a_crossover_that_no_member_has_is_found() {
     let found = audited(&dip(0.0008, Extent::Box), vec![], Timing::default());
     let margin = found.delay_margin.unwrap();
-    // |L| = 1 at (1 - w^2)^2 + (d w)^2 = 1e-6; the higher of both crossovers has less left to turn
+    // |L| = 1 at (1 - w^2)^2 + (d w)^2 = 1e-6; the higher of both crossovers has less phase margin
     let (d, level) = (0.0008, 1e-6_f64);
     let half = 1.0 - d * d / 2.0;
     let w = (half + (half * half - 1.0 + level).sqrt()).sqrt();
@@ -102,7 +102,8 @@ fn a_crossover_that_no_member_has_is_found() {
     assert!((values[0] - 0.3).abs() < 1e-3, "{values:?}");
 }
 
-/// k e^(-s T)/s with uncertain k and T: the margin is pi/(2 k) - T of the corner where it is least.
+/// Plant k e^(-s T)/s with uncertain k and T: the margin is the least pi/(2 k) - T over the
+/// corners.
 #[test]
 fn an_uncertain_dead_time_counts() {
     let parameter = |name: &str, minimum, maximum| UncertainParameter {
@@ -125,15 +126,15 @@ fn an_uncertain_dead_time_counts() {
         points: 1,
     };
     let coordinates = vec![coordinate(0), coordinate(1)];
-    // no member but the nominal plant: the search alone finds the corner
+    // no member but the nominal plant: only the search finds the corner
     let family = UncertainFamily::new(plant.unwrap(), coordinates, vec![], Extent::Box).unwrap();
     let margin = audited(&Family::Uncertain(family), vec![], Timing::default()).delay_margin.unwrap();
     assert!((margin.delay_s - (std::f64::consts::FRAC_PI_2 / 1.2 - 0.9)).abs() < 1e-12, "{margin:?}");
     assert_eq!(margin.plant, PlantPoint::Parameters(vec![1.2, 0.9]));
 }
 
-/// k/s tolerates pi/(2 k). k has a hill of 1 at p = 0.35 and one of 1.05 just behind a jump at
-/// 0.47, narrower than the steps of a search from anywhere else.
+/// Plant k/s, which tolerates pi/(2 k). The gain k has a peak of 1 at p = 0.35 and one of 1.05 just
+/// beyond a jump at 0.47, narrower than the steps of a search from anywhere else.
 #[test]
 fn the_worst_behind_a_jump_is_found() {
     let parameter = UncertainParameter { name: "p".into(), nominal: 0.35, minimum: 0.0, maximum: 0.6 };
@@ -168,7 +169,7 @@ fn an_unstable_prefilter_makes_the_whole_unstable() {
     assert_eq!(found.finding.reason, StabilityReason::UnstablePrefilter);
 }
 
-/// The same audit twice gives the same bits.
+/// Repeated audits give identical bits.
 #[test]
 fn the_audit_is_repeatable() {
     for timing in timings() {

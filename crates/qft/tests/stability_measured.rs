@@ -1,5 +1,4 @@
-//! Nyquist's count on measured points: right where the points suffice, not resolved where they do
-//! not.
+//! Nyquist count on measured points: correct if the points suffice, otherwise not resolved.
 #![cfg(test)]
 
 use num_complex::Complex64;
@@ -45,8 +44,8 @@ fn found(plant: &MeasuredPlant, compensation: &Compensation) -> MemberStability 
     member_stability(&compensation.measured(plant), compensation)
 }
 
-/// The count of unstable poles agrees with the roots of the closed loop for plants stable and not,
-/// with and without integrators.
+/// The count of unstable poles agrees with the roots of the closed loop for stable and unstable
+/// plants, with and without integrators.
 #[test]
 fn the_count_is_that_of_the_poles() {
     let resonant = function(&[4.0], &[1.0, 0.4, 4.0, 0.0]);
@@ -117,7 +116,7 @@ fn what_the_points_do_not_show_is_not_resolved() {
     assert_eq!(status, StabilityStatus::NotResolved(Irresolution::UndampedController));
 }
 
-/// One unstable plant among measured ones is named; between them nothing is claimed.
+/// One unstable plant among measured ones is named; no claim is made between them.
 #[test]
 fn a_measured_family_is_judged_plant_by_plant() {
     let third_order = |gain: f64| measured(&function(&[gain], &[1.0, 3.0, 3.0, 1.0]), 1e-3, 1e3, 2000);

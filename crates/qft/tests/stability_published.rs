@@ -1,4 +1,4 @@
-//! Stability of published families: what their authors claim, and what is true.
+//! Stability of published families: the claims of their authors, and the truth.
 #![cfg(test)]
 
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
@@ -52,7 +52,7 @@ fn without_load<S>(numerator: Vec<S>, denominator: Vec<S>, dead_time_s: S) -> Pl
     }
 }
 
-/// k (s + a)/(s^2 - 2.5)
+/// Plant k (s + a)/(s^2 - 2.5).
 fn unstable_family() -> Family {
     let parameters = vec![parameter("k", 1.0, 1.0, 10.0), parameter("a", 0.1, 0.1, 1.0)];
     let plant = UncertainPlant::record(parameters, |p| {
@@ -61,8 +61,8 @@ fn unstable_family() -> Family {
     family(plant.unwrap(), vec![coordinate(0, 3, Spacing::Linear), coordinate(1, 3, Spacing::Linear)])
 }
 
-/// C = 5.18 is a published answer for this family. s^2 + C k s + C k a - 2.5 has a root at (-C
-/// k + sqrt(C^2 k^2 - 4 C k a + 10))/2.
+/// Published solution C = 5.18 for this family. The polynomial s^2 + C k s + C k a - 2.5 has a root
+/// at (-C k + sqrt(C^2 k^2 - 4 C k a + 10))/2.
 #[test]
 fn a_published_design_for_an_unstable_plant_is_unstable() {
     let found = audited(&unstable_family(), &controller(&[5.18], &[1.0], 0.0));
@@ -131,8 +131,8 @@ fn the_published_controller_is_stable_for_the_whole_of_its_table() {
     assert!((values[3] / stiffness - 1.0).abs() < 2e-3, "{values:?}");
 }
 
-/// The loop tolerates each of these delays, and what it tolerates beyond them is what is left of
-/// the margin without delay.
+/// The loop tolerates each of these delays, and the tolerance beyond them is the remainder of the
+/// margin without delay.
 #[test]
 fn the_published_controller_bears_delays_up_to_its_margin() {
     let family = thesis_family([2, 2, 2, 3, 2, 2]);

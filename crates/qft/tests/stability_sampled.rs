@@ -29,7 +29,7 @@ fn found(elements: Vec<Element>, plant: (&[f64], &[f64]), delay_s: f64) -> Membe
     member_stability(&compensation.member(plant).unwrap(), &compensation)
 }
 
-/// k/s held and sampled is k T/(z - 1): one pole at 1 - k T.
+/// Plant k/s, held and sampled, is k T/(z - 1): one pole at 1 - k T.
 #[test]
 fn an_integrator_has_one_pole() {
     for share in [1e-9, 1e-3, 0.3, 1.7, 2.1] {
@@ -40,8 +40,8 @@ fn an_integrator_has_one_pole() {
     }
 }
 
-/// x(n + 1) = x(n) - k T x(n - d) is stable for 0 < k T < 2 sin(pi/(4 d + 2)) (Levin and May 1976):
-/// by poles for a few samples of delay, by turns for many.
+/// System x(n + 1) = x(n) - k T x(n - d), stable for 0 < k T < 2 sin(pi/(4 d + 2)) (Levin and May
+/// 1976): by poles for a few samples of delay, by turns for many.
 #[test]
 fn an_integrator_with_samples_of_delay() {
     for samples in [0_u32, 1, 3, 20, 40, 300] {
@@ -58,8 +58,8 @@ fn an_integrator_with_samples_of_delay() {
     }
 }
 
-/// 1/(z - 1) leaves a sixth of a turn at w T = pi/3: one sample of delay, which is what brings k
-/// T = 1 to its limit.
+/// Loop 1/(z - 1), which has a sixth of a turn of phase margin at w T = pi/3: one sample of delay,
+/// which also brings k T = 1 to its limit.
 #[test]
 fn a_whole_sample_is_borne_exactly() {
     for samples in [0.0, 4.0, 40.0] {
@@ -71,9 +71,9 @@ fn a_whole_sample_is_borne_exactly() {
     }
 }
 
-/// k/s with a delay of m samples, m < 1, closes to z^2 - (1 - k T (1 - m)) z + k T m: stable until
-/// m = 1/(k T), where 1 < k T < 4/3. The family's margin is that of its largest gain, to the last
-/// digits, though phase over frequency gives 0.66 for it.
+/// Plant k/s with a delay of m samples, m < 1, closes to z^2 - (1 - k T (1 - m)) z + k T m: stable
+/// until m = 1/(k T), for 1 < k T < 4/3. The family's margin is that of its largest gain, to the
+/// last digits, although phase over frequency gives 0.66.
 #[test]
 fn a_fraction_of_a_sample_is_borne_exactly() {
     let gain = UncertainParameter { name: "k".into(), nominal: 0.6, minimum: 0.5, maximum: 1.25 };
@@ -106,8 +106,9 @@ fn a_fraction_of_a_sample_is_borne_exactly() {
     assert!((estimate.delay_s / SAMPLE - (std::f64::consts::FRAC_PI_2 - half) / (2.0 * half)).abs() < 1e-12);
 }
 
-/// k/(s + a), sampled every second and m s late, m < 1, closes to z^2 + c z + d: stable until d is
-/// one. Phase over frequency is least where a is largest, and what is tolerated where a is zero.
+/// Plant k/(s + a), sampled every second with a delay of m s, m < 1, closes to z^2 + c z + d:
+/// stable until d is one. Phase over frequency is least where a is largest, and the tolerated delay
+/// where a is zero.
 ///
 /// ```text
 /// d = k (e^(-a (1 - m)) - e^(-a))/a
@@ -143,7 +144,8 @@ fn the_plant_that_tolerates_least_need_not_have_the_least_estimate() {
     }
 }
 
-/// An unstable mode of the controller that its own zero hides counts in samples too.
+/// An unstable mode of the controller cancelled by a zero of the controller also counts in a
+/// sampled loop.
 #[test]
 fn nothing_is_cancelled() {
     let factor = num_complex::Complex64::new(1.5, 0.0);
@@ -161,18 +163,18 @@ fn nothing_is_cancelled() {
 }
 
 /// The slow poles of a sampled loop are those of the continuous one to the order of the sample
-/// time, however slow they are.
+/// time, at any speed.
 #[test]
 fn slow_poles_keep_their_digits() {
     let integral = Element::ProportionalIntegral { proportional_gain: 1e-3, integral_gain: 1e-9 };
     let found = found(vec![integral], (&[1.0], &[1.0, 1.0]), 0.0);
     // s^2 + 1.001 s + 1e-9: the slow root, and half a sample of the hold times its square is
-    // nothing
+    // negligible
     let expected = -2e-9 / (1.001 + f64::sqrt(1.001 * 1.001 - 4e-9));
     assert!((found.largest_real_part.unwrap() / expected - 1.0).abs() < 1e-5);
 }
 
-/// A plant that was made for one loop is no part of another.
+/// A plant built for one loop is not valid in another.
 #[test]
 fn a_plant_of_another_time_is_not_resolved() {
     let continuous = Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0)).unwrap();

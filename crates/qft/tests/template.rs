@@ -1,5 +1,4 @@
-//! Templates against closed forms, against families whose image is known, and against random
-//! plants.
+//! Templates against closed forms, against families with a known image, and against random plants.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may panic")]
 
 mod closed_forms;

@@ -1,4 +1,4 @@
-//! Plants that a search tries and leaves again.
+//! Plants that a search evaluates temporarily.
 #![cfg(test)]
 
 use num_complex::Complex64;
@@ -14,8 +14,8 @@ use phea_qft::family::{Coordinate, Extent, Family, Spacing, UncertainFamily, gri
 use phea_qft::specification::{ClosedLoop, Limit, Requirement, Specification};
 use phea_qft::verification::{AuditProblem, TOLERANCE_DB, TrackingJudgement, audit_specifications};
 
-/// A mass on a spring behind a valve, behind an integrator of the oil, with the motion of its
-/// load; the sensor has a mode and a dead time of its own.
+/// A mass on a spring, driven by a valve through an integrator of the oil, with the motion of its
+/// load; the sensor has a mode and a dead time.
 fn placed(timing: Timing, dead_time_s: f64) -> (Compensation, PlantCoefficients<f64>) {
     let valve = Polynomial::new(vec![1.0 / (628.0 * 628.0), 1.6 / 628.0, 1.0]);
     let mass = Polynomial::new(vec![1.0 / (384.0 * 384.0), 0.046 / 384.0, 1.0, 0.0]);
@@ -33,7 +33,7 @@ fn placed(timing: Timing, dead_time_s: f64) -> (Compensation, PlantCoefficients<
     (Compensation::new(&controller, sensor).unwrap(), plant)
 }
 
-/// P and P H of the modes are those of the whole member, with every delay.
+/// Responses P and P H of the modes equal those of the whole member, for every delay.
 #[test]
 fn modes_respond_as_the_whole_member() {
     for (sample_time_s, delay_s) in [(1e-3, 0.0), (1e-3, 1e-3), (2e-3, 0.7e-3), (2e-4, 1e-3)] {
@@ -58,7 +58,7 @@ fn modes_respond_as_the_whole_member() {
     }
 }
 
-/// An inner signal that is fed back closes its loop around the modes as around the whole member.
+/// Inner feedback closes its loop around the modes as around the whole member.
 #[test]
 fn modes_respond_as_the_whole_member_with_an_inner_signal_fed_back() {
     let inner_feedback =
@@ -94,7 +94,7 @@ fn modes_respond_as_the_whole_member_with_an_inner_signal_fed_back() {
     }
 }
 
-/// What has no modes of its own is a whole member from the start.
+/// Plants without distinct modes are whole members from the start.
 #[test]
 fn equal_poles_and_continuous_loops_are_whole() {
     let equal = RationalCoefficients { numerator: vec![1.0], denominator: vec![1.0, 2.0, 1.0] };
@@ -106,8 +106,8 @@ fn equal_poles_and_continuous_loops_are_whole() {
     }
 }
 
-/// The searches of an audit sample no plant as a whole but those where they end: the others are
-/// tried by their modes.
+/// The searches of an audit sample only the plants at their ends as a whole: the others are
+/// evaluated by their modes.
 #[test]
 fn a_search_tries_plants_without_sampling_them_as_a_whole() {
     let parameter =

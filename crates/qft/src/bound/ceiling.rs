@@ -1,4 +1,4 @@
-//! The plant with the weakest tracking response along a ray, with which all others are compared.
+//! The plant with the weakest tracking response along a ray, the reference for all others.
 
 use num_complex::Complex64;
 
@@ -7,11 +7,11 @@ use super::quadratic::negative_gains;
 /// A plant that may have the greatest r |q + L0| somewhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct CeilingPlant {
-    /// q
+    /// Inverse plant ratio q.
     pub(super) inverse: Complex64,
-    /// |q|
+    /// Magnitude |q|.
     pub(super) modulus: f64,
-    /// r
+    /// Weight r.
     pub(super) weight: f64,
 }
 
@@ -22,8 +22,8 @@ pub(super) struct CeilingPiece {
     pub(super) window: [f64; 2],
 }
 
-/// Those candidates that can be the greatest at all: with equal weights the corners of the convex
-/// hull, since the farthest point is always one of them; otherwise all.
+/// The candidates that can be the greatest at some gain: with equal weights the corners of the
+/// convex hull, since the farthest point is always one of them; otherwise all.
 pub(super) fn contenders(mut candidates: Vec<CeilingPlant>) -> Vec<CeilingPlant> {
     if candidates.windows(2).any(|pair| matches!(pair, [a, b] if a.weight != b.weight)) {
         return candidates;
@@ -38,8 +38,7 @@ pub(super) fn contenders(mut candidates: Vec<CeilingPlant>) -> Vec<CeilingPlant>
     hull
 }
 
-/// One side of the convex hull of sorted points, without its last point where there is more than
-/// one.
+/// One side of the convex hull of sorted points, without its last point if there is more than one.
 fn chain<'a>(sorted: impl Iterator<Item = &'a CeilingPlant>) -> Vec<CeilingPlant> {
     let mut side: Vec<CeilingPlant> = Vec::new();
     for candidate in sorted {
@@ -58,15 +57,15 @@ fn chain<'a>(sorted: impl Iterator<Item = &'a CeilingPlant>) -> Vec<CeilingPlant
     side
 }
 
-/// Which candidate is the greatest at which gain, along the ray e^(j phi): pieces that follow on
-/// one another from 0 to infinity.
+/// The greatest candidate as a function of gain along the ray e^(j phi): consecutive pieces from 0
+/// to infinity.
 ///
 /// ```text
 /// max over k of r_k^2 |q_k + L0|^2 = r_k^2 (g^2 + 2 c_k g + |q_k|^2)
 /// ```
 ///
 /// The two halves are solved separately and then merged; a pair of plants is compared only if each
-/// is the greatest of its half.
+/// is the greatest in its half.
 pub(super) fn greatest(direction: Complex64, candidates: &[CeilingPlant]) -> Vec<CeilingPiece> {
     match candidates {
         [] => Vec::new(),
@@ -78,7 +77,7 @@ pub(super) fn greatest(direction: Complex64, candidates: &[CeilingPlant]) -> Vec
     }
 }
 
-/// The greater of two functions in pieces.
+/// The greater of two piecewise functions.
 fn overlay(direction: Complex64, ours: &[CeilingPiece], theirs: &[CeilingPiece]) -> Vec<CeilingPiece> {
     let mut pieces: Vec<CeilingPiece> = Vec::new();
     let mut add = |candidate: CeilingPlant, window: [f64; 2]| {
@@ -113,7 +112,7 @@ fn overlay(direction: Complex64, ours: &[CeilingPiece], theirs: &[CeilingPiece])
     pieces
 }
 
-/// The gains at which the second is greater than the first.
+/// The gains at which the second function is greater than the first.
 fn where_greater(direction: Complex64, first: &CeilingPlant, second: &CeilingPlant) -> [[f64; 2]; 2] {
     let along =
         |candidate: &CeilingPlant| candidate.inverse.re * direction.re + candidate.inverse.im * direction.im;
@@ -134,7 +133,7 @@ mod tests {
         CeilingPlant { inverse, modulus: phea_dynamics::portable::magnitude(inverse), weight }
     }
 
-    /// Points of a sunflower: no two have the same radius or angle.
+    /// Points of a sunflower spiral: no two have the same radius or angle.
     fn scattered(count: u32, weight: impl Fn(f64) -> f64) -> Vec<CeilingPlant> {
         (0..count)
             .map(|index| {

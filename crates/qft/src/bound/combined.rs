@@ -1,5 +1,5 @@
-//! All specifications at one frequency together: where the nominal loop may be, which specification
-//! forbids what, and which contradict each other.
+//! All specifications at one frequency together: the allowed region of the nominal loop, the gains
+//! forbidden by each specification, and contradictions between them.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -49,53 +49,52 @@ pub struct FrequencyBounds {
 pub struct SpecificationBound {
     /// Index of the specification, from 0.
     pub specification: usize,
-    /// Its bound.
+    /// Bound of the specification.
     pub bound: Bound,
 }
 
-/// The bounds of several specifications at one frequency, all at the same phases, and what they
-/// forbid together.
+/// The bounds of several specifications at one frequency, at common phases, and their union.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CombinedBound {
-    /// What any specification forbids.
+    /// The gains forbidden by any specification.
     pub union: Bound,
-    /// What each of them forbids.
+    /// The gains forbidden by each specification.
     pub parts: Vec<SpecificationBound>,
-    /// Whether anything is allowed.
+    /// Existence of allowed gains.
     pub feasibility: Feasibility,
 }
 
-/// Whether a loop can be anywhere at a frequency.
+/// Existence of allowed gains at one frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Feasibility {
-    /// Some gain is allowed at every phase that was examined.
+    /// Allowed gains exist at every examined phase.
     Everywhere,
-    /// At some phases nothing is allowed.
+    /// Allowed gains exist only at some phases.
     Somewhere {
-        /// The phases at which nothing is allowed, in increasing order.
+        /// The phases without an allowed gain, in increasing order.
         collisions: Vec<Collision>,
     },
-    /// No gain is allowed at any phase that was examined.
+    /// Allowed gains exist at no examined phase.
     Nowhere {
-        /// Where and why, in order of increasing phase.
+        /// The phases and the conflicting specifications, in order of increasing phase.
         collisions: Vec<Collision>,
     },
 }
 
-/// Phases at which nothing is allowed, and the specifications that together exclude every gain.
+/// Phases without an allowed gain, and the specifications that together exclude every gain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collision {
-    /// rad/s
+    /// Frequency, rad/s.
     pub frequency_rad_per_s: f64,
     /// First and last of these neighbouring phases, rad.
     pub phases_rad: [f64; 2],
-    /// The fewest specifications that together forbid every gain: one alone, or two that contradict
-    /// each other, first the one that forbids the lowest gains (and so demands more); more than two
-    /// only if no two of them suffice.
+    /// The fewest specifications that together forbid every gain: a single one, or two that
+    /// contradict each other, in the order of the gains that they forbid, lowest first (it requires
+    /// more gain); more than two only if no two of them suffice.
     pub specifications: Vec<usize>,
 }
 
-/// Where a nominal loop lies.
+/// Position of a nominal loop relative to the bounds.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Placement {
     /// Every specification allows it.
@@ -103,9 +102,9 @@ pub enum Placement {
         /// Distance to the nearest forbidden gain at its phase, dB; infinite if there is none.
         slack_db: f64,
     },
-    /// Some forbid it.
+    /// Some specifications forbid it.
     Forbidden {
-        /// Indices of those that do.
+        /// Indices of the specifications that forbid it.
         by: Vec<usize>,
         /// The change to the nearest gain at its phase that all specifications allow, dB; positive
         /// for more gain. `None` if there is no such gain.
@@ -131,7 +130,7 @@ impl FrequencyBounds {
             .filter(|(_, specification)| specification.frequencies_rad_per_s.contains(&frequency_rad_per_s))
             .filter_map(|(index, specification)| {
                 match BoundFunction::new(template, &specification.requirement, fill) {
-                    // a table that does not cover this frequency demands nothing here
+                    // a table that does not cover this frequency sets no limit here
                     Err(BoundError::NoLimit { .. }) => None,
                     function => Some(function.map(|function| (index, function))),
                 }
@@ -140,7 +139,7 @@ impl FrequencyBounds {
         Ok(FrequencyBounds { frequency_rad_per_s, functions })
     }
 
-    /// The bounds at the phases of a grid, refined where any of them or their union bends.
+    /// The bounds at the phases of a grid, refined where one of them or their union bends.
     pub fn combined(&self, grid: &PhaseGrid) -> CombinedBound {
         let functions: Vec<&BoundFunction> = self.functions.iter().map(|(_, function)| function).collect();
         let samples = sampled(grid, &functions);
@@ -162,10 +161,10 @@ impl FrequencyBounds {
         }
     }
 
-    /// Whether a nominal loop may be here, exactly at its own phase.
+    /// Position of a nominal loop relative to the bounds, exact at its own phase.
     ///
-    /// A loop that is zero or not finite has no phase: it is judged at phase 0, where its gain
-    /// alone decides.
+    /// A loop that is zero or not finite has no phase: it is evaluated at phase 0, where only its
+    /// gain matters.
     pub fn placement(&self, nominal_loop: Complex64) -> Placement {
         let gain = portable::magnitude(nominal_loop);
         let phased = gain > 0.0 && gain.is_finite();
@@ -218,7 +217,8 @@ impl FrequencyBounds {
         }
     }
 
-    /// The fewest of these specifications that together forbid every gain, as all of them do.
+    /// The fewest of these specifications that together forbid every gain, given that all of them
+    /// together do.
     fn culprits(&self, parts: &[GainIntervals]) -> Vec<usize> {
         let own = || self.functions.iter().map(|(index, _)| *index).zip(parts);
         if let Some((index, _)) = own().find(|(_, part)| part.is_everything()) {

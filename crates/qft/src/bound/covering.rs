@@ -1,9 +1,9 @@
-//! Which specifications forbid every gain together.
+//! Minimal sets of specifications that together forbid every gain.
 
 use super::interval::GainIntervals;
 
 /// A minimal set of specifications that together forbid every gain: starting from zero gain, the
-/// one that reaches farthest is taken next.
+/// specification that reaches farthest is taken next.
 pub(super) fn covering(parts: Vec<(usize, &GainIntervals)>) -> Vec<usize> {
     let mut reached = 0.0;
     let mut chosen = Vec::new();

@@ -14,15 +14,15 @@ use super::quadratic::negative_gains;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Edge {
-    /// q at both ends.
+    /// Values of q at both ends.
     pub(super) ends: [Complex64; 2],
-    /// e at both ends.
+    /// Values of e at both ends.
     pub(super) constants: [f64; 2],
-    /// kappa
+    /// Curvature kappa.
     pub(super) curvature: f64,
-    /// (r/W)^2 that goes with |q_k + L0|^2, the greater of both ends'.
+    /// Coefficient (r/W)^2 of |q_k + L0|^2, the greater of the two ends.
     pub(super) share: f64,
-    /// Whether the variable is 1/g: for the control effort, with P/P0 conjugated in place of q.
+    /// True if the variable is 1/g: for the control effort, with P/P0 conjugated in place of q.
     pub(super) reciprocal: bool,
 }
 
@@ -42,7 +42,7 @@ impl Edge {
     /// The edge between two plants whose sensitivity is limited.
     ///
     /// ```text
-    /// e = |q|^2 - |u|^2/W^2,    u straight from one plant to the other
+    /// e = |q|^2 - |u|^2/W^2,    u linear from one plant to the other
     /// ```
     pub(super) fn of_sensitivity(
         ends: [&WeightedPlant; 2],
@@ -77,8 +77,7 @@ impl Edge {
         }
     }
 
-    /// The gains forbidden by the inner points of the edge; its ends are plants and are judged as
-    /// such.
+    /// The gains forbidden by the inner points of the edge; its ends count as plants.
     ///
     /// ```text
     /// t(g) = (kappa - (e_b - e_a) - 2 g (c_b - c_a))/(2 kappa) = t_0 + t_1 g     where the quadratic is least over t
@@ -119,12 +118,13 @@ impl Edge {
     }
 }
 
-/// The gains at which -L0 lies inside a closed polygon of q = P0/P: some plant between the plants
+/// The gains at which -L0 is inside a closed polygon of q = P0/P: some plant between the plants
 /// then has 1 + L = 0.
 ///
-/// The inside is whatever the polygon winds around: a polygon that overlaps itself, such as the
-/// outline of a template over more than a full turn of phase, encloses the overlap too. Far outside
-/// the winding number is zero, and each side that the ray crosses on its way in changes it by one.
+/// The inside is the region around which the polygon winds: a polygon that overlaps itself, such as
+/// the outline of a template over more than a full turn of phase, encloses the overlap too. Far
+/// outside the winding number is zero, and each side that the ray crosses on its way in changes it
+/// by one.
 pub(super) fn inside(polygon: &[Complex64], direction: Complex64) -> GainIntervals {
     let across = |point: &Complex64| point.re * direction.im - point.im * direction.re;
     let along = |point: &Complex64| -(point.re * direction.re + point.im * direction.im);

@@ -14,8 +14,8 @@ use super::{Bound, BoundError, TemplateFill};
 use crate::specification::Requirement;
 use crate::template::{Template, TemplatePoint};
 
-/// Where the nominal loop L0 = g e^(j phi) may not be at one frequency, so that every plant of a
-/// template satisfies one requirement: exactly, at any phase.
+/// The gains of the nominal loop L0 = g e^(j phi) forbidden at one frequency so that every plant of
+/// a template satisfies one requirement: exact at any phase.
 ///
 /// With q = P0 H0/(P H), so that L = L0/q, each closed loop is a quotient of distances in the
 /// q-plane:
@@ -26,10 +26,10 @@ use crate::template::{Template, TemplatePoint};
 /// ```
 ///
 /// and along a ray |q + L0|^2 = g^2 + 2 g Re(conj(q) e^(j phi)) + |q|^2, so that each plant forbids
-/// the gains where a quadratic is negative (Chait and Yaniv 1993). Tracking is judged by its
-/// spread, max|T|/min|T| <= upper/lower, since a prefilter is free to move the rest: the plant of
-/// min|T| is the farthest from -L0, a corner of the convex hull, found piece by piece along the
-/// ray, and all plants are compared with it; no pairs are formed.
+/// the gains where a quadratic is negative (Chait and Yaniv 1993). Tracking is assessed by its
+/// spread, max|T|/min|T| <= upper/lower, since the prefilter sets the level: the plant of min|T| is
+/// the one farthest from -L0, a corner of the convex hull, found piece by piece along the ray, and
+/// all plants are compared with it; no pairs are formed.
 ///
 /// # Example
 /// ```
@@ -53,7 +53,7 @@ use crate::template::{Template, TemplatePoint};
 pub struct BoundFunction {
     frequency_rad_per_s: f64,
     form: InequalityForm,
-    /// `None` where nothing is demanded: an infinite limit.
+    /// Plants; `None` if the limit is infinite.
     plants: Option<Tree>,
     /// Candidates for the least |T|; the origin in forms other than `Spread`.
     others: Vec<CeilingPlant>,
@@ -70,8 +70,8 @@ impl BoundFunction {
     /// nearest to each of its corners.
     ///
     /// # Errors
-    /// [`BoundError`] for a template without plants, a response that is zero or not finite, a limit
-    /// that is not a valid magnitude or does not cover the template's frequency.
+    /// [`BoundError`] for a template without plants, a response that is zero or not finite, or a
+    /// limit that is not a valid magnitude or does not cover the template's frequency.
     pub fn new(
         template: &Template,
         requirement: &Requirement,
@@ -161,7 +161,7 @@ impl BoundFunction {
                 }
             };
             if sine > 0.0 && sine < widest {
-                // Half of the arc is kept, so that the plant does not merely touch it.
+                // The arc is halved, so that the phase does not only touch the plant's arc.
                 let half = portable::asin(sine) / 2.0;
                 let middle = portable::argument(-plant.inverse);
                 let middle = if middle > 0.0 { middle - turn } else { middle };
@@ -216,8 +216,8 @@ fn judged(
         .collect()
 }
 
-/// The corners of an outline as plants, each with sensor and load-motion path of the plant nearest
-/// to it, where they are needed.
+/// The corners of an outline as plants, each with the sensor and load-motion path of its nearest
+/// plant, if needed.
 fn corners(rule: &Rule, template: &Template, outline: &[Complex64]) -> Vec<TemplatePoint> {
     let distance = |point: &TemplatePoint, corner: Complex64| (point.response - corner).norm_sqr();
     let like = |corner: Complex64| {

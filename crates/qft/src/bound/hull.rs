@@ -1,4 +1,5 @@
-//! Common bounds of a group of plants, and the largest region that any of them could forbid.
+//! Common bounds of a group of plants, and the largest region that any plant of the group could
+//! forbid.
 
 use num_complex::Complex64;
 
@@ -6,7 +7,8 @@ use super::inequality::{InequalityForm, Ray, WeightedPlant};
 use super::leaf::{Borders, lesser};
 use super::quadratic::negative_gains;
 
-/// Relative allowance added to what a box may forbid, so that rounding hides no plant from the ray.
+/// Relative allowance added to the region that a box may forbid, so that rounding hides no plant
+/// from the ray.
 const SLACK: f64 = 1e-14;
 
 /// Common bounds of a group of plants.
@@ -51,8 +53,8 @@ impl Hull {
         })
     }
 
-    /// Whether the plants inside forbid nothing beyond the borders, or nothing at all, judged by
-    /// signs alone; `false` decides nothing. Not for `Spread`.
+    /// True if signs show that the plants inside forbid nothing, or nothing beyond the borders;
+    /// `false` is inconclusive. Not for `Spread`.
     pub(super) fn stays_within(&self, ray: &Ray, borders: &Borders) -> bool {
         let rest = 1.0 - self.share - SLACK * (1.0 + self.share);
         let (a, c) = if ray.form == InequalityForm::Complementary { (rest, 1.0) } else { (1.0, rest) };
@@ -94,8 +96,8 @@ impl Hull {
         distance(cosine, modulus) - share * limit
     }
 
-    /// Gains among which all lie that a plant inside could forbid: where the least quadratic that
-    /// the hull allows is negative. Under a limit of its own, a plant's quadratic depends on u =
+    /// Gains that contain all those a plant inside could forbid: where the least quadratic that the
+    /// hull allows is negative. Under an individual limit, a plant's quadratic depends on u =
     /// g/|q|:
     ///
     /// ```text

@@ -1,11 +1,11 @@
-//! The quadratic inequality that one plant puts on the nominal loop.
+//! The quadratic inequality that one plant imposes on the nominal loop.
 
 use num_complex::Complex64;
 
 use super::quadratic::negative_gains;
 
-/// Which closed loop is compared with its limit W; q = P0 H0/(P H), weights r are set plant by
-/// plant.
+/// The closed loop that is compared with its limit W; q = P0 H0/(P H), and the weights r are set
+/// per plant.
 ///
 /// ```text
 /// Complementary    W |q + L0| >= r |L0|              |T| = |L0|/|q + L0|
@@ -19,17 +19,17 @@ pub(super) enum InequalityForm {
     Spread,
 }
 
-/// One plant with its limit and weight, both divided by the same power of two so that neither
-/// squares to overflow.
+/// One plant with its limit and weight, both divided by a common power of two so that neither
+/// square overflows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct WeightedPlant {
-    /// q
+    /// Inverse plant ratio q.
     pub(super) inverse: Complex64,
-    /// |q|
+    /// Magnitude |q|.
     pub(super) modulus: f64,
-    /// W
+    /// Limit W.
     pub(super) limit: f64,
-    /// r
+    /// Weight r.
     pub(super) weight: f64,
 }
 
@@ -40,7 +40,7 @@ impl WeightedPlant {
         ratio * ratio
     }
 
-    /// |q|^2 (1 - (r/W)^2), free of cancellation.
+    /// Constant |q|^2 (1 - (r/W)^2), free of cancellation.
     pub(super) fn sensitivity_constant(&self) -> f64 {
         let ratio = self.weight / self.limit;
         (self.limit - self.weight) / self.limit * (1.0 + ratio) * self.modulus * self.modulus
@@ -52,20 +52,20 @@ impl WeightedPlant {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ray {
     pub(super) form: InequalityForm,
-    /// e^(j phi)
+    /// Direction e^(j phi).
     pub(super) direction: Complex64,
-    /// q_k; zero in forms other than `Spread`.
+    /// Reference plant q_k; zero in forms other than `Spread`.
     pub(super) other: Complex64,
-    /// |q_k|
+    /// Magnitude |q_k|.
     pub(super) other_modulus: f64,
-    /// r_k; one in forms other than `Spread`.
+    /// Weight r_k of the reference plant; one in forms other than `Spread`.
     pub(super) other_weight: f64,
-    /// The gains along which q_k holds.
+    /// The gains over which q_k is the reference.
     pub(super) window: [f64; 2],
 }
 
 impl Ray {
-    /// How far a plant lies along the ray.
+    /// Coordinate of a plant along the ray.
     ///
     /// ```text
     /// c = Re(conj(q) e^(j phi))
@@ -74,7 +74,7 @@ impl Ray {
         inverse.re * self.direction.re + inverse.im * self.direction.im
     }
 
-    /// How far it lies across the ray.
+    /// Coordinate of a plant across the ray.
     ///
     /// ```text
     /// s = Im(conj(q) e^(j phi))
@@ -134,8 +134,8 @@ impl Ray {
         found.map(|interval| self.within_window(interval))
     }
 
-    /// The part of an interval inside the window. An end that rounding has placed next to an end of
-    /// the window is moved onto it, so that intervals on both sides of that end meet there.
+    /// The part of an interval inside the window. An end within rounding of an end of the window is
+    /// moved onto it, so that intervals on both sides of that end meet there.
     pub(super) fn within_window(&self, interval: [f64; 2]) -> [f64; 2] {
         const ROUNDING: f64 = 1e-12;
         let [from, to] = self.window;

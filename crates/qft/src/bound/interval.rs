@@ -3,7 +3,7 @@
 use phea_dynamics::order::sort_by_number;
 
 /// A union of disjoint open intervals of gains, in increasing order; the last may end at infinity.
-/// The gains themselves, not dB.
+/// Gains are ratios, not dB.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GainIntervals(Vec<[f64; 2]>);
 
@@ -35,12 +35,12 @@ impl GainIntervals {
         &self.0
     }
 
-    /// Whether no gain is forbidden.
+    /// True if no gain is forbidden.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Whether every gain is forbidden.
+    /// True if every gain is forbidden.
     ///
     /// # Example
     /// ```
@@ -53,12 +53,12 @@ impl GainIntervals {
         self.0 == [[0.0, f64::INFINITY]]
     }
 
-    /// Whether this gain lies within an interval.
+    /// True if an interval contains this gain.
     pub fn contains(&self, gain: f64) -> bool {
         self.around(gain).is_some()
     }
 
-    /// The interval within which this gain lies.
+    /// The interval that contains this gain.
     ///
     /// # Example
     /// ```
@@ -94,7 +94,7 @@ impl GainIntervals {
         self.0.insert(place, [low, high]);
     }
 
-    /// Whether all of this interval is within the union; an interval without width always is.
+    /// True if the union contains all of this interval; always true of an interval without width.
     pub(super) fn covers(&self, [low, high]: [f64; 2]) -> bool {
         !matches!(low.partial_cmp(&high), Some(std::cmp::Ordering::Less))
             || self.0.iter().any(|other| other[0] <= low && high <= other[1])

@@ -1,10 +1,9 @@
-//! Tests a few plants at a time: whether they forbid anything that is not yet known to be
-//! forbidden.
+//! Batched test of a few plants: does any forbid a gain that is not yet known to be forbidden?
 
 use super::inequality::{InequalityForm, Ray, WeightedPlant};
 use super::interval::GainIntervals;
 
-/// Plants in a leaf: enough to be processed several at a time.
+/// Number of plants in a leaf: enough to be processed several at a time.
 pub(super) const LEAF: usize = 8;
 
 /// The quadratics of some plants in columns, divided by W^2.
@@ -20,20 +19,20 @@ pub(super) struct Leaf {
     share: [f64; LEAF],
 }
 
-/// An interval that is already known to be forbidden, and the value to be added where nothing lies
-/// beyond an end: infinity.
+/// An interval already known to be forbidden, and the value added if there is nothing beyond an
+/// end: infinity.
 pub(super) struct Borders {
     ends: [f64; 2],
     beyond: [f64; 2],
 }
 
 impl Borders {
-    /// Those of each interval of a union.
+    /// The borders of each interval of a union.
     pub(super) fn of_each(ray: &Ray, union: &GainIntervals) -> impl Iterator<Item = Borders> {
         let [from, to] = ray.window;
         let idle = |is_idle: bool| if is_idle { f64::INFINITY } else { 0.0 };
         union.intervals().iter().map(move |&[low, high]| {
-            // Where nothing lies above, any number stands for the end.
+            // Any number will do for the end if there is nothing above.
             let end = if high < to { high } else { low };
             Borders { ends: [low, end], beyond: [idle(low <= from), idle(high >= to)] }
         })
@@ -54,14 +53,14 @@ impl Borders {
     }
 }
 
-/// The lesser of two numbers; unlike `f64::min` it disregards NaN, and so compiles to a single
+/// The lesser of two numbers; unlike `f64::min` it ignores NaN, and so compiles to a single
 /// instruction.
 pub(super) fn lesser(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
 impl Leaf {
-    /// These plants, the last repeated where there are too few.
+    /// A leaf of these plants, padded by repeating the last one.
     pub(super) fn of(form: InequalityForm, plants: &[WeightedPlant]) -> Leaf {
         let mut leaf = Leaf { re: [1.0; LEAF], im: [0.0; LEAF], constant: [1.0; LEAF], share: [0.0; LEAF] };
         let columns = leaf.re.iter_mut().zip(&mut leaf.im).zip(leaf.constant.iter_mut().zip(&mut leaf.share));
@@ -78,8 +77,8 @@ impl Leaf {
         leaf
     }
 
-    /// Whether its plants forbid nothing beyond the borders, or nothing at all, judged by signs
-    /// alone; `false` decides nothing.
+    /// True if signs show that the plants forbid nothing, or nothing beyond the borders; `false` is
+    /// inconclusive.
     pub(super) fn stays_within(&self, ray: &Ray, borders: &Borders) -> bool {
         let square = ray.other_weight * ray.other_weight;
         let (along, other) = (ray.along(ray.other), ray.other_modulus * ray.other_modulus);
@@ -90,7 +89,7 @@ impl Leaf {
             let b = re * ray.direction.re + im * ray.direction.im - share * along;
             let c = constant - share * other;
             let within = lesser(borders.below(a, b, c), borders.above(a, b, c));
-            // Either the discriminant is negative or the roots lie between the borders.
+            // Either the discriminant is negative or the roots are between the borders.
             let slack = -lesser(-within, b * b - a * c);
             lesser(least, lesser(slack, a))
         });

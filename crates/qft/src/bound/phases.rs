@@ -1,41 +1,38 @@
-//! At which phases a bound is drawn: densely where it turns, sparsely where it is straight.
+//! Phases at which a bound is drawn: dense where it turns, sparse where it is straight.
 
 use phea_dynamics::portable;
 
 use super::function::BoundFunction;
 use super::interval::GainIntervals;
 
-/// Phases over [-2 pi, 0]: equally spaced ones, and more between them where a bound is not
-/// straight.
+/// Phases over [-2 pi, 0]: equally spaced, with more in between where a bound is not straight.
 ///
 /// Halfway between two phases the bound is compared with the straight line in dB between its values
 /// at both. Where it differs by more than the tolerance, or where an interval begins, ends or
-/// splits, both halves are treated in the same way, down to the finest spacing: a closed bound
-/// closes like a square root, so that at its tip a gap of 1e-5 rad leaves 0.04 dB, where a grid of
-/// 5 degrees is off by decibels. In addition, one phase is placed in every arc of phases that a
-/// plant forbids and that would fall between two others, so that no island is overlooked, however
-/// small.
+/// splits, both halves are treated likewise, down to the finest spacing: a closed bound closes like
+/// a square root, so that a gap of 1e-5 rad at its tip leaves 0.04 dB, whereas a grid of 5 degrees
+/// is off by decibels. In addition, one phase is placed in every arc of phases that a plant forbids
+/// and that would otherwise fall between two phases, so that no island is missed, however small.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhaseGrid {
     /// Largest distance between two phases, rad. At most 100,000 equally spaced phases are used; if
-    /// the spacing is not positive, only the two ends of the range are.
+    /// the spacing is not positive, only the two ends of the range are used.
     pub spacing_rad: f64,
     /// Largest deviation from a straight line between neighbours, dB; infinite for a plain grid.
     pub tolerance_db: f64,
-    /// Neighbours that are closer are not refined, rad.
+    /// Distance between neighbours below which there is no refinement, rad.
     pub finest_rad: f64,
 }
 
 impl Default for PhaseGrid {
-    /// 2 degrees, 0.05 dB, 1e-5 rad.
+    /// Defaults: 2 degrees, 0.05 dB, 1e-5 rad.
     fn default() -> PhaseGrid {
         PhaseGrid { spacing_rad: 2.0_f64.to_radians(), tolerance_db: 0.05, finest_rad: 1e-5 }
     }
 }
 
 impl PhaseGrid {
-    /// Equally spaced phases and no others, except for those that keep a small island from being
-    /// overlooked.
+    /// Equally spaced phases only, except for those that prevent a small island from being missed.
     ///
     /// # Example
     /// ```
@@ -47,7 +44,7 @@ impl PhaseGrid {
     }
 }
 
-/// What each of several functions forbids at one phase, followed by their union.
+/// The gains forbidden by each of several functions at one phase, followed by their union.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct PhaseSample {
     pub(super) phase_rad: f64,
@@ -77,7 +74,8 @@ pub(super) fn sampled(grid: &PhaseGrid, functions: &[&BoundFunction]) -> Vec<Pha
     samples
 }
 
-/// Adds the sample on the left and all that are needed between it and the one on the right.
+/// Adds the sample at the lower phase and all that are needed between it and the sample at the
+/// upper phase.
 fn refine(
     grid: &PhaseGrid,
     sample: &impl Fn(f64) -> PhaseSample,
@@ -103,8 +101,8 @@ fn refine(
     refine(grid, sample, middle, right, samples);
 }
 
-/// Whether three unions have the same intervals with each middle end on the straight line between
-/// its neighbours.
+/// True if three unions have equally many intervals and each middle end is on the straight line
+/// between its neighbours.
 fn is_straight(
     left: &GainIntervals,
     middle: &GainIntervals,

@@ -1,6 +1,6 @@
-//! A scale by which dividing is exact.
+//! A scale factor by which division is exact.
 
-/// The greatest power of two that is not above a positive number, by which dividing is exact.
+/// The greatest power of two not above a positive number; division by it is exact.
 pub(super) fn power_of_two(value: f64) -> f64 {
     const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
     f64::from_bits(value.max(f64::MIN_POSITIVE).to_bits() & EXPONENT)

@@ -1,6 +1,6 @@
-//! Where a quadratic in the gain is negative.
+//! Gains at which a quadratic is negative.
 
-/// No gain at all, as an interval.
+/// Empty interval of gains.
 const NONE: [f64; 2] = [0.0, 0.0];
 
 /// The positive gains g at which a quadratic is negative, as up to two open intervals; an interval
@@ -12,8 +12,8 @@ const NONE: [f64; 2] = [0.0, 0.0];
 ///
 /// `discriminant` is computed by the caller from the geometry, free of cancellation; it is needed
 /// only where a and c have the same sign, since otherwise b^2 - a c is a sum. The roots are
-/// (sqrt(D) - b)/a and c/(sqrt(D) - b), or their mirror images, whichever adds magnitudes: a may
-/// pass through zero (a limit of exactly 1), where a root leaves for infinity.
+/// (sqrt(D) - b)/a and c/(sqrt(D) - b), or their mirror images, using the form that adds
+/// magnitudes: a may pass through zero (a limit of exactly 1), where a root goes to infinity.
 pub(super) fn negative_gains(a: f64, b: f64, c: f64, discriminant: f64) -> [[f64; 2]; 2] {
     let discriminant = if a * c < 0.0 { b * b - a * c } else { discriminant };
     if discriminant.is_nan() || discriminant <= 0.0 {
@@ -42,7 +42,7 @@ mod tests {
         assert_eq!(found, expected, "{a} g^2 + 2 {b} g + {c}");
     }
 
-    /// (g - 1)(g - 2), its mirror images and its limits as one coefficient after the other
+    /// The polynomial (g - 1)(g - 2), its mirror images, and its limits as each coefficient in turn
     /// vanishes.
     #[test]
     fn every_sign_pattern_gives_the_gains_of_its_parabola() {
@@ -65,7 +65,7 @@ mod tests {
         check(-1.0, 0.5, -1.0, &[[0.0, end]]);
     }
 
-    /// The product of the roots is c/a and the small one stays exact while the large one runs to
+    /// The product of the roots is c/a, and the small root stays exact while the large one goes to
     /// infinity.
     #[test]
     fn a_root_leaves_for_infinity_without_disturbing_the_other() {

@@ -1,4 +1,4 @@
-//! What a requirement means for one plant: its limit and weight in the q-plane.
+//! Limit and weight that a requirement imposes on one plant, in the q-plane.
 
 use num_complex::Complex64;
 use phea_dynamics::closed_loop::PlantPath;
@@ -16,9 +16,9 @@ use crate::template::{Template, TemplatePoint};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rule {
     closed_loop: ClosedLoop,
-    /// W; upper/lower for tracking.
+    /// Limit W; upper/lower for tracking.
     limit: f64,
-    /// P0 H0
+    /// Nominal response P0 H0.
     nominal: Complex64,
 }
 
@@ -41,7 +41,7 @@ impl Rule {
         Ok(Rule { closed_loop: requirement.closed_loop(), limit, nominal: template.nominal })
     }
 
-    /// Whether nothing is demanded.
+    /// True if no limit applies.
     pub(super) fn is_idle(&self) -> bool {
         self.limit == f64::INFINITY
     }
@@ -54,7 +54,7 @@ impl Rule {
         }
     }
 
-    /// Whether more of a plant is needed than P H.
+    /// True if more than P H of a plant is needed.
     pub(super) fn needs_paths(&self) -> bool {
         matches!(self.closed_loop.plant_path(), PlantPath::Plant | PlantPath::LoadMotion)
     }
@@ -83,8 +83,7 @@ impl Rule {
         sound.then(|| WeightedPlant { inverse, modulus: modulus(inverse), limit, weight })
     }
 
-    /// What the plants are compared with: for tracking every plant with its |H|, otherwise |L0|
-    /// itself.
+    /// The reference for the plants: for tracking every plant with its |H|, otherwise |L0| itself.
     pub(super) fn candidate(&self, plant: &WeightedPlant, point: &TemplatePoint) -> CeilingPlant {
         let weight = portable::magnitude(point.sensor) / self.tracking_scale();
         CeilingPlant { inverse: plant.inverse, modulus: plant.modulus, weight }
@@ -112,25 +111,25 @@ impl Rule {
         }
     }
 
-    /// Common to all plants, since they are compared with each other.
+    /// Scale common to all plants, since they are compared with each other.
     fn tracking_scale(&self) -> f64 {
         power_of_two(self.limit.max(1.0))
     }
 }
 
-/// A number that a plant can have: neither zero nor infinite.
+/// True if a plant can have this response: neither zero nor infinite.
 fn is_response(value: Complex64) -> bool {
     value.is_finite() && value != Complex64::new(0.0, 0.0)
 }
 
-/// |z|, by the short way unless it might overflow or lose digits.
+/// Magnitude |z|, by the fast formula unless it might overflow or lose digits.
 fn modulus(value: Complex64) -> f64 {
     let square = value.norm_sqr();
     if square > 1e-280 && square < 1e280 { square.sqrt() } else { portable::magnitude(value) }
 }
 
-/// Limit and weight over a power of two common to both, so that neither squares to overflow. Where
-/// underflow leaves neither a limit nor anything to be limited, nothing can be violated.
+/// Limit and weight over a power of two common to both, so that neither square overflows. If both
+/// underflow to zero, nothing can be violated.
 fn scaled(limit: f64, weight: f64) -> (f64, f64) {
     let scale = power_of_two(limit.max(weight));
     if limit == 0.0 && weight == 0.0 { (1.0, 0.0) } else { (limit / scale, weight / scale) }

@@ -5,8 +5,7 @@ use super::inequality::{InequalityForm, Ray, WeightedPlant};
 use super::interval::GainIntervals;
 use super::leaf::{Borders, LEAF, Leaf};
 
-/// The plants of a template in leaves, and above them hulls of leaves, of pairs of hulls, and so on
-/// to one hull around all.
+/// The plants of a template in leaves, below a binary tree of hulls up to one hull around all.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
     plants: Vec<WeightedPlant>,
@@ -28,16 +27,16 @@ impl Tree {
         Tree { plants, leaves, levels }
     }
 
-    /// The plants, in an order of their own.
+    /// The plants, in the order of the tree.
     pub(super) fn plants(&self) -> &[WeightedPlant] {
         &self.plants
     }
 
-    /// Adds to the union whatever some plant of the tree forbids along the ray.
+    /// Adds to the union all gains that some plant of the tree forbids along the ray.
     ///
-    /// First the leaves that seem to reach lowest and highest, then those that bridge the gap
-    /// between them, each found by one descent: almost everything that is forbidden is known by
-    /// then, and whole hulls need no further look.
+    /// The search begins with the leaves that seem to reach lowest and highest, then those that
+    /// bridge the gap between them, each found by one descent: almost all forbidden gains are known
+    /// by then, and whole hulls can be skipped.
     pub(super) fn collect(&self, ray: &Ray, union: &mut GainIntervals) {
         let top = self.levels.len().saturating_sub(1);
         let Some(hull) = self.hull(top, 0) else { return };
@@ -60,7 +59,7 @@ impl Tree {
         self.levels.get(level)?.get(place)
     }
 
-    /// Adds what the leaf forbids that is found by always taking the half of greater merit.
+    /// Adds the gains forbidden by one leaf, found by always taking the half of greater merit.
     fn collect_best(&self, ray: &Ray, union: &mut GainIntervals, merit: impl Fn(&Hull) -> f64) {
         let mut place = 0;
         for level in (0..self.levels.len().saturating_sub(1)).rev() {
@@ -101,8 +100,8 @@ impl Tree {
     }
 }
 
-/// The gains between the least and the greatest of two intervals; where there are none, an interval
-/// turned over.
+/// The gains between the least and the greatest of two intervals; an inverted interval if there are
+/// none.
 fn extent(intervals: &[[f64; 2]; 2]) -> [f64; 2] {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let some = intervals.iter().filter(|[low, high]| low < high);
@@ -141,8 +140,7 @@ fn spread_bits(value: f64) -> u64 {
     bits
 }
 
-/// A number that grows with a positive one about as its logarithm does: straight between powers of
-/// two.
+/// A number that grows roughly as the logarithm of a positive one: linear between powers of two.
 fn octave(value: f64) -> f64 {
     (value.to_bits() >> 20) as f64
 }

@@ -5,15 +5,15 @@
 //!                                      L/u within |L/u - (u_0* L_0 - r^2)/d| <= r/d
 //! ```
 //!
-//! The image of a disc is a disc while d > 0, and what lies outside of one otherwise: L = -1 is
-//! then one of the plants.
+//! The image of a disc is a disc while d > 0, and the outside of a disc otherwise: L = -1 is then
+//! one of the plants.
 
 use num_complex::Complex64;
 use phea_dynamics::portable::magnitude;
 
 use crate::specification::ClosedLoop;
 
-/// The squares of the least and of the greatest magnitude over that of the centre.
+/// The squares of the least and of the greatest magnitude over that at the centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DiscFactors {
     sensitivity: [f64; 2],
@@ -23,7 +23,7 @@ pub(crate) struct DiscFactors {
 impl DiscFactors {
     const OF_A_POINT: DiscFactors = DiscFactors { sensitivity: [1.0; 2], complementary: [1.0; 2] };
 
-    /// L within this disc.
+    /// Factors for L within this disc.
     pub(crate) fn of(centre: Complex64, radius: f64) -> DiscFactors {
         if radius.is_nan() || radius <= 0.0 {
             return DiscFactors::OF_A_POINT;
@@ -46,7 +46,7 @@ impl DiscFactors {
         }
     }
 
-    /// Those of one closed loop; P/(1 + L) is L/(1 + L) over G H, which is known.
+    /// Factors of one closed loop; P/(1 + L) is L/(1 + L) over G H, which is known.
     pub(crate) fn of_closed_loop(self, closed_loop: ClosedLoop) -> [f64; 2] {
         match closed_loop {
             ClosedLoop::RobustStability | ClosedLoop::Tracking | ClosedLoop::PlantInputDisturbance => {

@@ -1,44 +1,44 @@
-//! A rate that is fed forward, sampled and delayed like the rest of the command: a second path of
-//! the disturbance, and a loop where the command moves that rate too. An inner signal that is fed
-//! back likewise.
+//! Feed-forward of a rate, sampled and delayed like the rest of the command: a second path of the
+//! disturbance, and an additional loop if the command also moves that rate. Inner feedback of a
+//! signal likewise.
 //!
 //! ```text
 //! u = G (F r - y) + K H_v v - H p,     y = P u + Pd d,     v = P_v u + V_d d,     p = P_p u + I_d d
-//! P' = P/(1 - K H_v P_v),        Pd' = Pd + K H_v V_d P'            V_d = s and P_v = 0 where v is the rate of d itself
+//! P' = P/(1 - K H_v P_v),        Pd' = Pd + K H_v V_d P'            V_d = s and P_v = 0 if v is the rate of d itself
 //! P' = P/(1 + H P_p),            Pd' = Pd - H I_d P'
 //! ```
 //!
 //! H_v is the sensor of the rate, before the samples: its filter has poles that P lacks, which are
-//! zeros of P'; its dead time is in P_v and V_d alone.
+//! zeros of P'; its dead time is only in P_v and V_d.
 //!
-//! In a sampled loop P and P_v are held and sampled, V_d is not: of a sine of d the samples of v
-//! are those of a sine. H_v P_v has the poles of P, and P' those of 1 - K H_v P_v in their place.
-//! H is that of the controller, in z: its poles are zeros of P' too.
+//! In a sampled loop P and P_v are held and sampled, V_d is not: for a sinusoidal d the samples of
+//! v are those of a sine. H_v P_v has the poles of P; in P' these are replaced by the zeros of 1 -
+//! K H_v P_v. H belongs to the controller, in z: its poles are zeros of P' too.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::RateSensor;
 use phea_dynamics::linear::{LinearError, LinearOperation, Polynomial, TimeDomain, TransferFunction};
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RateNumerators, RationalCoefficients};
 
-/// K H_v V_d of one plant.
+/// Feed-forward path K H_v V_d of one plant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FedForward {
-    /// K
+    /// Feed-forward gain K.
     pub gain: f64,
-    /// V_d; `None` where it is s.
+    /// Path V_d from the disturbance to the rate; `None` if it is s.
     pub path: Option<RationalCoefficients<f64>>,
-    /// H_v
+    /// Sensor H_v of the rate.
     pub sensor: RateSensor,
-    /// H and I_d of an inner signal; `None` where none is fed back.
+    /// Feedback H and path I_d of an inner signal; `None` if none is fed back.
     pub inner: Option<InnerPath>,
 }
 
-/// What an inner signal that is fed back makes of a disturbance.
+/// Effect of a disturbance through the inner feedback.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InnerPath {
-    /// H, in z.
+    /// Inner feedback H, in z.
     pub feedback: TransferFunction,
-    /// I_d
+    /// Path I_d from the disturbance to the inner signal.
     pub path: RationalCoefficients<f64>,
 }
 
@@ -47,17 +47,17 @@ pub(crate) fn moved_rate(plant: &PlantCoefficients<f64>) -> Option<&RateNumerato
     plant.rate.as_ref().filter(|rate| rate.command.iter().any(|coefficient| *coefficient != 0.0))
 }
 
-/// What takes the poles of P for those of P'.
+/// Replaces the poles of P by those of P'.
 #[derive(Debug)]
 pub(super) struct FedBack {
     own: Vec<Complex64>,
     closed: Vec<Complex64>,
-    /// Whole samples by which P and P_v are delayed.
+    /// Delay of P and P_v, whole samples.
     samples: usize,
     sample_time_s: f64,
 }
 
-/// Samples of delay that may become poles, as many as may become states.
+/// Largest delay that may become poles, samples: as many as may become states.
 const DELAY_MAXIMUM: f64 = 200.0;
 
 impl FedForward {
@@ -79,7 +79,7 @@ impl FedForward {
         FedForward { gain, path, sensor, inner }
     }
 
-    /// K H_v V_d - H I_d at jw
+    /// Response K H_v V_d - H I_d at jw.
     pub(crate) fn at(&self, frequency_rad_per_s: f64) -> Complex64 {
         let back = self.inner.as_ref().map_or(Complex64::ZERO, |InnerPath { feedback, path }| {
             feedback.at_frequency(frequency_rad_per_s) * path.at_frequency(frequency_rad_per_s)
@@ -95,7 +95,7 @@ impl FedForward {
     }
 }
 
-/// P_p before the dead time of the command; `None` where no inner signal is fed back.
+/// Path P_p before the dead time of the command; `None` if no inner signal is fed back.
 pub(super) fn inner_path(
     inner: Option<&TransferFunction>,
     plant: &PlantCoefficients<f64>,
@@ -106,8 +106,7 @@ pub(super) fn inner_path(
     TransferFunction::from_polynomials(&Polynomial::new(numerator.clone()), &denominator).map(Some)
 }
 
-/// A plant towards zero frequency, including the inner signal that is fed back with H(1): N/(D +
-/// H(1) N_p).
+/// A plant towards zero frequency, including the inner feedback with H(1): N/(D + H(1) N_p).
 pub(crate) fn closed_at_rest(
     inner: Option<&TransferFunction>,
     mut plant: PlantCoefficients<f64>,
@@ -121,7 +120,7 @@ pub(crate) fn closed_at_rest(
     plant
 }
 
-/// H_v P_v before the dead time of the command; `None` where nothing is fed back.
+/// Path H_v P_v before the dead time of the command; `None` if nothing is fed back.
 pub(super) fn rate_path(
     gain: f64,
     sensor: RateSensor,
@@ -133,8 +132,8 @@ pub(super) fn rate_path(
     if sensor.is_direct() { Ok(Some(own)) } else { own.series(&sensor.transfer_function()?).map(Some) }
 }
 
-/// A plant of a continuous loop without dead time, including what is fed back within it: N/(D - K
-/// N_v), and d_v N/(d_v D - K N_v) behind the filter H_v = 1/d_v of a sensor.
+/// A plant of a continuous loop without dead time, including its internal feedback: N/(D - K N_v),
+/// and d_v N/(d_v D - K N_v) after the filter H_v = 1/d_v of a sensor.
 pub(crate) fn closed(
     gain: f64,
     sensor: RateSensor,
@@ -156,8 +155,8 @@ pub(crate) fn closed(
 }
 
 impl FedBack {
-    /// What closes the paths of a rate and of an inner signal, both held and sampled; `None` where
-    /// neither is fed back.
+    /// Closes the paths of a rate and of an inner signal, both held and sampled; `None` if neither
+    /// is fed back.
     pub(super) fn of(
         rate: Option<(f64, &TransferFunction)>,
         inner: Option<(&TransferFunction, &TransferFunction)>,
@@ -172,7 +171,7 @@ impl FedBack {
         }
     }
 
-    /// Of K and of P_v, held and sampled.
+    /// Feedback of K P_v, held and sampled.
     pub(super) fn new(gain: f64, rate: &TransferFunction) -> Result<FedBack, LinearError> {
         let TimeDomain::Discrete { sample_time_s } = rate.domain() else {
             return Err(LinearError::DomainMismatch);
@@ -193,15 +192,15 @@ impl FedBack {
         })
     }
 
-    /// P/(1 - K P_v), and so with what follows P as a sensor does: it has the poles of P_v but
-    /// those of the filter of the rate. Dead time that P_v has and P has not are zeros at z = 0.
+    /// The plant P/(1 - K P_v), or such a plant followed by a sensor: it has the poles of P_v
+    /// except those of the rate's filter. Dead time of P_v beyond that of P gives zeros at z = 0.
     pub(super) fn around(&self, function: &TransferFunction) -> Result<TransferFunction, LinearError> {
         let (mut poles, mut zeros) = (function.poles().to_vec(), function.zeros().to_vec());
         let mut samples = (function.dead_time_s() / self.sample_time_s).round() - self.samples as f64;
         for own in &self.own {
             match poles.iter().position(|pole| pole == own) {
                 Some(index) => drop(poles.swap_remove(index)),
-                // the rest of a sample that a further delay made whole
+                // the fraction of a sample that a further delay completed
                 None if *own == Complex64::ZERO => samples -= 1.0,
                 None => zeros.push(*own),
             }

@@ -1,4 +1,4 @@
-//! Effect of what a plant without polynomials does beyond half the sampling rate on its loop.
+//! Effect on its loop of the response of a plant without polynomials beyond half the sampling rate.
 
 use phea_dynamics::portable::magnitude;
 
@@ -6,32 +6,32 @@ use super::images::hold;
 use super::{Compensation, Member, turned};
 use crate::family::{COARSE, tabulated};
 
-/// Between the points of a table of the response its peaks are higher by less than this factor.
+/// Factor by which peaks of the response between the points of its table are higher, at most.
 const BETWEEN_POINTS: f64 = 1.1;
-/// Factor by which the frequencies of modes move.
+/// Factor by which the frequencies of modes are moved.
 const MOVED: f64 = 1.25;
-/// Multiples of pi/T up to which the response is evaluated at least.
+/// Multiples of pi/T up to which the response is evaluated, at least.
 const LEAST_PASSES: f64 = 4.0;
 
 impl Member {
-    /// A bound of the relative change of the return difference by folding, at any frequency up to
-    /// pi/T, while the modes beyond pi/T move by a quarter of their frequency:
+    /// Bound on the relative change of the return difference by folding, at any frequency up to
+    /// pi/T, with the modes beyond pi/T moved by a quarter of their frequency:
     ///
     /// ```text
-    /// |f - f_0| <= e |f_0|,       f = 1 - B + L,     f_0 the same without images
+    /// |f - f_0| <= e |f_0|,       f = 1 - B + L,     f_0 = f without images
     /// e = max over w of  sum over k of  (sup |P H h| |G| + sup |K H_v P_v h| + sup |P_p h| |H_p|)/|f_0|
     /// ```
     ///
     /// with h the magnitude of the hold, G, H_p and f_0 at w, and sup over the frequencies around
     /// |w + 2 pi k/T|, k not zero. With e < 1 no closed-loop pole reaches the boundary of
     /// stability, f = 0, on the way from one plant to another unless f_0 vanishes there too, and
-    /// modes beyond pi/T do not pass through f_0. Images beyond the range of the plant are taken to
-    /// fall with the cube of their frequency behind a hold. `None` for other members and continuous
-    /// loops.
+    /// modes beyond pi/T do not pass through f_0. Images beyond the range of the plant are assumed
+    /// to fall with the cube of their frequency after a hold. `None` for other members and
+    /// continuous loops.
     ///
     /// # Example
-    /// An integrator that is known by its response folds with 1/w^2 at twice the rate, so that a
-    /// loop that crosses over at a thirtieth of the sampling rate changes by a few percent.
+    /// An integrator given by its response folds with 1/w^2 at twice the rate, so that a loop that
+    /// crosses over at a thirtieth of the sampling rate changes by a few percent.
     /// ```
     /// use std::sync::Arc;
     /// use num_complex::Complex64;

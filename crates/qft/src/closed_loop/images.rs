@@ -1,5 +1,5 @@
-//! Sampled plants that are known frequency by frequency: the images of their response behind the
-//! hold are folded onto one another.
+//! Sampled plants given frequency by frequency: the images of their response after the hold are
+//! folded onto one another.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::RateSensor;
@@ -10,33 +10,33 @@ use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 use super::{MemberResponse, turned};
 use crate::family::MeasuredPlant;
 
-/// The part beyond a measurement may contribute at most this share of its sampled response.
+/// Largest contribution of the part beyond a measurement, as a fraction of its sampled response.
 const UNKNOWN_SHARE: f64 = 0.01;
-/// Images of a model are summed until the rest contributes less than this share, 0.001 dB.
+/// Fraction of the response, 0.001 dB, below which the remaining images of a model are neglected.
 const LEFT_SHARE: f64 = 1e-4;
-/// Images to each side at most.
+/// Largest number of images to each side.
 const IMAGES_MAXIMUM: usize = 4000;
 
-/// Sensor, delay and sampling around such a plant.
+/// Sensor, delay and sampling around a plant without polynomials.
 ///
 /// ```text
 /// Z{hold P}(e^(jwT)) = sum over k of P(j v) e^(-j v T_d) e^(-j v T/2) sin(v T/2)/(v T/2),     v = w + 2 pi k/T
 /// ```
 pub(super) struct SamplingImages<'a> {
     pub(super) sensor: &'a TransferFunction,
-    /// T_d, or T_d + T/2 in a sampled loop.
+    /// Delay T_d, or T_d + T/2 in a sampled loop, s.
     pub(super) delay_s: f64,
     pub(super) sample_time_s: Option<f64>,
-    /// K
+    /// Feed-forward gain K.
     pub(super) rate_feed_forward: f64,
-    /// H_v
+    /// Sensor H_v of the rate.
     pub(super) rate_sensor: RateSensor,
-    /// H_p in z
+    /// Inner feedback H_p in z.
     pub(super) inner_feedback: Option<&'a TransferFunction>,
 }
 
 impl SamplingImages<'_> {
-    /// A model has a response at every frequency.
+    /// Response of a model, known at every frequency.
     pub(super) fn of_model(
         &self,
         plant: &dyn RespondingPlant,
@@ -52,7 +52,7 @@ impl SamplingImages<'_> {
         Some(closed.fed(self.rate_feed_forward * rate - inner))
     }
 
-    /// K H_v P_v - H_p P_p
+    /// Internal feedback K H_v P_v - H_p P_p.
     pub(super) fn fed_back(
         &self,
         plant: &dyn RespondingPlant,
@@ -62,8 +62,8 @@ impl SamplingImages<'_> {
         Some(back)
     }
 
-    /// P, P H and K H_v P_v - H_p P_p with the delay, folded where the loop samples: H_p is that of
-    /// the samples.
+    /// Responses P, P H and K H_v P_v - H_p P_p with the delay, folded if the loop is sampled: H_p
+    /// is taken at the samples.
     fn sums(&self, plant: &dyn RespondingPlant, frequency: f64) -> Option<[Complex64; 3]> {
         let own = self.inner_at(frequency);
         let at = |v: f64| {
@@ -110,7 +110,7 @@ impl SamplingImages<'_> {
         None
     }
 
-    /// H_v P_v and H_v V_d where something is fed forward.
+    /// Paths H_v P_v and H_v V_d if a rate is fed forward.
     fn rate(&self, plant: &dyn RespondingPlant, frequency: f64) -> [Complex64; 2] {
         if self.rate_feed_forward == 0.0 {
             return [Complex64::ZERO; 2];
@@ -123,25 +123,25 @@ impl SamplingImages<'_> {
         rate.map(|path| path * shown)
     }
 
-    /// P_p and I_d where an inner signal is fed back.
+    /// Paths P_p and I_d if an inner signal is fed back.
     fn inner(&self, plant: &dyn RespondingPlant, frequency: f64) -> [Complex64; 2] {
         self.inner_feedback.map_or([Complex64::ZERO; 2], |_| plant.inner(frequency))
     }
 
-    /// P, K H_v P_v and P_p at one frequency, without hold and delay.
+    /// Responses P, K H_v P_v and P_p at one frequency, without hold and delay.
     pub(super) fn unfolded(&self, plant: &dyn RespondingPlant, frequency: f64) -> [Complex64; 3] {
         let ([output, _], [rate, _]) = (plant.response(frequency), self.rate(plant, frequency));
         let [signal, _] = self.inner(plant, frequency);
         [output, self.rate_feed_forward * rate, signal]
     }
 
-    /// H_p at the samples.
+    /// Inner feedback H_p at the samples.
     pub(super) fn inner_at(&self, frequency: f64) -> Complex64 {
         self.inner_feedback.map_or(Complex64::ZERO, |feedback| feedback.at_frequency(frequency))
     }
 
-    /// As far as the measurement reaches; `None` where the part beyond it could matter if it were
-    /// as large as at its end.
+    /// Response of a measurement within its range; `None` where the part beyond the range could
+    /// matter if it were as large as at the end.
     pub(super) fn of_measurement(
         &self,
         plant: &MeasuredPlant,
@@ -172,8 +172,8 @@ impl SamplingImages<'_> {
         Some(sampled(sum, load_motion))
     }
 
-    /// Radius of the disc around P, and around P H over |H|, that the discs of a measurement and of
-    /// its images make.
+    /// Radius of the disc around P, and around P H over |H|, due to the discs of a measurement and
+    /// of its images.
     ///
     /// ```text
     /// r = sum over k of r(v) |sin(v T/2)/(v T/2)|,     v = w + 2 pi k/T
@@ -205,7 +205,7 @@ impl SamplingImages<'_> {
     }
 
     /// The terms of one k, of P and of P H; a response at a negative frequency is the conjugate of
-    /// that at the positive one.
+    /// the one at the positive frequency.
     fn image(&self, response: Complex64, v: f64, sample_time_s: f64) -> [Complex64; 2] {
         let sensor = self.sensor.at_frequency(v.abs());
         let held = self.held(response, v, sample_time_s);
@@ -222,7 +222,7 @@ fn sampled([plant, with_sensor]: [Complex64; 2], load_motion: Complex64) -> Memb
     MemberResponse { plant, load_motion, sensor: with_sensor / plant }
 }
 
-/// sin(v T/2)/(v T/2)
+/// Relative magnitude of the hold, sin(v T/2)/(v T/2).
 pub(super) fn hold(v: f64, sample_time_s: f64) -> f64 {
     let half = v * sample_time_s / 2.0;
     if half == 0.0 { 1.0 } else { portable::sin(half) / half }

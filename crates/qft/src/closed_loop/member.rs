@@ -9,19 +9,18 @@ use super::images::SamplingImages;
 use super::{Member, MemberResponse, turned};
 
 impl MemberResponse {
-    /// The same with this much of the disturbance fed forward: Pd + K V_d P.
+    /// Response with an additional feed-forward of the disturbance: Pd + K V_d P.
     pub(super) fn fed(self, forward: Complex64) -> MemberResponse {
         MemberResponse { load_motion: self.load_motion + forward * self.plant, ..self }
     }
 }
 
 impl Member {
-    /// P, Pd and H at a frequency; `None` where a measurement does not reach.
+    /// Responses P, Pd and H at a frequency; `None` beyond the range of a measurement.
     ///
     /// Sampling folds the response of a measured plant beyond pi/T back: its images at w + 2 pi k/T
-    /// are summed as far as the measurement reaches. Where the part beyond it could still
-    /// contribute one hundredth (if it were as large as at the end of the measurement), the
-    /// response is not known.
+    /// are summed as far as the measurement reaches. If the part beyond it could still contribute
+    /// one hundredth (assuming that it is as large as at the end), the response is unknown.
     pub fn response(&self, frequency_rad_per_s: f64) -> Option<MemberResponse> {
         match self {
             Member::Continuous { plant, sensor, fed_forward } => {
@@ -42,8 +41,8 @@ impl Member {
         }
     }
 
-    /// Radius of the disc around the P of [`Member::response`] that holds the true one; zero where
-    /// the response is exact.
+    /// Radius of the disc around the P of [`Member::response`] that contains the true one; zero
+    /// where the response is exact.
     pub(crate) fn radius(&self, frequency_rad_per_s: f64, response: &MemberResponse) -> f64 {
         match (self, self.images()) {
             (Member::Measured { plant, .. }, Some(images)) if !plant.radii.is_empty() => {
@@ -53,8 +52,9 @@ impl Member {
         }
     }
 
-    /// K H_v P_v(jw) - H_p P_p(jw) of a plant without polynomials, with the delay of the loop and
-    /// sampled where that samples; `None` of other plants, and where its images do not die out.
+    /// Internal feedback K H_v P_v(jw) - H_p P_p(jw) of a plant without polynomials, with the delay
+    /// of the loop and sampled if the loop is; `None` for other plants, and if the images do not
+    /// converge.
     pub(crate) fn fed_back(&self, frequency_rad_per_s: f64) -> Option<Complex64> {
         let Member::Responding { plant, .. } = self else { return None };
         self.images()?.fed_back(plant.as_ref(), frequency_rad_per_s)

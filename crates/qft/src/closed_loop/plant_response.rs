@@ -1,4 +1,4 @@
-//! The response of one plant within its loop at one frequency, without the member.
+//! The response of one plant within its loop at one frequency, without forming the member.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{LinearError, StateSpace, TransferFunction};
@@ -9,11 +9,11 @@ use super::member::{continuous, load_motion};
 use super::{Compensation, MemberResponse, check_dead_time, turned};
 
 impl Compensation {
-    /// P, Pd and H of a plant at one frequency: what its [`Compensation::member`] gives there, with
-    /// a tenth of the work in a sampled loop, where forming the member involves finding its zeros.
+    /// P, Pd and H of a plant at one frequency: the result of its [`Compensation::member`] with a
+    /// tenth of the work in a sampled loop, where forming the member involves finding its zeros.
     ///
     /// # Errors
-    /// Those of [`Compensation::member`].
+    /// Errors of [`Compensation::member`].
     ///
     /// # Example
     /// ```
@@ -51,7 +51,7 @@ impl Compensation {
         let inner = inner_path(inner_feedback, &plant)?;
         let load_motion = load_motion(plant.disturbance.as_ref(), frequency_rad_per_s);
         let rational = plant.command.transfer_function()?;
-        // whole samples only turn the phase; what is left of a sample becomes a state
+        // whole samples only rotate the phase; the remaining fraction of a sample becomes a state
         let held = |function: TransferFunction| {
             let dead_time_s = function.dead_time_s() + dead_time_s;
             let whole_s = (dead_time_s / sample_time_s).floor() * sample_time_s;

@@ -1,5 +1,5 @@
-//! A plant that a search tries and leaves again: of a sampled one the response at a frequency, from
-//! its modes, without the zeros that its factors would take.
+//! A plant that a search evaluates temporarily: for a sampled one, its response at a frequency from
+//! its modes, without the zeros of its factors.
 
 use std::cell::OnceCell;
 use std::rc::Rc;
@@ -13,20 +13,20 @@ use super::{Compensation, FedForward, Member, moved_rate};
 /// A plant within a loop, ready for a few frequencies.
 #[derive(Clone, Debug)]
 pub enum TrialPlant {
-    /// A whole member.
+    /// The whole member.
     Whole(Rc<Member>),
     /// A sampled plant by its modes.
     Held(Rc<ModalPlant>),
 }
 
-/// A held and sampled plant by its modes, and as a whole once that is needed.
+/// A held and sampled plant by its modes, converted to a whole member once that is needed.
 #[derive(Debug)]
 pub struct ModalPlant {
     poles: Vec<Complex64>,
     command: HeldModes,
-    /// `None` where the output itself is fed back.
+    /// Modes of the plant with its sensor; `None` if the output itself is fed back.
     with_sensor: Option<HeldModes>,
-    /// P_p and H of an inner signal; `None` where none is fed back.
+    /// Modes of P_p, and H, of an inner signal; `None` if none is fed back.
     inner: Option<(HeldModes, TransferFunction)>,
     pub(crate) disturbance: Option<RationalCoefficients<f64>>,
     pub(crate) fed_forward: FedForward,
@@ -34,23 +34,24 @@ pub struct ModalPlant {
     whole: OnceCell<Option<Rc<Member>>>,
 }
 
-/// P and P H of a held plant at a frequency, and the denominator of P H.
+/// Responses P and P H of a held plant at a frequency, and the denominator of P H.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeldResponse {
-    /// P, with hold and delay.
+    /// Plant P, with hold and delay.
     pub plant: Complex64,
-    /// P H
+    /// Plant with sensor, P H.
     pub with_sensor: Complex64,
     /// The product of z - p over the poles of P H.
     pub denominator: Complex64,
 }
 
 impl Compensation {
-    /// A plant of a family within this loop, to be tried; `None` where it cannot be sampled. The
-    /// poles are looked for near those of another plant, if one is given.
+    /// A plant of a family within this loop, for a trial evaluation; `None` if it cannot be
+    /// sampled. The poles are sought near those of another plant, if one is given.
     ///
     /// # Example
-    /// 4/(s + 2), sampled every 0.1 s, at 2 rad/s: the response that its factors give.
+    /// Plant 4/(s + 2), sampled every 0.1 s, at 2 rad/s: the response from the modes equals that
+    /// from the factors.
     /// ```
     /// use phea_dynamics::controller::{Controller, Timing};
     /// use phea_dynamics::linear::TransferFunction;
@@ -78,8 +79,8 @@ impl Compensation {
         }
     }
 
-    /// A rational plant of a sampled loop by its modes; `None` where they are not apart, and where
-    /// a rate is fed back within the plant.
+    /// A rational plant of a sampled loop by its modes; `None` if they are not distinct, or if a
+    /// rate is fed back within the plant.
     fn held(&self, plant: &PlantCoefficients<f64>, near: Option<&TrialPlant>) -> Option<ModalPlant> {
         let sample_time_s = self.sample_time_s?;
         let fed_back = self.rate_feed_forward != 0.0 && moved_rate(plant).is_some();
@@ -136,7 +137,7 @@ impl Compensation {
 }
 
 impl TrialPlant {
-    /// The whole member; `None` where it cannot be sampled.
+    /// The whole member; `None` if it cannot be sampled.
     pub fn whole(&self, compensation: &Compensation) -> Option<Rc<Member>> {
         match self {
             TrialPlant::Whole(member) => Some(Rc::clone(member)),
@@ -146,7 +147,7 @@ impl TrialPlant {
 }
 
 impl ModalPlant {
-    /// At a frequency; `None` where the modes do not say.
+    /// Response at a frequency; `None` where the modes do not give it.
     pub fn at(&self, frequency_rad_per_s: f64) -> Option<HeldResponse> {
         let HeldPoint { response, denominator } = self.command.at(frequency_rad_per_s)?;
         let back = self.fed_back(frequency_rad_per_s)?;
@@ -160,19 +161,19 @@ impl ModalPlant {
         Some(closed(seen.response, seen.denominator))
     }
 
-    /// 1 + H P_p, one where nothing is fed back.
+    /// Return difference 1 + H P_p of the inner loop; one if nothing is fed back.
     fn fed_back(&self, frequency_rad_per_s: f64) -> Option<Complex64> {
         let Some((modes, feedback)) = &self.inner else { return Some(Complex64::ONE) };
         let signal = modes.at(frequency_rad_per_s)?.response;
         Some(1.0 + feedback.at_frequency(frequency_rad_per_s) * signal)
     }
 
-    /// Whether its factors were needed.
+    /// True if its factors were needed.
     pub fn is_whole(&self) -> bool {
         self.whole.get().is_some()
     }
 
-    /// The whole member with its factors, of the loop that this plant was placed in.
+    /// The whole member with its factors, within the loop of this plant.
     pub fn whole(&self, compensation: &Compensation) -> Option<Rc<Member>> {
         let build = || compensation.member(self.plant.clone()).ok().map(Rc::new);
         self.whole.get_or_init(build).clone()

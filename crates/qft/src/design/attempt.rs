@@ -1,8 +1,8 @@
-//! One structure on its way to a design:
+//! Search of one structure for a design:
 //!
 //! ```text
-//! search -> prefilter, descent with both -> look between the samples -> audit -> met
-//!             ^--------- descent, or search anew, with the counterexamples --+
+//! search -> prefilter, descent with both -> check between the samples -> audit -> met
+//!             ^--------- descent, or a new search, with the counterexamples --+
 //! ```
 
 mod auditing;
@@ -33,22 +33,22 @@ use crate::prefilter::{FittedPrefilter, PrefilterBand, PrefilterOptions, Prefilt
 use crate::specification::Specification;
 use crate::verification::{Audit, AuditEffort, AuditProblem, TrackingJudgement, audit_among};
 
-/// How far beyond the tolerance the worst margin of the samples may lie, the reserve taken off,
-/// before a structure counts as unable to meet the specifications, dB.
+/// Deficit of the worst margin of the samples beyond the tolerance, without the reserve, at which a
+/// structure counts as unable to meet the specifications, dB.
 const BEYOND_TOLERANCE_DB: f64 = 0.5e-3;
-/// Where a counterexample misses by this much more than all samples did, the margins of what was
-/// found lead nowhere, dB.
+/// Worst margin, relative to that before the last counterexamples, below which the gradients are
+/// misleading, dB.
 const ASTRAY_DB: f64 = -6.0;
-/// The plants of a counterexample are also evaluated at these multiples of its frequency.
+/// Multiples of a counterexample's frequency at which its plants are also evaluated.
 pub(super) const NEIGHBOURS: [f64; 4] = [0.94, 0.97, 1.03, 1.06];
 /// Largest number of audits of one structure.
 const ROUNDS_MAXIMUM: usize = 40;
-/// Room that a start of a prefilter may take from both edges of its band, dB.
+/// Widening of both edges of a prefilter's band for its starting point, dB.
 const BAND_ROOM_DB: f64 = 3.0;
 /// Order of the prefilter that is fitted first.
 const FIRST_PREFILTER_ORDER: usize = 2;
-/// How far inside its limits a search stays, dB, so that what the audit finds between the samples
-/// still satisfies them.
+/// Distance that a search stays inside its limits, dB, so that margins that the audit finds between
+/// the samples still satisfy them.
 const RESERVE_DB: f64 = 0.001;
 
 impl DesignOptions {
@@ -58,7 +58,7 @@ impl DesignOptions {
         -self.tolerance_db - BEYOND_TOLERANCE_DB
     }
 
-    /// What a search is after, the least relaxation or a controller that needs none.
+    /// Aim of a search: the least relaxation, or a controller that needs none.
     pub(super) fn aim(&self, relaxes: bool) -> Aim {
         match self.objective {
             _ if relaxes => Aim::WorstMargin,
@@ -67,28 +67,28 @@ impl DesignOptions {
         }
     }
 
-    /// How far inside its limits such a search stays, dB.
+    /// Distance that such a search stays inside its limits, dB.
     pub(super) fn search_reserve_db(&self, relaxes: bool) -> f64 {
         if relaxes { 0.0 } else { RESERVE_DB + self.reserve_db }
     }
 }
 
-/// What an attempt ended with.
+/// Outcome of an attempt.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum AttemptEnding {
-    /// The audit finds every specification met.
+    /// The audit finds that every specification is met.
     Met(Box<Audit>),
-    /// With this worst margin over rate at best, dB; audited where that was asked for.
+    /// The best worst margin over rate is this, dB; with its audit if one was requested.
     Missed { worst_margin_db: f64, audit: Option<Box<Audit>> },
-    /// No stable controller of the structure was found.
+    /// The search found no stable controller of the structure.
     NotStabilised,
-    /// What it reaches does not earn its poles.
+    /// The structure does not improve the result enough to earn its poles.
     NotEarned,
-    /// Search and audit did not come to agree.
+    /// Search and audit did not agree.
     NotConverged(Box<Audit>),
 }
 
-/// Why the attempt ends before an audit agrees.
+/// Reason why the attempt ends before an audit agrees.
 enum Leave {
     Ended(AttemptEnding),
     Failed(LoopDesignError),
@@ -106,44 +106,45 @@ const CHECKING: &str = "looking between samples";
 const AUDITING: &str = "auditing";
 const WHOLE: [f64; 2] = [0.0, 1.0];
 
-/// One structure on its way.
+/// One structure in progress.
 #[derive(Clone, Debug)]
 pub(super) struct Attempt {
     structure: Structure,
     shaping: Shaping,
     options: DesignOptions,
     aim: Aim,
-    /// Whether the worst margin is wanted even where it is negative.
+    /// True if the worst margin is maximised even when negative.
     relaxes: bool,
-    /// How far inside its limits the search stays, dB.
+    /// Distance that the search stays inside its limits, dB.
     reserve_db: f64,
-    /// How often the limits were tightened to make up for rounding.
+    /// Number of times the limits were tightened to make up for rounding.
     draws: usize,
-    /// Order of the prefilter that is fitted next.
+    /// Order of the prefilter to be fitted next.
     prefilter_order: usize,
     restarts: u64,
-    /// The worst margin before the last counterexamples were taken in, dB, at most 0; unused unless
-    /// a relaxation is sought.
+    /// The worst margin before the last counterexamples were added, dB, at most 0; unused unless a
+    /// relaxation is sought.
     missing_db: f64,
     /// The last x from which the margins could still be improved.
     sound: Vec<f64>,
-    /// Points that the first search evaluates before those that are spread over the bounds.
+    /// Points that the first search evaluates before those spread over the bounds.
     given: Vec<Vec<f64>>,
     /// Points at which the nominal plant is stabilised.
     stabilising: Vec<Vec<f64>>,
     effort: SearchEffort,
-    /// What it must reach on its samples to be worth its poles, see [`Attempt::reached_db`].
+    /// Value that the samples must reach for the structure to earn its poles, see
+    /// [`Attempt::reached_db`].
     earns: Option<f64>,
-    /// Where the starts of its last search ended.
+    /// Ends of the starts of the last search.
     starts: Option<Starts>,
     x: Vec<f64>,
     rounds: Vec<DesignRound>,
-    /// The audits of the plants added to the family, of the controller that is audited.
+    /// The audits of the additional plants, for the audited controller.
     beside: Vec<Audit>,
 }
 
 impl Attempt {
-    /// A new attempt with its starting points. With `relaxes` it looks for the smallest common
+    /// A new attempt with its starting points. With `relaxes` it seeks the smallest common
     /// relaxation.
     pub(super) fn new(
         structure: Structure,
@@ -189,10 +190,10 @@ impl Attempt {
     }
 
     /// Shapes the loop and audits it, again with every counterexample, until search and audit
-    /// agree. Plants that were sampled in the same loop are not sampled again.
+    /// agree. Plants that were already sampled in this loop are not sampled again.
     ///
     /// # Errors
-    /// [`LoopDesignError::Stopped`] by the watch; what was found until then remains.
+    /// [`LoopDesignError::Stopped`] by the watch; the results until then remain.
     pub(super) fn run(
         &mut self,
         kept: &KeptPlants,
@@ -216,7 +217,7 @@ impl Attempt {
         self.audited_until_agreed(kept, watch)
     }
 
-    /// From what the search found on.
+    /// Audits from the search result onwards.
     fn audited_until_agreed(&mut self, kept: &KeptPlants, watch: Watch<'_>) -> Result<AttemptEnding, Leave> {
         loop {
             self.draw_in(watch)?;
@@ -229,8 +230,8 @@ impl Attempt {
         }
     }
 
-    /// The same structure, given up where its samples show that it does not come down to this value
-    /// of [`Attempt::reached_db`].
+    /// Attempt at this structure that is abandoned once its samples show that it cannot reach this
+    /// value of [`Attempt::reached_db`].
     pub(super) fn that_earns(self, most_db: Option<f64>) -> Attempt {
         Attempt { earns: most_db, ..self }
     }
@@ -247,13 +248,13 @@ impl Attempt {
         &self.shaping
     }
 
-    /// G as far as it was found.
+    /// Feedback G found so far.
     pub(super) fn feedback(&self) -> Option<TransferFunction> {
         let own = self.x.get(..self.structure.dimension())?;
         self.structure.compensator(own).transfer_function().ok()
     }
 
-    /// Where the starts of its last search ended.
+    /// Ends of the starts of the last search.
     pub(super) fn starts(&self) -> Option<&Starts> {
         self.starts.as_ref()
     }
@@ -277,7 +278,7 @@ impl Attempt {
         self.shaping.samples().clone()
     }
 
-    /// Searches, and fits a prefilter to what was found.
+    /// Searches, and fits a prefilter to the resulting loop.
     fn search(
         &mut self,
         given: Vec<Vec<f64>>,
@@ -308,8 +309,8 @@ impl Attempt {
         if self.fits_prefilter(watch)? { self.descend(false, watch) } else { Ok(()) }
     }
 
-    /// Fits a prefilter to the loop as it is, a start for the descent with both; false where none
-    /// is looked for.
+    /// Fits a prefilter to the present loop, as a start for the combined descent; false if no
+    /// prefilter is designed.
     fn fits_prefilter(&mut self, watch: Watch<'_>) -> Result<bool, Leave> {
         let missing_db = if self.relaxes { -self.shaping.judge(&self.x).worst_margin_db } else { 0.0 };
         let room_db = BAND_ROOM_DB + missing_db.max(0.0);
@@ -326,7 +327,7 @@ impl Attempt {
         let order = self.prefilter_order.min(*maximum_order);
         let options =
             PrefilterOptions { least_order: order, ..PrefilterOptions::new(order, self.options.seed) };
-        // only a starting point is needed here; the descent that follows finds what the band lacks
+        // only a starting point is needed here; the descent that follows restores the band
         let band = band.relaxed(room_db);
         let outcome = fit_prefilter(&band, &problem.timing, &options, watch)?;
         let fitted = match outcome {
@@ -345,7 +346,7 @@ impl Attempt {
         Ok(true)
     }
 
-    /// The same samples and controller, with another prefilter or none.
+    /// Reshapes with these samples and this controller, with another prefilter or none.
     fn shape_with(&mut self, prefilter: Option<Structure>) -> Result<(), LoopDesignError> {
         let samples = self.shaping.samples().clone();
         self.shaping = Shaping::new(self.structure.clone(), prefilter, self.options.objective, samples)?;
@@ -353,7 +354,7 @@ impl Attempt {
     }
 
     /// Descends until the samples satisfy the specifications: from the present point, then with the
-    /// steps of a new start, then with prefilters of more poles.
+    /// step sizes of a new start, then with prefilters of more poles.
     fn descend(&mut self, mut is_near: bool, watch: Watch<'_>) -> Result<(), Leave> {
         loop {
             let options = DescentOptions { reserve_db: 0.0, is_near, ..DescentOptions::new(self.aim) };
@@ -385,8 +386,7 @@ impl Attempt {
     }
 
     /// Examines the plants of the samples between their frequencies, and the corners of the box;
-    /// what lies between the plants is left to the audit. Returns whether counterexamples were
-    /// added.
+    /// the interior of the box is left to the audit. Returns true if counterexamples were added.
     fn learns_between_samples(&mut self, kept: &KeptPlants, watch: Watch<'_>) -> Result<bool, Leave> {
         let samples = self.shaping.samples();
         let problem = AuditProblem {
@@ -408,15 +408,15 @@ impl Attempt {
         Ok(self.takes_in(&examples)?)
     }
 
-    /// Adds counterexamples to the samples; false if they are already among them, or if this was
-    /// done often enough.
+    /// Adds counterexamples to the samples; false if they are already among them, or if the number
+    /// of rounds is exhausted.
     fn takes_in(&mut self, examples: &[Counterexample]) -> Result<bool, LoopDesignError> {
         let mut news = false;
         self.missing_db =
             if self.relaxes { self.shaping.judge(&self.x).worst_margin_db.min(0.0) } else { 0.0 };
         let [lowest, highest] = self.frequency_range();
         for example in examples {
-            // towards the ends of the frequency axis one decade at a time
+            // one decade at a time towards the ends of the frequency axis
             let at = match example.frequency_rad_per_s {
                 None => lowest,
                 Some(frequency) if frequency <= 0.0 => 0.1 * lowest,
@@ -424,7 +424,7 @@ impl Attempt {
                 Some(frequency) => frequency,
             };
             news |= self.shaping.add(&example.plants, at)?;
-            // a peak moves with the next controller, so its neighbourhood is evaluated too
+            // a peak moves with the next controller, so that its neighbourhood is also evaluated
             for share in NEIGHBOURS.into_iter().filter(|_| example.frequency_rad_per_s.is_some()) {
                 self.shaping.add(&example.plants, (at * share).clamp(lowest, highest))?;
             }
@@ -432,7 +432,7 @@ impl Attempt {
         Ok(news && self.rounds.len() < ROUNDS_MAXIMUM)
     }
 
-    /// Descends again, with the counterexamples among the samples; starts a new search where their
+    /// Descends again, with the counterexamples among the samples; starts a new search if their
     /// margins cannot be improved from here.
     fn shape_again(&mut self, watch: Watch<'_>) -> Result<(), Leave> {
         let judgement = self.shaping.judge(&self.x);
@@ -443,9 +443,9 @@ impl Attempt {
         self.search_anew(watch)
     }
 
-    /// An added plant is unstable with the controller that was found, or nearly so, and its margins
-    /// cannot be improved from there: starts again with all plants that are known now, also from
-    /// the last point where the margins could be improved.
+    /// Starts a new search with all plants known by now, for an added plant that is unstable or
+    /// nearly so with the present controller, so that its margins cannot be improved from there.
+    /// The starts include the last point where the margins could be improved.
     fn search_anew(&mut self, watch: Watch<'_>) -> Result<(), Leave> {
         self.restarts += 1;
         self.x.truncate(self.structure.dimension());
@@ -481,7 +481,7 @@ impl Attempt {
     }
 }
 
-/// The tracking specification, if there is one.
+/// The tracking specification, if any.
 fn tracks(problem: &DesignProblem) -> Option<&Specification> {
     problem.specifications.iter().find(|one| one.requirement.is_tracking())
 }

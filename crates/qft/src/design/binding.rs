@@ -1,20 +1,20 @@
-//! What the specification costs: which limit binds the loop at each frequency.
+//! Cost of the specification: the limit that binds the loop at each frequency.
 
 use super::Objective;
 use super::problem::DesignOptions;
 use crate::verification::{Audit, PlantPoint, SpecificationMargin};
 use phea_dynamics::order::sort_by_number;
 
-/// A limit that leaves the loop less room than this, dB, leaves it none.
+/// Slack below which a limit is active, dB.
 pub const BINDING_DB: f64 = 0.05;
 
-/// Relative difference of two frequencies at which one plant has one minimum.
+/// Relative difference of two frequencies that belong to one minimum of a plant.
 const SAME_FREQUENCY: f64 = 0.05;
 
-/// The limits that leave the loop no room, at the design frequencies and where each specification
-/// is worst over its band or as bad, in order of increasing frequency: those within [`BINDING_DB`]
-/// of the limit less the reserve that the design keeps to it, and those beyond. A design for the
-/// best worst margin is bound by the limits within as much of that margin.
+/// The active limits, at the design frequencies and where each specification is worst over its band
+/// or as bad, in order of increasing frequency: those within [`BINDING_DB`] of the limit less the
+/// reserve of the design, and those beyond. A design for the best worst margin is bound by the
+/// limits within that tolerance of its margin.
 pub(super) fn binding_limits(audit: &Audit, options: &DesignOptions) -> Vec<SpecificationMargin> {
     let mut cases: Vec<(f64, SpecificationMargin)> = Vec::new();
     for finding in &audit.specifications {
@@ -26,7 +26,7 @@ pub(super) fn binding_limits(audit: &Audit, options: &DesignOptions) -> Vec<Spec
                 one.specification == case.specification && (known == own || is_near)
             });
             let reserve_db = finding.requirement.reserve_at_db(options.reserve_db, case.frequency_rad_per_s);
-            // a spread has two limits
+            // a spread involves two limits
             let limits = if case.other.is_some() { 2.0 } else { 1.0 };
             if !is_known {
                 cases.push((case.margin_db - limits * reserve_db, case.clone()));

@@ -1,4 +1,4 @@
-//! Which structures are tried, and in which order.
+//! Candidate structures, and their order.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Element};
@@ -17,21 +17,21 @@ use crate::loop_shaping::DesignProblem;
 use crate::loop_shaping::{Structure, StructureFactor};
 use crate::specification::{ClosedLoop, Limit, Specification};
 
-/// How far the corners of a controller may lie below and above the highest frequency of the
-/// specifications, and below the lowest, as factors.
+/// Factors by which the corners of a controller may be below and above the highest frequency of the
+/// specifications, and below the lowest.
 const BELOW_HIGHEST: f64 = 1e-4;
 const ABOVE: f64 = 200.0;
 const BELOW_LOWEST: f64 = 0.1;
 /// Corners at which a factor is added to a simpler controller.
 const CORNERS: usize = 9;
-/// Where factors are added to a controller that places poles, above its fastest root.
+/// Corners of factors added to a pole-placement controller, relative to its fastest root.
 const BEYOND_FASTEST: [f64; 2] = [3.0, 20.0];
 /// Damping ratios of free pairs; beyond 1 a pair is two real roots.
 const DAMPING_RATIOS: [f64; 2] = [0.1, 20.0];
-/// Decades that the gain may lie beyond those that put the crossover on a frequency of the
-/// specifications.
+/// Factor by which the gain may exceed, or fall below, the values that put the crossover at a
+/// frequency of the specifications.
 const GAIN_ROOM: f64 = 100.0;
-/// Two limits that differ by less than this share at low frequency demand a specific gain.
+/// Relative difference of two limits at low frequency below which they require a specific gain.
 const SAME: f64 = 1e-6;
 
 /// The sign that feedback needs to oppose the nominal plant, and a wide range for the gain k of a
@@ -39,7 +39,7 @@ const SAME: f64 = 1e-6;
 /// the specifications, with a reserve at both ends.
 ///
 /// # Example
-/// 4/s with a specification from 1 to 10 rad/s: k = 1/4 crosses over at 1 rad/s.
+/// Plant 4/s with a specification from 1 to 10 rad/s: k = 1/4 crosses over at 1 rad/s.
 /// ```
 /// # use phea_dynamics::controller::Timing;
 /// # use phea_dynamics::linear::TransferFunction;
@@ -76,7 +76,7 @@ pub fn gain_range(problem: &DesignProblem) -> (f64, [f64; 2]) {
     (ground.sign, ground.gain)
 }
 
-/// What the structures of a problem have in common.
+/// Data common to all structures of a problem.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Ground {
     /// Integrators that the specifications require beyond those of the plants.
@@ -84,23 +84,23 @@ pub(super) struct Ground {
     sign: f64,
     corner: [f64; 2],
     gain: [f64; 2],
-    /// The same of a controller without an integrator.
+    /// Range of the gain of a controller without an integrator.
     gain_alone: [f64; 2],
     poles: PoleRange,
 }
 
 impl Ground {
-    /// What every structure that may solve the problem begins with.
+    /// Common starting data of every structure that may solve the problem.
     pub(super) fn new(problem: &DesignProblem) -> Ground {
         let span = span(&problem.specifications);
         let low = LowFrequency::of(problem, span[0]);
         let wanted = problem.specifications.iter().map(wanted_type).max().unwrap_or(0);
-        // an integrator would cancel a zero of the plant at the origin, and the loop would keep a
+        // an integrator would cancel a zero of the plant at the origin, and the loop would retain a
         // pole there
         let integrators = usize::try_from(wanted - low.plant_type.max(0)).unwrap_or(0);
         let corner = [(BELOW_LOWEST * span[0]).max(BELOW_HIGHEST * span[1]), ABOVE * span[1]];
         let along = logarithmic_grid(span[0], span[1] * ABOVE.sqrt(), 30).unwrap_or_default();
-        // With k = w^integrators / |P(jw)| the loop of unit corners crosses over at w.
+        // Gain k = w^integrators / |P(jw)|, for which the loop of unit corners crosses over at w.
         let gains = |integrators: usize| {
             let crossover = |frequency: &f64| {
                 let plant = portable::magnitude(low.response(problem, *frequency)?);
@@ -114,14 +114,14 @@ impl Ground {
         Ground { integrators, sign: low.sign, corner, gain, gain_alone, poles: PoleRange::default() }
     }
 
-    /// The same with poles in this range.
+    /// Copy of this data with poles in this range.
     pub(super) fn with_poles(self, poles: PoleRange) -> Ground {
         Ground { poles, ..self }
     }
 
     /// Points at which a structure is equal to a simpler controller, or nearly: poles and zeros are
     /// added at one corner each, where they cancel if there are equally many; a surplus zero is
-    /// left out.
+    /// omitted.
     pub(super) fn grown(&self, structure: &Structure, simpler: &TransferFunction) -> Vec<Vec<f64>> {
         let middle =
             [self.corner[0].max(10.0 * BELOW_HIGHEST * self.corner[1] / ABOVE), 0.3 * self.corner[1]];
@@ -143,7 +143,7 @@ impl Ground {
         points
     }
 
-    /// The structure of a gain alone.
+    /// The structure of a pure gain.
     pub(super) fn gain_alone(&self) -> Structure {
         Structure { sign: self.sign, gain: self.gain_alone, parts: vec![] }
     }
@@ -153,7 +153,7 @@ impl Ground {
         Structure { sign: self.sign, gain: self.gain, parts }
     }
 
-    /// Where corners and natural frequencies may lie.
+    /// Range of corners and natural frequencies.
     pub(super) fn corners(&self) -> Corners {
         let [lowest, highest] = self.corner;
         let fastest = highest.min(self.poles.fastest_rad_per_s).max(lowest);
@@ -195,8 +195,8 @@ pub(super) struct Corners {
     pub(super) of_poles: [f64; 2],
 }
 
-/// The point of a structure at which it is a simpler controller with poles and zeros added at this
-/// corner; a surplus zero is left out.
+/// The point of a structure at which it equals a simpler controller with poles and zeros added at
+/// this corner; a surplus zero is omitted.
 fn grown_at(structure: &Structure, simpler: &TransferFunction, corner: f64) -> Option<Vec<f64>> {
     let mut gain = simpler.gain();
     let (mut zeros, mut poles) = (simpler.zeros().to_vec(), simpler.poles().to_vec());
@@ -231,8 +231,8 @@ fn span(specifications: &[Specification]) -> [f64; 2] {
     inside.reduce(joined).unwrap_or([0.1, 10.0])
 }
 
-/// The exponent of w with which a loop must grow as w tends to zero, if this specification is to be
-/// satisfied.
+/// The exponent of w with which the loop must grow as w tends to zero to satisfy this
+/// specification.
 fn wanted_type(specification: &Specification) -> i64 {
     match (specification.requirement.closed_loop(), specification.requirement.limits()) {
         (ClosedLoop::Sensitivity, (_, limit)) => order_at_zero(limit).max(0),
@@ -240,7 +240,7 @@ fn wanted_type(specification: &Specification) -> i64 {
             let at_zero = |limit: &Limit| match limit {
                 Limit::Constant(value) => Some(*value),
                 Limit::Rational(function) => Some(function.dc_gain().abs()),
-                // a table demands nothing below its first point
+                // a table sets no limit below its first point
                 Limit::Table(_) => None,
             };
             let narrow = at_zero(lower).zip(at_zero(upper));
@@ -250,7 +250,7 @@ fn wanted_type(specification: &Specification) -> i64 {
     }
 }
 
-/// n where the limit tends to zero as w^n.
+/// Exponent n if the limit tends to zero as w^n.
 fn order_at_zero(limit: &Limit) -> i64 {
     let Limit::Rational(function) = limit else { return 0 };
     let at_origin = |roots: &[Complex64]| roots.iter().filter(|root| root.norm_sqr() == 0.0).count() as i64;
@@ -288,7 +288,7 @@ impl LowFrequency {
         }
     }
 
-    /// P of the nominal plant.
+    /// Response P of the nominal plant.
     fn response(&self, problem: &DesignProblem, frequency: f64) -> Option<Complex64> {
         match &problem.family {
             Family::Uncertain(family) => {
@@ -300,7 +300,7 @@ impl LowFrequency {
     }
 }
 
-/// Poles less zeros at the origin.
+/// Number of poles less zeros at the origin.
 fn plant_type(command: &RationalCoefficients<f64>) -> i64 {
     let at_origin = |coefficients: &[f64]| coefficients.iter().rev().take_while(|one| **one == 0.0).count();
     at_origin(&command.denominator) as i64 - at_origin(&command.numerator) as i64

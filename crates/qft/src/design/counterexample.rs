@@ -1,4 +1,4 @@
-//! What the search learns from an audit: plants and frequencies that it had not evaluated.
+//! Counterexamples from an audit: plants and frequencies that the search had not evaluated.
 
 use phea_dynamics::portable;
 
@@ -16,17 +16,18 @@ pub(super) struct Counterexample {
     pub(super) frequency_rad_per_s: Option<f64>,
 }
 
-/// Which margins are new.
+/// Thresholds for new margins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct NewMargins {
-    /// Those below the reserve by more than this, for single limits and for tracking, dB.
+    /// Distance below the reserve beyond which a margin is new, for single limits and for tracking,
+    /// dB.
     pub(super) below_db: [f64; 2],
-    /// Margin to be kept to every limit, dB; where two limits are less than 1 dB apart, that
-    /// fraction of it.
+    /// Margin required to every limit, dB; if two limits are less than 1 dB apart, that fraction of
+    /// it.
     pub(super) reserve_db: f64,
 }
 
-/// The plants whose margin lies below the reserve by more than a tolerance (both count twice for a
+/// The plants whose margin is below the reserve by more than a tolerance (both count twice for a
 /// spread, which has two limits), each once with each of its frequencies.
 pub(super) fn counterexamples(
     findings: &[SpecificationFinding],
@@ -55,14 +56,14 @@ pub(super) fn counterexamples(
     found
 }
 
-/// The same for the audit of an additional plant, by its index.
+/// Counterexamples of the audit of an additional plant, by its index.
 pub(super) fn of_beside(index: usize, examples: Vec<Counterexample>) -> Vec<Counterexample> {
     let named =
         |example: Counterexample| Counterexample { plants: vec![PlantPoint::Beside(index)], ..example };
     examples.into_iter().map(named).collect()
 }
 
-/// The plant that makes a family unstable.
+/// The plant for which a family is unstable.
 pub(super) fn unstable_plant(audit: &Audit) -> Vec<Counterexample> {
     match audit.stability.verdict {
         Verdict::Violated => {
@@ -72,7 +73,8 @@ pub(super) fn unstable_plant(audit: &Audit) -> Vec<Counterexample> {
     }
 }
 
-/// The plant that tolerates less delay than is required, the requirement relaxed by this much, dB.
+/// The plant that tolerates less delay than is required, with the requirement relaxed by this much,
+/// dB.
 pub(super) fn too_little_delay(
     audit: &Audit,
     problem: &DesignProblem,
@@ -94,12 +96,12 @@ pub(super) fn worst_margin_db(findings: &[SpecificationFinding]) -> f64 {
     margins.map(|worst| worst.margin_db).fold(f64::INFINITY, f64::min)
 }
 
-/// The same for an audit; `None` where a plant is not known to be stable.
+/// The least margin of an audit, dB; `None` if a plant is not known to be stable.
 pub(super) fn audited_margin_db(audit: &Audit) -> Option<f64> {
     (audit.stability.verdict == Verdict::Met).then(|| worst_margin_db(&audit.specifications))
 }
 
-/// The same, divided by what one dB of relaxation of every limit adds to the margin: 2 for a
+/// The least margin divided by the gain in margin per dB of relaxation of every limit: 2 for a
 /// spread.
 pub(super) fn worst_over_rate_db(findings: &[SpecificationFinding], tracking: TrackingJudgement) -> f64 {
     let margins = findings.iter().filter_map(|finding| {

@@ -1,5 +1,4 @@
-//! What is known about a problem before any search: impossibilities that are theorems, and what is
-//! merely hard.
+//! Prior findings on a problem: proven impossibilities, and probable difficulties.
 
 mod candidate;
 mod ceiling;
@@ -21,13 +20,13 @@ use super::DesignProblem;
 use crate::closed_loop::Compensation;
 use crate::specification::{Limit, Specification};
 
-/// What no controller can achieve, and what will be hard, found without a search; impossibilities
-/// come first.
+/// Findings without a search: limits that no controller can meet, and probable difficulties;
+/// impossibilities come first.
 ///
 /// Each impossibility holds for every linear time-invariant controller and every prefilter, because
-/// a single plant of the family (or a few plants at one frequency) forbids what is required: it is
-/// never a failure of a search. If nothing is found, that does not mean that a controller exists.
-/// The plants are the nominal one, at most 64 corners, and members up to a total of 96; limits are
+/// a single plant of the family (or a few plants at one frequency) forbids the requirement: it is
+/// never a failure of a search. The absence of findings does not mean that a controller exists. The
+/// plants are the nominal one, at most 64 corners, and members up to a total of 96; limits are
 /// evaluated at some hundred frequencies, and deficits below 0.1 dB are ignored.
 ///
 /// ```text
@@ -41,7 +40,7 @@ use crate::specification::{Limit, Specification};
 /// 5.
 ///
 /// # Example
-/// An unstable pole above the bandwidth that is allowed:
+/// An unstable pole above the allowed bandwidth:
 /// ```
 /// # use phea_dynamics::controller::Timing;
 /// # use phea_dynamics::linear::TransferFunction;

@@ -1,10 +1,10 @@
-//! Which sign of a controller makes feedback negative.
+//! Sign of a controller for negative feedback.
 
 use phea_dynamics::linear::Polynomial;
 use phea_dynamics::uncertain_plant::RationalCoefficients;
 
-/// The sign that k needs for feedback to oppose the plant: that of lim s^type P(s), turned by every
-/// real pole in the right half plane, around which the loop has to go.
+/// The sign that k needs for feedback to oppose the plant: the sign of lim s^type P(s), reversed by
+/// every real pole in the right half plane, which the loop must encircle.
 pub(super) fn opposing_sign(command: &RationalCoefficients<f64>) -> f64 {
     let lowest =
         |coefficients: &[f64]| coefficients.iter().rev().copied().find(|one| *one != 0.0).unwrap_or(1.0);
@@ -18,8 +18,8 @@ pub(super) fn opposing_sign(command: &RationalCoefficients<f64>) -> f64 {
 mod tests {
     use super::*;
 
-    /// Integral control of a stable plant needs the sign of its gain at rest; (s + 0.1)/(s^2 -
-    /// 2.25) needs k > 0.
+    /// Integral control of a stable plant needs the sign of its static gain; (s + 0.1)/(s^2 - 2.25)
+    /// needs k > 0.
     #[test]
     fn feedback_opposes_the_plant() {
         let sign = |numerator: &[f64], denominator: &[f64]| {

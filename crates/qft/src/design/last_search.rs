@@ -1,4 +1,4 @@
-//! The last search of a design, to be gone on with.
+//! Continuation of the last search of a design.
 
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::order::sort_by_number;
@@ -10,8 +10,8 @@ use super::{Objective, PoleRange};
 use crate::loop_shaping::{Aim, Samples, Shaping, Structure, StructureFactor};
 use crate::verification::PlantPoint;
 
-/// The shaping of a design at these samples, with what its search looked for: the least objective,
-/// or where it is missed the greatest worst margin.
+/// The shaping of a design at these samples, with the aim of its search: the least objective, or if
+/// the limits were missed, the greatest worst margin.
 ///
 /// # Errors
 /// [`LinearError`] for a structure that cannot be sampled.
@@ -28,7 +28,7 @@ pub fn last_search(
     Ok((shaping, options.aim(relaxes)))
 }
 
-/// Adds to a search what lies beside the samples with the least margins at x, since a peak moves
+/// Adds to a search the points next to the samples with the least margins at x, since a peak moves
 /// with the limits.
 ///
 /// # Errors
@@ -53,8 +53,7 @@ pub fn sample_beside_worst(shaping: &mut Shaping, x: &[f64]) -> Result<(), LoopD
 }
 
 impl Structure {
-    /// The same structure with poles that may lie where another range of them allows, in place of
-    /// the range that it was made with.
+    /// Structure with another range of poles in place of the original one.
     ///
     /// # Example
     /// ```

@@ -5,14 +5,14 @@ use phea_dynamics::controller::{Element, NamedStructure};
 use super::candidates::{Corners, Ground};
 use crate::loop_shaping::{Structure, StructureFactor};
 
-/// Damping ratios of the poles of a notch, which are exempt from the least one of other poles, and
-/// its depths: -30 dB, as deep as one can be built, to none.
+/// Damping ratios of the poles of a notch, which are exempt from the least damping of other poles,
+/// and its depths: from -30 dB, as deep as can be built, to none.
 const NOTCH_DAMPING_RATIOS: [f64; 2] = [0.1, 3.0];
 const NOTCH_DEPTHS: [f64; 2] = [0.03162277660168379, 1.0];
-/// Damping ratios of the zeros of a PID; beyond 1 they are two real ones.
+/// Damping ratios of the zeros of a PID; above 1 the pair is two real zeros.
 const PID_DAMPING_RATIOS: [f64; 2] = [0.2, 20.0];
 
-/// Name of the stage in which it is tried.
+/// Name of the design stage for this structure.
 pub(super) fn stage(name: NamedStructure) -> &'static str {
     match name {
         NamedStructure::Proportional => "trying P",
@@ -27,12 +27,12 @@ pub(super) fn stage(name: NamedStructure) -> &'static str {
     }
 }
 
-/// Whether structures of growing order with these poles and zeros are of this kind too.
+/// True if structures of growing order with these poles and zeros are also of this kind.
 pub(super) fn is_named(order: usize, zeros: usize, integrators: usize) -> bool {
     matches!((integrators, order, zeros), (0, 0, 0) | (1, 1, 0 | 1) | (1, 2, 1 | 2))
 }
 
-/// The name of a structure with the parts of one.
+/// The name of a structure with the factors of a named one.
 ///
 /// # Example
 /// ```
@@ -69,7 +69,7 @@ pub fn name_of(structure: &Structure) -> Option<NamedStructure> {
     }
 }
 
-/// With free numbers between the corners of the problem.
+/// Named structure with free numbers between the corners of the problem.
 pub(super) fn named_structure(name: NamedStructure, ground: &Ground) -> Structure {
     let Corners { of_zeros, of_poles } = ground.corners();
     let zero = StructureFactor::RealZero { frequency: of_zeros };

@@ -1,4 +1,4 @@
-//! What a design ended with, and what it is continued from.
+//! Outcome of a design, and the data to continue from it.
 
 use phea_dynamics::pieces::Workers;
 use phea_dynamics::watch::{Watch, unwatched};
@@ -12,36 +12,36 @@ use super::tried::TriedStructure;
 use crate::kept_plants::KeptPlants;
 use crate::loop_shaping::{DesignProblem, Samples};
 
-/// What a design ended with.
+/// Outcome of a design.
 #[derive(Clone, Debug)]
 pub struct DesignOutcome {
-    /// The best design; `None` where no controller was found.
+    /// The best design; `None` if no controller was found.
     pub design: Option<Design>,
-    /// What no controller can achieve, and what will be hard; see [`diagnose`](super::diagnose).
+    /// Findings on impossible and difficult requirements; see [`diagnose`](super::diagnose).
     pub findings: Vec<Finding>,
-    /// Whether the watch stopped it: then the design is the best so far.
+    /// True if the watch stopped the design, which is then the best so far.
     pub stopped: bool,
-    /// What was tried when it was stopped.
+    /// The attempt in progress when the design was stopped.
     pub(super) at_hand: Option<Box<Attempt>>,
     pub(super) known: LearntPlants,
 }
 
 impl DesignOutcome {
-    /// Every structure that was tried, in turn, with what it reached.
+    /// Every structure that was searched, in order, with its result.
     pub fn tried(&self) -> &[TriedStructure] {
         &self.known.tried
     }
 
-    /// What the searches evaluated; `None` before the first one.
+    /// Samples that the searches evaluated; `None` before the first search.
     pub fn samples(&self) -> Option<&Samples> {
         self.known.samples.as_ref()
     }
 
-    /// If it was stopped before any design existed, audits the present controller, which becomes a
+    /// Audits the present controller, if the design was stopped before any result; it becomes a
     /// design that has not converged.
     ///
     /// # Errors
-    /// Those of [`design`](super::design).
+    /// Errors of [`design`](super::design).
     pub fn conclude(&mut self) -> Result<(), LoopDesignError> {
         let at_hand = self.at_hand.take().filter(|attempt| !attempt.x().is_empty());
         if let (None, Some(mut attempt)) = (&self.design, at_hand) {
@@ -54,15 +54,15 @@ impl DesignOutcome {
     }
 }
 
-/// A design for other specifications of the same plants in the same loop as those of a design
-/// before: what that sampled is not sampled again. But for rounding the result is that of
+/// A design for other specifications of the plants and loop of an earlier design: plants sampled
+/// then are not sampled again. Except for rounding, the result is that of
 /// [`design`](super::design).
 ///
 /// # Errors
-/// Those of [`design`](super::design).
+/// Errors of [`design`](super::design).
 ///
 /// # Example
-/// A limit that is wider allows less gain, as a design from the beginning finds:
+/// A wider limit allows less gain, as a design from the beginning also finds:
 /// ```
 /// # use phea_dynamics::controller::Timing;
 /// # use phea_dynamics::pieces::Workers;
@@ -117,11 +117,11 @@ pub fn design_after(
     design_knowing(problem, options, None, before.known.of_plants(), watch)
 }
 
-/// The same for stricter limits than those of a design before: a structure shorter than the one
-/// that met them is not tried again, and the search also begins with that controller.
+/// A design for stricter limits than those of an earlier design: structures shorter than the one
+/// that met them are skipped, and the search also begins with that controller.
 ///
 /// # Errors
-/// Those of [`design`](super::design).
+/// Errors of [`design`](super::design).
 pub fn design_stricter(
     problem: &DesignProblem,
     options: &DesignOptions,
@@ -132,7 +132,7 @@ pub fn design_stricter(
     design_knowing(problem, options, met, before.known.of_plants(), watch)
 }
 
-/// What was learnt about the plants.
+/// Data learnt about the plants.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LearntPlants {
     /// The samples that searches evaluate; `None` before the first search.
@@ -144,12 +144,12 @@ pub(super) struct LearntPlants {
 }
 
 impl LearntPlants {
-    /// Nothing yet, with the owner of the threads that look for plants.
+    /// Empty data, with the workers that search for plants.
     pub(super) fn of(workers: Workers) -> LearntPlants {
         LearntPlants { plants: KeptPlants::of(workers), ..LearntPlants::default() }
     }
 
-    /// The plants alone, for a design with other specifications.
+    /// The plants only, for a design with other specifications.
     fn of_plants(&self) -> LearntPlants {
         LearntPlants { plants: self.plants.clone(), ..LearntPlants::default() }
     }

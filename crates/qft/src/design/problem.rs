@@ -1,4 +1,4 @@
-//! What a design begins with.
+//! Input of a design.
 
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::pieces::Workers;
@@ -7,31 +7,32 @@ use super::quantization::CoefficientFormat;
 use super::{NamedStructure, Objective};
 use crate::loop_shaping::Structure;
 
-/// Which controllers are tried.
+/// Selection of controllers.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ControllerChoice {
-    /// Those of one structure.
+    /// One given structure.
     Given(Structure),
-    /// Those of one name.
+    /// One named structure.
     Named {
         /// The name.
         name: NamedStructure,
-        /// As below, for the poles of a prefilter beyond the first one.
+        /// Gain for the poles of a prefilter beyond the first, as for [`ControllerChoice::Any`],
+        /// dB.
         earned_per_pole_db: f64,
     },
-    /// Those of every name that suits the problem, the shortest first; where none meets every
-    /// specification, structures of growing order.
+    /// Every suitable named structure, the shortest first; if none meets every specification,
+    /// structures of growing order.
     Any {
         /// Largest number of poles.
         maximum_order: usize,
-        /// The first name that is tried, where shorter ones are known to fail.
+        /// The first name to be searched, if shorter ones are known to fail.
         from: Option<NamedStructure>,
-        /// True where a gain alone is tried although the specifications require an integrator: they
-        /// lead to a step within a band, which a gain alone may reach.
+        /// True if a pure gain is searched although the specifications require an integrator: they
+        /// lead to a step within a band, which a pure gain may reach.
         with_gain_alone: bool,
-        /// How much a longer one must gain for each of its further poles to be taken in place of
-        /// one that is met, dB, and a longer prefilter in place of one with one pole; infinite: the
-        /// shortest is taken.
+        /// Gain that each further pole of a longer structure must bring to replace a shorter one
+        /// that meets the limits, dB, likewise for prefilters with more than one pole; infinite:
+        /// the shortest is taken.
         earned_per_pole_db: f64,
     },
     /// Structures of growing order, up to this one, until one meets every specification.
@@ -42,7 +43,7 @@ pub enum ControllerChoice {
 }
 
 impl ControllerChoice {
-    /// How much a further pole must gain, dB; `None` where nothing but the objective decides.
+    /// Gain that a further pole must bring, dB; `None` if only the objective decides.
     pub fn earned_per_pole_db(&self) -> Option<f64> {
         match *self {
             ControllerChoice::Named { earned_per_pole_db, .. }
@@ -52,12 +53,12 @@ impl ControllerChoice {
     }
 }
 
-/// Which prefilters are tried.
+/// Selection of prefilters.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PrefilterChoice {
-    /// No prefilter: tracking is judged by its spread.
+    /// Tracking without a prefilter, assessed by its spread.
     None,
-    /// This one.
+    /// A given prefilter.
     Given(TransferFunction),
     /// Prefilters of growing order, up to this one.
     Grow {
@@ -66,7 +67,7 @@ pub enum PrefilterChoice {
     },
 }
 
-/// Where the poles of a designed controller may lie; integrators are not concerned.
+/// Range of the poles of a designed controller; integrators are exempt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoleRange {
     /// Least damping ratio of a pair that is not the notch of a pair of zeros.
@@ -76,33 +77,33 @@ pub struct PoleRange {
 }
 
 impl Default for PoleRange {
-    /// Any but hardly damped ones.
+    /// Any poles but lightly damped ones.
     fn default() -> Self {
         PoleRange { least_damping_ratio: 0.1, fastest_rad_per_s: f64::INFINITY }
     }
 }
 
-/// How a design is made.
+/// Options of a design.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignOptions {
-    /// What is minimised or maximised.
+    /// The objective.
     pub objective: Objective,
-    /// Which controllers are tried.
+    /// Selection of controllers.
     pub controller: ControllerChoice,
-    /// Which prefilters are tried.
+    /// Selection of prefilters.
     pub prefilter: PrefilterChoice,
-    /// Seed of the random starting points: the same seed gives the same design.
+    /// Seed of the random starting points: equal seeds give equal designs.
     pub seed: u64,
-    /// A margin of minus this much still counts as met, dB.
+    /// Violation up to which a margin counts as met, dB.
     pub tolerance_db: f64,
-    /// Margin that the design keeps to every limit, between its samples too, dB; where two limits
-    /// are near, [`Requirement::reserve_at_db`](crate::specification::Requirement::reserve_at_db).
+    /// Margin of the design to every limit, also between its samples, dB; for two limits close
+    /// together, [`Requirement::reserve_at_db`](crate::specification::Requirement::reserve_at_db).
     pub reserve_db: f64,
-    /// Where poles of a controller of growing order may lie.
+    /// Range of the poles of a controller of growing order.
     pub poles: PoleRange,
-    /// The number format of the coefficients of a sampled controller, which is judged with rounded
-    /// coefficients. A continuous controller is not rounded.
+    /// The number format of the coefficients of a sampled controller, which is evaluated with
+    /// rounded coefficients. A continuous controller is not rounded.
     pub coefficients: CoefficientFormat,
-    /// The owner of the threads; the design does not depend on it.
+    /// The worker threads; the design does not depend on them.
     pub workers: Workers,
 }

@@ -3,7 +3,7 @@
 //! ```text
 //! y = P (u + e_u) ...          command rounded by the DA converter:       |e_u| <= q_u/2,   to the force by   P/(1+L)
 //! u = G (F r - y - e_y)        measurement rounded by the AD converter:   |e_y| <= q_y/2,   to the command by G/(1+L)
-//! G, F                         coefficients rounded: another controller, which is audited as it is
+//! G, F                         coefficients rounded: another controller, which is itself audited
 //! ```
 
 mod coefficients;
@@ -19,8 +19,8 @@ use phea_dynamics::linear::LinearError;
 
 use crate::specification::{ClosedLoop, Limit, Requirement, Specification};
 
-/// The converters and the coefficients of the computer that runs a controller; a converter that is
-/// absent does not round.
+/// The converters and the coefficients of the computer that runs a controller; an absent converter
+/// does not round.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Quantization {
     /// DA converter of the command, in the command's unit.
@@ -31,22 +31,23 @@ pub struct Quantization {
     pub coefficients: CoefficientFormat,
 }
 
-/// Why the effect of rounding cannot be computed.
+/// Reason why the effect of rounding cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum QuantizationError {
-    /// A converter is impossible.
+    /// An invalid converter.
     #[error(transparent)]
     Converter(#[from] ConverterError),
-    /// A continuous controller has no samples to round, and the waves of lines have no recursion.
+    /// A continuous controller has no samples to round, and travelling waves in lines have no
+    /// recursion.
     #[error("the effect of rounding is computed for sampled loops whose lines are lumped")]
     Continuous,
-    /// A coefficient beyond what its format can hold.
+    /// A coefficient beyond the range of its format.
     #[error(transparent)]
     TooLarge(#[from] CoefficientTooLarge),
     /// All coefficients of a numerator are rounded to zero.
     #[error("the numerator {0:?} is rounded to zero")]
     Vanished([f64; 3]),
-    /// The effect of one rounding has not died away within this number of samples: a loop that is
+    /// The effect of one rounding has not decayed within this number of samples: a loop that is
     /// unstable or nearly so.
     #[error("the effect of a rounding on plant {plant} has not died away within {samples} samples")]
     NotSettled {
@@ -61,19 +62,19 @@ pub enum QuantizationError {
 }
 
 impl Quantization {
-    /// The specification that keeps the force error due to a rounded command below a given rms
-    /// value: for a design that takes its converter into account from the start.
+    /// The specification that limits the rms force error due to a rounded command, for a design
+    /// that takes its converter into account from the start.
     ///
     /// ```text
     /// rms(y) <= sup |P/(1+L)| q_u/2         |P/(1+L)| <= allowed/(q_u/2)
     /// ```
     ///
-    /// Holds whatever the rounding does, limit cycles included. `None` without a DA converter.
-    /// `frequencies_rad_per_s` are those at which bounds are drawn; it must hold at every
+    /// Valid for any rounding behaviour, including limit cycles. `None` without a DA converter.
+    /// `frequencies_rad_per_s` are those at which bounds are drawn; the limit must hold at every
     /// frequency.
     ///
     /// # Example
-    /// 5 N allowed for 16 bits over 20 V
+    /// Example of 5 N allowed for 16 bits over 20 V
     /// ```
     /// use phea_qft::design::quantization::{Converter, Quantization};
     /// use phea_qft::specification::{ClosedLoop, Limit, Requirement};
@@ -98,8 +99,7 @@ impl Quantization {
         ))
     }
 
-    /// The specification that keeps the effect of a rounded measurement on the command below a
-    /// given rms value.
+    /// The specification that limits the rms effect of a rounded measurement on the command.
     ///
     /// ```text
     /// rms(u) <= sup |G/(1+L)| q_y/2         |G/(1+L)| <= allowed/(q_y/2)

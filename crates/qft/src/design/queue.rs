@@ -1,4 +1,4 @@
-//! Which structures wait to be tried, in which order.
+//! Queue of the structures to be searched.
 
 use std::collections::VecDeque;
 
@@ -9,19 +9,19 @@ use super::named::{is_named, named_structure};
 use super::problem::{ControllerChoice, DesignOptions};
 use crate::loop_shaping::{DesignProblem, Structure};
 
-/// Most free numbers of a structure that is searched with few starts.
+/// Largest number of free numbers of a structure that is searched with few starts.
 const FEW_NUMBERS: usize = 4;
-/// How many poles a longer structure may have beyond those of one that is met.
+/// Number of poles by which a longer structure may exceed one that meets the limits.
 const FURTHER_POLES: usize = 2;
 
-/// A structure that waits to be tried.
+/// A structure in the queue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum WaitingStructure {
-    /// The one that is given.
+    /// The given structure.
     Given,
-    /// One by its name.
+    /// A named structure.
     Named(NamedStructure),
-    /// One of growing order.
+    /// A structure of growing order.
     Free { order: usize, zeros: usize },
 }
 
@@ -43,8 +43,8 @@ impl WaitingStructure {
         }
     }
 
-    /// How widely is searched, in a problem that may be hard, for a structure that may have to
-    /// reach this many dB to be of interest.
+    /// Width of the search in a problem that may be hard, for a structure that may have to reach
+    /// this many dB to be of interest.
     pub(super) fn effort(
         self,
         structure: &Structure,
@@ -59,7 +59,7 @@ impl WaitingStructure {
     }
 }
 
-/// The structures in the order in which they are tried.
+/// The structures in the order in which they are searched.
 pub(super) fn structures_to_try(
     problem: &DesignProblem,
     options: &DesignOptions,
@@ -89,8 +89,8 @@ pub(super) fn structures_to_try(
     }
 }
 
-/// The names that suit the problem: a gain where the specifications require no integrator, those
-/// with one where they require one, behind a gain alone where that is tried too.
+/// The named structures that suit the problem: a pure gain if the specifications require no
+/// integrator, those with an integrator if they do, after a pure gain if that is also included.
 fn named(
     maximum_order: usize,
     ground: &Ground,
@@ -104,7 +104,8 @@ fn named(
     })
 }
 
-/// Names behind one that is met, with as many poles or with more, which may be worth it.
+/// Named structures after one that meets the limits, with at least as many poles, which may be
+/// worth them.
 pub(super) fn longer(
     name: NamedStructure,
     choice: &ControllerChoice,
@@ -132,8 +133,8 @@ fn growing(maximum_order: usize, ground: &Ground, sampled: bool) -> impl Iterato
         .map(|(order, zeros)| WaitingStructure::Free { order, zeros })
 }
 
-/// (order, zeros) of an order: one pole more than zeros; as many for a gain alone, for
-/// proportional-integral control, and where the loop is sampled and its gain ends at pi/T anyway.
+/// Pairs (order, zeros) of an order: one pole more than zeros; equally many for a pure gain, for
+/// proportional-integral control, and if the loop is sampled, so that its gain ends at pi/T anyway.
 fn degrees(order: usize, integrators: usize, sampled: bool) -> Vec<(usize, usize)> {
     match order {
         0 => vec![(0, 0)],
@@ -142,15 +143,15 @@ fn degrees(order: usize, integrators: usize, sampled: bool) -> Vec<(usize, usize
     }
 }
 
-/// Whether a continuous controller of this order is also tried with as many zeros as poles, once
-/// none with fewer zeros has succeeded: a lead of first order, or a pair of zeros over a pair of
-/// poles, say, which has the phase of the zeros at every frequency above.
+/// True if a continuous controller of this order is also searched with as many zeros as poles, once
+/// none with fewer zeros has succeeded: for example a first-order lead, or a pair of zeros over a
+/// pair of poles, which has the phase of the zeros at all higher frequencies.
 fn is_worth_as_many_zeros(order: usize, integrators: usize) -> bool {
     order > integrators
 }
 
-/// The same order with one zero fewer, where structures grow: a larger relative degree has less
-/// gain at high frequency than any smaller one.
+/// The structure of this order with one zero fewer, for growing structures: a larger relative
+/// degree has less gain at high frequency than any smaller one.
 pub(super) fn fewer_zeros(candidate: WaitingStructure, structure: &Structure) -> VecDeque<WaitingStructure> {
     let order = structure.roots(-1.0);
     let fewer = structure.roots(1.0).checked_sub(1);

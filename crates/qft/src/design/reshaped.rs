@@ -1,4 +1,4 @@
-//! The controller of a design, shaped again for another loop around the same plants.
+//! The controller of a design, reshaped for another loop around its plants.
 
 use phea_dynamics::controller::Controller;
 use phea_dynamics::watch::Watch;
@@ -10,16 +10,16 @@ use super::run::DesignProgress;
 use crate::kept_plants::KeptPlants;
 use crate::loop_shaping::DesignProblem;
 
-/// The structure of a design for another problem, by a descent from its controller: what another
-/// timing of the loop, say, would allow. It is not audited. `None` where no controller is found
-/// that makes the plants stable.
+/// Reshapes the structure of a design for another problem, by a descent from its controller: for
+/// example to find the performance possible with another timing of the loop. The result is not
+/// audited. `None` if no stabilising controller is found.
 ///
 /// # Errors
-/// Those of [`design`](super::design), and [`LoopDesignError::Stopped`] by the watch.
+/// Errors of [`design`](super::design), and [`LoopDesignError::Stopped`] by the watch.
 ///
 /// # Example
-/// 1/s and 4/s are to have |S| <= 1/2 at up to 1 rad/s, which a gain of sqrt(3) reaches at the
-/// smallest k; with |S| <= 3/5 a gain of 4/3 is enough:
+/// Plants 1/s and 4/s with |S| <= 1/2 required up to 1 rad/s, which a gain of sqrt(3) reaches at
+/// the smallest k; with |S| <= 3/5 a gain of 4/3 is enough:
 /// ```
 /// # use phea_dynamics::controller::Timing;
 /// # use phea_dynamics::pieces::Workers;

@@ -1,4 +1,4 @@
-//! What a design ends with.
+//! Result of a design.
 
 use phea_dynamics::controller::Controller;
 use phea_dynamics::order::sort_numbers;
@@ -8,27 +8,27 @@ use super::{DesignOptions, NamedStructure};
 use crate::loop_shaping::{SearchProblem, SearchResult, Shaping, Structure};
 use crate::verification::{Audit, SpecificationMargin, Verdict};
 
-/// Why a design ended.
+/// Final status of a design.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DesignStatus {
     /// The audit finds that every specification is met.
     Met,
-    /// No controller that was tried meets every specification; this is the smallest relaxation
-    /// under which one does.
+    /// The limits cannot be met by any controller found; this is the smallest relaxation under
+    /// which one meets them.
     Infeasible(Relaxation),
-    /// The audit could not be brought to agree within the rounds allowed.
+    /// Search and audit did not agree within the rounds allowed.
     NotConverged {
-        /// How many rounds were made.
+        /// Number of rounds.
         rounds: usize,
     },
-    /// None of the controllers that were tried stabilises the family.
+    /// The family is not stabilised by any controller found.
     NotStabilised,
 }
 
 /// The smallest common relaxation of all limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Relaxation {
-    /// dB by which every upper limit is raised and every lower one lowered.
+    /// Amount by which every upper limit is raised and every lower one reduced, dB.
     pub relaxation_db: f64,
     /// The limits that conflict at this relaxation: the margins to the original limits.
     pub conflicts: Vec<SpecificationMargin>,
@@ -37,26 +37,26 @@ pub struct Relaxation {
 /// One search with the audit that followed it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignRound {
-    /// What was shaped.
+    /// Shaped structure.
     pub structure: Structure,
-    /// Its objective, dB.
+    /// Objective of the structure, dB.
     pub objective_db: f64,
     /// Number of plants that the search evaluated.
     pub plants: usize,
     /// Number of frequencies that the search evaluated.
     pub frequencies: usize,
-    /// Worst margin on them, dB.
+    /// Worst margin on these plants and frequencies, dB.
     pub searched_margin_db: f64,
-    /// Worst margin of the audit, dB; `None` where the audit finds the family unstable.
+    /// Worst margin of the audit, dB; `None` if the audit finds the family unstable.
     pub audited_margin_db: Option<f64>,
 }
 
-/// Where the starts of the last search ended, which shows how much the result depends on them.
+/// Ends of the starts of the last search, which show how much the result depends on them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Starts {
     /// Points that the search evaluated before its descents.
     pub tried: usize,
-    /// How many of them stabilise every plant that was evaluated.
+    /// Number of these points that stabilise every evaluated plant.
     pub stabilised: usize,
     /// Number of completed descents.
     pub ended: usize,
@@ -68,7 +68,7 @@ pub struct Starts {
     pub objectives_db: Option<[f64; 3]>,
 }
 
-/// An end that misses its limits by less than this satisfies them, dB.
+/// Violation below which an end of a descent still counts as satisfying its limits, dB.
 const KEPT_DB: f64 = 0.01;
 
 impl Starts {
@@ -95,43 +95,43 @@ fn least_median_greatest(mut values: Vec<f64>) -> Option<[f64; 3]> {
 /// A controller, its prefilter, and the audit of both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
-    /// Why it ended.
+    /// Final status of the design.
     pub status: DesignStatus,
-    /// Controller, prefilter and timing as they are deployed and were audited: in z with rounded
-    /// coefficients, where coefficients are rounded.
+    /// Controller, prefilter and timing as deployed and audited: in z with rounded coefficients, if
+    /// coefficients are rounded.
     pub controller: Controller,
-    /// The same before it was sampled and rounded.
+    /// Controller before sampling and rounding.
     pub law: Controller,
-    /// What was shaped.
+    /// Shaped structure.
     pub structure: Structure,
-    /// The structure of its prefilter; `None` where it has none.
+    /// The structure of its prefilter; `None` if it has none.
     pub prefilter: Option<Structure>,
     /// The free numbers of both structures, one after the other.
     pub free_numbers: Vec<f64>,
-    /// Its name; `None` for one of growing order or a given one.
+    /// Name of the structure; `None` for one of growing order or a given one.
     pub name: Option<NamedStructure>,
-    /// Where the starts of its last search ended; `None` before a search has ended.
+    /// Ends of the starts of its last search; `None` before a search has ended.
     pub starts: Option<Starts>,
-    /// Its objective, dB.
+    /// Objective of the design, dB.
     pub objective_db: f64,
-    /// Its audit against the original specifications.
+    /// Audit against the original specifications.
     pub audit: Audit,
-    /// The same for each additional plant.
+    /// Audit of each additional plant.
     pub beside: Vec<Audit>,
-    /// The limits that it touches, which is what the specifications cost, by frequency.
+    /// The active limits, which determine the cost of the specifications, by frequency.
     pub binding: Vec<SpecificationMargin>,
-    /// How it came about.
+    /// Rounds of search and audit.
     pub rounds: Vec<DesignRound>,
 }
 
 impl Design {
-    /// Whether its audit decides nothing, which is nearer than missing a limit.
+    /// True if its audit is inconclusive, which is nearer than missing a limit.
     pub(super) fn is_open(&self) -> bool {
         self.audit.verdict == Verdict::NotProven
     }
 
-    /// The same structures with other free numbers and their audit, as one that is met or not; its
-    /// coefficients are not rounded.
+    /// Replaces the free numbers and their audit, and updates the status; coefficients are not
+    /// rounded.
     pub fn moved(
         self,
         shaping: &Shaping,

@@ -1,4 +1,5 @@
-//! The design: in which order structures are tried, and which result is kept.
+//! Sequence of a design: the order in which structures are searched, and the result that is
+//! retained.
 
 use std::collections::VecDeque;
 
@@ -23,29 +24,29 @@ use crate::kept_plants::KeptPlants;
 use crate::loop_shaping::{DesignProblem, Samples, Structure, search_frequencies};
 use crate::verification::{Audit, PlantPoint};
 
-/// Points of the frequency grid of a search in a decade.
+/// Number of points per decade of the frequency grid of a search.
 const POINTS_PER_DECADE: f64 = 20.0;
-/// Random plants inside the box that a search begins with.
+/// Random plants inside the box at the beginning of a search.
 const INTERIOR_PLANTS: usize = 32;
-/// Members of a family without a box that a search begins with.
+/// Members of a family without a box at the beginning of a search.
 const MEMBERS_MAXIMUM: usize = 200;
 
-/// What is added to the seed where a structure is tried once more.
+/// Offset of the seed if a structure is searched once more.
 const SEED_AGAIN: u64 = 1000;
-/// A larger order is worth its poles where it lowers the relaxation by more than this, dB.
+/// Reduction of the relaxation above which a larger order is worth its poles, dB.
 const RELAXATION_GAINED_DB: f64 = 0.01;
 
-/// Designs a controller and its prefilter: structures of growing length are tried, each by search
-/// and audit, until one meets every specification; then longer ones that may be worth their poles,
-/// and of those of growing order fewer zeros, as long as these also satisfy the specifications.
-/// Where none does, the smallest relaxation is looked for.
+/// Designs a controller and its prefilter: searches and audits structures of growing length, until
+/// one meets every specification; then longer ones that may be worth their poles and, for growing
+/// order, ones with fewer zeros, as long as these also satisfy the specifications. If none does, it
+/// searches for the smallest relaxation.
 ///
 /// # Errors
-/// [`LoopDesignError`] where a part of the problem is not a transfer function, or cannot be put
-/// into the loop. A watch that stops it is not an error.
+/// [`LoopDesignError`] if a part of the problem is not a transfer function, or cannot be put into
+/// the loop. A stop by the watch is not an error.
 ///
 /// # Example
-/// 1/s and 4/s are to have |S| <= 1/2 at up to 1 rad/s. With a gain g that is g k >= sqrt(3)
+/// Plants 1/s and 4/s with |S| <= 1/2 required up to 1 rad/s. With a gain g this is g k >= sqrt(3)
 /// at the smallest k.
 /// ```
 /// # use phea_dynamics::controller::Timing;
@@ -97,10 +98,10 @@ pub fn design(
 
 /// Continues a finished design with additional plants that the loop must control (the nominal one
 /// of each). A structure that failed without these plants also fails with them, so the search
-/// begins with structures of the order that was found, and reuses its samples.
+/// begins with structures of the order found, and reuses its samples.
 ///
 /// # Errors
-/// Those of [`design`], and [`LoopDesignError`] for a plant that does not fit the loop.
+/// Errors of [`design`], and [`LoopDesignError`] for a plant that does not fit the loop.
 pub fn design_again(
     problem: &DesignProblem,
     options: &DesignOptions,
@@ -126,7 +127,7 @@ pub(super) fn design_knowing(
     let findings = diagnose(problem);
     let LearntPlants { samples, plants, rounds, tried } = known;
     let mut run = DesignProgress::new(problem, options, &plants);
-    // where no controller of any order suffices, it remains to find by how much
+    // if no controller of any order suffices, the search determines the deficit
     run.relaxing = findings.iter().any(|finding| finding.severity() == FindingSeverity::Impossible);
     (run.samples, run.rounds, run.tried) = (samples, rounds, tried);
     if let Some(found) = found {
@@ -138,38 +139,37 @@ pub(super) fn design_knowing(
     Ok(DesignOutcome { design, findings, stopped: at_hand.is_some(), at_hand, known })
 }
 
-/// A design on its way.
+/// A design in progress.
 pub(super) struct DesignProgress<'a> {
     problem: &'a DesignProblem,
     options: &'a DesignOptions,
     ground: Ground,
-    /// What is still to be tried.
+    /// Structures still to be searched.
     waiting: VecDeque<WaitingStructure>,
-    /// What is being tried.
+    /// Structure being searched.
     now: WaitingStructure,
     all: usize,
-    /// Whether plants have poles that the loop has to move: every structure is tried twice, for a
-    /// search may miss what is there.
+    /// True if plants have poles that the loop has to move: every structure is searched twice,
+    /// because one search may miss a solution.
     is_hard: bool,
-    /// The structure that was tried last.
+    /// The structure that was searched last.
     last: Option<Structure>,
-    /// Whether a controller was found already, and fewer zeros are tried in its order.
+    /// True if a controller is already found, and fewer zeros are searched at its order.
     found: bool,
-    /// Whether the smallest relaxation is looked for.
+    /// True if the smallest relaxation is sought.
     pub(super) relaxing: bool,
-    /// A structure that seemed infeasible and is tried again from this controller; this is done
-    /// once.
+    /// A structure that seemed infeasible, searched again from this controller, once.
     again: Option<(Structure, Option<TransferFunction>)>,
     begun_again: bool,
     nearest: NearestAttempts,
-    /// The controller of the attempt before.
+    /// The controller of the previous attempt.
     before: Option<TransferFunction>,
     /// The last attempt that found no stable loop.
     unstable: Option<Attempt>,
     samples: Option<Samples>,
     rounds: Vec<DesignRound>,
     tried: Vec<TriedStructure>,
-    /// The name of the design, where it has one, and what it reached.
+    /// The name of the design, if any, and its figure of merit.
     met: Option<(NamedStructure, Option<f64>)>,
     kept: &'a KeptPlants,
     design: Option<Design>,
@@ -209,8 +209,7 @@ impl<'a> DesignProgress<'a> {
         }
     }
 
-    /// Skips structures that failed before the design for fewer plants, and begins with its
-    /// controller.
+    /// Skips structures that failed in the design for fewer plants, and begins with its controller.
     fn begin_at(&mut self, found: &Design) {
         let order = found.structure.roots(-1.0);
         let own = |one: &WaitingStructure| one.name().is_some() && one.name() == found.name;
@@ -228,7 +227,7 @@ impl<'a> DesignProgress<'a> {
         self.before = found.law.feedback.transfer_function().ok();
     }
 
-    /// Tries one structure after the other; the attempt at which the watch stopped it.
+    /// Searches one structure after the other; returns the attempt at which the watch stopped it.
     fn try_structures(&mut self, watch: Watch<'_>) -> Result<Option<Attempt>, LoopDesignError> {
         while let Some((structure, feedback)) = self.next() {
             let mut attempt = self.attempt(structure, feedback)?;
@@ -257,8 +256,8 @@ impl<'a> DesignProgress<'a> {
         }
     }
 
-    /// The next structure, with a controller to begin from: the one that is tried again, the next
-    /// in the queue, or a relaxation of the one that came nearest.
+    /// The next structure, with a controller to begin from: the one to be searched again, the next
+    /// in the queue, or a relaxation of the nearest one.
     fn next(&mut self) -> Option<(Structure, Option<TransferFunction>)> {
         if let Some(again) = self.again.take() {
             return Some(again);
@@ -276,8 +275,8 @@ impl<'a> DesignProgress<'a> {
         Some((attempt.structure().clone(), attempt.feedback()))
     }
 
-    /// The watch of one attempt. The share is an estimate, because the number of structures is not
-    /// known in advance.
+    /// The watch of one attempt. The fraction is an estimate, because the number of structures is
+    /// not known in advance.
     fn part<'w>(&self, watch: Watch<'w>) -> impl FnMut(Progress) -> bool + use<'w> {
         let left = self.waiting.len() as f64 + 1.0;
         let share = (1.0 - left / (self.all as f64 + 1.0)).max(0.0);
@@ -311,7 +310,7 @@ impl<'a> DesignProgress<'a> {
         Ok(attempt.that_earns(self.to_be_reached_db()))
     }
 
-    /// The value that a structure must reach to take the place of the one that is met, dB.
+    /// The value that a structure must reach to replace the one that meets the limits, dB.
     fn to_be_reached_db(&self) -> Option<f64> {
         let ControllerChoice::Any { earned_per_pole_db, .. } = self.options.controller else { return None };
         let (met, reached_db) = self.met?;
@@ -319,19 +318,19 @@ impl<'a> DesignProgress<'a> {
         Some(reached_db? - earned_per_pole_db * further as f64)
     }
 
-    /// Keeps what an attempt reached for the comparison of structures; one that is tried again
-    /// takes the place of its trial before.
+    /// Records the result of an attempt for the comparison of structures; a repeated search
+    /// replaces its earlier result.
     fn note(&mut self, attempt: &Attempt, ending: &AttemptEnding) {
         let own = TriedStructure::new(self.now.name(), attempt, ending);
         match self.tried.iter_mut().find(|known| known.structure == own.structure) {
-            // a relaxation is no better news than that it was missed
+            // a relaxation does not replace the record that the limits were missed
             Some(known) if known.ending == StructureEnding::Met && own.ending != StructureEnding::Met => {}
             Some(known) => *known = own,
             None => self.tried.push(own),
         }
     }
 
-    /// Those of the design; the same structure again begins at other random points.
+    /// Options of the design; a repeated structure begins at other random points.
     fn options_of(&mut self, structure: &Structure) -> DesignOptions {
         let mut options = self.options.clone();
         if self.last.as_ref() == Some(structure) {
@@ -351,14 +350,15 @@ impl<'a> DesignProgress<'a> {
         Ok(samples)
     }
 
-    /// Takes the result of an attempt; returns whether no other attempt is worthwhile.
+    /// Takes the result of an attempt; returns true if no other attempt is worthwhile.
     fn is_done_with(&mut self, attempt: Attempt, ending: AttemptEnding) -> Result<bool, LoopDesignError> {
         self.samples = Some(attempt.samples());
         self.rounds.extend_from_slice(attempt.rounds());
         self.before = attempt.feedback().or(self.before.take());
         match ending {
             AttemptEnding::Met(audit) => {
-                // the margins of its last samples, more than it was searched with, still earn it
+                // the margins of its last samples, more than the search began with, must still earn
+                // its poles
                 let reached_db = attempt.reached_db();
                 let earns = self.to_be_reached_db().zip(reached_db).is_none_or(|(most, own)| own <= most);
                 if !earns {
@@ -376,7 +376,7 @@ impl<'a> DesignProgress<'a> {
             AttemptEnding::Missed { worst_margin_db, audit: Some(_) }
                 if worst_margin_db > self.options.feasible_db() && !self.begun_again =>
             {
-                // it can be met after all: from here on the objective is optimised
+                // the limits can be met after all: from here on the objective is optimised
                 (self.begun_again, self.relaxing) = (true, false);
                 self.again = Some((attempt.structure().clone(), attempt.feedback()));
                 Ok(false)
@@ -404,13 +404,13 @@ impl<'a> DesignProgress<'a> {
         }
     }
 
-    /// Whether nothing is left to be tried once a structure beyond the one that is met has failed:
-    /// other names may still be worth their poles, fewer zeros are not.
+    /// True if no candidates remain once a structure beyond a valid one has failed: other names may
+    /// still be worth their poles, fewer zeros are not.
     fn is_done_without(&self) -> bool {
         self.found && (self.met.is_none() || self.waiting.is_empty())
     }
 
-    /// True where an attempt that missed may need less relaxation than the one that was found.
+    /// True if an attempt that missed may need less relaxation than the one that was found.
     fn may_need_less(&self) -> bool {
         match &self.design {
             Some(Design { status: DesignStatus::Infeasible(known), .. }) => {
@@ -468,7 +468,7 @@ pub(super) fn design_of(
     })
 }
 
-/// The plants that a search begins with, the nominal one first.
+/// The initial plants of a search, the nominal one first.
 fn first_plants(problem: &DesignProblem, seed: u64) -> Vec<PlantPoint> {
     let mut plants = first_members(&problem.family, seed);
     plants.extend((0..problem.beside.len()).map(PlantPoint::Beside));

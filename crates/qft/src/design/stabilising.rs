@@ -1,5 +1,5 @@
-//! Controllers that stabilise a nominal plant by placing its poles: where a search begins for
-//! plants with unstable or undamped poles, which hardly any random controller stabilises.
+//! Controllers that stabilise a nominal plant by placing its poles: starting points of a search for
+//! plants with unstable or undamped poles, which few random controllers stabilise.
 //!
 //! ```text
 //! P ~ n(s)/d(s), simplified        s^q d(s) x(s) + n(s) y(s) = target(s)        G = y(s)/(s^q x(s))
@@ -20,28 +20,28 @@ use self::placement::{by_need, has_to_move, mirror, observer_poles, placed};
 use crate::family::{Extent, Family, UncertainFamily};
 use crate::loop_shaping::DesignProblem;
 
-/// Factors by which the mirrored poles move out.
+/// Factors by which the mirrored poles are moved outwards.
 const SPEEDS: [f64; 7] = [0.7, 1.0, 1.5, 2.2, 3.3, 5.0, 8.0];
-/// By how much faster than those the poles of the observer are.
+/// Factors by which the observer poles are faster than those.
 const OBSERVER: [f64; 2] = [1.0, 4.0];
-/// A pole at the origin is moved to this share of the slowest other pole.
+/// Fraction of the slowest other pole to which a pole at the origin is moved.
 const SLOW: f64 = 0.3;
 
-/// A pole that is slower than this share of the fastest pole to be moved stays slow, at these
-/// multiples of its magnitude.
+/// Fraction of the fastest pole to be moved below which a pole stays slow, and multiples of its
+/// magnitude at which it is placed.
 const MUCH_SLOWER: f64 = 0.1;
 const SLOW_SPEEDS: [f64; 3] = [0.3, 1.0, 3.0];
 
-/// By how much the mirrored poles move out.
+/// Factors by which the mirrored poles are moved outwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Speeds {
     control: f64,
     observer: f64,
-    /// For poles that are much slower than others that have to move.
+    /// Factor for poles that are much slower than others that have to move.
     slow: f64,
 }
 
-/// Zeros, poles and gain of a plant, those of its dead time included.
+/// Zeros, poles and gain of a plant, including those of its dead time.
 #[derive(Clone, Debug, PartialEq)]
 struct PlantRoots {
     gain: f64,
@@ -49,8 +49,8 @@ struct PlantRoots {
     poles: Vec<Complex64>,
 }
 
-/// Whether the nominal plant, or that in the middle of the box, has a pole that the loop has to
-/// move; unknown for plants without polynomials.
+/// True if the nominal plant, or that in the middle of the box, has a pole that the loop has to
+/// move; false for plants without polynomials.
 pub(super) fn has_poles_to_move(problem: &DesignProblem) -> bool {
     let Family::Uncertain(family) = &problem.family else { return false };
     let polynomial = |plant: PlantCoefficients<f64>| Polynomial::new(plant.command.denominator).roots().ok();
@@ -58,8 +58,8 @@ pub(super) fn has_poles_to_move(problem: &DesignProblem) -> bool {
 }
 
 /// Controllers of at most this order, with this number of integrators, that stabilise
-/// simplifications of the nominal plant and of the middle of the box; empty where no pole of the
-/// plant is unstable or undamped, and for plants without polynomials.
+/// simplifications of the nominal plant and of the middle of the box; empty if no pole of the plant
+/// is unstable or undamped, and for plants without polynomials.
 pub(super) fn stabilising(
     problem: &DesignProblem,
     integrators: usize,
@@ -120,7 +120,7 @@ impl PlantRoots {
             roots.poles.push(Complex64::new(-2.0 / delay_s, 0.0));
         }
         by_need(&mut roots.poles);
-        // of a pair the one above the axis first, as `simplified` takes it
+        // the upper pole of each pair first, as `simplified` takes it
         roots.zeros.sort_by(|one, other| {
             one.norm_sqr().total_cmp(&other.norm_sqr()).then(other.im.total_cmp(&one.im))
         });
@@ -128,8 +128,8 @@ impl PlantRoots {
         (finite && roots.poles.len() > roots.zeros.len()).then_some(roots)
     }
 
-    /// The plant reduced to this number of its poles, or one more where a pair would be split:
-    /// those that have to move and the slowest. The static gain is preserved.
+    /// The plant reduced to this number of its poles, or one more if a pair would be split: the
+    /// poles that have to move and the slowest. The static gain is preserved.
     fn simplified(&self, kept: usize) -> PlantRoots {
         let parts = |at: usize| self.poles.get(at).is_some_and(|pole| pole.im < 0.0);
         let kept = if parts(kept) { kept + 1 } else { kept };
@@ -148,8 +148,8 @@ impl PlantRoots {
         PlantRoots { gain, zeros: zeros.to_vec(), poles: poles.to_vec() }
     }
 
-    /// The controller that places the poles of the loop; `None` where it has roots in the right
-    /// half plane, which structures cannot have.
+    /// The controller that places the poles of the loop; `None` if it has roots in the right half
+    /// plane, which structures cannot have.
     fn controller(&self, integrators: usize, speeds: Speeds) -> Option<TransferFunction> {
         let scale = self.scale()?;
         let scaled = |roots: &[Complex64]| roots.iter().map(|root| root / scale).collect::<Vec<_>>();
@@ -189,15 +189,14 @@ impl PlantRoots {
         MUCH_SLOWER * moved.map(|pole| portable::magnitude(*pole)).fold(0.0, f64::max)
     }
 
-    /// The multiples that are tried for poles that stay slow; one of them where there is no such
-    /// pole.
+    /// Candidate factors for poles that stay slow; a single one if there is no such pole.
     fn slow_speeds(&self) -> &'static [f64] {
         let below = self.much_slower();
         let any = self.poles.iter().any(|pole| portable::magnitude(*pole) < below && pole.norm_sqr() > 0.0);
         if any { &SLOW_SPEEDS } else { &SLOW_SPEEDS[..1] }
     }
 
-    /// The geometric mean of the magnitudes of the poles that are not at the origin.
+    /// The geometric mean of the magnitudes of the poles away from the origin.
     fn scale(&self) -> Option<f64> {
         let sizes = self.poles.iter().map(|pole| portable::magnitude(*pole)).filter(|size| *size > 0.0);
         let logarithms: Vec<f64> = sizes.map(portable::ln).collect();

@@ -1,4 +1,4 @@
-//! What each structure reached.
+//! Result of each structure searched.
 
 use std::collections::BTreeSet;
 
@@ -9,41 +9,41 @@ use super::{BINDING_DB, NamedStructure};
 use crate::loop_shaping::Structure;
 use crate::verification::SpecificationMargin;
 
-/// How the trial of a structure ended.
+/// Outcome of the search of a structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StructureEnding {
-    /// The audit finds every specification met.
+    /// The audit finds that every specification is met.
     Met,
-    /// No controller of the structure meets every specification.
+    /// Every controller of the structure violates a specification.
     Missed,
-    /// What it gains over a shorter one that is met is not worth its poles.
+    /// The improvement over a shorter valid structure is not worth the additional poles.
     NotEarned,
-    /// Search and audit did not come to agree.
+    /// Search and audit did not agree.
     NotConverged,
-    /// No controller of the structure stabilises every plant.
+    /// The search finds no controller of the structure that stabilises every plant.
     NotStabilised,
 }
 
-/// A structure that was tried.
+/// A structure that was searched.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TriedStructure {
-    /// Its name; `None` for one of growing order or a given one.
+    /// Name of the structure; `None` for one of growing order or a given one.
     pub name: Option<NamedStructure>,
-    /// Its free numbers.
+    /// Structure with its free numbers.
     pub structure: Structure,
-    /// The structure of the prefilter that was fitted to it; `None` without one.
+    /// The structure of the prefilter fitted to it; `None` without one.
     pub prefilter: Option<Structure>,
-    /// The free numbers of both that it ended with; empty where it found none.
+    /// The final free numbers of both; empty if none were found.
     pub free_numbers: Vec<f64>,
-    /// How it ended.
+    /// Outcome of the search.
     pub ending: StructureEnding,
-    /// The controller that it ended with; `None` where it found none.
+    /// The final controller; `None` if none was found.
     pub law: Option<Controller>,
-    /// The least margin of the plants and frequencies that it was searched with: what binds.
+    /// The least margin of the plants and frequencies of its search: the binding limit.
     pub least: Option<SpecificationMargin>,
     /// The specifications whose least margins are within [`BINDING_DB`](super::BINDING_DB) of it.
     pub binding: Vec<usize>,
-    /// What a longer structure is compared by, dB, the less the better: see
+    /// Figure of merit for the comparison with a longer structure, dB, smaller is better: see
     /// [`ControllerChoice::Any`](super::ControllerChoice::Any).
     pub reached_db: Option<f64>,
 }

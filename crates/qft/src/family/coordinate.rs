@@ -5,22 +5,22 @@ use phea_dynamics::uncertain_plant::{UncertainParameter, UncertainPlant};
 
 use super::{FamilyError, Spacing};
 
-/// One direction of the box, run through by a share from 0 to 1. Several parameters in it are fully
-/// correlated.
+/// One direction of the box, traversed by a fraction from 0 to 1. Several parameters in it are
+/// fully correlated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coordinate {
-    /// Indices of the parameters it moves, in the order of the plant.
+    /// Indices of the parameters that it moves, in the order of the plant.
     pub parameters: Vec<usize>,
-    /// Indices of those of them that run from their maximum to their minimum.
+    /// Indices of the parameters among these that run from maximum to minimum.
     pub opposed: Vec<usize>,
-    /// How each of them is spread, in the order of `parameters`.
+    /// Spacing of each parameter, in the order of `parameters`.
     pub spacing: Vec<Spacing>,
-    /// Points of a grid over it.
+    /// Number of grid points.
     pub points: usize,
 }
 
 impl Coordinate {
-    /// The share at which the first parameter that moves has its value.
+    /// The fraction at which the first parameter that moves has its value.
     pub(super) fn share(&self, plant: &UncertainPlant, values: &[f64]) -> f64 {
         let found = self.parameters.iter().zip(&self.spacing).find_map(|(&index, &spacing)| {
             let parameter = plant.parameters().get(index)?;
@@ -65,7 +65,7 @@ pub(super) fn values(plant: &UncertainPlant, coordinates: &[Coordinate], shares:
     values
 }
 
-/// The ends of the range come out to the bit.
+/// Value of a parameter at a fraction of its range; exact to the bit at both ends.
 fn value_at(parameter: &UncertainParameter, spacing: Spacing, share: f64) -> f64 {
     let UncertainParameter { minimum, maximum, .. } = *parameter;
     match (share, spacing) {

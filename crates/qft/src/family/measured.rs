@@ -6,24 +6,24 @@ use phea_dynamics::portable;
 /// One measured plant: its response at increasing frequencies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredPlant {
-    /// What it is called, such as the name of its file.
+    /// Name of the plant, such as the name of its file.
     pub name: String,
-    /// rad/s, positive and increasing.
+    /// Frequencies, positive and increasing, rad/s.
     pub frequencies_rad_per_s: Vec<f64>,
-    /// P(j w) at each frequency.
+    /// Response P(j w) at each frequency.
     pub command: Vec<Complex64>,
-    /// Pd(j w) at each frequency, where the load-motion path was measured too.
+    /// Load-motion path Pd(j w) at each frequency, if measured.
     pub disturbance: Option<Vec<Complex64>>,
-    /// Radius of the disc around each P(j w) that holds the true response, all of them at once with
-    /// the confidence of the verdict; empty where the responses are exact.
+    /// Radius of the disc around each P(j w) that contains the true response, for all points
+    /// jointly with the confidence of the verdict; empty if the responses are exact.
     pub radii: Vec<f64>,
-    /// Number of open-loop poles in the right half plane, which cannot be seen from a response.
+    /// Number of open-loop poles in the right half plane, which a response does not show.
     pub unstable_poles: usize,
-    /// Poles less zeros at the origin, where they are stated: otherwise the slope at the lowest
-    /// frequencies must show them.
+    /// Number of poles less zeros at the origin, if stated: otherwise inferred from the slope at
+    /// the lowest frequencies.
     pub integrators: Option<usize>,
-    /// Whether the response between two points is known to be the interpolated one, as it is for
-    /// [`super::tabulated`]. Nothing is assumed that a measurement does not show.
+    /// True if the response between two points is known to be the interpolated one, as for
+    /// [`super::tabulated`]. False for a measurement, where nothing beyond the data is assumed.
     pub is_resolved: bool,
 }
 
@@ -33,14 +33,14 @@ pub struct MeasuredFamily {
     plants: Vec<MeasuredPlant>,
 }
 
-/// Why measurements are not a family.
+/// Reason why measurements are not a family.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeasurementError {
     /// There is no plant.
     #[error("no response was measured")]
     Empty,
-    /// Frequencies must be positive, finite and increasing; responses must be finite, not zero, and
-    /// equal in number; radii are not negative.
+    /// An invalid point: frequencies must be positive, finite and increasing; responses must be
+    /// finite, not zero, and equal in number; radii must not be negative.
     #[error(
         "{plant}: point {point} is not one of increasing positive frequencies with a finite response that is not zero"
     )]
@@ -56,7 +56,7 @@ impl MeasuredFamily {
     /// A family of these plants.
     ///
     /// # Errors
-    /// [`MeasurementError`].
+    /// [`MeasurementError`] for an empty or invalid family.
     pub fn new(plants: Vec<MeasuredPlant>) -> Result<MeasuredFamily, MeasurementError> {
         if plants.is_empty() {
             return Err(MeasurementError::Empty);
@@ -102,9 +102,9 @@ impl MeasuredPlant {
         if count == 0 || lengths.iter().any(|&length| length != count) { Some(count) } else { None }
     }
 
-    /// P and Pd at a frequency: as measured, or between two points straight in magnitude (dB) and
-    /// phase over the logarithm of frequency, the phase going the shorter way. `None` beyond the
-    /// ends of the measurement.
+    /// Responses P and Pd at a frequency: as measured, or interpolated linearly in magnitude (dB)
+    /// and phase over the logarithm of frequency, with the phase along the shorter way. `None`
+    /// beyond the ends of the measurement.
     pub fn response(&self, frequency_rad_per_s: f64) -> Option<(Complex64, Option<Complex64>)> {
         let upper = self.frequencies_rad_per_s.partition_point(|&w| w < frequency_rad_per_s);
         let last = *self.frequencies_rad_per_s.get(upper)?;
@@ -127,8 +127,8 @@ impl MeasuredPlant {
         Some((between(&self.command), self.disturbance.as_ref().map(|values| between(values))))
     }
 
-    /// Radius of the disc around P at a frequency; between two points the wider of theirs, each in
-    /// relation to its response. Zero where the responses are exact.
+    /// Radius of the disc around P at a frequency; between two points the wider of theirs, each
+    /// relative to its response. Zero if the responses are exact.
     pub(crate) fn radius(&self, frequency_rad_per_s: f64) -> f64 {
         let upper = self.frequencies_rad_per_s.partition_point(|&w| w < frequency_rad_per_s);
         let Some(&radius) = self.radii.get(upper) else { return 0.0 };

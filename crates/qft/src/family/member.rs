@@ -5,10 +5,10 @@ use phea_dynamics::uncertain_plant::UncertainPlant;
 
 use super::{Coordinate, FamilyError, MEMBERS_MAXIMUM, coordinate};
 
-/// All combinations of the coordinates' points, the last coordinate running fastest.
+/// All combinations of the coordinates' points, the last coordinate varying fastest.
 ///
 /// # Errors
-/// [`FamilyError::TooManyMembers`], and those of coordinates that do not fit the plant.
+/// [`FamilyError::TooManyMembers`], and errors of coordinates that do not fit the plant.
 pub fn grid(plant: &UncertainPlant, coordinates: &[Coordinate]) -> Result<Vec<Vec<f64>>, FamilyError> {
     let points: Vec<usize> = coordinates.iter().map(|coordinate| coordinate.points.max(1)).collect();
     combinations(plant, coordinates, &points)
@@ -17,19 +17,19 @@ pub fn grid(plant: &UncertainPlant, coordinates: &[Coordinate]) -> Result<Vec<Ve
 /// All corners of the box.
 ///
 /// # Errors
-/// Those of [`grid`].
+/// Errors of [`grid`].
 pub fn vertices(plant: &UncertainPlant, coordinates: &[Coordinate]) -> Result<Vec<Vec<f64>>, FamilyError> {
     combinations(plant, coordinates, &vec![2; coordinates.len()])
 }
 
-/// Points of the box drawn at random: the share of every coordinate evenly over [0, 1], so that a
-/// logarithmic one is drawn evenly in its logarithm. Equal seeds give equal points on every
+/// Points of the box drawn at random: the fraction of every coordinate is uniform over [0, 1], so
+/// that a logarithmic one is uniform in its logarithm. Equal seeds give equal points on every
 /// machine, and a longer draw begins with the shorter one.
 ///
 /// Source: the generator is SplitMix64, Steele, Lea and Flood (2014).
 ///
 /// # Errors
-/// Those of [`grid`].
+/// Errors of [`grid`].
 ///
 /// # Example
 /// ```

@@ -1,4 +1,4 @@
-//! The response of a plant without polynomials as a table, which is dense where the response bends.
+//! The response of a plant without polynomials as a table, dense where the response bends.
 
 use num_complex::Complex64;
 use phea_dynamics::frequency::logarithmic_grid;
@@ -7,26 +7,26 @@ use phea_dynamics::uncertain_plant::responding::RespondingPlant;
 
 use super::MeasuredPlant;
 
-/// Points in a decade before they are made denser.
+/// Number of points per decade before refinement.
 const POINTS_PER_DECADE: f64 = 25.0;
-/// Relative deviation of a response from the interpolated value halfway between two points that is
-/// allowed in tables that replace a plant.
+/// Relative deviation of a response from the interpolated value halfway between two points allowed
+/// in tables that replace a plant.
 pub const FINE: f64 = 2e-3;
-/// The same where a table only shows at which frequencies a response bends.
+/// Allowed relative deviation in tables that only show the frequencies at which a response bends.
 pub(crate) const COARSE: f64 = 3e-2;
 /// Least distance of two points, relative to their frequency.
 const CLOSEST: f64 = 1e-6;
 
-/// Frequency in rad/s, and both paths there.
+/// Frequency, rad/s, and both paths there.
 pub(crate) type TabulatedPoint = (f64, [Complex64; 2]);
 
-/// The response between two frequencies in rad/s, at points so dense that the value that
+/// The response between two frequencies, rad/s, at points so dense that the value that
 /// [`MeasuredPlant::response`] interpolates halfway between any two of them has at most this
 /// relative error ([`FINE`] is 0.2 %), for searches that evaluate it thousands of times.
 ///
 /// # Example
-/// exp(-s/10)/(s + 1), known by its response: the table is that response to 0.2 %, between its
-/// points too.
+/// Plant exp(-s/10)/(s + 1), given by its response: the table equals that response to 0.2 %, also
+/// between its points.
 /// ```
 /// use num_complex::Complex64;
 /// use phea_dynamics::analytic::Disc;
@@ -86,8 +86,8 @@ pub(crate) fn table(found: Vec<TabulatedPoint>, unstable_poles: Option<usize>) -
     }
 }
 
-/// Both paths between two frequencies in rad/s, as dense as a table of this tolerance needs them;
-/// points without a response are left out.
+/// Both paths between two frequencies, rad/s, as dense as a table of this tolerance requires;
+/// points without a response are omitted.
 pub(crate) fn points(
     response: impl Fn(f64) -> Option<[Complex64; 2]>,
     [from, to]: [f64; 2],

@@ -1,4 +1,4 @@
-//! The largest gains of both loops, closed forms at each frequency.
+//! The largest gains of both loops, in closed form at each frequency.
 
 use std::f64::consts::TAU;
 
@@ -9,20 +9,20 @@ use phea_dynamics::portable;
 
 use super::{InnerLoopLimits, InnerLoopProblem, InnerLoopReach, InnerPoint};
 
-/// A plant behind an inner feedback of gain one.
+/// A plant within an inner feedback of gain one.
 struct PlantBehind {
     index: usize,
-    /// Its points with H Q in place of Q.
+    /// Points of the plant with H Q in place of Q.
     points: Vec<InnerPoint>,
-    /// |H| at the points.
+    /// Magnitudes |H| at the points.
     sizes: Vec<f64>,
-    /// The reference likewise.
+    /// Reference point likewise.
     reference: InnerPoint,
-    /// Q there.
+    /// Signal Q at the reference.
     reference_signal: Complex64,
 }
 
-/// Plants behind an inner feedback of gain one.
+/// Plants within an inner feedback of gain one.
 pub(super) struct PlantsBehind {
     limits: InnerLoopLimits,
     sample_time_s: Option<f64>,
@@ -30,7 +30,7 @@ pub(super) struct PlantsBehind {
 }
 
 impl PlantsBehind {
-    /// These plants of a problem behind a feedback.
+    /// Plants of a problem within a feedback.
     pub(super) fn new(
         problem: &InnerLoopProblem,
         unit: &InnerFeedback,
@@ -56,7 +56,7 @@ impl PlantsBehind {
         })
     }
 
-    /// The largest gain of the inner loop alone, infinite where nothing limits it.
+    /// The largest gain of the inner loop, infinite if nothing limits it.
     pub(super) fn largest_inner_gain(&self) -> f64 {
         let each = self.plants.iter().map(|plant| self.inner_gain_of(plant));
         each.fold(f64::INFINITY, f64::min)
@@ -78,8 +78,8 @@ impl PlantsBehind {
         each.min_by(f64::total_cmp)
     }
 
-    /// What a gain of the inner loop makes of the plants; `None` without plants, and where a plant
-    /// breaks a limit of the inner loop.
+    /// Performance of the plants with a gain of the inner loop; `None` without plants, and if a
+    /// plant violates a limit of the inner loop.
     pub(super) fn reach(&self, gain: f64) -> Option<InnerLoopReach> {
         let keeps = |plant: &PlantBehind| self.keeps(plant, gain);
         if !self.plants.iter().all(keeps) {
@@ -92,8 +92,8 @@ impl PlantsBehind {
         Some(InnerLoopReach { loop_gain: tightest.outer_gain * least, ..tightest })
     }
 
-    /// The plants that set a limit on a feedback: those that break one of the inner loop most, or
-    /// that limit the outer one and its gain.
+    /// The plants that set a limit on a feedback: those that violate a limit of the inner loop
+    /// most, or that limit the outer one and its gain.
     pub(super) fn worst(&self, gain: f64) -> Vec<usize> {
         let least = |measure: &dyn Fn(&PlantBehind) -> f64| {
             let of = |one: &&PlantBehind, other: &&PlantBehind| measure(one).total_cmp(&measure(other));
@@ -130,8 +130,8 @@ impl PlantsBehind {
         each.min_by(|one, other| one.outer_gain.total_cmp(&other.outer_gain))
     }
 
-    /// Root mean square of the command that the noise of the signal causes in the inner loop alone;
-    /// `None` where it is not limited.
+    /// Rms command that the noise of the signal causes in the inner loop, without the outer one;
+    /// `None` if it is not limited.
     fn command_noise(&self, plant: &PlantBehind, gain: f64) -> Option<f64> {
         let [rms, _] = self.limits.noise?;
         let end = std::f64::consts::PI / self.sample_time_s?;
@@ -143,13 +143,13 @@ impl PlantsBehind {
     }
 }
 
-/// |P'| at the reference.
+/// Magnitude |P'| at the reference.
 fn closed_reference(plant: &PlantBehind, gain: f64) -> f64 {
     let reference = &plant.reference;
     portable::magnitude(reference.plant / (1.0 + gain * reference.signal))
 }
 
-/// Relative excess of a gain that is one of rounding.
+/// Relative excess of a gain that counts as rounding error.
 const ROUNDING: f64 = 1e-9;
 
 /// The largest gain of a proportional loop around P' at one frequency.
@@ -177,13 +177,13 @@ fn modulus_gain(open: Complex64, margin: f64) -> f64 {
     (-open.re - discriminant.sqrt()) / square
 }
 
-/// The K beyond which |K L/(1 + K L)| is above 1/sqrt(2): |L|^2 K^2 - 2 Re(L) K - 1 = 0.
+/// Gain K beyond which |K L/(1 + K L)| exceeds 1/sqrt(2): |L|^2 K^2 - 2 Re(L) K - 1 = 0.
 fn fallen_gain(open: Complex64) -> f64 {
     let square = open.norm_sqr();
     (open.re + (open.re * open.re + square).sqrt()) / square
 }
 
-/// The least K > 0 with which a delay up to this one makes I + K L reach -1.
+/// The least K > 0 for which some delay up to this one makes I + K L reach -1.
 ///
 /// ```text
 /// |I + K L| = 1   and   arg(-(I + K L)) <= w T_m, counted from 0 to 2 pi

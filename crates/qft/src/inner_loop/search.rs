@@ -1,5 +1,5 @@
-//! The search for gain and corner: a grid, then local maxima; over the plants that bind, to which
-//! those that a found feedback leaves worst are added.
+//! Search for gain and corner: a grid, then local maxima; over the binding plants, to which those
+//! that are worst with the feedback found are added.
 
 use phea_dynamics::controller::InnerFeedback;
 use phea_dynamics::linear::LinearError;
@@ -9,16 +9,16 @@ use phea_dynamics::portable;
 use super::limits::PlantsBehind;
 use super::{FoundInnerFeedback, InnerLoopProblem, InnerLoopReach};
 
-/// Corners of the grid.
+/// Number of corners of the grid.
 const CORNERS: usize = 17;
-/// Gains of the grid at each corner, and the largest over the least.
+/// Number of gains of the grid at each corner, and ratio of the largest to the least.
 const GAINS: usize = 20;
 const GAIN_RATIO: f64 = 3000.0;
-/// |k Q| at the reference up to which gains are searched where nothing limits them.
+/// Magnitude |k Q| at the reference up to which gains are searched if nothing limits them.
 const BEYOND_REFERENCE: f64 = 100.0;
-/// Share of a cell of the grid to which a maximum is found.
+/// Fraction of a cell of the grid to which a maximum is located.
 const CELL_SHARE: f64 = 1e-3;
-/// Loop gain over all plants that is as good as over those that were searched with.
+/// Ratio of the loop gain over all plants to that over the searched plants that counts as equal.
 const AS_GOOD: f64 = 0.998;
 
 pub(super) fn best(problem: &InnerLoopProblem) -> Result<Option<FoundInnerFeedback>, LinearError> {
@@ -50,7 +50,7 @@ pub(super) fn best(problem: &InnerLoopProblem) -> Result<Option<FoundInnerFeedba
     Ok(best)
 }
 
-/// The best feedback for these plants alone.
+/// The best feedback for this subset of plants.
 fn best_of(
     problem: &InnerLoopProblem,
     plants: &[usize],
@@ -94,7 +94,7 @@ fn best_of(
     }
 }
 
-/// The best gain behind a high pass with this corner; `None` where no gain keeps the limits.
+/// The best gain in series with a high pass of this corner; `None` if no gain satisfies the limits.
 fn best_gain(
     problem: &InnerLoopProblem,
     plants: &[usize],

@@ -1,10 +1,10 @@
-//! The best point that a search judges, for a search that is stopped on its way.
+//! The best point that a search evaluates, for a search that is stopped early.
 
 use super::descent::is_usable;
 use super::search::{Aim, Judgement, SearchProblem, Slopes};
 use super::start::JudgedPoint;
 
-/// The best stable point that was judged.
+/// The best stable point evaluated.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct BestSeen {
     aim: Aim,
@@ -22,7 +22,7 @@ impl BestSeen {
         BestSeen { aim, best: None }
     }
 
-    /// x of the best stable point; `None` if none was judged.
+    /// Free numbers x of the best stable point; `None` if none was evaluated.
     pub(crate) fn x(self) -> Option<Vec<f64>> {
         self.best.map(|best| best.x)
     }
@@ -33,7 +33,7 @@ impl BestSeen {
         }
     }
 
-    /// Takes what another search of the same problem has seen.
+    /// Merges the best point of another search of this problem.
     pub(super) fn join(&mut self, other: BestSeen) {
         if let Some(point) = other.best {
             self.take(point);

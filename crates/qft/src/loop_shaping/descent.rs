@@ -1,4 +1,4 @@
-//! Downhill from one point: a sequence of convex subproblems within a trust region.
+//! Descent from one point: a sequence of convex subproblems within a trust region.
 
 mod curvature;
 mod outcome;
@@ -15,59 +15,58 @@ pub(super) use curvature::Curvature;
 pub use outcome::{Binding, DescentResult, DescentStatus, DescentWork};
 use place::DescentPoint;
 
-/// First trust region, and the largest, in units of x.
+/// Initial and largest radius of the trust region, in units of x.
 const RADIUS_FIRST: f64 = 0.3;
 const RADIUS_NEAR: f64 = 0.1;
 const RADIUS_LARGEST: f64 = 2.0;
-/// A trust region below this ends the descent.
+/// Radius of the trust region below which the descent ends.
 const RADIUS_LEAST: f64 = 1e-8;
-/// Share of the promised decrease from which a step is taken, from which the region is kept, and
-/// from which it may grow.
+/// Fractions of the predicted decrease above which a step is accepted, the region is retained, and
+/// it may grow.
 const TAKEN: f64 = 0.05;
 const KEPT: f64 = 0.25;
 const GROWN: f64 = 0.7;
 /// Largest number of corrections of one step.
 const CORRECTIONS_MAXIMUM: usize = 3;
-/// dB of the objective for each dB of violation: the first penalty, its growth, its largest.
+/// Initial penalty, its growth factor and its maximum, dB of the objective per dB of violation.
 const PENALTY_FIRST: f64 = 10.0;
 const PENALTY_GROWTH: f64 = 4.0;
 const PENALTY_LARGEST: f64 = 1e7;
-/// Share of the tolerance by which margins may miss the reserve while the objective is optimised.
+/// Fraction of the tolerance by which margins may miss the reserve for [`Aim::Objective`].
 const ENTERED: f64 = 0.5;
-/// How far the remaining slopes may still lead, in units of x, for a point to count as the end.
+/// Remaining distance along the slopes below which a point counts as the end, in units of x.
 const REACH: f64 = 0.1;
-/// Number of successive subproblems without a solution after which the descent gives up.
+/// Number of successive subproblems without a solution after which the descent is abandoned.
 const FAILURES_MAXIMUM: usize = 8;
-/// A multiplier below this share of the largest is rounding.
+/// Fraction of the largest multiplier below which a multiplier is rounding error.
 const MULTIPLIER_LEAST: f64 = 1e-6;
 
-/// What a descent looks for, how accurately, and for how long.
+/// Aim, accuracy and limits of a descent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DescentOptions {
-    /// What is minimised or maximised.
+    /// The aim: objective or worst margin.
     pub aim: Aim,
-    /// Least margin to be left, dB, for [`Aim::Objective`]. Limits that leave no room, such as
-    /// those of tracking at low frequency, keep no reserve; a negative reserve, equal to what an
-    /// audit tolerates, accounts for this.
+    /// Least margin required for [`Aim::Objective`], dB. Limits without room between them, such as
+    /// those of tracking at low frequency, permit no reserve; a negative reserve, equal to the
+    /// tolerance of an audit, accounts for this.
     pub reserve_db: f64,
-    /// Accuracy to which the objective or the worst margin is found, and by which a margin may miss
-    /// its reserve; dB.
+    /// Accuracy of objective or worst margin, and amount by which a margin may miss its reserve,
+    /// dB.
     pub tolerance_db: f64,
-    /// Steps at most.
+    /// Largest number of steps.
     pub steps_maximum: usize,
-    /// Whether the start lies near the end, as after a margin was added: objective and violation
-    /// are then reduced together from the beginning; reducing the worst violation first may lead
-    /// far away.
+    /// True if the start is near the end, as after a margin was added: objective and violation are
+    /// then reduced together from the beginning; reducing the worst violation first may diverge.
     pub is_near: bool,
 }
 
 impl DescentOptions {
-    /// No reserve, a tolerance of 0.0001 dB, 200 steps.
+    /// Defaults: no reserve, a tolerance of 0.0001 dB, 200 steps.
     pub fn new(aim: Aim) -> DescentOptions {
         DescentOptions { aim, reserve_db: 0.0, tolerance_db: 1e-4, steps_maximum: 200, is_near: false }
     }
 
-    /// Whether a worst margin keeps the reserve, but for a share of the tolerance.
+    /// True if a worst margin satisfies the reserve, except for a fraction of the tolerance.
     fn keeps(&self, worst_margin_db: f64, share: f64) -> bool {
         worst_margin_db >= self.reserve_db - share * self.tolerance_db
     }
@@ -80,11 +79,11 @@ impl DescentOptions {
 /// ```
 ///
 /// Each step minimises a convex model of the merit within a box (sequential quadratic programming,
-/// the box a trust region, the penalty exact), and is taken if the merit falls by a share of what
-/// the model promises; a step into an unstable region is never taken. A step that the curvature of
-/// the margins makes too long is corrected with the margins found at its end (second-order
-/// correction). The curvature of the Lagrangian is learnt from its slopes (damped BFGS). For
-/// [`Aim::Objective`] the worst margin is raised first, until all margins keep their reserve.
+/// the box a trust region, the penalty exact), and is accepted if the merit falls by a fraction of
+/// the predicted decrease; a step into an unstable region is never accepted. A step that the
+/// curvature of the margins makes too long is corrected with the margins found at its end
+/// (second-order correction). The curvature of the Lagrangian is estimated from its slopes (damped
+/// BFGS). For [`Aim::Objective`] the worst margin is raised first, until all satisfy their reserve.
 ///
 /// The end is a local optimum. Source: Fletcher (1987), chapters 12 and 14; Nocedal and Wright
 /// (2006), chapter 18.
@@ -141,7 +140,7 @@ pub fn descend(
     }
 }
 
-/// A descent on its way.
+/// A descent in progress.
 #[derive(Clone, Debug)]
 pub(super) struct Descent {
     options: DescentOptions,
@@ -179,12 +178,12 @@ impl Descent {
         }
     }
 
-    /// Where it is.
+    /// The present point x.
     pub(super) fn x(&self) -> &[f64] {
         self.here.as_ref().map_or(&self.x, |here| &here.x)
     }
 
-    /// Ends where another has ended, after this much work of its own.
+    /// Ends at the end of another descent, with this much work done.
     pub(super) fn end_at(&mut self, other: &Descent, work: DescentWork) {
         self.work = work;
         self.here.clone_from(&other.here);
@@ -192,12 +191,12 @@ impl Descent {
         self.status = other.status;
     }
 
-    /// The judgement of the present point; `None` before the first step.
+    /// The evaluation of the present point; `None` before the first step.
     pub(super) fn judgement(&self) -> Option<Judgement> {
         self.here.as_ref().map(|here| here.judgement)
     }
 
-    /// Why it ended; `None` as long as it goes on.
+    /// Final status; `None` while it continues.
     pub(super) fn status(&self) -> Option<DescentStatus> {
         self.status
     }
@@ -218,7 +217,8 @@ impl Descent {
         DescentResult { x: here.map_or(x, |here| here.x), judgement, status, binding, work }
     }
 
-    /// Makes one step, with a few judgements; returns why the descent ended, once it has.
+    /// Makes one step, with a few evaluations; returns the status of the descent once that is
+    /// final.
     pub(super) fn advance(&mut self, problem: &mut dyn SearchProblem) -> Option<DescentStatus> {
         if self.status.is_some() {
             return self.status;
@@ -260,7 +260,7 @@ impl Descent {
         self.here = Some(DescentPoint { x, judgement, slopes, beyond: vec![] });
     }
 
-    /// One step: the point that it leads to, or the point where it began.
+    /// One step: the resulting point, or the starting point.
     fn advanced(&mut self, problem: &mut dyn SearchProblem, here: DescentPoint) -> DescentPoint {
         let bounds = problem.bounds().to_vec();
         let answer = match self.solved(&here, &here.rows(), &bounds) {
@@ -286,8 +286,8 @@ impl Descent {
         }
     }
 
-    /// The step again, with the margins found at its end as constants and the slopes at its start;
-    /// repeated as long as the result improves. The best is taken if it is good enough.
+    /// Repeats the step with the margins found at its end as constants and the slopes at its start,
+    /// as long as the result improves. The best point is accepted if it is good enough.
     fn corrected(
         &mut self,
         problem: &mut dyn SearchProblem,
@@ -322,7 +322,7 @@ impl Descent {
         here.with_rows_of(&there)
     }
 
-    /// Moves on, and adjusts the trust region to how well the model predicted the step.
+    /// Moves to the new point, and adapts the trust region to the accuracy of the prediction.
     fn taken(&mut self, there: DescentPoint, answer: &PredictedStep, share: f64) -> DescentPoint {
         let size = greatest(&answer.step);
         if share < KEPT {
@@ -338,8 +338,8 @@ impl Descent {
         there
     }
 
-    /// The answer of the subproblem around a place, the penalty raised as long as that lessens the
-    /// violation.
+    /// The solution of the subproblem around a point, with the penalty raised as long as that
+    /// reduces the violation.
     fn solved(
         &mut self,
         here: &DescentPoint,
@@ -376,7 +376,7 @@ impl Descent {
         Ok(answer)
     }
 
-    /// A smaller region and a curvature that is reset, after a subproblem without a solution.
+    /// Continues with a smaller region and a reset curvature after a subproblem without a solution.
     fn without_answer(&mut self, failure: SubproblemFailure, here: DescentPoint) -> DescentPoint {
         self.work.subproblems += 1;
         self.failures += 1;
@@ -389,8 +389,8 @@ impl Descent {
         here
     }
 
-    /// Whether the step is worth trying. If the model predicts no further gain, `status` states
-    /// what that means; if only the curvature is the reason, it is reset.
+    /// True if the step is worth evaluating. If the model predicts no further gain, `status` states
+    /// the reason; if that is only the curvature, it is reset.
     fn goes_on(&mut self, here: &DescentPoint, answer: &PredictedStep) -> bool {
         self.failures = 0;
         let tolerance = self.options.tolerance_db;
@@ -453,7 +453,7 @@ impl Descent {
         }
     }
 
-    /// The decrease of the merit, dB; minus infinity where margins have no meaning.
+    /// The decrease of the merit, dB; minus infinity if the margins are meaningless.
     fn gain(&self, here: &DescentPoint, there: &Judgement) -> f64 {
         let merit = |judgement: &Judgement| match self.aim {
             Aim::WorstMargin => -judgement.worst_margin_db,
@@ -489,7 +489,7 @@ impl Descent {
     }
 }
 
-/// Whether margins mean anything.
+/// True if the margins are meaningful.
 pub(super) fn is_usable(judgement: &Judgement) -> bool {
     judgement.stable && judgement.worst_margin_db.is_finite() && judgement.objective_db.is_finite()
 }

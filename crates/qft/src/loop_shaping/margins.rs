@@ -1,11 +1,12 @@
-//! Margins of the samples: what is demanded at a frequency, and by how much the plants satisfy it.
+//! Margins of the samples: the requirements at a frequency, and the distance by which the plants
+//! satisfy them.
 //!
 //! ```text
 //! X = A G^a/(1 + B G),  B = P H,       margin = 20 log10(limit/|X|)
 //! d margin/dx = -(20/ln 10) Re(c d ln G/dx),    c = a - B G/(1 + B G)
 //! ```
 //!
-//! A margin thus depends on two real numbers of its plant, the parts of c. The search of a worst
+//! A margin thus depends on two real numbers of its plant, the parts of c. The search for a worst
 //! plant compares squares of magnitudes.
 
 mod crossover;
@@ -25,23 +26,23 @@ pub(super) use crossover::{AboveColumns, ColumnDependence, DelayMargins, bandwid
 pub(super) use prominent::MarginCandidate;
 pub(super) use rows::candidates;
 
-/// What is demanded of the plants at one frequency.
+/// Requirement on the plants at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Demand {
     pub(super) specification: usize,
     pub(super) closed_loop: ClosedLoop,
     limited: LimitedSide,
-    /// The square of the limit or, for a spread, of the quotient of both limits.
+    /// The square of the limit or, for a spread, of the ratio of both limits.
     allowed: f64,
     rate: f64,
 }
 
-/// From which side a closed loop is limited.
+/// Side on which a closed loop is limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LimitedSide {
     FromAbove,
     FromBelow,
-    /// The greatest magnitude over the least, without a prefilter.
+    /// Both sides: the ratio of the greatest magnitude to the least, without a prefilter.
     Spread,
 }
 
@@ -53,22 +54,23 @@ pub(super) struct ColumnLoop {
     sensitivity_squared: Vec<f64>,
 }
 
-/// By how much limits are tightened, and how a margin between two of them counts.
+/// Tightening of the limits, and scaling of a margin between two of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Keeping {
-    /// Every limit is tightened by this much, dB; by a part of it where two limits are near, see
+    /// Tightening of every limit, dB; reduced to a fraction if two limits are close together, see
     /// [`fraction_kept`].
     pub(super) reserve_db: f64,
-    /// Whether a margin counts by its share of what two limits leave between them, where that is
-    /// less than 1 dB. Otherwise limits that meet, as those of tracking do at zero frequency, would
-    /// leave no margin to be increased.
+    /// True if a margin counts as a fraction of the room between two limits, if that is less than 1
+    /// dB. Otherwise limits that meet, as those of tracking do at zero frequency, would leave no
+    /// margin to increase.
     pub(super) share_of_room: bool,
 }
 
 /// Smallest room that is used, dB.
 const ROOM_LEAST_DB: f64 = 1e-6;
 
-/// What the specifications demand at a frequency, for a loop that is defined up to the highest one.
+/// Requirements of the specifications at a frequency, for a loop that is defined up to the highest
+/// one.
 pub(super) fn demands(
     specifications: &[Specification],
     tracking: TrackingJudgement,
@@ -86,7 +88,7 @@ pub(super) fn demands(
         let lower = lower.and_then(|limit| limit.magnitude(frequency)).map(square);
         let upper = upper.magnitude(frequency).map(square);
         let ratio = upper.zip(lower).map(|(upper, lower)| upper / lower);
-        // the square of a magnitude moves by a tenth of a power of ten for each dB
+        // the square of a magnitude changes by a tenth of a decade per dB
         let room_db = ratio.map(|ratio| 10.0 * portable::log10(ratio));
         let inwards = portable::pow(10.0, -0.1 * reserve_db * fraction_kept(reserve_db, room_db));
         let room_db = room_db.map_or(1.0, |room_db| room_db.clamp(0.0, 1.0));
@@ -113,8 +115,8 @@ pub(super) fn demands(
 }
 
 impl Demand {
-    /// Where no specification demands anything: |1/(1+L)| stays below 20 dB, so that no search for
-    /// the least objective moves along the limit of stability beyond the bands.
+    /// Requirement where no specification applies: |1/(1+L)| stays below 20 dB, so that no search
+    /// for the least objective follows the stability limit beyond the bands.
     const RESERVE: Demand = Demand {
         specification: usize::MAX,
         closed_loop: ClosedLoop::Sensitivity,
@@ -123,20 +125,20 @@ impl Demand {
         rate: 1.0,
     };
 
-    /// Whether it belongs to none of the specifications.
+    /// True if it belongs to no specification.
     pub(super) fn is_reserve(&self) -> bool {
         self.specification == usize::MAX
     }
 
-    /// A number that exceeds the demands of any column.
+    /// Number that exceeds the requirements of any column.
     pub(super) const PER_COLUMN: usize = 64;
 
-    /// What one dB of relaxation of every limit adds to the margin; see [`Keeping::share_of_room`].
+    /// Increase of the margin per dB of relaxation of every limit; see [`Keeping::share_of_room`].
     pub(super) fn rate(&self) -> f64 {
         self.rate
     }
 
-    /// Whether F is a factor of the limited magnitude: it cancels in a spread.
+    /// True if F is a factor of the limited magnitude: it cancels in a spread.
     fn has_prefilter(&self) -> bool {
         self.closed_loop.has_prefilter() && self.limited != LimitedSide::Spread
     }
@@ -151,7 +153,7 @@ impl Demand {
         }
     }
 
-    /// a: the power of G in the limited magnitude.
+    /// Power a of G in the limited magnitude.
     fn feedback_power(&self) -> f64 {
         if self.closed_loop.has_feedback() { 1.0 } else { 0.0 }
     }
@@ -165,7 +167,7 @@ impl Demand {
         }
     }
 
-    /// The square of A of each plant; `None` where that is 1.
+    /// The square of A of each plant; `None` if it is 1.
     fn paths_squared<'c>(&self, column: &'c FrequencyColumn) -> Option<&'c [f64]> {
         match self.closed_loop.plant_path() {
             PlantPath::PlantAndSensor => Some(&column.loop_squared),
@@ -192,8 +194,8 @@ impl Demand {
         squares
     }
 
-    /// The square of how far the worst plant, or pair of plants, of the column goes beyond the
-    /// limit; 0 where there is no plant.
+    /// The square of the ratio of the worst plant, or pair of plants, of the column to the limit; 0
+    /// without plants.
     pub(super) fn worst_excess(&self, column: &FrequencyColumn, around: &ColumnLoop) -> f64 {
         let sensitivity = &around.sensitivity_squared;
         let [least, greatest] = match self.paths_squared(column) {
@@ -213,7 +215,7 @@ impl Demand {
 }
 
 impl ColumnLoop {
-    /// Closes the loops of a column around this G, behind this F.
+    /// Closes the loops of a column with this G and this F.
     pub(super) fn close(&mut self, column: &FrequencyColumn, feedback: Complex64, prefilter: Complex64) {
         self.feedback_squared = feedback.norm_sqr();
         self.prefilter_squared = prefilter.norm_sqr();
@@ -231,8 +233,8 @@ fn products<'a>(one: &'a [f64], other: &'a [f64]) -> impl Iterator<Item = f64> +
     one.iter().zip(other).map(|(one, other)| one * other)
 }
 
-/// The least and the greatest; infinity and 0 if there are no values. What is not a number is left
-/// out. In four lanes: a comparison need not wait for the one before.
+/// The least and the greatest; infinity and 0 if there are no values. NaN is ignored. Computed in
+/// four lanes, so that comparisons are independent of each other.
 fn extremes(values: impl Fn(usize) -> f64, count: usize) -> [f64; 2] {
     const LANES: usize = 4;
     let wider = |[least, greatest]: [f64; 2], [low, high]: [f64; 2]| {

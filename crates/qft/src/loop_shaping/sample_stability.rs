@@ -1,12 +1,12 @@
-//! Whether a sample of plants is stable with a given controller: a search asks this thousands of
-//! times.
+//! Stability of a sample of plants with a given controller, evaluated thousands of times in a
+//! search.
 //!
 //! ```text
-//! D(s) Gd(s) + N(s) Gn(s) = 0          every root left of the imaginary axis?        Routh's table, N and D made ready once
-//! in a sampled loop the same in w = (z - 1)/(z + 1), whose imaginary axis is the unit circle of z
+//! D(s) Gd(s) + N(s) Gn(s) = 0          every root left of the imaginary axis?        Routh's table, N and D prepared once
+//! in a sampled loop likewise in w = (z - 1)/(z + 1), whose imaginary axis is the unit circle of z
 //! ```
 //!
-//! The table carries bounds of its rounding, so that it answers yes, no, or undecided; if
+//! The table carries bounds of its rounding errors, so that its result is yes, no, or undecided; if
 //! undecided, and for dead time and measured plants, the counts of [`crate::stability`] decide.
 
 mod quotient;
@@ -27,21 +27,21 @@ use crate::stability::{
 use quotient::BilinearQuotient;
 use rounded_polynomial::{Hurwitz, RoundedPolynomial};
 
-/// Resolution of real parts: this many per decade, from the least to the largest.
+/// Resolution of real parts: number per decade, from the least to the largest.
 const REAL_PARTS_PER_DECADE: f64 = 256.0;
 const LEAST_REAL_PART: f64 = 1e-9;
 const DECADES: usize = 21;
-/// How far above half the sampling rate a plant without polynomials is tabulated.
+/// Factor above half the sampling rate up to which a plant without polynomials is tabulated.
 const ABOVE_NYQUIST: f64 = 20.0;
 
-/// Plants of one loop, prepared for tests of many controllers.
+/// Plants of one loop, prepared for testing many controllers.
 ///
-/// Those found unstable last are tested first, because [`SampleStability::is_stable`] ends at the
-/// first unstable plant. Answers do not depend on that order.
+/// The plants most recently found unstable are tested first, because [`SampleStability::is_stable`]
+/// ends at the first unstable plant. Results do not depend on that order.
 ///
 /// # Example
-/// k/(s (s + 1) (s + 2)) is stable for 0 < k < 6; at k = 24 its poles are those of s^3 + 3 s^2 + 2
-/// s + 24 = 0, two of them with the real part 0.5.
+/// Plant k/(s (s + 1) (s + 2)), stable for 0 < k < 6; at k = 24 its poles are the roots of s^3 + 3
+/// s^2 + 2 s + 24 = 0, two of which have the real part 0.5.
 /// ```
 /// use phea_dynamics::controller::Controller;
 /// use phea_dynamics::linear::TransferFunction;
@@ -72,29 +72,29 @@ pub struct SampleStability {
 /// The stability of the plants with a controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleJudgement {
-    /// Plants that are unstable, or cannot be shown to be stable.
+    /// Number of plants that are unstable, or that cannot be shown to be stable.
     pub unstable_plants: usize,
-    /// A bound, to one percent, on the real parts of the closed-loop poles of the unstable plants
-    /// in 1/s (ln|z|/T in a sampled loop): the decay rate that the loop lacks. 0 where all are
-    /// stable or where the bound is below 1e-9; infinite for a delayed loop whose gain grows with
-    /// frequency. Measured plants, whose poles are not known, do not count.
+    /// Bound, to one percent, on the real parts of the closed-loop poles of the unstable plants
+    /// (ln|z|/T in a sampled loop), 1/s: the decay rate that the loop lacks. 0 if all are stable or
+    /// the bound is below 1e-9; infinite for a delayed loop whose gain grows with frequency.
+    /// Measured plants, whose poles are unknown, do not count.
     pub largest_real_part: f64,
-    /// Plants about which the table could not decide.
+    /// Number of plants that the table could not decide.
     pub undecided_tables: usize,
 }
 
-/// A plant within the loop; without a quotient where it has dead time or is measured.
+/// A plant within the loop; without a quotient if it has dead time or is measured.
 #[derive(Clone, Debug)]
 struct PlantInLoop {
     member: Member,
     quotient: Option<BilinearQuotient>,
-    /// With its dead time, if any, approximated by a quotient: for ranking only.
+    /// Quotient with the dead time, if any, approximated: for ranking only.
     approximation: Option<BilinearQuotient>,
-    /// Frequency in rad/s and P H of a measured plant, which a controller does not move.
+    /// Frequency, rad/s, and P H of a measured plant, which a controller does not change.
     with_sensor: Vec<LoopPoint>,
 }
 
-/// The controller that is tested.
+/// The controller under test.
 struct AskedController {
     compensation: Compensation,
     feedback: Option<BilinearQuotient>,
@@ -102,8 +102,8 @@ struct AskedController {
 }
 
 impl SampleStability {
-    /// These plants within this loop; the controller of the loop is not used, since it is what is
-    /// tested.
+    /// Prepares these plants within this loop; the controller of the loop is replaced by the
+    /// controllers under test.
     pub fn new(compensation: &Compensation, members: Vec<Member>) -> SampleStability {
         let none = SampleStability { compensation: compensation.clone(), plants: vec![], order: vec![] };
         members.into_iter().fold(none, |mut plants, member| {
@@ -112,7 +112,7 @@ impl SampleStability {
         })
     }
 
-    /// One more plant.
+    /// Adds one more plant.
     pub fn add(&mut self, member: Member) {
         let member = match member {
             // a search evaluates this too often to use the plant itself
@@ -130,14 +130,14 @@ impl SampleStability {
         self.plants.push(PlantInLoop { member, quotient, approximation, with_sensor });
     }
 
-    /// A plant without polynomials, as far as the images of a sampled loop need it.
+    /// A plant without polynomials, tabulated as far as the images of a sampled loop require.
     fn tabulated(&self, plant: &dyn RespondingPlant) -> MeasuredPlant {
         let [from, to] = plant.range_rad_per_s();
         let highest = self.compensation.sample_time_s().map_or(0.0, |sample| std::f64::consts::PI / sample);
         tabulated(plant, [from, to.max(ABOVE_NYQUIST * highest)], COARSE)
     }
 
-    /// P H as the controller sees it where a rate is fed back: a table of the sampled response.
+    /// Response P H seen by the controller if a rate is fed back: a table of the sampled response.
     fn folded(&self, member: &Member, plant: &dyn RespondingPlant, own: Option<usize>) -> Member {
         let [from, to] = plant.range_rad_per_s();
         let response = |frequency: f64| {
@@ -153,12 +153,12 @@ impl SampleStability {
         }
     }
 
-    /// Whether no plant has dead time or is known by measurements only: then a test costs little.
+    /// True if no plant has dead time or is only measured: testing is then cheap.
     pub fn is_rational(&self) -> bool {
         self.plants.iter().all(|plant| plant.quotient.is_some())
     }
 
-    /// Whether every plant is stable with this controller; a plant for which this cannot be shown
+    /// True if every plant is stable with this controller; a plant for which this cannot be shown
     /// counts as unstable.
     ///
     /// # Errors
@@ -172,11 +172,12 @@ impl SampleStability {
         Ok(unstable.is_none())
     }
 
-    /// How many plants are unstable with this controller, and by how much: for ranking controllers
-    /// that fail, which takes about ten times as long as showing that one does not fail.
+    /// Number of plants that are unstable with this controller, and degree of instability: for
+    /// ranking controllers that fail, which takes about ten times as long as showing that one does
+    /// not fail.
     ///
     /// # Errors
-    /// Those of [`SampleStability::is_stable`].
+    /// Errors of [`SampleStability::is_stable`].
     pub fn judge(&mut self, feedback: &TransferFunction) -> Result<SampleJudgement, LinearError> {
         let question = self.question(feedback)?;
         let mut judgement =
@@ -197,18 +198,18 @@ impl SampleStability {
         Ok(judgement)
     }
 
-    /// A bound, to one percent, of the real parts of all closed-loop poles in 1/s, 0 where none is
-    /// positive, dead time being replaced by its Padé approximation of third order: for ranking
+    /// Bound, to one percent, on the real parts of all closed-loop poles, 1/s; 0 if none is
+    /// positive. Dead time is replaced by its third-order Padé approximation: for ranking
     /// controllers that fail in a loop with dead time, where the poles themselves are expensive to
-    /// compute. `None` where a plant is measured, the controller has dead time, or the loop is
-    /// sampled and its delay is long.
+    /// compute. `None` if a plant is measured, the controller has dead time, or the loop is sampled
+    /// and its delay is long.
     ///
     /// # Errors
-    /// Those of [`SampleStability::is_stable`].
+    /// Errors of [`SampleStability::is_stable`].
     ///
     /// # Example
-    /// e^(-sT)/(s - 2) with a gain of 1 keeps a pole between 0 and 2 1/s, here at 1.1 1/s: s - 2 +
-    /// e^(-0.0957 s) = 0.
+    /// Plant e^(-sT)/(s - 2): with a gain of 1 a pole between 0 and 2 1/s remains, here at 1.1 1/s:
+    /// s - 2 + e^(-0.0957 s) = 0.
     /// ```
     /// use phea_dynamics::controller::Controller;
     /// use phea_dynamics::linear::TransferFunction;
@@ -277,13 +278,13 @@ impl AskedController {
         member_stability(member, &self.compensation).status == StabilityStatus::Stable
     }
 
-    /// The characteristic polynomial; `None` where dead time leaves no polynomial.
+    /// The characteristic polynomial; `None` if dead time leaves no polynomial.
     fn characteristic(&self, plant: &PlantInLoop) -> Option<RoundedPolynomial> {
         Some(plant.quotient.as_ref()?.closed(self.feedback.as_ref()?))
     }
 
-    /// Whether no pole has a real part above this one; true where this cannot be decided, unless
-    /// the number of turns is unlimited.
+    /// True if no pole has a real part above this one, or this cannot be decided, unless the number
+    /// of turns is unlimited.
     fn lies_below(&self, plant: &PlantInLoop, real_part: f64) -> bool {
         if let Some(characteristic) = self.characteristic(plant) {
             return self.all_below(&characteristic, real_part);
@@ -292,7 +293,7 @@ impl AskedController {
         !matches!(found, Ok(false) | Err(Irresolution::Budget { .. }))
     }
 
-    /// Whether no root of this characteristic polynomial is known to have a real part above this
+    /// True if no root of this characteristic polynomial is known to have a real part above this
     /// one.
     fn all_below(&self, characteristic: &RoundedPolynomial, real_part: f64) -> bool {
         let moved = match self.compensation.sample_time_s() {
@@ -313,14 +314,14 @@ impl AskedController {
         }
     }
 
-    /// The first of the resolved real parts below which all poles lie.
+    /// The first of the resolved real parts above all poles.
     fn largest_real_part(&self, plant: &PlantInLoop) -> f64 {
         first_below(|real_part| self.lies_below(plant, real_part))
     }
 }
 
-/// The first of the resolved real parts for which this holds; 0 where it holds for all, infinity
-/// where it holds for none.
+/// The first of the resolved real parts for which the condition holds; 0 if it holds for all,
+/// infinity if it holds for none.
 fn first_below(lies_below: impl Fn(f64) -> bool) -> f64 {
     let per_decade = std::f64::consts::LN_10 / REAL_PARTS_PER_DECADE;
     let real_part = |number: usize| LEAST_REAL_PART * portable::exp(per_decade * number as f64);

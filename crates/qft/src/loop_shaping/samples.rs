@@ -22,11 +22,11 @@ use crate::specification::Specification;
 use crate::template::around_disc;
 use crate::verification::{PlantPoint, TrackingJudgement};
 
-/// At an undamped pole, where a plant has no response, it is evaluated at a frequency higher by
-/// this share.
+/// Relative distance from an undamped pole, where a plant has no response, at which it is evaluated
+/// instead.
 const BESIDE: f64 = 1e-9;
 
-/// Why there are no samples.
+/// Reason why there are no samples.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SamplesError {
     /// The loop cannot be formed.
@@ -38,11 +38,11 @@ pub enum SamplesError {
 }
 
 /// The plants and frequencies that a search evaluates in their loop: every plant at every frequency
-/// of a grid, and in addition single plants at single frequencies. Delay, hold and sensor are those
-/// of the loop, as the audit takes them.
+/// of a grid, and additional single plants at single frequencies. Delay, hold and sensor are those
+/// of the loop, as in the audit.
 ///
 /// # Example
-/// k/s at 1 and 10 rad/s with a gain of 1 and of 4, then the counterexample k = 3 at 2 rad/s:
+/// Plant k/s at 1 and 10 rad/s with gains of 1 and 4, then the counterexample k = 3 at 2 rad/s:
 /// ```
 /// use phea_dynamics::controller::Timing;
 /// use phea_dynamics::linear::TransferFunction;
@@ -84,7 +84,7 @@ pub enum SamplesError {
 #[derive(Clone, Debug)]
 pub struct Samples {
     problem: DesignProblem,
-    /// With a controller of gain 1.
+    /// Loop with a controller of gain 1.
     around: Compensation,
     tracking: TrackingJudgement,
     keeping: Keeping,
@@ -93,32 +93,32 @@ pub struct Samples {
     columns: Vec<FrequencyColumn>,
 }
 
-/// The plants at one frequency: P, Pd and H as they enter the closed loops, each quantity in an
-/// array of its own.
+/// The plants at one frequency: P, Pd and H as they enter the closed loops, each quantity in a
+/// separate array.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FrequencyColumn {
     pub(super) frequency: f64,
-    /// Whether every plant is evaluated here.
+    /// True if every plant is evaluated here.
     grid: bool,
     pub(super) demands: Vec<Demand>,
-    /// Indices of the plants; the following fields are in their order.
+    /// Indices of the plants; the fields that follow are in this order.
     pub(super) plants: Vec<usize>,
-    /// True where the plants are the first of all, each once, in their order.
+    /// True if the plants are the first of all, each once, in their order.
     pub(super) in_order: bool,
-    /// P H
+    /// Real part of P H.
     pub(super) loop_re: Vec<f64>,
     pub(super) loop_im: Vec<f64>,
-    /// |P H|^2
+    /// Squared magnitude |P H|^2.
     pub(super) loop_squared: Vec<f64>,
-    /// |P|^2
+    /// Squared magnitude |P|^2.
     pub(super) plant_squared: Vec<f64>,
-    /// |Pd|^2
+    /// Squared magnitude |Pd|^2.
     pub(super) load_motion_squared: Vec<f64>,
 }
 
 impl Samples {
-    /// Every one of these plants at every one of these frequencies, rad/s, positive, at most pi/T
-    /// in a sampled loop. The first plant is the nominal one.
+    /// Samples of every one of these plants at every one of these frequencies, rad/s, positive, at
+    /// most pi/T in a sampled loop. The first plant is the nominal one.
     ///
     /// # Errors
     /// A point that is not a plant of the family; a plant or sensor that does not fit the loop.
@@ -146,10 +146,10 @@ impl Samples {
         Ok(samples)
     }
 
-    /// Adds these plants at this frequency; returns whether one of them is new there.
+    /// Adds these plants at this frequency; returns true if one of them is new there.
     ///
     /// # Errors
-    /// Those of [`Samples::new`].
+    /// Errors of [`Samples::new`].
     pub fn add(&mut self, plants: &[PlantPoint], frequency_rad_per_s: f64) -> Result<bool, SamplesError> {
         let mut new = false;
         for plant in plants {
@@ -163,7 +163,7 @@ impl Samples {
     /// Adds this plant at every frequency of the grid.
     ///
     /// # Errors
-    /// Those of [`Samples::new`].
+    /// Errors of [`Samples::new`].
     pub(crate) fn add_plant(&mut self, plant: &PlantPoint) -> Result<(), SamplesError> {
         let index = self.plant(plant)?;
         for place in 0..self.columns.len() {
@@ -177,7 +177,7 @@ impl Samples {
     /// Adds the nominal plant of another family, which the loop must also control.
     ///
     /// # Errors
-    /// Those of [`Samples::new`].
+    /// Errors of [`Samples::new`].
     pub(crate) fn take_in(&mut self, plant: UncertainPlant) -> Result<(), SamplesError> {
         let point = PlantPoint::Beside(self.problem.beside.len());
         self.problem.beside.push(plant);
@@ -185,11 +185,11 @@ impl Samples {
         self.look_closely_at(&point)
     }
 
-    /// Adds this plant at the frequencies where its own response bends, since a resonance may lie
+    /// Adds this plant at the frequencies where its response bends, since a resonance may be
     /// between the frequencies of the grid.
     ///
     /// # Errors
-    /// Those of [`Samples::new`].
+    /// Errors of [`Samples::new`].
     pub(crate) fn look_closely_at(&mut self, point: &PlantPoint) -> Result<(), SamplesError> {
         let highest = self.around.highest_frequency_rad_per_s();
         for frequency in bends(&self.problem, point)?.into_iter().filter(|frequency| *frequency <= highest) {
@@ -198,33 +198,33 @@ impl Samples {
         Ok(())
     }
 
-    /// How tracking is judged.
+    /// Evaluation of tracking.
     pub fn tracking(&self) -> TrackingJudgement {
         self.tracking
     }
 
-    /// Judges tracking in this way from now on.
+    /// Sets the evaluation of tracking.
     pub(crate) fn judge_tracking_by(&mut self, tracking: TrackingJudgement) {
         self.tracking = tracking;
         self.demand_anew();
     }
 
-    /// Judges by these limits from now on.
+    /// Replaces the limits.
     pub(super) fn judge_by(&mut self, specifications: Vec<Specification>, minimum_delay_margin_s: f64) {
         self.problem.specifications = specifications;
         self.problem.minimum_delay_margin_s = minimum_delay_margin_s;
         self.demand_anew();
     }
 
-    /// Tightens every limit by this much, dB; by a part of it where two limits are near.
+    /// Tightens every limit by this much, dB; by a fraction of it if two limits are close together.
     pub(crate) fn keep_in_reserve(&mut self, reserve_db: f64) {
         self.keeping.reserve_db = reserve_db;
         self.demand_anew();
     }
 
-    /// Measures a margin by its share of the distance between two limits, where that is less than 1
+    /// Measures a margin as a fraction of the distance between two limits, if that is less than 1
     /// dB. Otherwise limits that meet, as those of tracking do at zero frequency, would leave no
-    /// margin to be increased.
+    /// margin to increase.
     pub(crate) fn count_shares_of_room(&mut self, share_of_room: bool) {
         self.keeping.share_of_room = share_of_room;
         self.demand_anew();
@@ -241,8 +241,8 @@ impl Samples {
         demands(&self.problem.specifications, self.tracking, self.keeping, [frequency, highest])
     }
 
-    /// The family with the plants of the samples for its members: its box, where it has one, is the
-    /// same.
+    /// The family with the plants of the samples as its members; its box, if it has one, is
+    /// unchanged.
     pub fn family(&self) -> Family {
         match &self.problem.family {
             Family::Uncertain(family) if family.extent() == Extent::Box => {
@@ -259,17 +259,17 @@ impl Samples {
         }
     }
 
-    /// What is designed for.
+    /// The design problem.
     pub fn problem(&self) -> &DesignProblem {
         &self.problem
     }
 
-    /// The plants, in the order in which they were given, the nominal one first.
+    /// The plants, in the given order, the nominal one first.
     pub fn plants(&self) -> &[PlantPoint] {
         &self.plants
     }
 
-    /// The plants as they are in the loop, in the same order.
+    /// The plants as they are in the loop, in that order.
     pub fn members(&self) -> &[Member] {
         &self.members
     }
@@ -323,8 +323,8 @@ impl Samples {
         place
     }
 
-    /// Whether the plant was not in the column before. A measured plant is not evaluated where it
-    /// was not measured.
+    /// Evaluates a plant in a column; true if it was not there before. A measured plant is not
+    /// evaluated where it was not measured.
     fn put(&mut self, plant: usize, place: usize) -> bool {
         let column = &mut self.columns[place];
         if column.plants.contains(&plant) {
@@ -365,7 +365,7 @@ impl FrequencyColumn {
         }
     }
 
-    /// A response of a plant; one that is known within a disc has several.
+    /// Adds a response of a plant; a plant known within a disc has several.
     fn push(&mut self, plant: usize, response: &MemberResponse) {
         let with_sensor = response.plant * response.sensor;
         self.in_order &= plant == self.plants.len();
@@ -377,7 +377,7 @@ impl FrequencyColumn {
         self.load_motion_squared.push(response.load_motion.norm_sqr());
     }
 
-    /// P H of the plant at this place.
+    /// Response P H of the plant at this place.
     pub(super) fn loop_at(&self, place: usize) -> Complex64 {
         Complex64::new(self.loop_re[place], self.loop_im[place])
     }

@@ -1,31 +1,32 @@
-//! What a search sees of a problem: an objective, margins that must not be negative, and their
+//! Interface of a search to a problem: an objective, margins that must not be negative, and their
 //! slopes.
 
-/// What a search is after.
+/// Aim of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aim {
-    /// The greatest common margin: x that maximises t where `margin >= rate t` for every margin.
+    /// The greatest common margin: the x that maximises t subject to `margin >= rate t` for every
+    /// margin.
     WorstMargin,
     /// The least objective among the x whose margins are all at least zero.
     Objective,
 }
 
-/// A point judged, without slopes.
+/// Evaluation of a point, without slopes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judgement {
     /// The objective, dB.
     pub objective_db: f64,
     /// The least of margin over rate, dB.
     pub worst_margin_db: f64,
-    /// Whether every plant of the samples is stable; margins of an unstable loop have no meaning.
+    /// True if every plant of the samples is stable; margins of an unstable loop are meaningless.
     pub stable: bool,
-    /// 0 where stable; otherwise a measure of instability, greater being worse, of which only the
-    /// order counts. It may be 0 where it is not known.
+    /// Measure of instability, 0 if stable, greater for worse; only its order counts. It may be 0
+    /// if unknown.
     pub instability: f64,
 }
 
 impl Judgement {
-    /// For a controller that has no response.
+    /// Judgement of a controller that has no response.
     pub(crate) const UNUSABLE: Judgement = Judgement {
         objective_db: f64::INFINITY,
         worst_margin_db: f64::NEG_INFINITY,
@@ -40,12 +41,12 @@ pub struct MarginRow {
     /// Identifies the margin (a specification at a frequency for a plant), so that a search
     /// recognises it at another x.
     pub sample: usize,
-    /// dB; negative where it is violated.
+    /// Margin, dB; negative if it is violated.
     pub margin_db: f64,
-    /// What one dB of relaxation of every limit adds to it: 1, and 2 for the spread between two
-    /// limits.
+    /// Increase of the margin per dB of relaxation of every limit: 1, or 2 for the spread between
+    /// two limits.
     pub rate: f64,
-    /// dB per unit of x.
+    /// Slopes, dB per unit of x.
     pub slopes: Vec<f64>,
 }
 
@@ -54,7 +55,7 @@ pub struct MarginRow {
 pub struct Slopes {
     /// The objective, dB.
     pub objective_db: f64,
-    /// dB per unit of x.
+    /// Slopes of the objective, dB per unit of x.
     pub objective_slopes: Vec<f64>,
     /// The margins near the worst one of each specification and frequency; all others are larger.
     pub margins: Vec<MarginRow>,
@@ -65,7 +66,7 @@ pub trait SearchProblem {
     /// Least and greatest value of each x.
     fn bounds(&self) -> &[[f64; 2]];
 
-    /// Judges a point, stability included.
+    /// Evaluates a point, including stability.
     fn judge(&mut self, x: &[f64]) -> Judgement;
 
     /// The slopes at a point.

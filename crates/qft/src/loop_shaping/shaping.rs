@@ -1,4 +1,4 @@
-//! The shaping of a loop as a problem of a search.
+//! The shaping of a loop as a search problem.
 
 mod least_margins;
 
@@ -16,25 +16,25 @@ use crate::specification::Specification;
 use crate::verification::{PlantPoint, SpecificationMargin, TrackingJudgement};
 use least_margins::Looked;
 
-/// The measure of instability for a loop for which it is too expensive to compute.
+/// The measure of instability of a loop for which it is too expensive to compute.
 const UNSTABLE: f64 = 1.0;
 
-/// A structure, the samples its margins are taken at, and an objective.
+/// A structure, the samples of its margins, and an objective.
 ///
 /// ```text
 /// minimise objective(x)   subject to   margin(x; plant, frequency, specification) + rate relaxation >= 0
 /// ```
 ///
-/// With a prefilter, of a structure of its own, tracking is judged by magnitude and x holds the
-/// free numbers of the controller, then those of the prefilter; without one, tracking is judged by
-/// the spread of the plants.
+/// With a prefilter, which has a separate structure, tracking is assessed by magnitude, and x holds
+/// the free numbers of the controller, then those of the prefilter; without one, tracking is
+/// assessed by the spread of the plants.
 ///
-/// A required delay is a margin too: 20 log10 of the least delay that a plant tolerates over the
-/// required delay, the gain crossovers and their phases interpolated between the frequencies of the
-/// samples.
+/// A required delay is also a margin: 20 log10 of the least delay that a plant tolerates over the
+/// required delay, with the gain crossovers and their phases interpolated between the frequencies
+/// of the samples.
 ///
 /// # Example
-/// |1/(1+L)| <= 2 at 1 rad/s for 1/s and 4/s under a gain k: the worst plant is 1/s, for which it is w/|j w + k|.
+/// Limit |1/(1+L)| <= 2 at 1 rad/s for 1/s and 4/s with a gain k: the worst plant is 1/s, for which it is w/|j w + k|.
 /// ```
 /// # use phea_dynamics::controller::Timing;
 /// # use phea_dynamics::linear::TransferFunction;
@@ -88,11 +88,11 @@ pub struct Shaping {
     bounds: Vec<[f64; 2]>,
     stability: SampleStability,
     around: ColumnLoop,
-    /// The loop that was judged last: slopes are mostly taken there.
+    /// The last loop evaluated: slopes are mostly computed there.
     judged: Option<JudgedLoop>,
 }
 
-/// The loop at the x that was judged, with its margins.
+/// The loop at the evaluated x, with its margins.
 #[derive(Clone, Debug)]
 struct JudgedLoop {
     x: Vec<f64>,
@@ -145,7 +145,7 @@ impl Shaping {
         self.prefilter.as_ref()
     }
 
-    /// How tracking is judged.
+    /// Evaluation of tracking.
     pub fn tracking(&self) -> TrackingJudgement {
         self.samples.tracking()
     }
@@ -156,10 +156,10 @@ impl Shaping {
     }
 
     /// Adds these plants at this frequency, and at every frequency of the grid if they are new;
-    /// returns whether one of them is new there.
+    /// returns true if one of them is new there.
     ///
     /// # Errors
-    /// Those of [`Samples::add`].
+    /// Errors of [`Samples::add`].
     pub fn add(&mut self, plants: &[PlantPoint], frequency_rad_per_s: f64) -> Result<bool, SamplesError> {
         self.judged = None;
         let known = self.samples.members().len();
@@ -180,8 +180,8 @@ impl Shaping {
         Ok(new)
     }
 
-    /// The same plants and frequencies, judged by other limits, and with free numbers in the ranges
-    /// of another structure of the same factors.
+    /// Shaping of these plants and frequencies with other limits, and with free numbers in the
+    /// ranges of another structure with equal factors.
     #[must_use]
     pub fn with_limits(
         &self,
@@ -195,7 +195,7 @@ impl Shaping {
         Shaping { structure, judged: None, ..wider }
     }
 
-    /// Counts margins by their share of the room between two limits; see
+    /// Counts margins as fractions of the room between two limits; see
     /// [`Samples::count_shares_of_room`].
     pub(crate) fn count_shares_of_room(&mut self) {
         self.judged = None;
@@ -208,7 +208,7 @@ impl Shaping {
         self.samples.keep_in_reserve(reserve_db);
     }
 
-    /// Judges the controller of this loop in place of the one at x, but with the objective at x:
+    /// Evaluates the controller of this loop in place of the one at x, but with the objective at x:
     /// the effect of rounded coefficients.
     pub(crate) fn judge_deployed(&mut self, x: &[f64], law: &Compensation) -> Judgement {
         let response = |column: &FrequencyColumn| {
@@ -266,8 +266,8 @@ impl Shaping {
         x.split_at(self.structure.dimension().min(x.len()))
     }
 
-    /// G and F at the frequencies of the samples; `None` where they cannot be sampled or are not
-    /// finite.
+    /// Responses G and F at the frequencies of the samples; `None` if they cannot be sampled or are
+    /// not finite.
     fn forward(&self, x: &[f64]) -> Option<Vec<[Complex64; 2]>> {
         let (own, behind) = self.split(x);
         let feedback = self.response.values(own).ok()?;
@@ -279,8 +279,8 @@ impl Shaping {
         both.iter().flatten().all(|one| one.is_finite()).then_some(both)
     }
 
-    /// The slopes of ln G and of ln F at the frequencies of the samples, each among zeros for the
-    /// numbers of the other.
+    /// The slopes of ln G and of ln F at the frequencies of the samples, each padded with zeros for
+    /// the numbers of the other.
     fn forward_slopes(&self, x: &[f64]) -> Option<[Vec<Vec<Complex64>>; 2]> {
         let (own, behind) = self.split(x);
         let zeros = |count: usize| vec![Complex64::new(0.0, 0.0); count];
@@ -325,7 +325,7 @@ impl Shaping {
         Judgement { objective_db, worst_margin_db: looked.worst_db, stable, instability }
     }
 
-    /// The loop at x with its margins, as it was judged if that was here; `None` where it has no
+    /// The loop at x with its margins, reused if x was evaluated last; `None` if it has no
     /// response.
     fn judged_at(&mut self, x: &[f64]) -> Option<JudgedLoop> {
         if let Some(known) = self.judged.take().filter(|known| known.x == x) {
@@ -336,7 +336,7 @@ impl Shaping {
         Some(JudgedLoop { x: x.to_vec(), forward, looked })
     }
 
-    /// Whether every plant is stable, and how far from it the worst one is.
+    /// True if every plant is stable, and the measure of instability of the worst one.
     fn stability(&mut self, x: &[f64]) -> (bool, f64) {
         let timing = &self.samples.problem().timing;
         let continuous = self.structure.compensator(self.split(x).0).transfer_function();
@@ -347,7 +347,7 @@ impl Shaping {
         feedback.map_or((false, f64::INFINITY), |feedback| self.stability_of(&feedback))
     }
 
-    /// The same with this G.
+    /// Stability with this G.
     fn stability_of(&mut self, feedback: &TransferFunction) -> (bool, f64) {
         if self.stability.is_stable(feedback) == Ok(true) {
             return (true, 0.0);

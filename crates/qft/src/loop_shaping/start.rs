@@ -17,42 +17,41 @@ use super::search::{Aim, Judgement, SearchProblem};
 use evolution::Evolution;
 use spread::AdditiveRecurrence;
 
-/// Points nearer to one another than this share of the bounds in every coordinate count as one.
+/// Fraction of the bounds below which points that differ by less in every coordinate count as one.
 const DISTINCT: f64 = 0.05;
-/// Steps of each descent before the better ones are chosen.
+/// Number of steps of each descent before the better ones are chosen.
 const STEPS_ROUGH: usize = 12;
-/// A start whose worst margin is at least this counts as feasible, dB.
+/// Worst margin from which a start counts as feasible, dB.
 const NEAR_DB: f64 = -3.0;
-/// Half of the starts are those of least objective among the samples above this worst margin, dB:
-/// the largest worst margins lie at high gain, from where a descent may not reach the least
-/// objective.
+/// Worst margin above which half of the starts are chosen by least objective, dB: the largest worst
+/// margins occur at high gain, from which a descent may not reach the least objective.
 const MODEST_DB: f64 = -15.0;
 
-/// How widely a search looks.
+/// Width of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SearchOptions {
     /// Equal seeds give equal results, byte by byte.
     pub seed: u64,
-    /// Points spread over the bounds.
+    /// Number of points spread over the bounds.
     pub samples: usize,
-    /// At each of these points the first x is tried at this number of values over its bounds
-    /// (hardly any gain may suit a given shape), and the best is kept; 0 or 1 leaves the points
+    /// Number of values of the first x over its bounds that are evaluated at each of these points,
+    /// of which the best is retained (few gains may suit a given shape); 0 or 1 leaves the points
     /// unchanged.
     pub scanned: usize,
-    /// Points that descents begin from.
+    /// Number of points from which descents begin.
     pub starts: usize,
     /// Number of completed descents.
     pub finished: usize,
     /// Largest number of generations of evolution, used if fewer samples than `starts` are stable.
     pub generations: usize,
-    /// What each descent looks for.
+    /// Options of each descent.
     pub descent: DescentOptions,
-    /// The owner of the threads; the result does not depend on it.
+    /// The worker threads; the result does not depend on them.
     pub workers: Workers,
 }
 
 impl SearchOptions {
-    /// 300 samples, 8 starts of which 4 are completed, 60 generations, one thread.
+    /// Defaults: 300 samples, 8 starts of which 4 are completed, 60 generations, one thread.
     pub fn new(aim: Aim, seed: u64) -> SearchOptions {
         let descent = DescentOptions::new(aim);
         let workers = Workers::CALLER;
@@ -69,53 +68,53 @@ impl SearchOptions {
     }
 }
 
-/// Why a search ended.
+/// Final status of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SearchStatus {
-    /// The best descent ended so.
+    /// The status of the best descent.
     Ended(DescentStatus),
-    /// None of the evaluated points is stable.
+    /// The search found no stable point.
     NotStabilised {
         /// The least [`Judgement::instability`].
         instability: f64,
     },
 }
 
-/// Where one descent ended.
+/// End of one descent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DescentEnd {
-    /// x
+    /// Free numbers x.
     pub x: Vec<f64>,
-    /// Its judgement.
+    /// Evaluation of the end.
     pub judgement: Judgement,
-    /// Why it ended there.
+    /// Final status of the descent.
     pub status: DescentStatus,
 }
 
-/// What a search found.
+/// Result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SearchResult {
-    /// Why it ended.
+    /// Final status of the search.
     pub status: SearchStatus,
     /// The best point, or the least unstable one if none is stable.
     pub x: Vec<f64>,
-    /// Its judgement.
+    /// Evaluation of this point.
     pub judgement: Judgement,
     /// The margins that limit further steps there, the strongest first.
     pub binding: Vec<Binding>,
-    /// The end of every completed descent, the best first. A descent that came near to the end of
+    /// The end of every completed descent, the best first. A descent that came near the end of
     /// another, and was no better, counts as having ended there.
     pub ends: Vec<DescentEnd>,
-    /// Number of points that were evaluated before the descents: given ones, samples and the last
-    /// generation of an evolution, if any.
+    /// Number of points evaluated before the descents: given ones, samples and the last generation
+    /// of an evolution, if any.
     pub points: usize,
-    /// How many of them are stable.
+    /// Number of these points that are stable.
     pub stable_points: usize,
     /// All work, including that of abandoned descents.
     pub work: DescentWork,
 }
 
-/// A point and its judgement.
+/// A point and its evaluation.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct JudgedPoint {
     pub(super) x: Vec<f64>,
@@ -123,9 +122,9 @@ pub(super) struct JudgedPoint {
 }
 
 impl JudgedPoint {
-    /// Stable before unstable. Among stable points the larger worst margin is better or, where both
-    /// nearly satisfy the limits and the objective is the aim, the lesser objective; among unstable
-    /// ones the lesser instability.
+    /// True if this point is better: stable before unstable. Among stable points the larger worst
+    /// margin is better or, if both nearly satisfy the limits and the objective is the aim, the
+    /// lesser objective; among unstable ones the lesser instability.
     pub(super) fn is_better_than(&self, other: &JudgedPoint, aim: Aim) -> bool {
         match (is_usable(&self.judgement), is_usable(&other.judgement)) {
             (true, true) => {
@@ -163,7 +162,7 @@ impl JudgedPoint {
         best
     }
 
-    /// The best first, equals in their order.
+    /// Sorts the best first; equal ones keep their order.
     fn sort(candidates: &mut [JudgedPoint], aim: Aim) {
         candidates.sort_by(|a, b| match a.is_better_than(b, aim) {
             true => Ordering::Less,
@@ -173,15 +172,15 @@ impl JudgedPoint {
     }
 }
 
-/// Searches from many starts, with the same result on every machine. The points that are `given`
-/// are evaluated too, such as the end of a simpler problem. `None` if no point is evaluated.
+/// Searches from many starts, with identical results on every machine. The `given` points, such as
+/// the end of a simpler problem, are also evaluated. `None` if no point is evaluated.
 ///
 /// ```text
-/// samples -> (evolution, if too few are stable) -> a few steps down from the best distinct ones -> the best of these to their end
+/// samples -> (evolution, if too few are stable) -> a few descent steps from the best distinct ones -> the best of these to their end
 /// ```
 ///
-/// The result is the best local optimum that was found; the distance of the other ends shows how
-/// reliable it is.
+/// The result is the best local optimum found; the distance of the other ends shows its
+/// reliability.
 ///
 /// # Errors
 /// [`Stopped`] by the watch.
@@ -227,7 +226,7 @@ pub fn search<P: SearchProblem + Clone + Sync>(
     search_seeing(problem, given, (options, &mut BestSeen::new(options.descent.aim)), watch)
 }
 
-/// The same, which keeps the best point that it has seen, where it is stopped too.
+/// Searches as [`search`] does, and retains the best point seen, also if the search is stopped.
 pub(crate) fn search_seeing<P: SearchProblem + Clone + Sync>(
     problem: &mut P,
     given: Vec<Vec<f64>>,
@@ -248,10 +247,10 @@ pub(crate) fn search_seeing<P: SearchProblem + Clone + Sync>(
 /// Name of the stage in progress reports.
 const STAGE: &str = "search";
 
-/// Pieces into which the samples are divided.
+/// Number of pieces into which the samples are divided for parallel work.
 const PIECES: usize = 8;
 
-/// A search on its way.
+/// A search in progress.
 struct StartSearch<'a, P> {
     problem: &'a mut P,
     seen: &'a mut BestSeen,
@@ -262,7 +261,7 @@ struct StartSearch<'a, P> {
 }
 
 impl<P: SearchProblem + Clone + Sync> StartSearch<'_, P> {
-    /// The points that are given and those that are spread over the bounds, the best first.
+    /// The given points and those spread over the bounds, the best first.
     fn sampled(&mut self, given: Vec<Vec<f64>>, watch: Watch<'_>) -> Result<Vec<JudgedPoint>, Stopped> {
         let mut points: Vec<(Vec<f64>, usize)> = given.into_iter().rev().map(|x| (x, 0)).collect();
         let bounds = self.problem.bounds().to_vec();
@@ -289,7 +288,7 @@ impl<P: SearchProblem + Clone + Sync> StartSearch<'_, P> {
         Ok(candidates)
     }
 
-    /// Results of pieces of work on copies of the problem, in their order.
+    /// Results of tasks on copies of the problem, in their order.
     fn each<T: Send, R: Send>(
         &mut self,
         tasks: Vec<T>,
@@ -316,8 +315,8 @@ impl<P: SearchProblem + Clone + Sync> StartSearch<'_, P> {
         ended.map(|()| results)
     }
 
-    /// The samples, where enough of them are stable; otherwise a population that has evolved from
-    /// them, the best first.
+    /// The samples, if enough of them are stable; otherwise a population evolved from them, the
+    /// best first.
     fn evolved(&mut self, samples: Vec<JudgedPoint>, watch: Watch<'_>) -> Result<Vec<JudgedPoint>, Stopped> {
         let mut evolution = Evolution::new(&samples, self.problem.bounds());
         if self.is_enough(evolution.candidates()) || evolution.is_too_small() {
@@ -363,7 +362,7 @@ impl<P: SearchProblem + Clone + Sync> StartSearch<'_, P> {
         }
     }
 
-    /// The best first.
+    /// Sorts descents, the best first.
     fn sort(&self, descents: &mut [Descent]) {
         let standing = |descent: &Descent| standing(&self.options.descent, descent.judgement());
         descents.sort_by(|a, b| {
@@ -403,8 +402,8 @@ impl<P: SearchProblem + Clone + Sync> StartSearch<'_, P> {
     }
 }
 
-/// Whether a point misses the reserve, and then how good it is, dB, less being better: the order of
-/// descents.
+/// Rank of a descent: false if a point satisfies the reserve, true if it misses it, and then its
+/// value, dB, smaller is better.
 fn standing(options: &DescentOptions, judgement: Option<Judgement>) -> (bool, f64) {
     let Some(judgement) = judgement else { return (true, f64::INFINITY) };
     let misses = judgement.worst_margin_db < options.reserve_db - options.tolerance_db;
@@ -415,7 +414,7 @@ fn standing(options: &DescentOptions, judgement: Option<Judgement>) -> (bool, f6
     }
 }
 
-/// Adds points that lie apart from all starts, until there are enough.
+/// Adds points distinct from all starts, until there are enough.
 fn add_distinct<'c>(
     starts: &mut Vec<&'c JudgedPoint>,
     most: usize,
@@ -429,7 +428,7 @@ fn add_distinct<'c>(
     }
 }
 
-/// True where two points differ by a share of the bounds that justifies a second descent.
+/// True if two points differ by a fraction of the bounds that justifies a second descent.
 fn is_distinct(a: &[f64], b: &[f64], bounds: &[[f64; 2]]) -> bool {
     let apart = a.iter().zip(b).zip(bounds);
     apart.into_iter().any(|((a, b), [low, high])| (a - b).abs() > DISTINCT * (high - low))

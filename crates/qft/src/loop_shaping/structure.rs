@@ -11,46 +11,47 @@ use phea_dynamics::portable;
 
 pub use response::StructureResponse;
 
-/// dB in a neper, 20/ln 10: what a change of ln|G| by one is.
+/// Decibels per neper, 20/ln 10: the effect of a change of ln|G| by one.
 pub(super) const DECIBELS_PER_NEPER: f64 = 20.0 / std::f64::consts::LN_10;
 
-/// One factor of a structure. Every number has its least and greatest value; frequencies in rad/s.
+/// One factor of a structure. Every number is given by its least and greatest value; frequencies in
+/// rad/s.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StructureFactor {
     /// An element without free numbers, such as an integrator.
     Fixed(Element),
-    /// s/z + 1
+    /// Zero s/z + 1.
     RealZero {
-        /// z
+        /// Corner z.
         frequency: [f64; 2],
     },
-    /// 1/(s/p + 1)
+    /// Pole 1/(s/p + 1).
     RealPole {
-        /// p
+        /// Corner p.
         frequency: [f64; 2],
     },
-    /// s^2/w^2 + 2 zeta s/w + 1; two real zeros where zeta is 1 or more
+    /// Pair of zeros s^2/w^2 + 2 zeta s/w + 1; two real zeros if zeta is 1 or more.
     ZeroPair {
-        /// w
+        /// Natural frequency w.
         natural_frequency: [f64; 2],
-        /// zeta
+        /// Damping ratio zeta.
         damping_ratio: [f64; 2],
     },
-    /// 1/(s^2/w^2 + 2 zeta s/w + 1); two real poles where zeta is 1 or more
+    /// Pair of poles 1/(s^2/w^2 + 2 zeta s/w + 1); two real poles if zeta is 1 or more.
     PolePair {
-        /// w
+        /// Natural frequency w.
         natural_frequency: [f64; 2],
-        /// zeta
+        /// Damping ratio zeta.
         damping_ratio: [f64; 2],
     },
-    /// (s^2/w^2 + 2 d zeta s/w + 1)/(s^2/w^2 + 2 zeta s/w + 1); two real poles where zeta is 1 or
-    /// more
+    /// Notch (s^2/w^2 + 2 d zeta s/w + 1)/(s^2/w^2 + 2 zeta s/w + 1); two real poles if zeta is 1
+    /// or more.
     Notch {
-        /// w
+        /// Natural frequency w.
         natural_frequency: [f64; 2],
-        /// zeta of the poles
+        /// Damping ratio zeta of the poles.
         damping_ratio: [f64; 2],
-        /// d, the magnitude at w
+        /// Depth d, the magnitude at w.
         depth: [f64; 2],
     },
 }
@@ -61,12 +62,12 @@ pub enum StructureFactor {
 /// G(s; x) = sign k part_1(s) part_2(s) ...,      x = (ln k, ln of each free number in turn)
 /// ```
 ///
-/// The numbers of a pair are its natural frequency, then its damping ratio; of a notch, its depth
-/// follows. A number whose least and greatest value are the same, the gain among them, is not free:
-/// it has no x.
+/// The numbers of a pair are its natural frequency, then its damping ratio; for a notch, its depth
+/// follows. A number whose least and greatest values are equal, including the gain, is not free: it
+/// has no x.
 ///
 /// # Example
-/// Integral control with a lead, its two corners free:
+/// Integral control with a lead whose two corners are free:
 /// ```
 /// use phea_dynamics::controller::Element;
 /// use phea_dynamics::portable::ln;
@@ -98,7 +99,7 @@ pub struct Structure {
     pub parts: Vec<StructureFactor>,
 }
 
-/// s/w + 1, or s^2/w^2 + 2 zeta s/w + 1, to the power of 1 or -1.
+/// Factor s/w + 1, or s^2/w^2 + 2 zeta s/w + 1, to the power of 1 or -1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Factor {
     power: f64,
@@ -108,7 +109,7 @@ struct Factor {
 /// A factor with its natural frequency and its damping ratio, 0 for a single root.
 type NumberedFactor = (Factor, [f64; 2]);
 
-/// Part of a frequency by which a number at the end of its range may differ from it.
+/// Relative distance from the end of its range within which a number counts as being at that end.
 const TOUCHED: f64 = 1e-6;
 const ZERO: Factor = Factor { power: 1.0, pair: false };
 const POLE: Factor = Factor { power: -1.0, pair: false };
@@ -116,7 +117,7 @@ const ZERO_PAIR: Factor = Factor { power: 1.0, pair: true };
 const POLE_PAIR: Factor = Factor { power: -1.0, pair: true };
 
 impl StructureFactor {
-    /// The factors of its transfer function; none for an element without free numbers.
+    /// The factors of the part's transfer function; none for an element without free numbers.
     fn factors(&self) -> &'static [Factor] {
         match self {
             StructureFactor::Fixed(_) => &[],
@@ -128,7 +129,7 @@ impl StructureFactor {
         }
     }
 
-    /// The same with these numbers.
+    /// The factors with these numbers.
     fn numbered(
         &self,
         numbers: &mut std::vec::IntoIter<f64>,
@@ -218,7 +219,7 @@ impl Structure {
         free.map(|range| range.map(portable::ln)).collect()
     }
 
-    /// The controller at x: its gain, and an element for each part. A number that x lacks is NaN.
+    /// The controller at x: its gain, and an element for each part. A number missing in x is NaN.
     pub fn compensator(&self, x: &[f64]) -> Compensator {
         let mut numbers = self.numbers(x).into_iter();
         let gain = Element::Gain(self.sign * numbers.next().unwrap_or(f64::NAN));
@@ -226,7 +227,7 @@ impl Structure {
         Compensator::new(std::iter::once(gain).chain(elements).collect())
     }
 
-    /// The lowest frequency that a zero may have, where one has it at x, rad/s.
+    /// The lowest permitted frequency of a zero, if a zero has it at x, rad/s.
     ///
     /// # Example
     /// ```
@@ -251,7 +252,7 @@ impl Structure {
         })
     }
 
-    /// The place in x of the frequency of the first pole, or pair of poles, that is free.
+    /// The index in x of the frequency of the first free pole, or pair of poles.
     ///
     /// # Example
     /// ```
@@ -298,7 +299,7 @@ impl Structure {
         free
     }
 
-    /// Integrators, s = 0 among the poles.
+    /// Number of integrators, s = 0 among the poles.
     #[must_use]
     pub fn integrators(&self) -> usize {
         let is_integrator =
@@ -314,7 +315,7 @@ impl Structure {
         Ok(self.degrees()?[1])
     }
 
-    /// Poles less zeros, r.
+    /// Relative degree r: poles less zeros.
     ///
     /// # Errors
     /// A fixed element that is not a transfer function.
@@ -323,15 +324,15 @@ impl Structure {
         Ok(poles as i32 - zeros as i32)
     }
 
-    /// The high-frequency gain in dB.
+    /// The high-frequency gain, dB.
     ///
     /// ```text
     /// 20 log10 |lim s^r G(s)|,      r the relative degree
     /// ```
     ///
-    /// In a sampled loop it is that of the elements before they are sampled: by Tustin's rule s =
-    /// (2/T) (z - 1)/(z + 1) goes to infinity as the frequency goes to pi/T, where G has its r
-    /// zeros; the remaining factor there is this limit.
+    /// In a sampled loop it applies to the elements before sampling: by Tustin's rule s = (2/T)
+    /// (z - 1)/(z + 1) goes to infinity as the frequency goes to pi/T, where G has its r zeros; the
+    /// remaining factor there is this limit.
     ///
     /// # Errors
     /// A fixed element that is not a transfer function.
@@ -342,7 +343,7 @@ impl Structure {
         Ok(free + decibels(self.fixed()?.gain().abs()))
     }
 
-    /// dB of high-frequency gain per unit of x; the same at every x.
+    /// Slopes of the high-frequency gain, dB per unit of x; equal at every x.
     pub fn high_frequency_slopes_db(&self) -> Vec<f64> {
         self.of_free(self.all_high_frequency_slopes_db())
     }

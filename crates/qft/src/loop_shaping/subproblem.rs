@@ -7,23 +7,23 @@ use super::descent::Curvature;
 use super::search::{Aim, MarginRow};
 use super::triplets::Triplets;
 
-/// A coordinate whose range is a smaller share of the box than this stays where it is.
+/// Fraction of the box below which the range of a coordinate is so small that it stays fixed.
 const RANGE_MINIMUM: f64 = 1e-9;
-/// Distance to a binding bound that is tolerated, as a share of the box.
+/// Tolerated distance to a binding bound, as a fraction of the box.
 const ROOM_LARGEST: f64 = 1e-6;
-/// Largest error of the conditions of optimality, relative to the slopes in them.
+/// Largest error of the optimality conditions, relative to the slopes in them.
 const ERROR_MAXIMUM: f64 = 1e-5;
-/// Rows among which a step is looked for first, beside one for each coordinate.
+/// Number of rows among which a step is first sought, in addition to one for each coordinate.
 const ROWS_FIRST: usize = 24;
-/// A row that is not among those is violated beyond this, in units of the box.
+/// Violation beyond which an excluded row is added, in units of the box.
 const VIOLATED: f64 = 1e-8;
 const ITERATIONS_MAXIMUM: u32 = 100;
 const TOLERANCE: f64 = 1e-9;
 
-/// What is known around a point, and how far away the next one may be.
+/// Linearisation at a point, and bounds of the step to the next one.
 ///
 /// ```text
-/// least       g.d + d.B d/2 + sigma v              over the step d and the violation v
+/// minimise    g.d + d.B d/2 + sigma v              over the step d and the violation v
 /// subject to  m_i + s_i.d + r_i v >= r_i m_r       every margin m_i with its slopes s_i and its rate r_i
 ///             l <= d <= u,   v >= 0
 /// ```
@@ -33,50 +33,51 @@ const TOLERANCE: f64 = 1e-9;
 /// a step always exists. The order of the rows affects only the rounding.
 pub(super) struct Subproblem<'a> {
     pub(super) aim: Aim,
-    /// g, dB per unit of x.
+    /// Slopes g of the objective, dB per unit of x.
     pub(super) objective_slopes: &'a [f64],
-    /// B; `None` for zero.
+    /// Curvature B; `None` for zero.
     pub(super) curvature: Option<&'a Curvature>,
     pub(super) margins: &'a [MarginRow],
-    /// l <= 0 and u >= 0 of each coordinate.
+    /// Bounds l <= 0 and u >= 0 of each coordinate.
     pub(super) step_bounds: &'a [[f64; 2]],
-    /// m_r, dB.
+    /// Reserve m_r, dB.
     pub(super) reserve_db: f64,
-    /// sigma, dB of the objective for each dB of violation.
+    /// Penalty sigma, dB of the objective per dB of violation.
     pub(super) penalty: f64,
 }
 
 /// A step and its predicted effect.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct PredictedStep {
-    /// d
+    /// Step d.
     pub(super) step: Vec<f64>,
-    /// v at this step, from all rows; dB.
+    /// Violation v at this step over all rows, dB.
     pub(super) violation_db: f64,
-    /// How much lower g.d + d.B d/2 + sigma v is than without a step, dB.
+    /// Predicted decrease of g.d + d.B d/2 + sigma v relative to no step, dB.
     pub(super) decrease_db: f64,
-    /// dB of the objective for each dB by which a margin would be eased, in the order of the rows.
+    /// Gain in the objective per dB of relaxation of a margin, dB/dB, in the order of the rows.
     pub(super) multipliers: Vec<f64>,
 }
 
-/// Why there is no step.
+/// Reason why there is no step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SubproblemFailure {
     /// A slope, a margin or a bound is NaN.
     NotFinite,
-    /// Nothing can move, or there is no margin to improve.
+    /// Lack of free coordinates, or of a margin to improve.
     NothingToDo,
-    /// The interior-point method ended without a solution.
+    /// The interior-point method found no solution.
     NotSolved,
-    /// Its solution misses the conditions of optimality by this, relative to the slopes in them.
+    /// Solution of the interior-point method that violates the optimality conditions by this
+    /// amount, relative to the slopes in them.
     Inaccurate(f64),
 }
 
-/// The subproblem scaled by its box: d = scale e, v = v0 + scale w, and everything divided by
+/// The subproblem scaled by its box: d = scale e, v = v0 + scale w, with everything divided by
 /// scale.
 struct Scaled {
     scale: f64,
-    /// v0, the violation without a step.
+    /// Violation v0 without a step.
     violation: f64,
     /// The coordinates that may move.
     free: Vec<usize>,
@@ -84,21 +85,21 @@ struct Scaled {
     kept: Vec<ScaledRow>,
     /// Bounds of e.
     bounds: Vec<[f64; 2]>,
-    /// Least w; `None` where it is free.
+    /// Least w; `None` if it is free.
     least: Option<f64>,
 }
 
 /// The index of a row, and its margin with v0, divided by scale.
 type ScaledRow = (usize, f64);
 
-/// The best step of all, or the other rows that the best one of some violates.
+/// The best step overall, or the further rows that the best step for some rows violates.
 enum Among {
     Best(PredictedStep),
     Violates(Vec<ScaledRow>),
 }
 
 impl Subproblem<'_> {
-    /// The best step, of the rows of least margin and those that such a step violates: few bind.
+    /// The best step for the rows of least margin and those that such a step violates: few bind.
     pub(super) fn solve(&self) -> Result<PredictedStep, SubproblemFailure> {
         if !self.is_finite() {
             return Err(SubproblemFailure::NotFinite);
@@ -119,7 +120,7 @@ impl Subproblem<'_> {
         }
     }
 
-    /// The best step that satisfies these rows, or the others that it violates.
+    /// The best step that satisfies these rows, or the further rows that it violates.
     fn solve_among(&self, scaled: &Scaled, rows: &[ScaledRow]) -> Result<Among, SubproblemFailure> {
         let (matrix, limits) = scaled.constraints(rows, self.margins);
         let (quadratic, linear) = self.cost(scaled);
@@ -160,7 +161,7 @@ impl Subproblem<'_> {
             && self.reserve_db.is_finite()
     }
 
-    /// The least v that the rows allow at a step.
+    /// The least v allowed by the rows at a step.
     fn violation(&self, step: &[f64]) -> f64 {
         let needed = |row: &MarginRow| self.reserve_db - (row.margin_db + dot(&row.slopes, step)) / row.rate;
         let least = match self.aim {
@@ -258,11 +259,11 @@ impl Subproblem<'_> {
         Ok(PredictedStep { step, violation_db, decrease_db, multipliers })
     }
 
-    /// How much the Lagrangian could still fall within the box, relative to the possible change of
-    /// its terms: zero at the optimum.
+    /// Possible decrease of the Lagrangian within the box, relative to the possible change of its
+    /// terms: zero at the optimum.
     ///
     /// ```text
-    /// g + B d - sum lambda_i s_i = 0 where d is within its bounds, pointing inside at a bound
+    /// g + B d - sum lambda_i s_i = 0 where d is within its bounds, pointing inwards at a bound
     /// sigma - sum lambda_i r_i >= 0, zero where v > 0 or free;    lambda_i (slack of row i) = 0
     /// ```
     fn optimality_error(&self, scaled: &Scaled, step: &[f64], multipliers: &[f64]) -> f64 {
@@ -359,7 +360,7 @@ impl Scaled {
     }
 }
 
-/// Whether a bound binds: its multiplier is the larger one of the two that the interior-point
+/// True if a bound is active: its multiplier is the larger of the two that the interior-point
 /// method keeps above zero.
 fn is_held(room: f64, multiplier: f64) -> bool {
     room < ROOM_LARGEST && room < multiplier
@@ -369,7 +370,7 @@ fn finite(values: &[f64]) -> bool {
     values.iter().all(|value| value.is_finite())
 }
 
-/// a.b
+/// Scalar product a.b.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
@@ -408,9 +409,9 @@ mod tests {
         assert!(found.len() == expected.len() && close, "{found:?} {expected:?}");
     }
 
-    /// Most of x + 2 y below x + y <= 4 and y <= 2: the vertex (2, 2), each margin worth 1; a far
-    /// margin and one of the objective's own direction count for nothing. In a box a thousand times
-    /// as small, the corner.
+    /// Maximum of x + 2 y below x + y <= 4 and y <= 2: the vertex (2, 2), each margin worth 1; a
+    /// far margin and one in the direction of the objective have no effect. In a box a thousand
+    /// times smaller: the corner.
     #[test]
     fn vertex_of_a_linear_problem() {
         let rows = [
@@ -428,8 +429,8 @@ mod tests {
         near(&answer.multipliers, &[0.0; 4]);
     }
 
-    /// Least (x - 1)^2 + (y - 5/2)^2 below x - 2 y + 2 >= 0 and others that do not bind, from the
-    /// origin.
+    /// Minimum of (x - 1)^2 + (y - 5/2)^2 below x - 2 y + 2 >= 0 and other rows that do not bind,
+    /// from the origin.
     #[test]
     fn multipliers_of_a_quadratic_problem() {
         // ORIGIN: Nocedal and Wright (2006), example 16.4: (1.4, 1.7), multiplier 0.8
@@ -446,8 +447,8 @@ mod tests {
         near(&[answer.decrease_db], &[7.25 - 0.8]);
     }
 
-    /// A margin that a relaxation helps twice as much: x >= t and 3 - x >= 2 t meet at t = 1, each
-    /// worth a third.
+    /// A margin that a relaxation improves twice as much: x >= t and 3 - x >= 2 t meet at t = 1,
+    /// each worth a third.
     #[test]
     fn common_margin_is_weighed_by_the_rates() {
         let rows = [row(0, 0.0, 1.0, &[1.0]), row(1, 3.0, 2.0, &[-1.0])];
@@ -459,8 +460,8 @@ mod tests {
         near(&[answer.violation_db, answer.decrease_db], &[0.25 - 1.0, 1.0]);
     }
 
-    /// Least x + 2 y within a disc that a thousand tangents enclose, of which few are looked at
-    /// first: the two beside (-1, -2)/sqrt(5) bind.
+    /// Minimum of x + 2 y within a disc enclosed by a thousand tangents, of which few are examined
+    /// first: the two next to (-1, -2)/sqrt(5) bind.
     #[test]
     fn few_of_many_rows_bind() {
         let tangent = |index: usize| {
@@ -469,14 +470,14 @@ mod tests {
         };
         let rows: Vec<MarginRow> = (0..1000).map(tangent).collect();
         let answer = subproblem(Aim::Objective, &[1.0, 2.0], &rows, &[[-9.0, 9.0]; 2]).solve().unwrap();
-        // a corner of the polygon lies outside of the circle by less than 5e-6 of its radius
+        // a corner of the polygon is outside the circle by less than 5e-6 of its radius
         let circle = 5_f64.sqrt();
         assert!((answer.decrease_db / circle - 1.0).abs() < 5e-6, "{answer:?}");
         let bind: Vec<usize> = (0..1000).filter(|index| answer.multipliers[*index] > 1e-6).collect();
         assert_eq!(bind, [176, 177]); // of atan2(2, 1), 1000/(2 pi) to a radian
     }
 
-    /// What the box does not allow remains as a violation, which is penalised.
+    /// The part that the box does not allow remains as a violation, which is penalised.
     #[test]
     fn violation_is_elastic() {
         let rows = [row(0, -1.0, 1.0, &[1.0, 0.0])];

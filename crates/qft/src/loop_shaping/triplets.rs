@@ -11,7 +11,7 @@ pub(super) struct Triplets {
 }
 
 impl Triplets {
-    /// One more.
+    /// Adds one entry.
     pub(super) fn push(&mut self, row: usize, column: usize, value: f64) {
         self.rows.push(row);
         self.columns.push(column);

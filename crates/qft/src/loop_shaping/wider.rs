@@ -1,36 +1,36 @@
-//! What a wider limit brings: a search that goes on from where it ended, with that limit wider.
+//! Benefit of a wider limit: a search that continues from its end with that limit wider.
 
 use phea_dynamics::watch::{Stopped, Watch};
 
 use super::descent::{DescentOptions, descend};
 use super::search::{Aim, Judgement, SearchProblem};
 
-/// Accuracy of what is gained, dB.
+/// Accuracy of the benefit, dB.
 const TOLERANCE_DB: f64 = 2e-3;
-/// A margin that misses its reserve by more than this at the end leaves nothing to compare, dB.
+/// Deficit of a margin from its reserve at the end above which no comparison is possible, dB.
 const MISSED_DB: f64 = 0.1;
-/// Steps of one descent.
+/// Number of steps of one descent.
 const STEPS: usize = 20;
 
-/// A local optimum of a search, and what it reaches there.
+/// A local optimum of a search, and its value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocalOptimum {
-    /// Where it ended.
+    /// The end of the search.
     pub x: Vec<f64>,
-    /// The objective, or less the worst margin, dB: the less the better.
+    /// The objective, or the negative worst margin, dB: smaller is better.
     pub value_db: f64,
     options: DescentOptions,
 }
 
 impl LocalOptimum {
-    /// The local optimum beside x, all margins keeping this reserve in dB where the objective is
-    /// what counts; `None` where they do not keep it there, or where a plant is not stable.
+    /// The local optimum near x, with all margins at least this reserve, dB, if the objective is
+    /// the aim; `None` if they are not, or if a plant is not stable.
     ///
     /// # Errors
     /// [`Stopped`] by the watch.
     ///
     /// # Example
-    /// The least x whose margin is ln x - c, and c less by 1/4:
+    /// Minimum of x with the margin ln x - c, and c reduced by 1/4:
     /// ```
     /// use phea_dynamics::watch::unwatched;
     /// use phea_qft::loop_shaping::{Aim, Judgement, MarginRow, LocalOptimum, SearchProblem, Slopes};
@@ -72,8 +72,8 @@ impl LocalOptimum {
         LocalOptimum { x: x.to_vec(), value_db: f64::NAN, options }.continued(problem, watch)
     }
 
-    /// The end of the same search with other limits, from here on; `None` where it finds nothing
-    /// that keeps them.
+    /// The end of this search continued with other limits; `None` if it finds no point that
+    /// satisfies them.
     ///
     /// # Errors
     /// [`Stopped`] by the watch.

@@ -1,4 +1,4 @@
-//! The design frequencies of a problem, prepared for judging one controller after the other.
+//! The design frequencies of a problem, prepared for evaluating one controller after the other.
 
 use num_complex::Complex64;
 use phea_dynamics::frequency::decibels;
@@ -12,11 +12,11 @@ use crate::specification::{LoopResponse, Specification};
 use crate::template::{Template, TemplatePoint};
 use crate::verification::{PlantPoint, SpecificationMargin, TrackingJudgement};
 
-/// Templates and bounds at the design frequencies, which no controller changes.
+/// Templates and bounds at the design frequencies, independent of the controller.
 ///
 /// # Example
-/// A gain between 1 and 4 must satisfy |S| <= 1/2: with G = 2 the smallest plant gives |S| = 1/3,
-/// so that the loop gain may fall by half.
+/// Plant with a gain between 1 and 4 that must satisfy |S| <= 1/2: with G = 2 the smallest plant
+/// gives |S| = 1/3, so that the loop gain may fall by half.
 /// ```
 /// use num_complex::Complex64;
 /// use phea_dynamics::controller::{Compensator, Controller, Element};
@@ -70,9 +70,9 @@ pub struct DesignChart {
 #[derive(Clone, Debug)]
 struct Station {
     template: Template,
-    /// Of all specifications together.
+    /// Bounds of all specifications together.
     bounds: FrequencyBounds,
-    /// For each specification that applies at this design frequency, by its index.
+    /// Bounds of each specification that applies at this design frequency, by its index.
     each: Vec<(usize, FrequencyBounds)>,
 }
 
@@ -81,20 +81,20 @@ struct Station {
 pub struct DesignMargin {
     /// The margin of the worst plant of the template.
     pub worst: SpecificationMargin,
-    /// Where the nominal loop lies among the gains that this specification allows at its phase, the
-    /// interior of the template counting as plants: how far it may, or must, move. Tracking is
-    /// judged by its spread.
+    /// Position of the nominal loop relative to the gains that this specification allows at its
+    /// phase, with the interior of the template counting as plants: the permitted, or required,
+    /// move. Tracking is assessed by its spread.
     pub placement: Placement,
 }
 
 /// The nominal loop at one design frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DesignPoint {
-    /// rad/s
+    /// Frequency, rad/s.
     pub frequency_rad_per_s: f64,
-    /// L0
+    /// Nominal loop L0.
     pub nominal_loop: Complex64,
-    /// Where it lies among the bounds of all specifications together.
+    /// Position relative to the bounds of all specifications together.
     pub placement: Placement,
 }
 
@@ -191,7 +191,7 @@ impl Station {
     }
 }
 
-/// Whether a specification has this design frequency, and a limit there.
+/// True if a specification has this design frequency, and a limit there.
 fn demands(specification: &Specification, frequency: f64) -> bool {
     let (lower, upper) = specification.requirement.limits();
     specification.frequencies_rad_per_s.contains(&frequency)
@@ -200,7 +200,7 @@ fn demands(specification: &Specification, frequency: f64) -> bool {
 
 type ChartPlants<'a> = [(LoopResponse, &'a TemplatePoint)];
 
-/// The least margin in dB with its plant, or with both plants of a spread.
+/// The least margin, dB, with its plant, or with both plants of a spread.
 type ChartMargin<'a> = (f64, &'a TemplatePoint, Option<&'a TemplatePoint>);
 
 /// The plant with the least margin.
@@ -215,7 +215,7 @@ fn worst<'a>(
     margins.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// The two plants that lie farthest apart: 20 log10(upper/lower) - 20 log10(max|T|/min|T|).
+/// The two plants farthest apart: 20 log10(upper/lower) - 20 log10(max|T|/min|T|).
 fn spread<'a>(
     specification: &Specification,
     frequency: f64,

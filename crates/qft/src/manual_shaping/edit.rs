@@ -1,4 +1,4 @@
-//! Changes of a controller, each of them a value.
+//! Edits of a controller, represented as values.
 
 use phea_dynamics::controller::{Compensator, Element, Stage};
 use phea_dynamics::linear::LinearError;
@@ -6,48 +6,49 @@ use phea_dynamics::linear::LinearError;
 /// One change of a list of elements. Elements are counted from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Edit {
-    /// A new element.
+    /// Insertion of a new element.
     Add {
-        /// How many elements are before it.
+        /// Number of elements before it.
         at: usize,
-        /// The element, and whether it acts.
+        /// The element, with its enabled state.
         stage: Stage,
     },
-    /// Without this element.
+    /// Removal of this element.
     Remove(usize),
-    /// Another element in its place, enabled as it was.
+    /// Replacement of an element; the enabled state is unchanged.
     Replace(usize, Element),
-    /// Whether an element acts; a disabled one is kept.
+    /// Enables or disables an element; a disabled one stays in the list.
     Enable(usize, bool),
-    /// An element in another place; the others keep their order.
+    /// Move of an element to another position; the order of the others is unchanged.
     Move {
-        /// Where it is.
+        /// Present position.
         from: usize,
-        /// Where it shall be.
+        /// New position.
         to: usize,
     },
-    /// The gain times a factor: that of the first enabled gain, or of a new one in front.
+    /// Multiplication of the gain by a factor: that of the first enabled gain, or of a new one in
+    /// front.
     ScaleGain(f64),
 }
 
-/// Why a list of elements cannot be changed in this way.
+/// Reason why a list of elements cannot be changed in this way.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EditError {
     /// An element that does not exist.
     #[error("there is no element {index}, counted from 0: there are {count}")]
     NoElement {
-        /// As asked for, from 0.
+        /// Requested index, from 0.
         index: usize,
-        /// How many there are.
+        /// Number of elements.
         count: usize,
     },
     /// An element that is not a transfer function.
     #[error("the element is not a transfer function: {0}")]
     Element(LinearError),
-    /// An element that makes the loop zero.
+    /// An element for which the loop is zero.
     #[error("the element is zero at every frequency")]
     Zero,
-    /// A factor that is zero or not finite, or leaves such a gain.
+    /// A factor that is zero or not finite, or results in such a gain.
     #[error("the gain cannot be multiplied by {0}")]
     Factor(f64),
 }

@@ -1,4 +1,4 @@
-//! An element solved so that the loop passes through a wanted point of the chart.
+//! An element solved so that the loop passes through a required point of the chart.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Element, Timing};
@@ -10,63 +10,63 @@ use super::reach::{ElementPattern, ElementTarget, Reach};
 /// A point of the Nichols chart, or one of its coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WantedPoint {
-    /// w, rad/s
+    /// Frequency w, rad/s.
     pub frequency_rad_per_s: f64,
-    /// 20 log10 |L|; `None`: any.
+    /// Magnitude 20 log10 |L|, dB; `None` if any.
     pub magnitude_db: Option<f64>,
-    /// arg L in degrees, whole turns left out; `None`: any.
+    /// Phase arg L without whole turns, degrees; `None` if any.
     pub phase_deg: Option<f64>,
 }
 
-/// Why no element is found.
+/// Reason why no element is found.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PassError {
-    /// A frequency that is not positive, or beyond what a sampled loop has.
+    /// A frequency that is not positive, or beyond the band of a sampled loop.
     Frequency {
-        /// rad/s
+        /// Frequency, rad/s.
         frequency_rad_per_s: f64,
     },
-    /// A loop that is zero or not finite, which no element moves.
+    /// A loop that is zero or not finite, which no element changes.
     NoLoop {
-        /// The loop as it is.
+        /// Present value of the loop.
         present: Complex64,
-        /// rad/s
+        /// Frequency, rad/s.
         frequency_rad_per_s: f64,
     },
     /// The point does not specify the coordinate that the element needs.
     Incomplete {
-        /// Which element.
+        /// Type of the element.
         pattern: ElementPattern,
-        /// What of the point.
+        /// Coordinate that it needs.
         needs: NeededCoordinate,
     },
     /// The given number of the element is invalid.
     Number {
-        /// Which element.
+        /// Type of the element.
         pattern: ElementPattern,
-        /// Its damping ratio, or its frequency in rad/s.
+        /// Damping ratio, or frequency, rad/s.
         value: f64,
     },
-    /// A sampled loop whose elements are not discretised by the bilinear rule, for which alone
-    /// there is a closed form.
+    /// A sampled loop whose elements are not discretised by the bilinear rule, the only one with a
+    /// closed form.
     Discretization,
     /// The element cannot move the loop to this point.
     Unreachable {
-        /// Which element.
+        /// Type of the element.
         pattern: ElementPattern,
-        /// The change of phase that it takes, degrees; `None` where no phase is wanted.
+        /// The change of phase required, degrees; `None` if no phase is specified.
         turn_deg: Option<f64>,
-        /// The change of magnitude that it takes, dB; `None` where no magnitude is wanted.
+        /// The change of magnitude required, dB; `None` if no magnitude is specified.
         raise_db: Option<f64>,
-        /// What it can do.
+        /// Reach of the element.
         reach: Reach,
     },
 }
 
-/// What an element needs of the point.
+/// Coordinates of the point that an element needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NeededCoordinate {
-    /// The magnitude; it does not change the phase.
+    /// The magnitude; the element does not change the phase.
     Magnitude,
     /// Magnitude or phase.
     Either,
@@ -74,9 +74,10 @@ pub enum NeededCoordinate {
     Both,
 }
 
-/// The element that moves the loop from where it is, `present` = L(jw), to the wanted point.
+/// The element that moves the loop from `present` = L(jw) to the required point.
 ///
-/// With r = |L wanted|/|L| and theta = arg L wanted - arg L, E(jw) = r e^(j theta):
+/// The required response is E(jw) = r e^(j theta), with r = |L required|/|L| and theta = arg L
+/// required - arg L:
 ///
 /// ```text
 /// gain              k = r                                                       theta = 0
@@ -93,12 +94,12 @@ pub enum NeededCoordinate {
 ///                   r < cos theta, -90 < theta < 0 below w_n, 0 < theta < 90 above it
 /// ```
 ///
-/// Elements with one number need one coordinate of the point; given both, the point must lie on
-/// their curve. In a sampled loop the bilinear rule turns E(s) at frequency w into E at w' = 2/T
-/// tan(w T/2), so that w' takes the place of w.
+/// Elements with one number need one coordinate of the point; if both are given, the point must be
+/// on their curve. In a sampled loop the bilinear rule maps E(s) at frequency w to E at w' = 2/T
+/// tan(w T/2), so that w' replaces w.
 ///
 /// # Errors
-/// [`PassError`]; for a point out of reach, it states what is within reach.
+/// [`PassError`]; for a point out of reach, it states the reach.
 ///
 /// # Example
 /// A lead that raises a loop from -12 dB, -160 degrees to 0 dB, -120 degrees at 20 rad/s; and a
@@ -170,7 +171,7 @@ fn change(
     })
 }
 
-/// w, or its image under the bilinear rule; a gain has no frequency.
+/// Frequency w, or its image under the bilinear rule; a gain has no frequency.
 fn element_frequency(
     pattern: ElementPattern,
     frequency_rad_per_s: f64,
@@ -189,7 +190,7 @@ fn element_frequency(
     }
 }
 
-/// The same angle in (-pi, pi].
+/// An angle normalised to (-pi, pi].
 fn principal(angle: f64) -> f64 {
     let turn = std::f64::consts::TAU;
     let rest = angle - turn * (angle / turn).round();

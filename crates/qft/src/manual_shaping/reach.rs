@@ -1,84 +1,84 @@
-//! What one more element can do to the loop at one frequency.
+//! Reach of one more element: possible changes of the loop at one frequency.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Element;
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::portable;
 
-/// Which element is to be solved for, and its numbers that are not free.
+/// Type of the element to be solved for, and its fixed numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ElementPattern {
-    /// k > 0: the magnitude alone.
+    /// Gain k > 0: changes only the magnitude.
     Gain,
-    /// 1/(s/p + 1): magnitude or phase.
+    /// Real pole 1/(s/p + 1): sets magnitude or phase.
     RealPole,
-    /// s/z + 1: magnitude or phase.
+    /// Real zero s/z + 1: sets magnitude or phase.
     RealZero,
-    /// (s/z + 1)/(s/p + 1), z < p: both.
+    /// Lead (s/z + 1)/(s/p + 1), z < p: sets both.
     Lead,
-    /// (s/z + 1)/(s/p + 1), z > p: both.
+    /// Lag (s/z + 1)/(s/p + 1), z > p: sets both.
     Lag,
-    /// 1/(s^2/w^2 + 2 zeta s/w + 1): both.
+    /// Pair of poles 1/(s^2/w^2 + 2 zeta s/w + 1): sets both.
     ComplexPoles,
-    /// s^2/w^2 + 2 zeta s/w + 1: both.
+    /// Pair of zeros s^2/w^2 + 2 zeta s/w + 1: sets both.
     ComplexZeros,
-    /// 1/(s^2/w^2 + 2 zeta s/w + 1) of this damping: magnitude or phase.
+    /// Pair of poles 1/(s^2/w^2 + 2 zeta s/w + 1) of this damping: sets magnitude or phase.
     RollOff {
-        /// zeta
+        /// Damping ratio zeta.
         damping_ratio: f64,
     },
-    /// K_p + K_i/s: both.
+    /// Proportional-integral element K_p + K_i/s: sets both.
     ProportionalIntegral,
-    /// A notch at the frequency of the point, of this width: the magnitude alone.
+    /// Notch of this width at the frequency of the point: changes only the magnitude.
     NotchHere {
-        /// zeta_p
+        /// Damping ratio zeta_p of the poles.
         pole_damping_ratio: f64,
     },
-    /// A notch at another frequency, its depth and width free: both.
+    /// Notch at another frequency, with free depth and width: sets both.
     NotchBeside {
-        /// w, rad/s
+        /// Natural frequency w, rad/s.
         natural_frequency: f64,
     },
 }
 
 /// The changes of the loop at one frequency that a pattern can achieve. Ends are excluded, unless
-/// both are the same.
+/// both coincide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
     /// Range of the change of phase, degrees.
     pub turn_deg: [f64; 2],
-    /// Range of the change of magnitude at the wanted change of phase, dB; `None` where that phase
+    /// Range of the change of magnitude at the required change of phase, dB; `None` if that phase
     /// is out of reach.
     pub raise_db: Option<[f64; 2]>,
 }
 
-/// What an element must be at one frequency: E = r e^(j theta).
+/// Required response of an element at one frequency: E = r e^(j theta).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ElementTarget {
-    /// w, rad/s
+    /// Frequency w, rad/s.
     pub(super) frequency: f64,
-    /// r
+    /// Magnitude r.
     pub(super) ratio: f64,
-    /// theta in (-pi, pi], rad
+    /// Angle theta in (-pi, pi], rad.
     pub(super) turn: f64,
 }
 
-/// Whether two magnitudes, or angles in rad, are practically equal.
+/// Tolerance within which two magnitudes, or angles in rad, count as equal.
 const TOLERANCE: f64 = 1e-9;
 
 impl ElementPattern {
-    /// Whether magnitude or phase alone determines it.
+    /// True if magnitude or phase determines the element.
     pub(super) fn has_one_number(self) -> bool {
         use ElementPattern::{Gain, NotchHere, RealPole, RealZero, RollOff};
         matches!(self, Gain | RealPole | RealZero | RollOff { .. } | NotchHere { .. })
     }
 
-    /// Whether it does not change the phase.
+    /// True if the element does not change the phase.
     pub(super) fn keeps_phase(self) -> bool {
         matches!(self, ElementPattern::Gain | ElementPattern::NotchHere { .. })
     }
 
-    /// What it can achieve; the magnitudes are those at this change of phase, or at any if none is
+    /// Reach of the element; the magnitudes are those at this change of phase, or at any if none is
     /// given.
     pub(super) fn reach(self, frequency: f64, turn: Option<f64>) -> Reach {
         let (back, ahead) = ([-90.0, 0.0], [0.0, 90.0]);
@@ -98,7 +98,7 @@ impl ElementPattern {
         Reach { turn_deg, raise_db }
     }
 
-    /// Least and greatest ratio of magnitudes at a change of phase that can be reached.
+    /// Least and greatest ratio of magnitudes at a reachable change of phase.
     fn raise(self, turn: Option<f64>) -> [f64; 2] {
         let whole = [0.0, f64::INFINITY];
         let cosine = turn.map_or(1.0, portable::cos);
@@ -122,7 +122,7 @@ impl ElementPattern {
         }
     }
 
-    /// The element with E(jw) = r e^(j theta); `None` where there is none.
+    /// The element with E(jw) = r e^(j theta); `None` if there is none.
     pub(super) fn through(self, change: &ElementTarget) -> Option<Element> {
         let reach = self.reach(change.frequency, Some(change.turn));
         let ratio_db = decibels(change.ratio);
@@ -138,7 +138,7 @@ impl ElementPattern {
         self.of_both(change)
     }
 
-    /// The element whose magnitude is right, whatever its phase.
+    /// The element with the required magnitude, at any phase.
     pub(super) fn of_magnitude(self, change: &ElementTarget) -> Option<Element> {
         let &ElementTarget { frequency: w, ratio: r, .. } = change;
         let [least, greatest] = self.raise(None);
@@ -164,7 +164,7 @@ impl ElementPattern {
         (least < r && r < greatest && is_sound(&element)).then_some(element)
     }
 
-    /// The element whose phase is right, whatever its magnitude.
+    /// The element with the required phase, at any magnitude.
     pub(super) fn of_phase(self, change: &ElementTarget) -> Option<Element> {
         let &ElementTarget { frequency: w, turn, .. } = change;
         self.reach(w, Some(turn)).raise_db?;
@@ -180,7 +180,7 @@ impl ElementPattern {
         is_sound(&element).then_some(element)
     }
 
-    /// Two numbers for two conditions.
+    /// The element with two numbers for two conditions.
     fn of_both(self, change: &ElementTarget) -> Option<Element> {
         let &ElementTarget { frequency: w, ratio: r, turn } = change;
         let e = Complex64::new(r * portable::cos(turn), r * portable::sin(turn));
@@ -216,7 +216,7 @@ impl ElementPattern {
     }
 }
 
-/// x and y of a first-order pair.
+/// Coordinates x and y of a first-order pair.
 ///
 /// ```text
 /// (1 + j x)/(1 + j y) = r e^(j theta):    x = (r - cos theta)/sin theta,    y = (cos theta - 1/r)/sin theta
@@ -237,7 +237,7 @@ fn pair(w: f64, z: Complex64) -> Option<(f64, f64)> {
     if square > 0.0 { Some((w / square.sqrt(), z.im / (2.0 * square.sqrt()))) } else { None }
 }
 
-/// u = w/w_n at which a pair of poles lags by psi.
+/// Relative frequency u = w/w_n at which a pair of poles lags by psi.
 ///
 /// ```text
 /// u^2 sin psi + 2 zeta u cos psi - sin psi = 0,    the positive root
@@ -245,7 +245,7 @@ fn pair(w: f64, z: Complex64) -> Option<(f64, f64)> {
 fn relative_frequency(damping_ratio: f64, psi: f64) -> f64 {
     let (cosine, sine) = (damping_ratio * portable::cos(psi), portable::sin(psi));
     let root = portable::hypot(cosine, sine);
-    // of the two forms of the root, the one without a difference of nearly equal numbers
+    // the form of the root without a difference of nearly equal numbers
     if cosine > 0.0 { sine / (root + cosine) } else { (root - cosine) / sine }
 }
 
@@ -263,12 +263,12 @@ fn peak(damping_ratio: f64) -> f64 {
     }
 }
 
-/// Inside the ends, or equal to them where they coincide.
+/// True if the value is strictly between the ends, or equal to them if they coincide.
 fn within(value: f64, [low, high]: [f64; 2]) -> bool {
     if low == high { (value - low).abs() <= TOLERANCE } else { low < value && value < high }
 }
 
-/// Whether a valid transfer function remained after rounding.
+/// True if the transfer function is still valid after rounding.
 fn is_sound(element: &Element) -> bool {
     element.transfer_function().is_ok_and(|function| {
         let roots = function.zeros().iter().chain(function.poles());

@@ -7,26 +7,26 @@ use super::{PrefilterError, TrackingExtremes, tracking_extremes};
 use crate::closed_loop::{Compensation, Member};
 use crate::specification::Specification;
 
-/// Widths below this are lost in rounding, dB.
+/// Width below which a band is lost in rounding, dB.
 pub(super) const RESOLVED_DB: f64 = 1e-9;
-/// Beyond this distance to an edge, more distance is worth no more than elsewhere, dB.
+/// Distance to an edge beyond which more distance brings no benefit, dB.
 const AMPLE_DB: f64 = 1.0;
 
 /// The least and the greatest |F| at one frequency, each with the member that sets it.
 ///
 /// ```text
-/// width = upper/lower - max|T|/min|T|, in dB: what is allowed less the spread        thesis (3.24), corrected
+/// width = upper/lower - max|T|/min|T|, in dB: allowed less actual spread               thesis (3.24), corrected
 /// allowed = upper/lower, in dB                                                        thesis (3.25), corrected
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrefilterBandPoint {
-    /// rad/s; zero for the limit at rest.
+    /// Frequency, rad/s; zero for the static limit.
     pub frequency_rad_per_s: f64,
-    /// lower/min|T|, dB; minus infinity where nothing is demanded from below.
+    /// Lower edge lower/min|T|, dB; minus infinity without a lower limit.
     pub least_db: f64,
-    /// upper/max|T|, dB
+    /// Upper edge upper/max|T|, dB.
     pub greatest_db: f64,
-    /// upper/lower, dB: the spread that the specification allows to the family.
+    /// Allowed spread of the family upper/lower, dB.
     pub allowed_db: f64,
     /// Index of the member with the least |T|.
     pub least_member: usize,
@@ -42,7 +42,7 @@ pub struct PrefilterBand {
     pub(super) relative_degree: [usize; 2],
     /// Least and greatest |F(0)|, dB.
     pub(super) gain_db: [f64; 2],
-    /// The positive frequencies that were asked for, from and to, rad/s.
+    /// Least and greatest requested positive frequency, rad/s.
     pub(super) span: [f64; 2],
 }
 
@@ -59,30 +59,30 @@ impl PrefilterBandPoint {
     }
 
     /// The residual band, dB: the spread that the specification allows less that of the family.
-    /// Negative where no prefilter satisfies it.
+    /// Negative if no prefilter satisfies it.
     pub fn width_db(&self) -> f64 {
         self.greatest_db - self.least_db
     }
 
     /// The unit of a margin to an edge: half the width, as far as it is resolved, and at most 1 dB.
     ///
-    /// Towards zero frequency, where both limits meet, all margins shrink with the square of the
-    /// frequency; measured in the width they do not, and represent there what the curvatures of the
-    /// limits demand.
+    /// If both limits meet at zero frequency, all margins shrink there with the square of the
+    /// frequency; relative to the width they do not shrink, and represent the requirement on the
+    /// curvature.
     pub fn rate(&self) -> f64 {
         (self.width_db() / 2.0).clamp(RESOLVED_DB, AMPLE_DB)
     }
 }
 
 impl PrefilterBand {
-    /// The band at frequencies of which the extremes of the family are known, in increasing order;
-    /// those at which nothing is demanded are left out.
+    /// The band at frequencies at which the extremes of the family are known, in increasing order;
+    /// frequencies without a limit are omitted.
     ///
     /// # Errors
     /// [`PrefilterError::NotTracking`], [`PrefilterError::NoFrequency`].
     ///
     /// # Example
-    /// T between 0.5 and 0.8 where 0.4 to 1 is demanded leaves 0.8 to 1.25:
+    /// Closed loops T between 0.5 and 0.8 with limits of 0.4 and 1 leave 0.8 to 1.25:
     /// ```
     /// use phea_qft::prefilter::{PrefilterBand, TrackingExtremes};
     /// use phea_qft::specification::{Limit, Requirement, Specification};
@@ -125,7 +125,7 @@ impl PrefilterBand {
     /// ends of the frequency axis: see [`PrefilterBand::with_ends`].
     ///
     /// # Errors
-    /// Those of [`PrefilterBand::new`] and [`tracking_extremes`].
+    /// Errors of [`PrefilterBand::new`] and [`tracking_extremes`].
     pub fn of_family(
         compensation: &Compensation,
         members: &[Member],
@@ -136,18 +136,18 @@ impl PrefilterBand {
         PrefilterBand::new(&extremes, specification)?.with_ends(compensation, members, specification)
     }
 
-    /// The same band with the conditions at the ends of the frequency axis.
+    /// Adds the conditions at the ends of the frequency axis.
     ///
     /// ```text
-    /// w -> 0           F(0) between the limits over T(0); where both limits meet there, F(0) is that value even if the band that is
-    ///                  demanded begins above. Frequencies a decade lower each are added until the edges follow c w^2
-    /// w -> infinity    where tracking is demanded up to infinity: the relative degrees that F may have, and three decades of frequencies
+    /// w -> 0           F(0) between the limits over T(0); if both limits meet there, F(0) is that value even if the band of the
+    ///                  limits begins above. Frequencies, each a decade lower, are added until the edges follow c w^2
+    /// w -> infinity    if the tracking limits extend to infinity: the relative degrees that F may have, and three decades of frequencies
     /// ```
     ///
     /// For a measured family there are no ends, and the band remains unchanged.
     ///
     /// # Errors
-    /// Those of [`tracking_extremes`].
+    /// Errors of [`tracking_extremes`].
     pub fn with_ends(
         mut self,
         compensation: &Compensation,
@@ -159,7 +159,7 @@ impl PrefilterBand {
         Ok(self)
     }
 
-    /// The band at one more frequency; `None` where nothing is demanded.
+    /// The band at one more frequency; `None` without limits there.
     pub(super) fn point(
         compensation: &Compensation,
         members: &[Member],
@@ -171,8 +171,8 @@ impl PrefilterBand {
         Ok(found.first().map(|extremes| PrefilterBandPoint::new(extremes, lower, upper)))
     }
 
-    /// The same band for limits that are eased: every upper one raised and every lower one lowered
-    /// by this, dB. F(0) is unchanged.
+    /// Relaxes every limit: upper ones are raised and lower ones reduced by this, dB. F(0) is
+    /// unchanged.
     pub fn relaxed(mut self, relaxation_db: f64) -> PrefilterBand {
         for point in &mut self.points {
             point.least_db -= relaxation_db;
@@ -187,14 +187,14 @@ impl PrefilterBand {
         &self.points
     }
 
-    /// Least and greatest relative degree that F may have by what is demanded at infinite
+    /// Least and greatest relative degree that F may have according to the limits at infinite
     /// frequency.
     pub fn relative_degree(&self) -> [usize; 2] {
         self.relative_degree
     }
 
-    /// Where the band is narrowest, if it is so narrow that a margin of minus this many decibels at
-    /// both edges is not enough.
+    /// The narrowest point of the band, if it is so narrow that a margin of minus this many
+    /// decibels at both edges is not enough.
     pub fn closed(&self, tolerance_db: f64) -> Option<&PrefilterBandPoint> {
         let narrowest = self.points.iter().min_by(|left, right| left.width_db().total_cmp(&right.width_db()));
         narrowest.filter(|point| point.width_db() < -2.0 * tolerance_db.max(RESOLVED_DB))

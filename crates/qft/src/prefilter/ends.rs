@@ -8,13 +8,13 @@ use crate::closed_loop::{Compensation, Member};
 use crate::specification::{Limit, Specification};
 use crate::verification::{AxisEnd, tracking_ratio};
 
-/// Edges whose curvature changes by less than this share of their distance from one decade to the
-/// next have settled.
+/// Change of the edges' curvature from one decade to the next, as a fraction of their distance,
+/// below which the edges have settled.
 const SETTLED_SHARE: f64 = 0.01;
 /// Decades that are examined below the lowest frequency and above the highest.
 const DECADES: [usize; 2] = [9, 3];
 
-/// Both limits and the band in which they are demanded.
+/// Both limits and their band.
 #[derive(Clone, Copy)]
 pub(super) struct TrackingDemand<'a> {
     lower: &'a Limit,
@@ -30,7 +30,7 @@ impl TrackingDemand<'_> {
         }
     }
 
-    /// Both limits; `None` where nothing is demanded.
+    /// Both limits; `None` outside their band.
     pub(super) fn at(self, frequency: f64) -> Option<[f64; 2]> {
         let demanded = self.band[0] <= frequency && frequency <= self.band[1];
         let limits = || Some([self.lower.magnitude(frequency)?, self.upper.magnitude(frequency)?]);
@@ -77,8 +77,7 @@ pub(super) fn towards_zero(
     Ok(())
 }
 
-/// Whether both edges of two points follow the same c w^2, starting from the value at zero
-/// frequency.
+/// True if both edges of two points follow one c w^2, starting from the value at zero frequency.
 fn settled(rest: &PrefilterBandPoint, before: &PrefilterBandPoint, point: &PrefilterBandPoint) -> bool {
     let square = |point: &PrefilterBandPoint| point.frequency_rad_per_s * point.frequency_rad_per_s;
     let curvatures = |point: &PrefilterBandPoint| {
@@ -90,7 +89,7 @@ fn settled(rest: &PrefilterBandPoint, before: &PrefilterBandPoint, point: &Prefi
     changes.fold(0.0, f64::max) <= SETTLED_SHARE * (greatest - least).abs()
 }
 
-/// The limit of the band as w -> 0; `None` where it has none, or where T vanishes or grows there
+/// The limit of the band as w -> 0; `None` if it has none, or if T vanishes or grows there
 /// differently from its limits.
 fn at_rest(
     compensation: &Compensation,
@@ -124,8 +123,8 @@ fn at_rest(
     Some(point)
 }
 
-/// Adds the relative degrees that the limits allow, and higher frequencies, where tracking is
-/// demanded up to infinity.
+/// Adds the relative degrees that the limits allow, and higher frequencies, if the tracking limits
+/// extend to infinity.
 ///
 /// ```text
 /// F -> f s^-r,   limit/|T| -> c s^n:        r >= -n of the upper limit,  r <= -n of the lower one

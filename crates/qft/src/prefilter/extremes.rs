@@ -6,26 +6,26 @@ use super::PrefilterError;
 use crate::closed_loop::{Compensation, DiscFactors, Member};
 use crate::specification::ClosedLoop;
 
-/// At an undamped pole of the plant, where it has no response, the closed loop is evaluated at a
-/// frequency higher by this share.
+/// Relative distance from an undamped pole of the plant, where it has no response, at which the
+/// closed loop is evaluated instead.
 const BESIDE: f64 = 1e-9;
 
-/// The greatest and the least |P G/(1+L)| of a family at one frequency, the prefilter left out.
+/// The greatest and the least |P G/(1+L)| of a family at one frequency, without the prefilter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackingExtremes {
-    /// rad/s
+    /// Frequency, rad/s.
     pub frequency_rad_per_s: f64,
-    /// max |T|
+    /// Greatest magnitude, max |T|.
     pub greatest: f64,
-    /// Index of the member that has it.
+    /// Index of the member with the greatest magnitude.
     pub greatest_member: usize,
-    /// min |T|
+    /// Least magnitude, min |T|.
     pub least: f64,
-    /// Index of the member that has it.
+    /// Index of the member with the least magnitude.
     pub least_member: usize,
 }
 
-/// The extremes of a family at each frequency, the prefilter left out; those within the discs of
+/// The extremes of a family at each frequency, without the prefilter, including the discs of
 /// measured plants.
 ///
 /// ```text
@@ -33,14 +33,14 @@ pub struct TrackingExtremes {
 /// ```
 ///
 /// At an undamped pole of a plant T is continuous: |P| grows without bound there, and T tends to
-/// 1/H. It is evaluated at a frequency that is higher by a billionth.
+/// 1/H. It is evaluated at a frequency higher by a billionth.
 ///
 /// # Errors
-/// [`PrefilterError::NoResponse`] where a measurement does not reach, or a plant has no value;
+/// [`PrefilterError::NoResponse`] beyond the range of a measurement, or where a plant has no value;
 /// [`PrefilterError::NoMember`] without members.
 ///
 /// # Example
-/// k/s closed with gain 1, k from 1 to 4: |T| = k/|jw + k|
+/// Plants k/s closed with gain 1, k from 1 to 4: |T| = k/|jw + k|
 /// ```
 /// use phea_dynamics::controller::Controller;
 /// use phea_dynamics::linear::TransferFunction;
@@ -94,7 +94,7 @@ fn extremes_at(
             let [least, most] = DiscFactors::of(open, radius).of_closed_loop(ClosedLoop::Tracking);
             magnitude.is_finite().then(|| [least, most].map(|one| magnitude * one.sqrt()))
         };
-        // the closed loop is continuous where the plant alone is infinite
+        // the closed loop is continuous where the plant is infinite
         let magnitude = closed(frequency_rad_per_s).or_else(|| closed(frequency_rad_per_s * (1.0 + BESIDE)));
         let Some([least, most]) = magnitude else {
             return Err(PrefilterError::NoResponse { member, frequency_rad_per_s });

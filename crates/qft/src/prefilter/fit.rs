@@ -1,4 +1,4 @@
-//! The fit of a prefilter into its band, as a problem that a search can solve.
+//! The fit of a prefilter into its band, as a search problem.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Timing;
@@ -10,7 +10,7 @@ use super::PrefilterBand;
 use super::band::RESOLVED_DB;
 use crate::loop_shaping::{Judgement, MarginRow, SearchProblem, Slopes, Structure, StructureResponse};
 
-/// dB in a neper.
+/// Decibels per neper.
 const DECIBELS_PER_NEPER: f64 = 20.0 / std::f64::consts::LN_10;
 
 /// A structure to be fitted into a band: its margins to both edges at each frequency, divided by
@@ -21,8 +21,8 @@ const DECIBELS_PER_NEPER: f64 = 20.0 / std::f64::consts::LN_10;
 /// dm/dx = +-(20/ln 10) Re(d ln F/dx)/rate
 /// ```
 ///
-/// Every rate is 1 after that, and there is no objective: the aim is the greatest worst margin,
-/// which lies in the middle of the band where it is narrow.
+/// After this scaling every rate is 1, and there is no objective: the aim is the greatest worst
+/// margin, which is in the middle of the band where it is narrow.
 #[derive(Clone, Debug)]
 pub struct PrefilterFit {
     structure: Structure,
@@ -40,9 +40,8 @@ struct Target {
 }
 
 impl PrefilterFit {
-    /// The fit of a structure, sampled as the loop samples its prefilter. Where the edges of the
-    /// band have crossed by no more than the tolerance (dB) at each edge, the band is widened by
-    /// it.
+    /// The fit of a structure, sampled as the loop samples its prefilter. If the edges of the band
+    /// have crossed by no more than the tolerance (dB) at each edge, the band is widened by it.
     ///
     /// # Errors
     /// [`LinearError`] for a structure that cannot be sampled in this way.
@@ -69,12 +68,12 @@ impl PrefilterFit {
         Ok(PrefilterFit { bounds: structure.bounds(), structure, response, targets })
     }
 
-    /// What is fitted.
+    /// Structure that is fitted.
     pub fn structure(&self) -> &Structure {
         &self.structure
     }
 
-    /// Least of the margins over their rates; minus infinity where the structure has no value.
+    /// Least of the margins over their rates; minus infinity if the structure has no value.
     fn worst(&self, x: &[f64]) -> f64 {
         let Ok(values) = self.response.values(x) else { return f64::NEG_INFINITY };
         let margins = self.targets.iter().zip(&values).map(|(target, value)| {
@@ -92,7 +91,7 @@ impl Target {
         [(magnitude - self.least) / self.rate, (self.greatest - magnitude) / self.rate]
     }
 
-    /// Both margins with their slopes; a margin to an edge at infinity is left out.
+    /// Both margins with their slopes; a margin to an edge at infinity is omitted.
     fn rows(&self, point: usize, value: Complex64, slopes: &[Complex64]) -> Vec<MarginRow> {
         let scale = DECIBELS_PER_NEPER / self.rate;
         let sides = self.margins(value).into_iter().zip([scale, -scale]).enumerate();

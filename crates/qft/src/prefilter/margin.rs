@@ -11,22 +11,22 @@ use super::{PrefilterBand, PrefilterBandPoint};
 /// An edge of the band.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BandEdge {
-    /// lower/min|T|
+    /// Lower edge lower/min|T|.
     Least,
-    /// upper/max|T|
+    /// Upper edge upper/max|T|.
     Greatest,
 }
 
 /// The smaller of the margins of |F| to the edges of its band at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrefilterMargin {
-    /// rad/s; zero for the limit at rest.
+    /// Frequency, rad/s; zero for the static limit.
     pub frequency_rad_per_s: f64,
     /// The nearer edge.
     pub edge: BandEdge,
-    /// Distance to it in dB; negative where it is passed.
+    /// Distance to it, dB; negative if F is beyond it.
     pub margin_db: f64,
-    /// Its unit, dB: see [`PrefilterBandPoint::rate`].
+    /// Unit of the margin, dB: see [`PrefilterBandPoint::rate`].
     pub rate: f64,
     /// Index of the member that sets the edge.
     pub member: usize,
@@ -40,12 +40,13 @@ impl PrefilterMargin {
 }
 
 impl PrefilterBand {
-    /// The margins of a prefilter, made by hand or found, the least share first: one for each
-    /// frequency; the prefilter must be sampled if the loop is (as `Compensation::prefilter` is).
-    /// At zero frequency, where the band may be a single value, a violation alone is listed.
+    /// The margins of a prefilter, given or synthesised, the smallest relative to its unit first:
+    /// one for each frequency; the prefilter must be sampled if the loop is (as
+    /// `Compensation::prefilter` is). At zero frequency, where the band may be a single value, only
+    /// a violation is listed.
     ///
     /// # Example
-    /// A lag with its corner at 2 rad/s where 0.5 to 1 is asked for at 3 rad/s:
+    /// A lag with its corner at 2 rad/s with limits of 0.5 and 1 at 3 rad/s:
     /// ```
     /// use phea_dynamics::controller::Element;
     /// use phea_qft::prefilter::{BandEdge, PrefilterBand, TrackingExtremes};

@@ -10,15 +10,17 @@ use crate::loop_shaping::{Structure, StructureFactor};
 /// Range of the damping ratio of a pair: from moderate ringing at 0.3 to two real roots at a ratio
 /// of about 3600.
 const DAMPING_RATIO: [f64; 2] = [0.3, 30.0];
-/// How far above the highest frequency a pole or zero may lie; beyond that it has no effect.
+/// Factor above the highest frequency up to which a pole or zero may be placed; beyond that it has
+/// no effect.
 const BEYOND: f64 = 10.0;
-/// The gain may differ by this much, dB, where tracking is not limited from below.
+/// Range of the gain without a lower tracking limit, dB.
 const GAIN_RANGE_DB: f64 = 40.0;
 
-/// Every structure of these orders, the lowest order first and of these the fewest zeros first.
+/// Every structure of these orders, the lowest order first and for each order the fewest zeros
+/// first.
 ///
 /// ```text
-/// F = k (zeros)/(poles),     poles and zeros in pairs, and one by itself where their number is odd
+/// F = k (zeros)/(poles),     poles and zeros in pairs, and a single one if their number is odd
 /// ```
 pub(super) fn structures(
     band: &PrefilterBand,
@@ -47,8 +49,8 @@ fn structure(band: &PrefilterBand, order: usize, zeros: usize) -> Structure {
     Structure { sign: 1.0, gain, parts }
 }
 
-/// The range of the gain: the middle of edges that have passed one another, and an end where
-/// nothing is demanded from below.
+/// The range of the gain: the middle of edges that have crossed, and a finite end without a lower
+/// limit.
 fn gain_db([least, greatest]: [f64; 2]) -> [f64; 2] {
     if least > greatest {
         return [(least + greatest) / 2.0; 2];

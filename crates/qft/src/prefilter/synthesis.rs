@@ -9,12 +9,12 @@ use super::{PrefilterBand, PrefilterBandPoint, PrefilterError, PrefilterFit, Pre
 use crate::loop_shaping::{Aim, SearchOptions, Structure, search};
 use crate::verification::TOLERANCE_DB;
 
-/// Starting points for each free number.
+/// Number of starting points for each free number.
 const SAMPLES_PER_NUMBER: usize = 60;
-/// Shares this near to one another count as equal.
+/// Difference of relative margins below which they count as equal.
 const EQUAL_SHARE: f64 = 0.01;
 
-/// Which prefilters are tried, and when one is good enough.
+/// Candidate prefilters, and the margin at which one is good enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrefilterOptions {
     /// Least number of poles.
@@ -23,15 +23,15 @@ pub struct PrefilterOptions {
     pub maximum_order: usize,
     /// Least relative degree (poles less zeros), as far as the band allows it.
     pub least_relative_degree: usize,
-    /// A margin of minus this much still counts as met, dB.
+    /// Violation up to which a margin counts as met, dB.
     pub tolerance_db: f64,
-    /// Seed of the starting points: the same seed gives the same prefilter.
+    /// Seed of the starting points: equal seeds give equal prefilters.
     pub seed: u64,
 }
 
 impl PrefilterOptions {
-    /// Relative degree 1 at least, so that a step of the reference reaches the controller without a
-    /// jump; the tolerance of the audit.
+    /// Defaults: relative degree of at least 1, so that a step of the reference reaches the
+    /// controller without a jump, and the tolerance of the audit.
     pub fn new(maximum_order: usize, seed: u64) -> PrefilterOptions {
         PrefilterOptions {
             least_order: 0,
@@ -43,32 +43,31 @@ impl PrefilterOptions {
     }
 }
 
-/// A prefilter that was fitted into its band.
+/// A prefilter fitted into its band.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FittedPrefilter {
-    /// What was fitted.
+    /// Structure that was fitted.
     pub structure: Structure,
-    /// Its free numbers.
+    /// Free numbers of the structure.
     pub x: Vec<f64>,
     /// The prefilter.
     pub compensator: Compensator,
-    /// Its worst margin: the one with the least share or, among several that are equal to within 1
-    /// %, the one where the band is widest.
+    /// Worst margin: the smallest relative to its unit or, among several equal to within 1 %, the
+    /// one where the band is widest.
     pub worst: PrefilterMargin,
 }
 
-/// What the synthesis ended with.
+/// Outcome of the synthesis.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PrefilterOutcome {
-    /// The prefilter of least order that stays within its band, as near to the middle as possible.
+    /// The prefilter of least order that stays within its band, as close to the middle as possible.
     Found(FittedPrefilter),
     /// The band is closed: no prefilter of any order satisfies it. The members of this point are
     /// the two conflicting plants.
     NoBand(PrefilterBandPoint),
-    /// The band is open, but no prefilter of the orders that were tried stays within it; the one
-    /// that comes nearest, if any was tried.
+    /// The band is open, but no prefilter of the candidate orders stays within it.
     OrderTooLow {
-        /// Its worst margin is negative.
+        /// The nearest prefilter, with a negative worst margin; `None` if there were no candidates.
         best: Option<FittedPrefilter>,
     },
 }
@@ -77,7 +76,7 @@ pub enum PrefilterOutcome {
 ///
 /// Structures of growing order are fitted into the band, each by a search from many starts for the
 /// greatest worst margin over rate ([`PrefilterFit`]); the first one that satisfies both edges
-/// everywhere is taken. Source of the band: thesis 3.1.5.
+/// everywhere is returned. Source of the band: thesis 3.1.5.
 ///
 /// # Errors
 /// [`PrefilterError::Linear`] for an invalid sample time or prewarping frequency;
@@ -144,7 +143,7 @@ pub fn fit_prefilter(
             best = Some((share, fitted));
         }
     }
-    // none satisfies the band to the last digit: the best may be within the tolerance
+    // no prefilter satisfies the band to the last digit: the best may be within the tolerance
     let best = best.map(|(_, best)| best);
     Ok(match best {
         Some(best) if synthesis.is_within(&best, options.tolerance_db) => PrefilterOutcome::Found(best),

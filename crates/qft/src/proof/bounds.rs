@@ -1,4 +1,4 @@
-//! Finds bounds on the images of a sampled plant that are not enclosed one by one.
+//! Bounds on the images of a sampled plant that are not enclosed individually.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -10,17 +10,17 @@ use super::images::PlantImages;
 use super::panels::walk_band;
 use super::walk::{ProofEffort, WalkOutcome};
 
-/// Images on either side that are enclosed one by one, by the relative degree of the plant: the
-/// slower they die out, the more.
+/// Number of images on either side that are enclosed individually, by the relative degree of the
+/// plant: the slower the decay, the more images.
 const IMAGES: [usize; 3] = [0, 12, 4];
-/// The same for greater relative degrees.
+/// Number of images for greater relative degrees.
 const FAR_IMAGES: usize = 3;
-/// Factor by which a bound is raised above the value that is reached.
+/// Factor by which a bound is raised above the value reached.
 const ABOVE: f64 = 1.3;
-/// Largest number of times that it is raised.
+/// Largest number of times that a bound is raised.
 const RAISES_MAXIMUM: usize = 40;
 
-/// The certificate with bounds on images, where its loop is sampled; `None` where there are none.
+/// The certificate with bounds on images, if its loop is sampled; `None` if there are none.
 pub(super) fn with_bounds(
     mut certificate: Certificate,
     effort: ProofEffort<'_>,
@@ -57,7 +57,7 @@ pub(super) fn with_bounds(
     Ok(Some(certificate))
 }
 
-/// A claim with the bound one, raised until it holds: the bound and its proof.
+/// A claim with a bound of one, raised until it holds: the bound and its proof.
 fn bounded(
     claimed: &Claimed<f64>,
     variables: usize,
@@ -65,7 +65,7 @@ fn bounded(
     effort: ProofEffort<'_>,
     watch: Watch<'_>,
 ) -> Result<Option<(f64, Vec<FrequencyPanel>)>, Stopped> {
-    // where it begins, with all variables at one
+    // at the start of the band, with all variables at one
     let [u, v] = [claimed.value_of_u(begin), claimed.value_of_v(begin)]
         .map(|value| value.map_or(f64::NAN, |[re, im]| portable::magnitude(Complex64::new(re, im))));
     let mut ratio = rounded_up(ABOVE * v / u);
@@ -79,7 +79,7 @@ fn bounded(
     Ok(None)
 }
 
-/// A number of few digits that is not greater.
+/// The number rounded down to few digits.
 fn rounded(value: f64) -> f64 {
     portable::rounded(value * (1.0 - 1e-4), 6)
 }

@@ -1,4 +1,5 @@
-//! What is claimed about a loop, with its proof: everything that a checker needs, and nothing else.
+//! Certificate: claims about a loop with their proof; everything that a checker needs, and nothing
+//! else.
 
 use phea_dynamics::expression::Expression;
 
@@ -6,25 +7,26 @@ use crate::specification::ClosedLoop;
 
 /// A claim about every plant of a box at every frequency of a band, with its proof.
 ///
-/// A number stands for the decimal number that it prints as: the shortest that reads back as it.
+/// Each number represents the decimal number that it prints as: the shortest one that reads back as
+/// that number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
     /// The plant, as recorded operations on its parameters.
     pub plant: CertifiedPlant,
-    /// G.
+    /// Feedback G.
     pub feedback: ControlLaw,
-    /// F.
+    /// Prefilter F.
     pub prefilter: ControlLaw,
-    /// H.
+    /// Sensor H.
     pub sensor: Quotient,
-    /// How the loop samples, where it does.
+    /// Sampling of the loop; `None` if it is continuous.
     pub sampling: Option<Sampling>,
-    /// What is claimed.
+    /// Claims of the certificate.
     pub claims: Vec<Claim>,
 }
 
 impl Certificate {
-    /// Leaves of all trees.
+    /// Number of leaves of all trees.
     pub fn leaves(&self) -> usize {
         let of_claim = |claim: &Claim| -> usize {
             match claim {
@@ -48,21 +50,21 @@ pub struct CertifiedPlant {
     pub parameters: Vec<String>,
     /// Number of variables t in [0, 1] that span each box.
     pub variables: usize,
-    /// For each box how its parameters depend on the variables, in the order of `parameters`.
+    /// Dependence of the parameters on the variables for each box, in the order of `parameters`.
     pub boxes: Vec<Vec<ParameterSegment>>,
     /// Coefficients of P, of Pd if there is one, and the dead time of the plant if it has one.
     pub coefficients: Expression,
-    /// Numbers of coefficients, highest power first: numerator and denominator of P, and the same
-    /// for Pd.
+    /// Numbers of coefficients, highest power first: numerator and denominator of P, then those of
+    /// Pd.
     pub lengths: Vec<usize>,
-    /// Whether the dead time of the plant follows the coefficients.
+    /// True if the dead time of the plant follows the coefficients.
     pub has_dead_time: bool,
     /// Additional dead time of the loop, s.
     pub delay_s: f64,
-    /// Terms of the series that stands for dead time.
+    /// Number of terms of the series that approximates dead time.
     pub dead_time_terms: usize,
-    /// The degree of the polynomials, with a remainder, that replace coefficients which are not
-    /// polynomials; 0 where all are polynomials.
+    /// Degree of the polynomials, with a remainder, that replace nonpolynomial coefficients; 0 if
+    /// all are polynomials.
     pub model_degree: usize,
 }
 
@@ -70,30 +72,30 @@ pub struct CertifiedPlant {
 /// `low (high/low)^t`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ParameterSegment {
-    /// Its value where the variable is 0.
+    /// Value if the variable is 0.
     pub low: f64,
-    /// Its value where the variable is 1.
+    /// Value if the variable is 1.
     pub high: f64,
-    /// Which variable moves it; `None` where it is `low` always.
+    /// Index of the variable that moves the parameter; `None` if it is always `low`.
     pub variable: Option<usize>,
-    /// Whether it varies logarithmically.
+    /// True if the parameter varies logarithmically.
     pub by_factors: bool,
 }
 
 impl ParameterSegment {
-    /// A value that nothing moves.
+    /// A constant value.
     pub fn fixed(value: f64) -> ParameterSegment {
         ParameterSegment { low: value, high: value, variable: None, by_factors: false }
     }
 }
 
 impl CertifiedPlant {
-    /// Whether every parameter of a box moves along a straight line.
+    /// True if every parameter of a box varies linearly.
     pub(super) fn is_straight(&self) -> bool {
         self.boxes.iter().flatten().all(|one| !one.by_factors)
     }
 
-    /// Whether there is dead time in the loop.
+    /// True if there is dead time in the loop.
     pub fn is_late(&self) -> bool {
         self.has_dead_time || self.delay_s != 0.0
     }
@@ -114,7 +116,7 @@ impl Quotient {
         Quotient { numerator: vec![value], denominator: vec![1.0] }
     }
 
-    /// Whether it is the number one.
+    /// True if it is the number one.
     pub(crate) fn is_one(&self) -> bool {
         *self == Quotient::constant(1.0)
     }
@@ -123,16 +125,16 @@ impl Quotient {
 /// A controller or prefilter.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ControlLaw {
-    /// In s.
+    /// Law in s.
     Continuous(Quotient),
-    /// In z.
+    /// Law in z.
     Sampled(Sections),
 }
 
 /// A product of quotients of polynomials in z - 1, of degree two at most, highest power first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sections {
-    /// What multiplies them.
+    /// Factor of the product.
     pub gain: f64,
     /// Numerators.
     pub numerator: Vec<Vec<f64>>,
@@ -145,50 +147,52 @@ pub struct Sections {
 pub enum Claim {
     /// All poles of the loop with every plant, and of the prefilter, have negative real parts.
     Stable(
-        /// Of each box.
+        /// Proof for each box.
         Vec<StableBox>,
     ),
-    /// With this plant the loop has a pole on the boundary of stability or beyond it.
+    /// The loop with this plant has a pole on the stability boundary or beyond it.
     Unstable {
         /// The plant.
         member: CertificateMember,
-        /// Of a sampled loop.
+        /// Number of unstable poles of a sampled loop.
         count: Option<PoleCount>,
     },
     /// A closed loop is within `ratio` times its limit.
     Limited {
-        /// What is limited.
+        /// The closed loop and its limit.
         limited: LimitedLoop,
         /// The greatest ratio.
         ratio: f64,
-        /// For each box, over the band without a gap.
+        /// Panels for each box, covering the band without a gap.
         boxes: Vec<Vec<FrequencyPanel>>,
     },
     /// A closed loop is at least `ratio` times its limit somewhere.
     Reached {
-        /// What is limited.
+        /// The closed loop and its limit.
         limited: LimitedLoop,
         /// The ratio.
         ratio: f64,
-        /// Where, rad/s.
+        /// Frequency at which it is reached, rad/s.
         frequency_rad_per_s: f64,
-        /// With which plant.
+        /// Plant for which it is reached.
         member: CertificateMember,
     },
 }
 
-/// Proof that every plant of a box is stable: one is, and on the way to every other plant none of
-/// its poles crosses the boundary of stability.
+/// Proof that every plant of a box is stable: one plant is stable, and on the way to every other
+/// plant no pole crosses the stability boundary.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StableBox {
     /// Variables of a plant that is stable without dead time.
     pub member: Vec<f64>,
-    /// From zero to infinity without a gap: no pole on the boundary, for every plant of the box.
+    /// Panels from zero to infinity without a gap: no pole on the stability boundary, for every
+    /// plant of the box.
     pub panels: Vec<FrequencyPanel>,
-    /// The same for this plant alone, while its dead time grows from zero to its value; empty
-    /// without dead time and for a sampled loop.
+    /// Panels for this plant while its dead time grows from zero to its value; empty without dead
+    /// time and for a sampled loop.
     pub delays: Vec<FrequencyPanel>,
-    /// For a sampled loop, which needs no path from a loop without dead time.
+    /// Number of unstable poles of a sampled loop, which needs no path from a loop without dead
+    /// time.
     pub count: Option<PoleCount>,
 }
 
@@ -200,34 +204,35 @@ pub struct PoleCount {
     pub characteristic: Vec<FrequencyPanel>,
     /// The denominator of plant and sensor without its zeros at s = 0, up to pi/T.
     pub denominator: Vec<FrequencyPanel>,
-    /// The same from there to infinity.
+    /// The denominator from pi/T to infinity.
     pub beyond: Vec<FrequencyPanel>,
 }
 
-/// How a loop samples: the plant behind a zero-order hold, its response being the sum of its images
+/// Sampling of a loop: the plant after a zero-order hold, whose response is the sum of its images
 /// at w + 2 pi k/T.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sampling {
-    /// T, s.
+    /// Sample time T, s.
     pub sample_time_s: f64,
-    /// The part of the dead time that follows the output, s: that of the sensor, which is not part
-    /// of P.
+    /// The part of the dead time that follows the output, s: that of the sensor, which does not
+    /// belong to P.
     pub sensor_delay_s: f64,
-    /// Number of images on either side that are enclosed one by one.
+    /// Number of images on either side that are enclosed individually.
     pub images: usize,
-    /// For each box a bound on the other images: for the plant with its sensor and, where the
-    /// sensor is not 1, for the plant alone.
+    /// Bounds on the other images for each box: for the plant with its sensor and, if the sensor is
+    /// not 1, for the plant without it.
     pub bounds: Vec<Vec<RollOffBound>>,
 }
 
-/// |P(jw)| <= `ratio`/w^m from a frequency below those of all images that are not taken one by one.
+/// Bound |P(jw)| <= `ratio`/w^m from a frequency below those of all images not enclosed
+/// individually.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RollOffBound {
-    /// m, at least 1: the degree of the denominator less that of the numerator.
+    /// Order m, at least 1: the degree of the denominator less that of the numerator.
     pub order: usize,
-    /// In the units of P and rad/s.
+    /// Ratio in the units of P and rad/s.
     pub ratio: f64,
-    /// From there to infinity.
+    /// Panels from that frequency to infinity.
     pub panels: Vec<FrequencyPanel>,
 }
 
@@ -236,7 +241,7 @@ pub struct RollOffBound {
 pub struct CertificateMember {
     /// Index of the box.
     pub of_box: usize,
-    /// Its variables, each within 0 to 1.
+    /// Variables of the plant, each within 0 to 1.
     pub variables: Vec<f64>,
 }
 
@@ -245,25 +250,25 @@ pub struct CertificateMember {
 pub struct LimitedLoop {
     /// The closed loop.
     pub closed_loop: ClosedLoop,
-    /// Which side is limited.
+    /// Limited side.
     pub side: CertificateSide,
     /// The limit.
     pub limit: LimitOf,
-    /// From and to, rad/s.
+    /// Ends of the band, rad/s.
     pub band_rad_per_s: [f64; 2],
 }
 
-/// What limits a magnitude.
+/// Limit of a magnitude.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LimitOf {
-    /// The magnitude of this.
+    /// Magnitude of this quotient.
     Quotient(Quotient),
-    /// Points of frequency, rad/s, and magnitude: straight between them in a double logarithmic
+    /// Points of frequency, rad/s, and magnitude: interpolated linearly in a double logarithmic
     /// diagram, and without a limit beyond them.
     Table(Vec<(f64, f64)>),
 }
 
-/// Whether a limit bounds a magnitude from above or from below.
+/// Side of a limit: from above or from below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CertificateSide {
     /// The ratio is that of the magnitude to its limit.
@@ -272,32 +277,34 @@ pub enum CertificateSide {
     Lower,
 }
 
-/// A panel of frequencies and the tree of boxes that covers it with the box of the plants.
+/// A panel of frequencies and the tree of boxes that covers it and the box of the plants.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrequencyPanel {
-    /// rad/s
+    /// Lower end, rad/s.
     pub from: f64,
-    /// rad/s; may be infinite.
+    /// Upper end, rad/s; may be infinite.
     pub to: f64,
-    /// How dead time is taken.
+    /// Treatment of dead time.
     pub late: Late,
-    /// In order: an axis across which the box is halved, 0 being that of the frequency, then the
-    /// lower half, then the upper one; or [`LEAF`] with the direction that shows the claim there,
-    /// two numbers of 16 bits, the greater byte first.
+    /// Nodes in preorder: an axis across which the box is halved, 0 for the frequency, then the
+    /// lower half, then the upper one; or [`LEAF`] with the direction that proves the claim there,
+    /// two big-endian numbers of 16 bits.
     pub tree: Vec<u8>,
 }
 
-/// How dead time E = e^(-j w tau) is treated over a panel.
+/// Treatment of dead time E = e^(-j w tau) over a panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Late {
-    /// There is none.
+    /// Absent.
     Not,
-    /// It is expanded about this angle, rad: about halfway between the least and the greatest
-    /// product of frequency and dead time.
+    /// Expanded about this angle, rad: about halfway between the least and the greatest product of
+    /// frequency and dead time.
     Turns(f64),
-    /// As any number of magnitude one: the part that it multiplies is smaller than the rest.
+    /// Replaced by any number of magnitude one: the part that it multiplies is smaller than the
+    /// rest.
     Less,
-    /// The same where the part that it multiplies is larger than the rest.
+    /// Replaced by any number of magnitude one: the part that it multiplies is larger than the
+    /// rest.
     More,
 }
 
@@ -305,7 +312,7 @@ pub enum Late {
 pub const LEAF: u8 = 255;
 
 impl FrequencyPanel {
-    /// Number of leaves: n leaves come with n - 1 halvings of one byte each.
+    /// Number of leaves; n leaves have n - 1 halvings of one byte each.
     pub fn leaves(&self) -> usize {
         (self.tree.len() + 1) / 6
     }

@@ -1,11 +1,11 @@
-//! The checker: whether a certificate proves what it claims. It relies on nothing but the
-//! certificate, and rounds outwards wherever it rounds.
+//! The checker of certificates. It relies on nothing but the certificate, and rounds outwards
+//! wherever it rounds.
 //!
 //! ```text
 //! leaf with direction (a, b):   x_k = a Re U_k + b Im U_k - (|a| + |b|) e_k > 0,   x_k^2 >= (a^2 + b^2) |V_k|^2      for every control point
 //! ```
 //!
-//! Re(conj(d) U) - |d| (|V| + e) is concave in (U, V, e): where it is not negative at the control
+//! Re(conj(d) U) - |d| (|V| + e) is concave in (U, V, e): if it is not negative at the control
 //! points, it is not negative between them.
 
 use phea_dynamics::scalar::{Interval, Scalar};
@@ -25,7 +25,7 @@ use super::polynomial::VARIABLES_MAXIMUM;
 use super::sampling::{check_bounds, check_sampling, pi_over_t, poles_of_law, prefilter_is_stable};
 use crate::specification::ClosedLoop;
 
-/// Largest number of halvings on the way to a leaf: no proof needs as many.
+/// Largest number of halvings on the way to a leaf: more than any proof needs.
 const DEPTH_MAXIMUM: usize = 256;
 
 /// Largest degree of a polynomial that replaces a coefficient.
@@ -33,7 +33,7 @@ const MODEL_DEGREE_MAXIMUM: usize = 8;
 /// Largest number of terms of the series of dead time.
 const DEAD_TIME_TERMS_MAXIMUM: usize = 24;
 
-/// Number of a certificate.
+/// Kind of a number in a certificate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CertificateNumber {
     /// Frequency of a panel, rad/s.
@@ -54,12 +54,12 @@ pub enum CertificateNumber {
     /// Dead time, s.
     #[error("a dead time")]
     DeadTime,
-    /// Number of the sampling.
+    /// Number in the sampling data.
     #[error("of the sampling")]
     Sampling,
 }
 
-/// Why a certificate is rejected.
+/// Reason why a certificate is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Rejection {
     /// The plant is not polynomial in its parameters, or lacks the path that is limited.
@@ -68,33 +68,33 @@ pub enum Rejection {
     /// A number that is not finite, a band without width, a ratio or frequency that is negative.
     #[error("{0} is not a number that it can be")]
     Number(CertificateNumber),
-    /// A certificate of nothing.
+    /// A certificate without claims.
     #[error("the certificate makes no claim")]
     NoClaim,
-    /// Another number of boxes than the family has.
+    /// A number of boxes other than that of the family.
     #[error("it does not cover every box of the family")]
     Boxes,
     /// More control points than a claim may have.
     #[error("a claim has too many control points")]
     TooLarge,
-    /// Panels with a gap, or short of an end.
+    /// Panels with a gap, or that do not reach an end.
     #[error("the panels do not cover the band: there is a gap at {0} rad/s")]
     Gap(f64),
-    /// A panel or a band beyond the frequencies at which a sampled loop is known.
+    /// A panel or a band beyond the frequencies up to which a sampled loop is known.
     #[error("{0} rad/s is beyond half of the sampling frequency")]
     Beyond(f64),
-    /// Dead time where there is none, or treated in a way that such a panel does not allow.
+    /// Treatment of dead time that is absent, or in a way that such a panel does not allow.
     #[error("dead time is not taken as it is on the panel from {0} rad/s")]
     Late(f64),
     /// A tree that ends too early or too late, or halves an axis that does not exist.
     #[error("the tree of the panel from {0} rad/s is not well formed")]
     Tree(f64),
-    /// A leaf that does not show the claim.
+    /// A leaf that does not prove the claim.
     #[error("leaf {leaf} of the panel from {from} rad/s does not show the claim")]
     Leaf {
-        /// Counted from 1.
+        /// Number of the leaf, from 1.
         leaf: usize,
-        /// rad/s
+        /// Lower end of the panel, rad/s.
         from: f64,
     },
     /// A plant that does not have the claimed poles.
@@ -108,12 +108,11 @@ pub enum Rejection {
 /// Checks every claim; there must be at least one.
 ///
 /// # Errors
-/// [`Rejection`] with the number of the claim, from 1, that is not shown.
+/// [`Rejection`] with the number of the claim, from 1, that is not proven.
 ///
 /// # Example
-/// The certificate that k/s with k from 1 to 4, closed with gain 1, keeps |T| to 1.2 is right; one
-/// that claims 0.9 is not, since |T| is 1 at zero frequency, and neither is one that claims
-/// nothing.
+/// The certificate that k/s with k from 1 to 4, closed with gain 1, satisfies |T| <= 1.2 is valid;
+/// one that claims 0.9 is not, since |T| is 1 at zero frequency, and neither is one without claims.
 /// ```
 /// # use phea_dynamics::controller::Controller;
 /// # use phea_dynamics::linear::TransferFunction;
@@ -178,7 +177,7 @@ pub fn check(certificate: &Certificate) -> Result<(), (usize, Rejection)> {
 /// Checks one claim.
 ///
 /// # Errors
-/// [`Rejection`].
+/// [`Rejection`] of the claim.
 pub(crate) fn check_claim(certificate: &Certificate, claim: &Claim) -> Result<(), Rejection> {
     check_numbers(certificate)?;
     check_sampling(certificate)?;
@@ -250,7 +249,7 @@ fn check_stable_box(
     check_panels(&around.stability(), certificate.plant.variables, whole, &one.panels)
 }
 
-/// From zero to infinity, or to pi/T.
+/// Band from zero to infinity, or to pi/T.
 fn stability_band(certificate: &Certificate) -> [f64; 2] {
     [0.0, if certificate.sampling.is_some() { f64::MAX } else { f64::INFINITY }]
 }
@@ -308,7 +307,7 @@ fn sound(around: Option<Loop<Interval>>) -> Result<Loop<Interval>, Rejection> {
     around.filter(Loop::has_denominators).ok_or(Rejection::NoSuchLoop)
 }
 
-/// The parameters are finite and moved by variables that exist, so that every box is valid; no dead
+/// The parameters are finite and moved by existing variables, so that every box is valid; no dead
 /// time is negative.
 fn check_numbers(certificate: &Certificate) -> Result<(), Rejection> {
     let plant = &certificate.plant;
@@ -356,7 +355,7 @@ fn check_ratio(certificate: &Certificate, limited: &LimitedLoop, ratio: f64) -> 
     }
 }
 
-/// The pieces of a band, one after the other; each panel belongs to one of them.
+/// Checks the pieces of a band, one after the other; each panel belongs to one of them.
 fn check_pieces(
     pieces: &[BandClaim<Interval>],
     variables: usize,
@@ -413,7 +412,7 @@ pub(super) fn check_panels(
     if is_covered { Ok(()) } else { Err(Rejection::Gap(reached)) }
 }
 
-/// Walks the tree; what is still to be walked waits in a list, the next one last.
+/// Walks the tree; the remaining nodes are on a stack.
 fn check_tree(whole: Patch<Interval>, panel: &FrequencyPanel) -> Result<(), Rejection> {
     let malformed = Rejection::Tree(panel.from);
     let mut bytes = panel.tree.iter().copied();
@@ -439,7 +438,7 @@ fn check_tree(whole: Patch<Interval>, panel: &FrequencyPanel) -> Result<(), Reje
     if bytes.next().is_none() { Ok(()) } else { Err(malformed) }
 }
 
-/// Whether |V| <= |U| and U is not zero on the whole leaf, shown by this direction.
+/// True if this direction proves |V| <= |U| and U nonzero on the whole leaf.
 fn shows([a, b]: [f64; 2], points: &[PanelPoint<Interval>]) -> bool {
     let of = Interval::from;
     // integers of 16 bits: both are exact
@@ -450,7 +449,7 @@ fn shows([a, b]: [f64; 2], points: &[PanelPoint<Interval>]) -> bool {
     })
 }
 
-/// Whether |V| >= |U| at a frequency, or in the limit towards infinity, where dead time must have
+/// True if |V| >= |U| at a frequency, or in the limit towards infinity, where dead time must have
 /// no effect; coefficients are numbers.
 fn reaches(claimed: &Claimed<Interval>, frequency_rad_per_s: f64) -> bool {
     if claimed.images.as_ref().is_some_and(|images| frequency_rad_per_s > images.band_ends()[0]) {

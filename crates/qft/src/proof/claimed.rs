@@ -1,5 +1,5 @@
-//! A claim as two polynomials: |V| <= |U| on the whole boundary of stability and for all plants, or
-//! U without a zero there.
+//! A claim as two polynomials: |V| <= |U| on the whole stability boundary and for all plants, or U
+//! without a zero there.
 //!
 //! ```text
 //! P = N/D E, E = e^(-s tau), G = Gn/Gd, H = Hn/Hd, F = Fn/Fd, limit W = Wn/Wd, c = D Gd Hd, n = N Gn Hn, ratio r
@@ -9,22 +9,23 @@
 //! |S| <= r W       U = r Wn (n E + c)              V = Wd c
 //! |P S| <= r W     U = r Wn (n E + c)              V = Wd N Gd Hd
 //! |G S| <= r W     U = r Wn (n E + c)              V = Wd Gn D Hd
-//! |Pd S| <= r W    U = r Wn (n E + c) Dd           V = Wd Nd c          of one denominator: V = Wd Nd Gd Hd, U without Dd
+//! |Pd S| <= r W    U = r Wn (n E + c) Dd           V = Wd Nd c          with one denominator: V = Wd Nd Gd Hd, U without Dd
 //! |F T| <= r W     U = r Wn (n E + c) Fd           V = Wd Fn N Gn Hd
 //! |F T| >= W/r     U = r Wd Fn N Gn Hd             V = Wn Fd (n E + c)
 //! ```
 //!
-//! |E| = 1 on the boundary of stability, so that it is dropped where it is a factor. Powers of s that divide both are dropped.
+//! |E| = 1 on the stability boundary, so that it is dropped if it is a factor. Powers of s that
+//! divide both are dropped.
 //!
-//! In a sampled loop G and F are functions of z, and P is the plant behind its hold, the sum of its
+//! In a sampled loop G and F are functions of z, and P is the plant after its hold, the sum of its
 //! images:
 //!
 //! ```text
 //! P = hold E (N/D + R),   R = sum over k != 0 of w/w_k e^(-j (w_k - w) tau) N/D(j w_k),   w_k = w + 2 pi k/T
 //! ```
 //!
-//! with R' for N Hn/(D Hd). N includes the hold, and N E the addition R' D or, for the plant alone,
-//! R D: `images`.
+//! with R' for N Hn/(D Hd). N includes the hold, and N E the addition R' D or, for the plant
+//! without sensor, R D: see `images`.
 
 use phea_dynamics::portable;
 
@@ -39,10 +40,10 @@ use super::part::{OfFrequency, PolynomialProduct, Straight, law, number, quotien
 use super::polynomial::{BoxPolynomial, Decimal, InS, expanded};
 use crate::specification::ClosedLoop;
 
-/// The greatest exponent of a variable in a dead time, whose powers are needed.
+/// Greatest exponent of a variable in a dead time, whose powers are needed.
 const DEAD_TIME_EXPONENT_MAXIMUM: u8 = 4;
 
-/// How far the panels of a sampled loop extend beyond pi/T, as a share of it.
+/// Distance that the panels of a sampled loop extend beyond pi/T, as a fraction of it.
 const BEYOND: f64 = 1e-9;
 
 /// A loop in polynomials of s and functions of the frequency, over the box or at one plant.
@@ -51,7 +52,7 @@ pub(crate) struct Loop<S> {
     numerator: PolynomialProduct<S>,
     denominator: PolynomialProduct<S>,
     disturbance: Option<[PolynomialProduct<S>; 2]>,
-    /// Whether P and Pd have one denominator: the same operations.
+    /// True if P and Pd have one denominator: the same operations.
     has_one_denominator: bool,
     feedback: [PolynomialProduct<S>; 2],
     prefilter: [PolynomialProduct<S>; 2],
@@ -60,7 +61,7 @@ pub(crate) struct Loop<S> {
     images: Option<PlantImages<S>>,
 }
 
-/// Known without a remainder, of a low power in each variable, and not negative.
+/// True if the dead time has no remainder, a low power in each variable, and no negative values.
 fn is_dead_time<S: Decimal>(value: &BoxPolynomial<S>) -> bool {
     let least = ends(&DeadTime { value: value.clone(), terms: 1 })[0].least();
     let is_low = value.clone().up_to(DEAD_TIME_EXPONENT_MAXIMUM).is_some();
@@ -90,8 +91,8 @@ pub(crate) type PartSum<S> = Vec<PolynomialProduct<S>>;
 pub(crate) struct Claimed<S> {
     pub(crate) u: [PartSum<S>; 3],
     pub(crate) v: [PartSum<S>; 3],
-    /// tau, without the constant part that is in the functions of the frequency; `None` without
-    /// dead time.
+    /// Dead time tau without the constant part included in the functions of the frequency; `None`
+    /// without dead time.
     pub(crate) dead_time: DeadTime<S>,
     pub(crate) images: Option<PlantImages<S>>,
     /// The images to which U and V refer.
@@ -101,20 +102,20 @@ pub(crate) struct Claimed<S> {
 /// A claim about a part of a band.
 #[derive(Clone, Debug)]
 pub(crate) struct BandClaim<S> {
-    /// rad/s
+    /// Ends of the band, rad/s.
     pub(crate) band: [f64; 2],
     pub(crate) claimed: Claimed<S>,
 }
 
 impl<S: Decimal> BandClaim<S> {
-    /// Whether the loop has a response at a frequency, and a limit.
+    /// True if the loop has a response at a frequency, and a limit.
     pub(super) fn holds(&self, frequency_rad_per_s: f64) -> bool {
         let [from, to] = self.claimed.band(self.band);
         from <= frequency_rad_per_s && frequency_rad_per_s <= to
     }
 }
 
-/// The parts without dead time, multiplied by E, and multiplied by the images.
+/// The three parts: without dead time, multiplied by E, and multiplied by the images.
 type Three<S> = [PartSum<S>; 3];
 
 fn alone<S>(one: PolynomialProduct<S>) -> Three<S> {
@@ -129,14 +130,14 @@ fn each<S: Decimal>(
 }
 
 impl<S: Decimal> Claimed<S> {
-    /// Of two polynomials.
+    /// Claim of two polynomials.
     pub(super) fn polynomials(u: InS<S>, v: InS<S>) -> Claimed<S> {
         let alone = |of| alone(PolynomialProduct::of(of));
         let dead_time = DeadTime { value: BoxPolynomial::zero(), terms: 1 };
         Claimed { u: alone(u), v: alone(v), dead_time, images: None, which: [Which::WithSensor; 2] }
     }
 
-    /// Powers of s that divide all are dropped.
+    /// Claim without the powers of s that divide all parts.
     fn without_powers_of_s(self) -> Claimed<S> {
         let all = self.u.iter().chain(&self.v).flatten();
         let common = all.filter_map(|part| part.of_s.powers_of_s()).min().unwrap_or(0);
@@ -146,7 +147,7 @@ impl<S: Decimal> Claimed<S> {
         Claimed { u: without(self.u), v: without(self.v), ..self }
     }
 
-    /// With E = 1 where there is no dead time.
+    /// Claim with E = 1 if there is no dead time.
     fn joined(mut self) -> Claimed<S> {
         if self.dead_time.value.is_zero() {
             for one in [&mut self.u, &mut self.v] {
@@ -157,17 +158,17 @@ impl<S: Decimal> Claimed<S> {
         self
     }
 
-    /// With U multiplied by a number.
+    /// Claim with U multiplied by a number.
     pub(crate) fn raised(&self, ratio: S) -> Claimed<S> {
         Claimed { u: each(self.u.clone(), |part| part.scaled(ratio)), ..self.clone() }
     }
 
-    /// U at a frequency, of a loop with numbers as coefficients.
+    /// Value of U at a frequency, for a loop with numbers as coefficients.
     pub(super) fn value_of_u(&self, frequency: S) -> Option<Complex<S>> {
         self.value(&self.u, self.which[0], frequency)
     }
 
-    /// V at a frequency, of a loop with numbers as coefficients.
+    /// Value of V at a frequency, for a loop with numbers as coefficients.
     pub(super) fn value_of_v(&self, frequency: S) -> Option<Complex<S>> {
         self.value(&self.v, self.which[1], frequency)
     }
@@ -193,7 +194,7 @@ impl<S: Decimal> Claimed<S> {
         [from, self.images.as_ref().map_or(to, |images| to.min(images.band_ends()[0]))]
     }
 
-    /// The range that panels cover for it: slightly more where a sampled loop ends, at pi/T.
+    /// The range that panels cover for a band: slightly more at pi/T, where a sampled loop ends.
     pub(super) fn band_covered(&self, [from, to]: [f64; 2]) -> [f64; 2] {
         let [_, end] = self.band([from, to]);
         let beyond = end * (1.0 + BEYOND);
@@ -219,15 +220,14 @@ impl<S: Decimal> Claimed<S> {
         self.u.iter().chain(&self.v).flatten().map(|part| &part.of_s)
     }
 
-    /// The frequency times this is approximately the angle by which its functions of the frequency
-    /// turn, s.
+    /// Angle by which the functions of the frequency turn, approximately, per unit of frequency, s.
     pub(crate) fn turn_s(&self) -> f64 {
         let late = self.u.iter().chain(&self.v).flatten().flat_map(|part| &part.of_frequency);
         let late = late.map(|one| if let OfFrequency::Late(time_s) = one { time_s.middle() } else { 0.0 });
         self.sample_time_s().middle() + late.fold(0.0, f64::max)
     }
 
-    /// Whether a power of the frequency is among its functions, which allows narrow panels only.
+    /// True if a power of the frequency is among its functions, which allows only narrow panels.
     pub(crate) fn has_powers(&self) -> bool {
         let all = self.u.iter().chain(&self.v).flatten().flat_map(|part| &part.of_frequency);
         all.into_iter().any(|one| matches!(one, OfFrequency::Straight(_)))
@@ -239,7 +239,7 @@ impl<S: Decimal> Claimed<S> {
     }
 }
 
-/// One sum, in which parts with the same functions of the frequency are combined.
+/// One sum, in which parts with equal functions of the frequency are combined.
 fn added<S: Decimal>(mut sum: PartSum<S>, other: PartSum<S>) -> PartSum<S> {
     for part in other {
         match sum.iter_mut().find(|known| known.of_frequency == part.of_frequency) {
@@ -251,12 +251,12 @@ fn added<S: Decimal>(mut sum: PartSum<S>, other: PartSum<S>) -> PartSum<S> {
 }
 
 impl<S: Decimal> Loop<S> {
-    /// Over a whole box; `None` where the plant is not polynomial, or there is no such box.
+    /// Loop over a whole box; `None` if the plant is not polynomial, or there is no such box.
     pub(crate) fn over_box(certificate: &Certificate, of_box: usize) -> Option<Loop<S>> {
         Loop::of(certificate, of_box, &parameters_over(certificate, of_box)?)
     }
 
-    /// With one plant.
+    /// Loop with one plant.
     pub(crate) fn at(certificate: &Certificate, member: &CertificateMember) -> Option<Loop<S>> {
         let segments = certificate.plant.boxes.get(member.of_box)?;
         Loop::of(certificate, member.of_box, &at_member(segments, &member.variables))
@@ -283,7 +283,7 @@ impl<S: Decimal> Loop<S> {
         if !is_dead_time(&dead_time) {
             return None;
         }
-        // in a sampled loop, what is constant is a function of the frequency
+        // in a sampled loop, a constant dead time is a function of the frequency
         let late = dead_time.as_constant().filter(|_| sampling.is_some());
         if late.is_some() {
             dead_time = BoxPolynomial::zero();
@@ -334,22 +334,22 @@ impl<S: Decimal> Loop<S> {
         self.images.as_ref()
     }
 
-    /// Claims that nothing is divided by zero.
+    /// True if nothing is divided by zero.
     pub(crate) fn has_denominators(&self) -> bool {
         let quotients = [&self.feedback, &self.prefilter, &self.sensor].map(|[_, under]| under);
         let own = self.disturbance.iter().map(|[_, under]| under).chain([&self.denominator]);
         quotients.into_iter().chain(own).all(|under| under.of_s.degree().is_some())
     }
 
-    /// That D Hd without its zeros at s = 0 is not zero on the imaginary axis, and the number of
-    /// these zeros.
+    /// Claim that D Hd without its zeros at s = 0 is not zero on the imaginary axis, and the number
+    /// of these zeros.
     pub(crate) fn denominator_claimed(&self) -> (Claimed<S>, usize) {
         let whole = self.denominator.of_s.times(&self.sensor[1].of_s);
         let zeros = whole.powers_of_s().unwrap_or(0);
         (Claimed::polynomials(whole.without_powers_of_s(zeros), InS(vec![])), zeros)
     }
 
-    /// c and n.
+    /// Polynomials c and n.
     fn open(&self) -> [PolynomialProduct<S>; 2] {
         let [[gn, gd], [hn, hd]] = [&self.feedback, &self.sensor];
         [self.denominator.times(gd).times(hd), self.numerator.times(gn).times(hn)]
@@ -361,13 +361,13 @@ impl<S: Decimal> Loop<S> {
         hold.times(&self.feedback[0]).times(&self.sensor[1])
     }
 
-    /// n E + c, with its images.
+    /// Characteristic function n E + c, with its images.
     fn characteristic(&self) -> Three<S> {
         let [c, n] = self.open();
         [vec![c], vec![n], self.images.iter().map(|_| self.image()).collect()]
     }
 
-    /// n + c: the characteristic function without dead time.
+    /// Characteristic polynomial n + c, without dead time.
     pub(crate) fn without_dead_time(&self) -> InS<S> {
         let [c, n] = self.open();
         c.of_s.plus(&n.of_s)
@@ -377,12 +377,13 @@ impl<S: Decimal> Loop<S> {
         Claimed { u, v, dead_time: self.dead_time.clone(), images: self.images.clone(), which }
     }
 
-    /// That no pole lies on the boundary of stability.
+    /// Claim that no pole is on the stability boundary.
     pub(crate) fn stability(&self) -> Claimed<S> {
         self.claim(self.characteristic(), Default::default(), [Which::WithSensor; 2]).joined()
     }
 
-    /// The same for one plant while its dead time grows from zero with the first variable.
+    /// Claim of stability for one plant while its dead time grows from zero with the first
+    /// variable.
     pub(crate) fn stability_while_delayed(&self) -> Claimed<S> {
         let value = self.dead_time.value.times(&BoxPolynomial::between(0.0, 1.0, Some(0)));
         Claimed { dead_time: DeadTime { value, ..self.dead_time }, ..self.stability() }
@@ -393,7 +394,7 @@ impl<S: Decimal> Loop<S> {
         &self.prefilter[1].of_s
     }
 
-    /// A limit as claims, each about a part of its band; `None` for a plant without the limited
+    /// A limit as claims, one for each part of its band; `None` for a plant without the limited
     /// path.
     pub(crate) fn claimed(&self, limited: &LimitedLoop, ratio: f64) -> Option<Vec<BandClaim<S>>> {
         let [from, to] = limited.band_rad_per_s;
@@ -431,7 +432,7 @@ impl<S: Decimal> Loop<S> {
         let [[gn, gd], [fn_, fd], [_, hd]] = [&self.feedback, &self.prefilter, &self.sensor];
         let ratio = S::decimal(ratio);
         let d = &self.denominator;
-        // the plant alone, and its images
+        // the plant without sensor, and its images
         let plant = || {
             let own = self.numerator.times(hd);
             let image = PolynomialProduct { of_s: d.of_s.clone(), ..self.numerator.clone() }.times(hd);
@@ -456,7 +457,7 @@ impl<S: Decimal> Loop<S> {
             }
             ClosedLoop::Tracking => (each(plant(), |one| fn_.times(one).times(gn)), Some(fd), Which::Alone),
         };
-        // a factor E of the whole does not change a magnitude
+        // a factor E of the whole numerator does not change a magnitude
         let over = match over {
             [own, late, images] if own.is_empty() && images.is_empty() => [late, vec![], vec![]],
             other => other,

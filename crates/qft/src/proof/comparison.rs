@@ -1,5 +1,5 @@
-//! Whether a certificate is of the loop of a problem: a proof says nothing of another plant, box or
-//! law than those that it states.
+//! Comparison of a certificate with a problem: a proof holds only for the plant, box and controller
+//! that it states.
 
 use super::certificate::{Certificate, CertificateSide, Claim, LimitedLoop, ParameterSegment, Sampling};
 use super::prove::{from_db, limited_loops};
@@ -7,39 +7,40 @@ use super::statement::stated;
 use super::{CertifiedPlant, NotProven};
 use crate::verification::{AuditProblem, TrackingJudgement};
 
-/// What a certificate states otherwise than a problem does, or does not claim.
+/// Difference between the statements of a certificate and a problem, or a missing claim.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CertificateDifference {
     /// The coefficients of the plant, or its dead time.
     Plant,
     /// The parameters, or their ranges.
     Box,
-    /// G
+    /// Feedback G.
     Feedback,
-    /// F
+    /// Prefilter F.
     Prefilter,
-    /// H
+    /// Sensor H.
     Sensor,
-    /// When the loop samples.
+    /// Sampling of the loop.
     Sampling,
     /// Stability of every plant is not claimed.
     Stability,
     /// A side of this specification is not claimed to be satisfied within the tolerance.
     Specification {
-        /// Its index.
+        /// Index of the specification.
         index: usize,
-        /// Which side.
+        /// Side of the limit.
         side: CertificateSide,
     },
-    /// No certificate can state the loop of the problem.
+    /// The loop of the problem cannot be stated in a certificate.
     NotStated(NotProven),
 }
 
-/// Everything in which a certificate differs from the one that a proof of the problem would make,
-/// whether its claims hold or not; empty where it is the certificate of this problem.
+/// All differences of a certificate from the one that a proof of the problem would make,
+/// independent of the validity of its claims; empty if it is the certificate of this problem.
 ///
 /// # Example
-/// Without a claim the certificate of another loop differs in its controller, and claims nothing.
+/// Without claims, the certificate of another loop differs in its controller and in the missing
+/// claims.
 /// ```
 /// # use phea_dynamics::controller::{Compensator, Controller, Element};
 /// # use phea_dynamics::linear::TransferFunction;
@@ -96,12 +97,12 @@ pub fn differences(certificate: &Certificate, problem: &AuditProblem<'_>) -> Vec
 }
 
 impl Certificate {
-    /// Whether it claims that every plant is stable in the loop.
+    /// True if it claims that every plant is stable in the loop.
     pub fn claims_stability(&self) -> bool {
         self.claims.iter().any(|claim| matches!(claim, Claim::Stable(_)))
     }
 
-    /// Whether this closed loop is claimed to stay within this ratio of its limit.
+    /// True if it claims that this closed loop stays within this ratio of its limit.
     fn claims(&self, sought: &LimitedLoop, most: f64) -> bool {
         let is_it = |claim: &Claim| match claim {
             Claim::Limited { limited, ratio, .. } => limited == sought && *ratio <= most,
@@ -125,7 +126,7 @@ fn ranges(plant: &CertifiedPlant) -> (&[String], usize, &[Vec<ParameterSegment>]
 
 /// The sides of specifications that the certificate does not claim to be satisfied.
 fn unclaimed(certificate: &Certificate, problem: &AuditProblem<'_>) -> Vec<CertificateDifference> {
-    // what a file prints reads back as the same number, and a ratio is one of those
+    // a number read back from a file equals the one printed, and the ratio is such a number
     let most = from_db(problem.tolerance_db);
     let mut found = vec![];
     for (index, specification) in problem.specifications.iter().enumerate() {

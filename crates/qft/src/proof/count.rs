@@ -1,4 +1,4 @@
-//! The number of poles of a sampled loop outside the unit circle, from the number of turns of its
+//! The number of poles of a sampled loop outside the unit circle, from the winding of its
 //! characteristic function.
 //!
 //! ```text
@@ -6,7 +6,7 @@
 //! turn of f - turn of D' Hd' - i pi/2 = pi (degree of Gd + roots of D Hd to the right - poles of the loop outside)     from 0 to pi/T
 //! ```
 //!
-//! with D Hd = s^i D' Hd'. Both are followed along leaves: each has a direction from which its
+//! with D Hd = s^i D' Hd'. Both are followed along leaves, each with a direction from which its
 //! function deviates by less than a quarter turn, so that the directions of two adjacent leaves
 //! differ by less than half a turn.
 
@@ -20,15 +20,15 @@ use super::claimed::{Claimed, Loop};
 use super::over_panel::Complex;
 use super::polynomial::Decimal;
 
-/// A number of half turns is known if it is this near to a whole number: four values whose
+/// Distance from a whole number within which a number of half turns is known: four values whose
 /// directions are known to [`CLEAR`] change it by at most 0.2.
 const WHOLE: f64 = 0.2;
-/// The direction of a value is known if its parts are, to this share of its magnitude; its
-/// deviation in rad is then at most one and a half times that.
+/// Fraction of a value's magnitude to which its parts must be known for its direction to be known;
+/// the deviation in rad is then at most one and a half times that.
 const CLEAR: f64 = 0.1;
 
-/// The number of poles outside the unit circle with one plant; `None` where it cannot be
-/// determined. The panels are those of a proof that neither function is zero.
+/// The number of poles outside the unit circle with one plant; `None` if it cannot be determined.
+/// The panels are those of a proof that neither function is zero.
 pub(super) fn poles_outside<S: Decimal>(
     around: &Loop<S>,
     controller_poles: usize,
@@ -41,7 +41,7 @@ pub(super) fn poles_outside<S: Decimal>(
     let whole = [&count.denominator[..], &count.beyond[..]].concat();
     let all = turn(&denominator, &whole, None)?;
     let degree = denominator.of_s().next()?.degree()?;
-    // a root on the left turns by a quarter turn, one on the right by a quarter turn backwards
+    // a root on the left turns it by a quarter turn forwards, one on the right backwards
     let to_right = whole_number(0.5 * (degree as f64 - all / FRAC_PI_2))?;
     let turned = (characteristic - within - zeros as f64 * FRAC_PI_2) / PI;
     let outside = (controller_poles + to_right) as f64 - turned;
@@ -72,7 +72,7 @@ fn between(one: Complex64, other: Complex64) -> f64 {
     portable::argument(other * one.conj())
 }
 
-/// The direction of a value, if it is known well enough.
+/// The direction of a value, if it is known accurately enough.
 fn clear<S: Decimal>([re, im]: Complex<S>) -> Option<Complex64> {
     let value = Complex64::new(re.middle(), im.middle());
     let beside = 0.5 * (re.most() - re.least()).max(im.most() - im.least());

@@ -12,9 +12,9 @@ use super::polynomial::{BoxPolynomial, Decimal, InS};
 /// A dead time, and the number of terms of the series.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct DeadTime<S> {
-    /// s
+    /// Dead time, s.
     pub(super) value: BoxPolynomial<S>,
-    /// m
+    /// Number of terms m.
     pub(super) terms: usize,
 }
 
@@ -46,7 +46,7 @@ impl<S: Decimal> InFrequency<S> {
         }
     }
 
-    /// In powers of x, the frequency being `low + width x`: shifted, then scaled.
+    /// Polynomial in powers of x, with the frequency `low + width x`: shifted, then scaled.
     pub(super) fn along(&self, low: S, width: S) -> InFrequency<S> {
         let one = |of: &InS<S>| {
             let mut terms = of.0.clone();
@@ -79,7 +79,7 @@ impl<S: Decimal> InFrequency<S> {
     }
 }
 
-/// e^(-j w tau) over a finite panel, without the remainder, in powers of x as of
+/// Phase factor e^(-j w tau) over a finite panel, without the remainder, in powers of x as in
 /// [`InFrequency::along`].
 pub(super) fn turned<S: Decimal>(dead_time: &DeadTime<S>, range: PanelRange, angle: f64) -> InFrequency<S> {
     let PanelRange { from, to, .. } = range;
@@ -111,7 +111,7 @@ pub(super) fn remainder<S: Decimal>(dead_time: &DeadTime<S>, range: PanelRange, 
     (1..=dead_time.terms).fold(S::from(1.0), |product, k| product * turn / S::from(k as f64))
 }
 
-/// The least and the greatest dead time of a box, from the terms one by one.
+/// The least and the greatest dead time of a box, from the individual terms.
 pub(super) fn ends<S: Decimal>(dead_time: &DeadTime<S>) -> [S; 2] {
     let zero = S::from(0.0);
     dead_time.value.terms().fold([zero; 2], |[least, most], (exponents, value)| {
@@ -126,7 +126,7 @@ pub(super) fn ends<S: Decimal>(dead_time: &DeadTime<S>) -> [S; 2] {
 const TRIGONOMETRIC_ERROR: f64 = 4.0 * f64::EPSILON;
 
 /// The cosine and the sine of every angle of an interval: neither changes faster than the angle,
-/// and the functions of the library are more accurate than the error assumed here.
+/// and the functions of the library have smaller errors than assumed here.
 pub(super) fn enclosed_cosine_and_sine(angle: Interval) -> [Interval; 2] {
     let middle = angle.middle();
     let beside = (angle - Interval::from(middle)).abs().high();

@@ -1,41 +1,41 @@
-//! The direction that shows a leaf, or the axis across which it is better halved. Nothing here
-//! needs to be trusted: the checker verifies it.
+//! The direction that proves a leaf, or the axis across which it is better halved. This code need
+//! not be trusted: the checker verifies its result.
 //!
-//! A direction at the angle phi shows the pair (U_k, V_k) where |phi - arg U_k| <=
-//! acos(|V_k|/|U_k|). All pairs are shown where these arcs have a point in common; where they have
-//! none, two of them show across which axis they differ.
+//! A direction at the angle phi proves the pair (U_k, V_k) if |phi - arg U_k| <= acos(|V_k|/|U_k|).
+//! All pairs are proven if these arcs have a point in common; if they have none, two of them show
+//! the axis across which they differ.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
 
 use super::points::{PanelPoint, Points};
 
-/// What became of a leaf.
+/// Result for a leaf.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum LeafOutcome {
-    /// This direction shows it.
+    /// Direction that proves the leaf.
     Shown([i16; 2]),
     /// The leaf is to be halved across this axis.
     Halve(usize),
-    /// At this corner, a bit for each axis, |V| is greater than |U| by this ratio: the claim is
-    /// wrong.
+    /// The claim is false: at this corner |V| is greater than |U| by this ratio.
     Wrong {
-        /// The lowest bit is that of the frequency.
+        /// Corner, one bit for each axis; the lowest bit is that of the frequency.
         corner: u64,
-        /// |V|/|U|
+        /// Ratio |V|/|U|.
         ratio: f64,
     },
 }
 
-/// The greatest part of a direction.
+/// The greatest component of a direction.
 const FULL: f64 = 32767.0;
-/// Below this length the mean of unit directions says nothing.
+/// Length of the mean of unit directions below which it is inconclusive.
 const CLEAR: f64 = 0.05;
 
-/// Beyond this angle, rad, a point counts as turned away.
+/// Angle beyond which a point counts as pointing backwards, rad.
 const BEHIND: f64 = 2.0;
 
-/// Examines one leaf; `room` is the reserve for the rounding of the checker, as a share of |V|^2.
+/// Examines one leaf; `room` is the reserve for the rounding of the checker, as a fraction
+/// of |V|^2.
 pub(crate) fn leaf(points: &Points<f64>, room: f64) -> LeafOutcome {
     if let Some((corner, ratio)) = worst_corner(points) {
         return LeafOutcome::Wrong { corner, ratio };
@@ -71,7 +71,7 @@ pub(crate) fn leaf(points: &Points<f64>, room: f64) -> LeafOutcome {
 fn worst_corner(points: &Points<f64>) -> Option<(u64, f64)> {
     let wrong = corners(points).filter_map(|(corner, index)| {
         let [ur, ui, vr, vi, rest] = points.points()[index];
-        // beyond the remainder of dead time
+        // including the remainder of dead time
         let u = (ur * ur + ui * ui).sqrt() + 2.0 * rest;
         let (u, v) = (u * u, vr * vr + vi * vi);
         (v > u).then(|| (corner, (v / u).sqrt()))
@@ -79,7 +79,7 @@ fn worst_corner(points: &Points<f64>) -> Option<(u64, f64)> {
     wrong.max_by(|(_, one), (_, other)| one.total_cmp(other))
 }
 
-/// The corners, a bit for each axis, and where they stand.
+/// The corners, one bit for each axis, with their indices.
 fn corners(points: &Points<f64>) -> impl Iterator<Item = (u64, usize)> {
     let steps: Vec<usize> =
         (0..points.axes()).map(|axis| points.degree(axis) * points.stride(axis)).collect();
@@ -121,7 +121,7 @@ fn shows(direction: [i16; 2], pairs: &[PanelPoint<f64>], room: f64) -> bool {
     })
 }
 
-/// The arc of directions that show a pair, relative to this one; `None` if there is none.
+/// The arc of directions that prove a pair, relative to this one; `None` if there is none.
 fn arc([ur, ui, vr, vi, rest]: &PanelPoint<f64>, middle: Complex64) -> Option<[f64; 2]> {
     let relative = Complex64::new(*ur, *ui) * middle.conj();
     let ratio = (portable::magnitude(Complex64::new(*vr, *vi)) + rest) / portable::magnitude(relative);
@@ -131,8 +131,8 @@ fn arc([ur, ui, vr, vi, rest]: &PanelPoint<f64>, middle: Complex64) -> Option<[f
     Some([angle - half, angle + half])
 }
 
-/// The point whose direction deviates most, if it points backwards: larger angles are close to
-/// those on the other side.
+/// The point whose direction deviates most, if it points backwards: larger angles are nearly those
+/// on the other side.
 fn turned_away(pairs: &[PanelPoint<f64>], middle: Complex64) -> Option<usize> {
     let angles = pairs.iter().map(|pair| angle(pair, middle).abs()).enumerate();
     let (index, greatest) = angles.max_by(|(_, one), (_, other)| one.total_cmp(other))?;
@@ -151,7 +151,7 @@ fn back(points: &Points<f64>, index: usize, middle: Complex64) -> usize {
     greatest(points.axes(), gain).unwrap_or_else(|| most_varied(points))
 }
 
-/// Of U, relative to a direction.
+/// Angle of U, relative to a direction.
 fn angle([ur, ui, ..]: &PanelPoint<f64>, middle: Complex64) -> f64 {
     portable::argument(Complex64::new(*ur, *ui) * middle.conj())
 }
@@ -162,8 +162,8 @@ fn place(points: &Points<f64>, index: usize, axis: usize) -> [usize; 2] {
     [index / points.stride(axis) % (degree + 1), degree]
 }
 
-/// Halving moves a point that is not at the end of an axis. Chooses, of these axes, the one along
-/// which its line bends most.
+/// Chooses the axis along which the line of a point bends most, among those where it is not at an
+/// end: only there does halving move it.
 fn across(points: &Points<f64>, index: usize) -> usize {
     let bend = |axis: usize| {
         let [own, last] = place(points, index, axis);
@@ -177,7 +177,7 @@ fn across(points: &Points<f64>, index: usize) -> usize {
     greatest(points.axes(), bend).unwrap_or_else(|| most_varied(points))
 }
 
-/// Chooses the axis that brings two conflicting arcs nearest to each other, when one of the points
+/// Chooses the axis that brings two conflicting arcs closest to each other, when one of the points
 /// is moved along it to the index of the other.
 fn between(points: &Points<f64>, [low, high]: [usize; 2], middle: Complex64) -> usize {
     let arc_at = |index: usize| arc(&points.points()[index], middle);

@@ -1,4 +1,4 @@
-//! On which side of the imaginary axis the roots of a polynomial lie, by Routh's array in
+//! Location of the roots of a polynomial relative to the imaginary axis, by Routh's array in
 //! intervals.
 
 use phea_dynamics::scalar::Interval;
@@ -6,18 +6,18 @@ use phea_dynamics::scalar::Interval;
 use super::part::number;
 use super::polynomial::InS;
 
-/// What is known about the roots.
+/// Location of the roots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RootLocation {
-    /// All have negative real parts.
+    /// All roots have negative real parts.
     AllLeft,
-    /// At least one has not.
+    /// The polynomial has a root with a non-negative real part.
     SomeNotLeft,
-    /// Rounding hides it.
+    /// The location is hidden by rounding.
     Unknown,
 }
 
-/// For a polynomial with numbers as coefficients.
+/// Location of the roots of a polynomial with numbers as coefficients.
 ///
 /// Each entry of the first column is a quotient of two Hurwitz determinants: all have one sign if
 /// and only if all roots have negative real parts.
@@ -28,7 +28,7 @@ pub(crate) fn roots_of(polynomial: &InS<Interval>) -> RootLocation {
     let Some(sign) = sign_of(leading) else { return RootLocation::Unknown };
     let highest_first = (0..=degree).rev().map(|power| number(power) * Interval::from(sign));
     let coefficients: Vec<Interval> = highest_first.collect();
-    // all coefficients of a stable polynomial have the same sign, and none is zero
+    // all coefficients of a stable polynomial have one sign, and none is zero
     if coefficients.iter().any(|coefficient| coefficient.high() <= 0.0) {
         return RootLocation::SomeNotLeft;
     }
@@ -52,7 +52,7 @@ pub(crate) fn roots_of(polynomial: &InS<Interval>) -> RootLocation {
     RootLocation::AllLeft
 }
 
-/// 1 or -1; `None` where it may be zero.
+/// Sign 1 or -1; `None` if the value may be zero.
 fn sign_of(value: Interval) -> Option<f64> {
     match (value.low() > 0.0, value.high() < 0.0) {
         (true, _) => Some(1.0),

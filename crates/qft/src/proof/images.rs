@@ -1,17 +1,17 @@
-//! The images of a sampled plant: what its response at w + 2 pi k/T adds to that at w.
+//! The images of a sampled plant: the contribution of its response at w + 2 pi k/T to that at w.
 //!
 //! ```text
 //! R = sum over k != 0 of q_k,    q_k = w/w_k e^(-j k W tau) N/D(j w_k),      w_k = w + k W,   W = 2 pi/T,   0 <= w <= 0.51 W
 //! ```
 //!
-//! The first `count` on either side are enclosed one by one, each by a disc: over a part of the
+//! The first `count` on either side are enclosed individually, each by a disc: over a part of the
 //! box, with control points n_i of j w N and d_i of s D at s = j w_k, and any number c,
 //!
 //! ```text
 //! |q_k - c e^(-j k W tau)| <= greatest |n_i - c d_i|/least |d_i|
 //! ```
 //!
-//! The others are bounded together. Where |N/D| <= C/w^m from 0.49 + count images on, with m >= 1,
+//! The others are bounded together. If |N/D| <= C/w^m from 0.49 + count images on, with m >= 1,
 //! they add at most
 //!
 //! ```text
@@ -26,44 +26,44 @@ use super::part::{quotient, value};
 use super::points::{PanelPoint, PanelRange, Points};
 use super::polynomial::{BoxPolynomial, Decimal, InS};
 
-/// The band ends at this share of W at most, slightly beyond pi/T.
+/// Fraction of W up to which the band extends at most, slightly beyond pi/T.
 pub(super) const BAND_END: f64 = 0.51;
-/// Constants of the bound on the images beyond those that are enclosed one by one: where it begins,
-/// and where its integral begins.
+/// Constants of the bound on the images that are not enclosed individually: its start, and the
+/// start of its integral.
 const BOUND_BEGIN: f64 = 0.49;
 const INTEGRAL_BEGIN: f64 = -0.01;
 
-/// Of which plant.
+/// Choice of the plant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Which {
-    /// N Hn/(D Hd), in the loop.
+    /// Plant with sensor N Hn/(D Hd), in the loop.
     WithSensor,
-    /// N/D, on the way to the output.
+    /// Plant N/D, on the way to the output.
     Alone,
 }
 
 /// The images of a plant over a box.
 #[derive(Clone, Debug)]
 pub(crate) struct PlantImages<S> {
-    /// T
+    /// Sample time T, s.
     pub(super) sample_time_s: S,
     count: usize,
     /// The dead time up to the sensor's output, if no variable changes it.
     dead_time_s: Option<S>,
-    /// The part of it that belongs to the sensor.
+    /// The part of that dead time that belongs to the sensor.
     sensor_delay_s: S,
     with_sensor: ImagedQuotient<S>,
     alone: ImagedQuotient<S>,
 }
 
-/// N and D, with the bound on the images that are not enclosed one by one.
+/// N and D, with the bound on the images that are not enclosed individually.
 #[derive(Clone, Debug)]
 struct ImagedQuotient<S> {
     over: InS<S>,
     under: InS<S>,
-    /// C, as a decimal.
+    /// Bound C, as a decimal.
     ratio: f64,
-    /// m
+    /// Order m.
     order: usize,
 }
 
@@ -114,19 +114,19 @@ impl<S: Decimal> PlantImages<S> {
         })
     }
 
-    /// W
+    /// Sampling frequency W.
     pub(super) fn turn(&self) -> S {
         S::pi().times(2.0) / self.sample_time_s
     }
 
-    /// The circle is covered from zero to the first of these; the images are enclosed up to the
-    /// second.
+    /// Ends of the band: the circle is covered from zero to the first, and the images are enclosed
+    /// up to the second.
     pub(super) fn band_ends(&self) -> [f64; 2] {
         let half = S::pi() / self.sample_time_s;
         [half.most(), (self.turn() * S::from(BAND_END)).least()]
     }
 
-    /// The claims about the bounds, with the sensor and without: |s^m N| <= C |D|.
+    /// The claims about the bounds, with and without the sensor: |s^m N| <= C |D|.
     pub(super) fn bounded(&self) -> [Claimed<S>; 2] {
         [&self.with_sensor, &self.alone].map(|imaged| {
             let s_to_m = [vec![BoxPolynomial::zero(); imaged.order], vec![BoxPolynomial::number(1.0)]];
@@ -135,8 +135,8 @@ impl<S: Decimal> PlantImages<S> {
         })
     }
 
-    /// The degree of the denominator less that of the numerator, with the sensor and without;
-    /// `None` where it is not positive.
+    /// The degree of the denominator less that of the numerator, with and without the sensor;
+    /// `None` if it is not positive.
     pub(super) fn relative_degrees(&self) -> Option<[usize; 2]> {
         Some([self.with_sensor.relative_degree()?, self.alone.relative_degree()?])
     }
@@ -146,7 +146,7 @@ impl<S: Decimal> PlantImages<S> {
         self.turn() * S::from(self.count as f64 + BOUND_BEGIN)
     }
 
-    /// Control points of the images enclosed one by one, over a panel and the whole box.
+    /// Control points of the images enclosed individually, over a panel and the whole box.
     pub(super) fn over(&self, which: Which, variables: usize, range: PanelRange) -> Option<ImagePoints<S>> {
         let imaged = self.imaged(which);
         let turn = self.turn();
@@ -197,7 +197,7 @@ impl<S: Decimal> PlantImages<S> {
         Some(each.fold([rest; 2], sum))
     }
 
-    /// The most that the images which are not enclosed one by one add, up to a frequency.
+    /// Upper bound on the contribution of the images not enclosed individually, up to a frequency.
     fn rest(&self, imaged: &ImagedQuotient<S>, frequency: S) -> S {
         let order = imaged.order;
         let own = S::from(self.count as f64 + INTEGRAL_BEGIN);
@@ -215,7 +215,7 @@ impl<S: Decimal> ImagedQuotient<S> {
 }
 
 /// Control points of the images over a part of a panel and of the box: of each d_i and n_i, with
-/// its phase where that is known.
+/// its phase if that is known.
 #[derive(Clone, Debug)]
 pub(crate) struct ImagePoints<S> {
     each: Vec<(Points<S>, Option<Complex<S>>)>,
@@ -262,7 +262,7 @@ impl<S: Decimal> ImagePoints<S> {
         })
     }
 
-    /// The points of the image that is known least accurately.
+    /// The points of the image known least accurately.
     pub(super) fn least_known(&self) -> Option<&Points<S>> {
         let radius = |points: &Points<S>| disc(points.points()).radius.most();
         let all = self.each.iter().map(|(points, _)| points);
@@ -277,7 +277,7 @@ fn disc<S: Decimal>(points: &[PanelPoint<S>]) -> ImageDisc<S> {
     });
     let [dr, di, nr, ni] = middle;
     let square = dr * dr + di * di;
-    // its value does not matter, but it is exact
+    // its value is arbitrary, but exact
     let center = [(nr * dr + ni * di) / square, (ni * dr - nr * di) / square].map(S::from);
     let squared = |part: f64| S::from(part) * S::from(part);
     let length = (squared(dr) + squared(di)).sqrt();

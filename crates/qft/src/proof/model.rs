@@ -1,5 +1,5 @@
 //! Coefficients that are not polynomials in the variables of a box: a polynomial with a remainder
-//! for each operation, after Taylor.
+//! for each operation, by Taylor expansion.
 //!
 //! ```text
 //! t = (x + 1)/2,  x in [-1, 1],    y = c + u,  |u| <= rho,    f(y) = sum over k <= d of f_k u^k + r,    |r| <= rho^(d+1) greatest |f_(d+1)|
@@ -10,16 +10,16 @@
 //! ln y      f_0 = ln c, f_k = (-1)^(k-1)/(k c^k)                 1/((d+1) least^(d+1))
 //! ```
 //!
-//! c is the coefficient without a variable; least and greatest are those of y, which is between c -
-//! rho and c + rho. Terms of a product whose total degree exceeds d are added to its remainder.
+//! c is the coefficient without a variable; least and greatest refer to y, which is between c - rho
+//! and c + rho. Terms of a product whose total degree exceeds d are added to its remainder.
 
 use phea_dynamics::expression::{Binary, Expression, Node, Unary};
 
 use super::certificate::Certificate;
 use super::polynomial::{BoxPolynomial, Decimal};
 
-/// The parameters over a whole box, as polynomials in t, or in x where coefficients are modelled;
-/// `None` where there is no such box.
+/// The parameters over a whole box, as polynomials in t, or in x if coefficients are modelled;
+/// `None` if there is no such box.
 pub(super) fn parameters_over<S: Decimal>(
     certificate: &Certificate,
     of_box: usize,
@@ -43,8 +43,8 @@ pub(super) fn parameters_over<S: Decimal>(
     values.collect()
 }
 
-/// The results of an expression as polynomials in t of at most this degree with remainders, the
-/// parameters being such in x; `None` where an operation is not defined on the whole box.
+/// The results of an expression as polynomials in t of at most this degree with remainders, with
+/// the parameters as such polynomials in x; `None` if an operation is not defined on the whole box.
 pub(super) fn modelled<S: Decimal>(
     expression: &Expression,
     parameters: &[BoxPolynomial<S>],
@@ -55,9 +55,9 @@ pub(super) fn modelled<S: Decimal>(
     results.map(|value| Some(value?.with_shares())).collect()
 }
 
-/// Where a choice of an expression turns across a single variable: this variable and its value t in
-/// (0, 1) of the first choice that is not decided on the box, and whose condition is a straight
-/// line of it.
+/// Switching point of a choice that depends on a single variable: this variable and its value t in
+/// (0, 1), for the first choice that is not decided on the box and whose condition is linear in the
+/// variable.
 pub(super) fn turn(
     expression: &Expression,
     parameters: &[BoxPolynomial<f64>],
@@ -73,11 +73,12 @@ pub(super) fn turn(
     })
 }
 
-/// Nearer to the end of a variable no choice turns that is worth a box of its own.
+/// Distance from the end of a variable below which a switching point does not justify a separate
+/// box.
 const NO_EDGE: f64 = 1e-9;
 
-/// A parameter that varies logarithmically from low to high with t: root(low high) exp(x
-/// ln(high/low)/2).
+/// Polynomial of a parameter that varies logarithmically from low to high with t: root(low high)
+/// exp(x ln(high/low)/2).
 pub(super) fn by_factors<S: Decimal>(
     [low, high]: [S; 2],
     variable: usize,
@@ -97,12 +98,12 @@ enum Function {
     Logarithm,
 }
 
-/// How far polynomials go.
+/// Degree of the polynomials.
 struct Model {
     degree: usize,
 }
 
-/// One of two polynomials, undecided: their mean, with half their difference added to the
+/// An undecided choice of two polynomials: their mean, with half their difference added to the
 /// remainder.
 fn either<S: Decimal>(one: &BoxPolynomial<S>, other: &BoxPolynomial<S>) -> BoxPolynomial<S> {
     let apart = one.plus(&other.scaled(S::from(-1.0)));
@@ -114,14 +115,14 @@ fn difference<S: Decimal>(one: &BoxPolynomial<S>, other: &BoxPolynomial<S>) -> B
     one.plus(&other.scaled(S::from(-1.0)))
 }
 
-/// The greater of two polynomials, or the lesser one, undecided: one of them or their mean,
-/// whichever is never far from it. `least` and `most` bound the first less the second.
+/// The undecided greater, or lesser, of two polynomials: one of them or their mean, the one with
+/// the smallest maximum deviation. `least` and `most` bound the first less the second.
 fn extremum<S: Decimal>(
     [one, other]: [&BoxPolynomial<S>; 2],
     [least, most]: [S; 2],
     is_greater: bool,
 ) -> BoxPolynomial<S> {
-    // how far the first one may be from it, and the second one
+    // maximum deviations of the first and the second polynomial
     let beyond = if is_greater { [-least, most] } else { [most, -least] };
     let mean = either(one, other);
     let taken = |of: &BoxPolynomial<S>, beyond: S| of.clone().with_rest(beyond);
@@ -130,7 +131,7 @@ fn extremum<S: Decimal>(
     all.into_iter().fold(one, |best, next| if next.rest().most() < best.rest().most() { next } else { best })
 }
 
-/// The range of a polynomial in x, its remainder included.
+/// The range of a polynomial in x, including its remainder.
 fn range<S: Decimal>(of: &BoxPolynomial<S>) -> [S; 2] {
     let (center, reach) = parted(of);
     [center - reach, center + reach]
@@ -150,8 +151,8 @@ fn parted<S: Decimal>(of: &BoxPolynomial<S>) -> (S, S) {
 }
 
 impl Model {
-    /// Every operation; `None` where it is not defined on the whole box, which a choice must not
-    /// take.
+    /// Results of every operation; `None` for one not defined on the whole box, which a choice must
+    /// not select.
     fn values<S: Decimal>(
         &self,
         expression: &Expression,
@@ -220,7 +221,7 @@ impl Model {
         one.times(other).truncated(self.degree)
     }
 
-    /// A function of a polynomial; `None` where it is not defined everywhere.
+    /// A function of a polynomial; `None` if it is not defined everywhere.
     fn applied<S: Decimal>(&self, to: &BoxPolynomial<S>, function: Function) -> Option<BoxPolynomial<S>> {
         let (center, reach) = parted(to);
         let [least, most] = [center - reach, center + reach];
@@ -229,7 +230,7 @@ impl Model {
             Function::Root | Function::Logarithm => least.least() > 0.0,
             Function::Exponential => most.most().is_finite(),
         };
-        // zero has a root, and no derivative
+        // the root of zero exists, but not its derivative
         if to.is_zero() && matches!(function, Function::Root) {
             return Some(BoxPolynomial::zero());
         }
@@ -260,7 +261,7 @@ impl Function {
         }
     }
 
-    /// f_0 to f_d.
+    /// Coefficients f_0 to f_d.
     fn coefficients<S: Decimal>(self, center: S, degree: usize) -> Vec<S> {
         let mut term = self.at(center);
         let mut out = vec![term];
@@ -278,7 +279,7 @@ impl Function {
         out
     }
 
-    /// |f_k| at most, for every center between two numbers.
+    /// Upper bound of |f_k| for every centre between two numbers.
     fn beyond<S: Decimal>(self, [least, most]: [S; 2], order: usize) -> S {
         let nearest = if least.least() > 0.0 { least } else { -most };
         let power = |of: S| (0..order).fold(S::from(1.0), |product, _| product * of);

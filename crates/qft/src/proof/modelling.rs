@@ -1,5 +1,5 @@
-//! How far a box is divided where coefficients are not polynomials, so that polynomials replace
-//! them with small remainders.
+//! Division of boxes with nonpolynomial coefficients, so that polynomials replace them with small
+//! remainders.
 
 use super::NotProven;
 use super::certificate::{Certificate, ParameterSegment};
@@ -10,21 +10,21 @@ use phea_dynamics::order::sort_by_number;
 /// Degrees of the polynomials that replace such coefficients: the first with a small remainder is
 /// used, otherwise the last.
 const DEGREES: [usize; 3] = [3, 5, 8];
-/// The number of terms grows with the number of variables: the last degree for this number of
-/// variables, and for more.
+/// Last degree for each number of variables, and for more: the number of terms grows with the
+/// number of variables.
 const LAST_DEGREES: [usize; 5] = [8, 8, 8, 6, 5];
 const MANY_VARIABLES_DEGREE: usize = 4;
-/// A remainder of a coefficient this small, relative to it, needs no smaller box.
+/// Remainder of a coefficient, relative to it, that needs no smaller box.
 const SMALL: f64 = 1e-6;
-/// A box is halved if this reduces its remainder below this share.
+/// Factor of the remainder below which halving a box is worthwhile.
 const WORTH: f64 = 0.5;
-/// A box is halved this often across one variable to see whether a part of it has polynomials.
+/// Number of halvings of a box across one variable in the search for a part with polynomials.
 const HALVINGS_MAXIMUM: usize = 6;
-/// Boxes at most.
+/// Largest number of boxes.
 const BOXES_MAXIMUM: usize = 64;
 
-/// Coefficients that are not polynomials are replaced by polynomials with a remainder, and boxes
-/// are halved until the remainder is small.
+/// Replaces nonpolynomial coefficients by polynomials with a remainder, and halves boxes until the
+/// remainder is small.
 pub(super) fn with_model(certificate: &mut Certificate) -> Result<(), NotProven> {
     let of_all = |certificate: &Certificate| -> Option<Vec<f64>> {
         (0..certificate.plant.boxes.len()).map(|of_box| share(certificate, of_box)).collect()
@@ -47,8 +47,8 @@ pub(super) fn with_model(certificate: &mut Certificate) -> Result<(), NotProven>
     if of_all(certificate).is_some() { Ok(()) } else { Err(NotProven::NotPolynomial) }
 }
 
-/// Divides the box whose remainder, a share of its coefficients, is the greatest, again and again,
-/// as long as it is worth it.
+/// Divides the box with the greatest remainder, relative to its coefficients, repeatedly as long as
+/// it is worthwhile.
 fn divide(certificate: &mut Certificate, shares: Vec<f64>) {
     let mut left: Vec<(f64, bool)> = shares.into_iter().map(|share| (share, share > SMALL)).collect();
     while left.len() < BOXES_MAXIMUM {
@@ -58,10 +58,10 @@ fn divide(certificate: &mut Certificate, shares: Vec<f64>) {
             break;
         };
         let worth = |(_, of_parts): &(Halves, [f64; 2])| {
-            // any is better than none
+            // any finite remainder is better than none
             own.is_infinite() || of_parts.iter().all(|part| *part <= WORTH * own)
         };
-        // where a choice turns, both sides are smooth
+        // on either side of a switching point the coefficients are smooth
         let divided = cut(certificate, of_box).or_else(|| halved(certificate, of_box).filter(worth));
         let Some((parts, of_parts)) = divided else {
             left[of_box].1 = false;
@@ -76,8 +76,8 @@ fn divide(certificate: &mut Certificate, shares: Vec<f64>) {
     }
 }
 
-/// The greatest remainder of a coefficient of the plant over a box, relative to its size; `None`
-/// where the box has no such polynomials.
+/// The greatest remainder of a coefficient of the plant over a box, relative to its size; `None` if
+/// the box has no such polynomials.
 fn share(certificate: &Certificate, of_box: usize) -> Option<f64> {
     Some(Loop::<f64>::over_box(certificate, of_box)?.remainder_share())
 }
@@ -85,7 +85,7 @@ fn share(certificate: &Certificate, of_box: usize) -> Option<f64> {
 /// Both halves of a box.
 type Halves = [Vec<ParameterSegment>; 2];
 
-/// Both parts of a box where a choice turns between them, with their remainders.
+/// Both parts of a box at the switching point of a choice between them, with their remainders.
 fn cut(certificate: &Certificate, of_box: usize) -> Option<(Halves, [f64; 2])> {
     let parameters = parameters_over(certificate, of_box)?;
     let (variable, share) =
@@ -100,8 +100,8 @@ fn cut(certificate: &Certificate, of_box: usize) -> Option<(Halves, [f64; 2])> {
 }
 
 /// Both halves of a box across the variable that makes the remainders smallest, with these
-/// remainders; where no halves have polynomials, across the variable that alone needs the fewest
-/// halvings until a part has.
+/// remainders; if no halves have polynomials, across the variable that needs the fewest halvings
+/// until a part has them.
 fn halved(certificate: &Certificate, of_box: usize) -> Option<(Halves, [f64; 2])> {
     let own = certificate.plant.boxes.get(of_box)?;
     let mut alone = certificate.clone();
@@ -127,8 +127,8 @@ fn greatest(shares: &[f64; 2]) -> f64 {
     shares[0].max(shares[1])
 }
 
-/// How many more times the lower of these halves must be halved across a variable until its upper
-/// part has polynomials; [`HALVINGS_MAXIMUM`] where this is not enough.
+/// Number of further halvings of the lower of these halves across a variable until its upper part
+/// has polynomials; [`HALVINGS_MAXIMUM`] if that is not enough.
 fn halvings(
     [lower, _]: &Halves,
     variable: usize,
@@ -145,12 +145,12 @@ fn halvings(
     HALVINGS_MAXIMUM
 }
 
-/// Both halves of a box across a variable; `None` where it changes nothing.
+/// Both halves of a box across a variable; `None` if that changes nothing.
 fn halves(whole: &[ParameterSegment], variable: usize) -> Option<Halves> {
     parts(whole, variable, 0.5)
 }
 
-/// Both parts of a box that meet at this value of a variable in t; `None` where it changes nothing.
+/// Both parts of a box that meet at this value of a variable in t; `None` if that changes nothing.
 fn parts(whole: &[ParameterSegment], variable: usize, share: f64) -> Option<Halves> {
     let moved = |one: &ParameterSegment| one.variable == Some(variable);
     let half = |lower: bool| {

@@ -1,5 +1,5 @@
-//! Functions of the frequency alone over a finite panel: a polynomial, and a remainder. Sampled
-//! controllers, holds and whole delays are such functions.
+//! Functions of only the frequency over a finite panel: a polynomial, and a remainder. Sampled
+//! controllers, holds and pure delays are such functions.
 //!
 //! ```text
 //! w = middle + half y,  y in [-1, 1],      f(w) = sum over k < m of f_k y^k + r,   |r| <= rest
@@ -16,10 +16,10 @@ use super::dead_time::InFrequency;
 use super::part::Straight;
 use super::polynomial::{BoxPolynomial, Decimal, InS};
 
-/// Terms of the series of I_k.
+/// Number of terms of the series of I_k.
 const HOLD_TERMS: usize = 40;
-/// Largest sum of the omitted terms: less than 2 a^40/40!, which is 2e-27 for the angle a = 3.3,
-/// slightly more than half a turn.
+/// Bound on the sum of the omitted terms: less than 2 a^40/40!, which is 2e-27 for the angle a =
+/// 3.3, slightly more than half a turn.
 const HOLD_REST: f64 = 1e-20;
 
 /// A complex number.
@@ -28,13 +28,13 @@ pub(super) type Complex<S> = [S; 2];
 /// A function of the frequency on a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct OverPanel<S> {
-    /// Of the powers of y.
+    /// Coefficients of the powers of y.
     coefficients: Vec<Complex<S>>,
     /// Largest difference between the sum and the function.
     rest: S,
 }
 
-/// A panel as its middle and half its width, with the number of terms that are kept.
+/// A panel as its middle and half its width, with the number of retained terms.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Middle<S> {
     middle: S,
@@ -47,7 +47,7 @@ impl<S: Decimal> Middle<S> {
         Middle { middle: (from + to).times(0.5), half: (to - from).times(0.5), terms }
     }
 
-    /// e^(-j w theta)
+    /// Delay e^(-j w theta).
     pub(super) fn turned(self, theta: S) -> OverPanel<S> {
         let [cosine, sine] = S::cosine_and_sine(self.middle * theta);
         let start = [cosine, -sine];
@@ -55,7 +55,7 @@ impl<S: Decimal> Middle<S> {
         OverPanel { coefficients: powers.into_iter().map(|power| product(start, power)).collect(), rest }
     }
 
-    /// e^(j w T) - 1
+    /// Function zeta = e^(j w T) - 1.
     pub(super) fn step(self, sample_time_s: S) -> OverPanel<S> {
         let mut turned = self.turned(-sample_time_s);
         if let Some([real, _]) = turned.coefficients.first_mut() {
@@ -64,7 +64,7 @@ impl<S: Decimal> Middle<S> {
         turned
     }
 
-    /// (1 - e^(-j w T))/(j w T)
+    /// Hold (1 - e^(-j w T))/(j w T).
     pub(super) fn hold(self, sample_time_s: S) -> OverPanel<S> {
         let turn = self.middle * sample_time_s;
         let (powers, rest) = self.powers(sample_time_s);
@@ -92,7 +92,7 @@ impl<S: Decimal> Middle<S> {
         OverPanel { coefficients, rest }
     }
 
-    /// (-j b)^k/k!, and the remainder.
+    /// Terms (-j b)^k/k!, and the remainder.
     fn powers(self, theta: S) -> (Vec<Complex<S>>, S) {
         let turn = self.half * theta;
         let mut size = S::from(1.0);
@@ -115,7 +115,7 @@ impl<S: Decimal> Middle<S> {
         OverPanel { coefficients: vec![[value, S::from(0.0)]], rest: S::from(0.0) }
     }
 
-    /// A polynomial with these decimals, highest power first, of a function.
+    /// A polynomial with these decimals, highest power first, applied to a function.
     pub(super) fn polynomial(self, coefficients: &[f64], of: &OverPanel<S>) -> OverPanel<S> {
         coefficients.iter().fold(self.constant(S::from(0.0)), |sum, &coefficient| {
             let mut sum = self.product(&sum, of);
@@ -127,7 +127,7 @@ impl<S: Decimal> Middle<S> {
         })
     }
 
-    /// The product; terms beyond those that are kept are added to the remainder.
+    /// The product; terms beyond the retained ones are added to the remainder.
     pub(super) fn product(self, one: &OverPanel<S>, other: &OverPanel<S>) -> OverPanel<S> {
         let length = (one.coefficients.len() + other.coefficients.len()).saturating_sub(1);
         let mut all = vec![[S::from(0.0); 2]; length];
@@ -161,7 +161,7 @@ impl<S: Decimal> OverPanel<S> {
         InFrequency { real: part(0), imaginary: part(1) }.along(S::from(-1.0), S::from(2.0))
     }
 
-    /// The value where the panel is a single frequency.
+    /// The value if the panel is a single frequency.
     pub(super) fn value(&self) -> Complex<S> {
         self.coefficients.first().copied().unwrap_or([S::from(0.0); 2])
     }
@@ -192,7 +192,7 @@ pub(super) fn product<S: Decimal>(a: Complex<S>, b: Complex<S>) -> Complex<S> {
     [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
 }
 
-/// The magnitude at most.
+/// Upper bound of the magnitude.
 pub(super) fn size<S: Decimal>(value: Complex<S>) -> S {
     value[0].abs() + value[1].abs()
 }

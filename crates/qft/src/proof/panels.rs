@@ -1,5 +1,5 @@
-//! The panels of a band: its decades, and the ranges below and beyond them. With dead time a panel
-//! is one over which the dead time turns little, or one where its angle does not matter.
+//! The panels of a band: its decades, and the ranges below and beyond them. With dead time, the
+//! phase varies little over a panel, or its angle does not matter.
 
 use phea_dynamics::portable;
 use phea_dynamics::watch::{Stopped, Watch};
@@ -11,20 +11,20 @@ use super::points::PanelRange;
 use super::polynomial::{BoxPolynomial, InS};
 use super::walk::{ProofEffort, ProofRegion, WalkOutcome, walk};
 
-/// Points per decade at which plants are evaluated.
+/// Number of points per decade at which plants are evaluated.
 const POINTS_PER_DECADE: f64 = 24.0;
-/// Largest angle by which dead time turns over a panel, to either side of its middle, rad.
+/// Largest phase change due to dead time over a panel, to either side of its middle, rad.
 const TURN: f64 = 1.0;
-/// The same for functions of the samples, as a share of that.
+/// Fraction of that angle allowed for functions of the samples.
 const SAMPLED_TURN: f64 = 0.5;
-/// The greatest ratio of the ends of a panel over which a power of the frequency is expanded.
+/// Greatest ratio of the ends of a panel over which a power of the frequency is expanded.
 const POWER_PANEL: f64 = 1.6;
-/// A panel is not divided further if the ratio of its ends is below this.
+/// Ratio of the ends of a panel below which it is not divided further.
 const NARROWEST: f64 = 1.02;
-/// Effort for testing whether dead time matters: leaves and depth.
+/// Effort for testing the influence of dead time: leaves and depth.
 const TRIAL: (usize, usize) = (40, 24);
 
-/// Looks for trees that show |V| <= |U| over a band.
+/// Searches for trees that prove |V| <= |U| over a band.
 pub(super) fn walk_band(
     claimed: &Claimed<f64>,
     variables: usize,
@@ -33,7 +33,7 @@ pub(super) fn walk_band(
     watch: Watch<'_>,
 ) -> Result<WalkOutcome, Stopped> {
     let decades = decades(band, claimed);
-    // the lowest last, since it is taken first
+    // the lowest last, since it is processed first
     let mut waiting: Vec<[f64; 2]> = decades.windows(2).map(|pair| [pair[0], pair[1]]).rev().collect();
     let mut shown = vec![];
     let sampled_turn = claimed.turn_s();
@@ -69,7 +69,7 @@ pub(super) fn walk_band(
         };
         match found {
             WalkOutcome::Shown(panels) => shown.extend(panels),
-            // the panels are taken in order: all from here on are left
+            // the panels are processed in order: all from here on remain
             WalkOutcome::Open(region) if effort.budget.is_spent() => {
                 let variables = vec![[0.0, 1.0]; variables];
                 return Ok(WalkOutcome::Open(ProofRegion {
@@ -84,7 +84,7 @@ pub(super) fn walk_band(
     Ok(WalkOutcome::Shown(shown))
 }
 
-/// Whether it is shown, or refuted, whatever the angle of the dead time.
+/// Proves or refutes the claim for any angle of the dead time.
 fn any<'a>(
     over: &mut impl FnMut(Late, ProofEffort<'a>) -> Result<WalkOutcome, Stopped>,
     effort: ProofEffort<'a>,
@@ -99,12 +99,12 @@ fn any<'a>(
     Ok(None)
 }
 
-/// The range of frequency times dead time.
+/// Range of frequency times dead time.
 fn angles([from, to]: [f64; 2], [least, most]: [f64; 2]) -> [f64; 2] {
     [from * least, to * most]
 }
 
-/// Where to divide a panel over which dead time turns too far; `None` where it does not, or where
+/// Frequency that divides a panel over which dead time turns too far; `None` if it does not, or if
 /// dividing no longer helps.
 fn parted([from, to]: [f64; 2], [begin, end]: [f64; 2]) -> Option<f64> {
     let middle = if from > 0.0 { rounded((from * to).sqrt()) } else { rounded(0.1 * to) };
@@ -113,7 +113,7 @@ fn parted([from, to]: [f64; 2], [begin, end]: [f64; 2]) -> Option<f64> {
     (!turns_little && !is_narrow && from < middle && middle < to).then_some(middle)
 }
 
-/// A number of few digits.
+/// The number rounded to few digits.
 fn rounded(value: f64) -> f64 {
     portable::rounded(value, 5)
 }
@@ -135,10 +135,10 @@ fn decades([from, to]: [f64; 2], claimed: &Claimed<f64>) -> Vec<f64> {
     ends
 }
 
-/// How much smaller the delayed part is than the rest where a panel to infinity begins.
+/// Factor by which the delayed part is smaller than the rest at the start of a panel to infinity.
 const LESS: f64 = 10.0;
 
-/// Beyond this frequency the delayed part is negligible.
+/// Frequency beyond which the delayed part is negligible.
 fn beyond(claimed: &Claimed<f64>) -> Option<f64> {
     let leading = |of: &InS<f64>| {
         let degree = of.degree()?;

@@ -1,44 +1,43 @@
-//! Products of a polynomial in s and functions of the frequency alone, including those of the
-//! samples: the building blocks of the loops of a certificate.
+//! Products of a polynomial in s and functions of only the frequency, including sampled ones: the
+//! building blocks of the loops of a certificate.
 //!
 //! ```text
 //! z = e^(j w T),   zeta = z - 1 = j w T e^(j w T) hold,   hold = (1 - e^(-j w T))/(j w T)
 //! ```
 //!
-//! zeta is zero where s is: as a factor it is written as s, so that an integrator in z can cancel
+//! zeta is zero where s is: a factor zeta is written as s, so that an integrator in z can cancel
 //! one in s.
 
 use super::certificate::{ControlLaw, Quotient, Sections};
 use super::over_panel::{Complex, Middle, OverPanel, product, sum};
 use super::polynomial::{BoxPolynomial, Decimal, InS};
 
-/// A function of the frequency alone.
+/// A function of only the frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum OfFrequency<S> {
     /// A polynomial in zeta with these decimals, highest power first.
     Polynomial(Vec<f64>),
     /// The zero-order hold, with a height of one at zero frequency.
     Hold,
-    /// Later by this time, s.
+    /// Delay by this time, s.
     Late(S),
-    /// Earlier by one sample.
+    /// Advance by one sample.
     Ahead,
-    /// A part of a limit that is given as a table.
+    /// A part of a limit given as a table.
     Straight(Straight),
 }
 
-/// A power of the frequency between two points of a table: straight in a double logarithmic
-/// diagram.
+/// A power of the frequency between two points of a table: linear in a double logarithmic diagram.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Straight {
-    /// Frequency in rad/s, and magnitude.
+    /// Frequency, rad/s, and magnitude.
     pub(crate) from: (f64, f64),
     /// The next point.
     pub(crate) to: (f64, f64),
 }
 
 impl Straight {
-    /// The points of a table from one to the next.
+    /// The segments between the points of a table.
     pub(super) fn of_table(points: &[(f64, f64)]) -> impl Iterator<Item = Straight> {
         points.windows(2).map(|pair| Straight { from: pair[0], to: pair[1] })
     }
@@ -65,7 +64,7 @@ impl<S: Decimal> PolynomialProduct<S> {
         PolynomialProduct { of_s: self.of_s.scaled(factor), of_frequency: self.of_frequency.clone() }
     }
 
-    /// Its functions of the frequency over a panel; `None` where it has none.
+    /// Product of its functions of the frequency over a panel; `None` if it has none.
     pub(super) fn over(&self, middle: Middle<S>, sample_time_s: S) -> Option<OverPanel<S>> {
         let each = self.of_frequency.iter().map(|one| match one {
             OfFrequency::Polynomial(coefficients) => {
@@ -79,7 +78,7 @@ impl<S: Decimal> PolynomialProduct<S> {
         each.reduce(|one, other| middle.product(&one, &other))
     }
 
-    /// Its value at a frequency, with coefficients that are numbers.
+    /// Value at a frequency, with numbers as coefficients.
     pub(super) fn value(&self, frequency: S, sample_time_s: S) -> Complex<S> {
         let of_s = value(&self.of_s, frequency);
         let middle = Middle::of([frequency, frequency], 1);
@@ -121,7 +120,7 @@ pub(super) fn law<S: Decimal>(law: &ControlLaw, sample_time_s: Option<f64>) -> [
     }
 }
 
-/// A polynomial in zeta, whose factors zeta are written as s.
+/// A polynomial in zeta, with factors zeta written as s.
 fn of_section<S: Decimal>(section: &[f64], sample_time_s: S) -> PolynomialProduct<S> {
     let integrators = section.iter().rev().take_while(|coefficient| **coefficient == 0.0).count();
     let mut out = PolynomialProduct::of(InS(vec![BoxPolynomial::number(1.0)]));

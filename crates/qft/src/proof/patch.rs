@@ -1,5 +1,5 @@
 //! A part of a panel and of the box, with the control points of a claim on it and, for a sampled
-//! loop, with the images of its plant.
+//! loop, the images of its plant.
 
 use std::borrow::Cow;
 
@@ -10,10 +10,10 @@ use super::images::{ImageDisc, ImagePoints, Which};
 use super::points::{PanelRange, Points};
 use super::polynomial::Decimal;
 
-/// One part.
+/// Part of a panel and of the box.
 #[derive(Clone, Debug)]
 pub(crate) struct Patch<S> {
-    /// Without the images.
+    /// Control points without the images.
     own: Points<S>,
     images: Option<ImagedPlant<S>>,
 }
@@ -27,14 +27,14 @@ struct ImagedPlant<S> {
 }
 
 impl<S: Decimal> Patch<S> {
-    /// A whole panel and the whole box; `None` where there are too many points.
+    /// Patch of a whole panel and the whole box; `None` if there are too many points.
     pub(crate) fn over(claimed: &Claimed<S>, variables: usize, range: PanelRange) -> Option<Patch<S>> {
         let (own, multiplied) = Points::over(claimed, variables, range)?;
         let images = match claimed.images.as_ref().zip(multiplied) {
             None => None,
             Some((images, multiplied)) => {
                 let [u, v] = claimed.which;
-                // images that are multiplied by nothing need not be known
+                // images with a factor of zero are not needed
                 let of = |sum: &[_], which: Which| match sum.is_empty() {
                     true => Ok(None),
                     false => images.over(which, variables, range).map(Some).ok_or(()),
@@ -51,7 +51,7 @@ impl<S: Decimal> Patch<S> {
         Some(Patch { own, images })
     }
 
-    /// Number of its control points, those of the images included.
+    /// Number of its control points, including those of the images.
     pub(crate) fn size(&self) -> usize {
         let of_images = self.images.as_ref().map_or(0, |images| {
             let own = images.multiplied.points().len() + images.of_u.size();
@@ -81,7 +81,7 @@ impl<S: Decimal> Patch<S> {
         [one(low, low_multiplied, low_u, low_v), one(high, high_multiplied, high_u, high_v)]
     }
 
-    /// Its control points, including those of the images.
+    /// Control points, including those of the images.
     pub(crate) fn points(&self) -> Cow<'_, Points<S>> {
         match &self.images {
             None => Cow::Borrowed(&self.own),
@@ -89,8 +89,8 @@ impl<S: Decimal> Patch<S> {
         }
     }
 
-    /// The same as if the images were known exactly, and the image that is known least accurately;
-    /// `None` if there are no images.
+    /// Control points as if the images were known exactly, and the image known least accurately;
+    /// `None` without images.
     pub(crate) fn with_known_images(&self) -> Option<(Points<S>, &Points<S>)> {
         let images = self.images.as_ref()?;
         let known = images.discs().map(|disc| ImageDisc { radius: S::from(0.0), ..disc });
@@ -105,9 +105,10 @@ impl<S: Decimal> ImagedPlant<S> {
     }
 }
 
-/// |U| at most and |V| at least, at a frequency or in the limit towards infinity; coefficients are numbers.
+/// Upper bound of |U| and lower bound of |V|, at a frequency or in the limit towards infinity;
+/// coefficients are numbers.
 pub(super) fn at_point<S: Decimal>(claimed: &Claimed<S>, frequency_rad_per_s: f64) -> Option<[S; 2]> {
-    // the first control point over a panel is the value where it begins
+    // the first control point over a panel is the value at its start
     let is_late = !claimed.dead_time.value.is_zero();
     let range = match frequency_rad_per_s.is_finite() {
         true => {
@@ -121,7 +122,7 @@ pub(super) fn at_point<S: Decimal>(claimed: &Claimed<S>, frequency_rad_per_s: f6
         }
     };
     if range.to.is_infinite() {
-        // both divided by the same power of the frequency
+        // both divided by one power of the frequency
         let [ur, ui, vr, vi, rest] = Patch::over(claimed, 0, range)?.points().points().first()?.map(S::abs);
         return Some([(ur * ur + ui * ui).sqrt() + rest, (vr * vr + vi * vi).sqrt() - rest]);
     }

@@ -5,8 +5,9 @@
 //! U = sum over k of U_k B_k(t),     B_k >= 0,   sum over k of B_k = 1        t in [0, 1]^n
 //! ```
 //!
-//! Every pair (U, V) on the box is a mean of the pairs (U_k, V_k), with the same weights for both.
-//! The remainder of dead time has the magnitude e, at most the same mean of e_k.
+//! Every pair (U, V) on the box is a weighted mean of the pairs (U_k, V_k), with equal weights for
+//! both. The remainder of dead time has the magnitude e, at most the mean of e_k with these
+//! weights.
 
 use super::certificate::Late;
 use super::claimed::Claimed;
@@ -16,10 +17,11 @@ use super::over_panel::{Middle, product, size};
 use super::part::PolynomialProduct;
 use super::polynomial::{BoxPolynomial, Decimal, InS};
 
-/// Real and imaginary part of U, the same of V, and e.
+/// Real and imaginary parts of U and of V, and e.
 pub(crate) type PanelPoint<S> = [S; 5];
 
-/// A panel of frequencies, rad/s, and how dead time is treated over it; it may end at infinity.
+/// A panel of frequencies, rad/s, and the treatment of dead time over it; the panel may end at
+/// infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PanelRange {
     pub(crate) from: f64,
@@ -27,7 +29,7 @@ pub(crate) struct PanelRange {
     pub(crate) late: Late,
 }
 
-/// Coefficients over all axes, that of the frequency first, the last axis running fastest.
+/// Coefficients over all axes, that of the frequency first, the last axis varying fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Points<S> {
     degrees: Vec<usize>,
@@ -37,7 +39,7 @@ pub(crate) struct Points<S> {
 /// Largest number of control points: more than any practical claim needs.
 const POINTS_MAXIMUM: usize = 1 << 21;
 
-/// U and V over a panel as polynomials, each with a bound of its remainder.
+/// U and V over a panel as polynomials, each with a bound on its remainder.
 struct PanelTerms<S> {
     whole: [InFrequency<S>; 2],
     rests: Vec<(InFrequency<S>, S)>,
@@ -116,7 +118,7 @@ fn over_panel<S: Decimal>(
 
 impl<S: Decimal> Points<S> {
     /// The control points of a claim over a panel and the whole box, and of the factors of its
-    /// images, in the same degrees; `None` if there are too many.
+    /// images, with common degrees; `None` if there are too many.
     pub(crate) fn over(
         claimed: &Claimed<S>,
         variables: usize,
@@ -157,7 +159,7 @@ impl<S: Decimal> Points<S> {
         let [u, v] = &terms.whole;
         let mut points = Points::powers([u, v], degrees)?;
         points.bring_to(range);
-        // two at a time, in the places of U and V
+        // two at a time, in place of U and V
         for both in terms.rests.chunks(2) {
             let (one, nothing) = (&both[0].0, InFrequency::none());
             let other = both.get(1).map_or(&nothing, |(other, _)| other);
@@ -172,11 +174,12 @@ impl<S: Decimal> Points<S> {
         Some(points)
     }
 
-    /// With images whose sum is in this disc, for U and for V; their remainder is added to e.
+    /// Control points with images whose sum is in this disc, for U and for V; the remainder of the
+    /// images is added to e.
     pub(super) fn with_images(&self, images: &Points<S>, [of_u, of_v]: [ImageDisc<S>; 2]) -> Points<S> {
         let greatest = |disc: &ImageDisc<S>| size(disc.center) + disc.radius;
         let most = greatest(&of_u).maximum(greatest(&of_v));
-        // nothing is shown where a denominator of an image may vanish, even if the image is
+        // nothing is proven if a denominator of an image may vanish, even if the image is
         // multiplied by zero
         let is_known = [of_u, of_v].iter().all(|disc| disc.radius.most().is_finite());
         let unknown = S::from(if is_known { 0.0 } else { f64::INFINITY });
@@ -192,7 +195,7 @@ impl<S: Decimal> Points<S> {
         out
     }
 
-    /// U and V as powers of the frequency and of the variables, in these degrees.
+    /// U and V as powers of the frequency and of the variables, with these degrees.
     fn powers(pair: [&InFrequency<S>; 2], degrees: &[usize]) -> Option<Points<S>> {
         let count = degrees.iter().try_fold(1_usize, |count, degree| count.checked_mul(degree + 1))?;
         if count > POINTS_MAXIMUM {
@@ -221,8 +224,8 @@ impl<S: Decimal> Points<S> {
         digits.zip(&self.degrees).fold(0, |index, (digit, degree)| index * (degree + 1) + digit)
     }
 
-    /// From powers to control points. Towards infinity both are divided by the same power of the
-    /// frequency, and its inverse is the variable.
+    /// Converts powers to control points. Towards infinity both are divided by one power of the
+    /// frequency, whose inverse is the variable.
     fn bring_to(&mut self, range: PanelRange) {
         if range.to.is_infinite() {
             self.reverse_frequency();
@@ -237,7 +240,7 @@ impl<S: Decimal> Points<S> {
         }
     }
 
-    /// Number of axes, that of the frequency included.
+    /// Number of axes, including that of the frequency.
     pub(crate) fn axes(&self) -> usize {
         self.degrees.len()
     }
@@ -276,7 +279,7 @@ impl<S: Decimal> Points<S> {
         [low, self]
     }
 
-    /// x -> width x in powers of the variable of the frequency.
+    /// Substitution x -> width x in powers of the variable of the frequency.
     fn scale_frequency(&mut self, width: S) {
         let mut factor = S::from(1.0);
         for place in 1..=self.degrees[0] {
@@ -304,7 +307,8 @@ impl<S: Decimal> Points<S> {
         }
     }
 
-    /// b_k = sum over i <= k of C(k, i)/C(n, i) a_i: divided by C(n, i), then summed up n times.
+    /// Conversion b_k = sum over i <= k of C(k, i)/C(n, i) a_i: division by C(n, i), then n
+    /// summations.
     fn bring_to_bernstein(&mut self, axis: usize) {
         let (degree, stride) = (self.degrees[axis], self.stride(axis));
         // C(n, 0) = C(n, n) = 1
@@ -332,7 +336,7 @@ impl<S: Decimal> Points<S> {
     }
 }
 
-/// One operation on each number of two points.
+/// Applies one operation to each number of two points.
 #[inline]
 fn each<S: Copy>(mut one: PanelPoint<S>, other: PanelPoint<S>, of: impl Fn(S, S) -> S) -> PanelPoint<S> {
     for (here, there) in one.iter_mut().zip(other) {
@@ -347,7 +351,7 @@ fn halfway<S: Decimal>(one: S, next: S) -> S {
 }
 
 impl<S: Decimal> InFrequency<S> {
-    /// Bound of the remainder of a polynomial in s = j w, as a polynomial in w; `None` if there is
+    /// Bound on the remainder of a polynomial in s = j w, as a polynomial in w; `None` if there is
     /// none.
     pub(super) fn of_rests(of: &InS<S>) -> Option<InFrequency<S>> {
         let rests = of.0.iter().map(BoxPolynomial::rest);
@@ -356,7 +360,7 @@ impl<S: Decimal> InFrequency<S> {
         remains.then(|| InFrequency { real: InS(rests), imaginary: InS(vec![]) })
     }
 
-    /// s = j w: j^0 = 1, j, -1, -j.
+    /// Polynomial at s = j w: j^0 = 1, j, -1, -j.
     pub(super) fn of(of: &InS<S>) -> InFrequency<S> {
         let part = |own: usize| {
             let signed =

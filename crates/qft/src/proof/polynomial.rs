@@ -8,25 +8,25 @@ use phea_dynamics::scalar::{Interval, Scalar};
 
 use super::dead_time::enclosed_cosine_and_sine;
 
-/// A number of a certificate: it stands for the decimal number that it prints as, to which the
-/// binary number is the nearest.
+/// A number of a certificate: it represents the decimal number that it prints as, to which the
+/// binary number is nearest.
 pub(crate) trait Decimal: Scalar + PartialEq {
-    /// An enclosure of the decimal number that this one prints as.
+    /// An enclosure of the decimal number that this number prints as.
     fn decimal(value: f64) -> Self;
-    /// Enclosures of the cosine and the sine of every angle that this stands for, rad.
+    /// Enclosures of the cosine and the sine of every angle in this enclosure, rad.
     fn cosine_and_sine(angle: Self) -> [Self; 2];
-    /// An enclosure of every number of at most this magnitude; zero where rounding is not tracked.
+    /// An enclosure of every number of at most this magnitude; zero if rounding is not tracked.
     fn uncertain(magnitude: f64) -> Self;
-    /// What holds pi.
+    /// An enclosure of pi.
     fn pi() -> Self;
-    /// An enclosure of both and everything between them; the other number where rounding is not
+    /// An enclosure of both numbers and all those between them; the other number if rounding is not
     /// tracked.
     fn up_to(self, other: Self) -> Self;
-    /// A number in the middle of those that this stands for.
+    /// A number in the middle of this enclosure.
     fn middle(self) -> f64;
-    /// Not less than any number that this stands for.
+    /// An upper bound of this enclosure.
     fn most(self) -> f64;
-    /// Not greater than any number that this stands for.
+    /// A lower bound of this enclosure.
     fn least(self) -> f64;
 }
 
@@ -65,7 +65,8 @@ impl Decimal for f64 {
 }
 
 impl Decimal for Interval {
-    /// A decimal that reads as this number is nearer to it than to its neighbours; zero is exact.
+    /// Interval up to both neighbours: a decimal that reads as this number is nearer to it than to
+    /// them; zero is exact.
     fn decimal(value: f64) -> Interval {
         if value == 0.0 { Interval::from(0.0) } else { Interval::new(value.next_down(), value.next_up()) }
     }
@@ -103,17 +104,17 @@ impl Decimal for Interval {
 /// Largest number of variables of a box.
 pub(crate) const VARIABLES_MAXIMUM: usize = 12;
 /// The greatest exponent of a variable in a coefficient of a plant: the exponents of a product of
-/// two such polynomials fit into a byte.
+/// two such polynomials fit in a byte.
 const EXPONENT_MAXIMUM: u8 = 60;
 
-/// Largest number of products of terms: a polynomial with more is unbounded.
+/// Largest number of products of terms: the result counts as unbounded beyond it.
 const PRODUCTS_MAXIMUM: usize = 1 << 20;
 
 /// Exponents of the variables.
 type VariablePowers = [u8; VARIABLES_MAXIMUM];
 
 /// A polynomial in the variables of a box: exponents in increasing order, each with its
-/// coefficient. The function that it stands for differs from it by a remainder of at most `rest`,
+/// coefficient. The function that it represents differs from it by a remainder of at most `rest`,
 /// with the variables in [0, 1] or in [-1, 1].
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct BoxPolynomial<S> {
@@ -132,12 +133,12 @@ impl<S: Decimal> BoxPolynomial<S> {
         if value == 0.0 { BoxPolynomial::zero() } else { BoxPolynomial::constant(S::decimal(value)) }
     }
 
-    /// Nothing: no term.
+    /// Zero: no terms.
     pub(crate) fn zero() -> BoxPolynomial<S> {
         BoxPolynomial { terms: vec![], rest: S::from(0.0) }
     }
 
-    /// `low + (high - low) t`, t being the variable with this index; `low` if there is none.
+    /// `low + (high - low) t`, where t is the variable with this index; `low` if there is none.
     pub(crate) fn between(low: f64, high: f64, variable: Option<usize>) -> BoxPolynomial<S> {
         let mut out = BoxPolynomial::constant(S::decimal(low));
         let mut exponents = [0; VARIABLES_MAXIMUM];
@@ -148,18 +149,18 @@ impl<S: Decimal> BoxPolynomial<S> {
         out
     }
 
-    /// Its terms: exponents and coefficients.
+    /// Terms: exponents and coefficients.
     pub(crate) fn terms(&self) -> impl Iterator<Item = (&[u8], S)> {
         self.terms.iter().map(|(exponents, coefficient)| (exponents.as_slice(), *coefficient))
     }
 
-    /// Bound of the difference between it and the function that it stands for.
+    /// Bound on the difference from the function that it represents.
     pub(crate) fn rest(&self) -> S {
         self.rest
     }
 
-    /// The variable of a straight line in one variable alone, and where this line is zero, in t;
-    /// `None` for any other polynomial, and where it is zero nowhere.
+    /// The variable of a linear function of a single variable, and its zero in t; `None` for any
+    /// other polynomial, and without a zero.
     pub(super) fn root(&self) -> Option<(usize, S)> {
         let mut constant = S::from(0.0);
         let mut straight = None;
@@ -177,13 +178,13 @@ impl<S: Decimal> BoxPolynomial<S> {
         Some((variable, (S::from(1.0) - constant / slope).times(0.5)))
     }
 
-    /// The same with an increased remainder.
+    /// Copy of this polynomial with an increased remainder.
     pub(super) fn with_rest(mut self, more: S) -> BoxPolynomial<S> {
         self.rest = self.rest + more;
         self
     }
 
-    /// Bound of its magnitude, without the remainder.
+    /// Bound on the magnitude, without the remainder.
     pub(super) fn size(&self) -> S {
         self.terms.iter().fold(S::from(0.0), |sum, (_, value)| sum + value.abs())
     }
@@ -192,12 +193,13 @@ impl<S: Decimal> BoxPolynomial<S> {
         self.rest.most() != 0.0
     }
 
-    /// Whether it has no term and no remainder. A sum of intervals that may vanish is not zero.
+    /// True if it has neither a term nor a remainder. A sum of intervals that may vanish is not
+    /// zero.
     pub(crate) fn is_zero(&self) -> bool {
         self.terms.is_empty() && !self.has_rest()
     }
 
-    /// Its value, if it depends on no variable.
+    /// Value, if it depends on no variable.
     pub(crate) fn as_constant(&self) -> Option<S> {
         match self.terms.as_slice() {
             _ if self.has_rest() => None,
@@ -229,7 +231,7 @@ impl<S: Decimal> BoxPolynomial<S> {
                     fits &= slot.checked_add(*exponent).is_some();
                     *slot = slot.saturating_add(*exponent);
                 }
-                // a power beyond the largest cannot be stored: nothing is known about the sum
+                // a power beyond the largest cannot be stored: the sum is unknown
                 let product = if fits { *a * *b } else { S::from(f64::NAN) };
                 (exponents, product)
             })
@@ -241,7 +243,7 @@ impl<S: Decimal> BoxPolynomial<S> {
         BoxPolynomial::collected(products.collect(), rest)
     }
 
-    /// From terms in any order; those with the same exponents are added.
+    /// Polynomial of terms in any order; those with equal exponents are added.
     fn collected(mut terms: Vec<(VariablePowers, S)>, rest: S) -> BoxPolynomial<S> {
         terms.sort_by_key(|(exponents, _)| *exponents);
         terms.dedup_by(|next, kept| {
@@ -254,7 +256,7 @@ impl<S: Decimal> BoxPolynomial<S> {
         BoxPolynomial { terms, rest }
     }
 
-    /// Its terms up to a total degree; the bound of the others is added to the remainder.
+    /// Terms up to a total degree; a bound on the others is added to the remainder.
     pub(super) fn truncated(mut self, degree: usize) -> BoxPolynomial<S> {
         let is_kept = |exponents: &VariablePowers| {
             exponents.iter().map(|one| usize::from(*one)).sum::<usize>() <= degree
@@ -265,7 +267,7 @@ impl<S: Decimal> BoxPolynomial<S> {
         self
     }
 
-    /// `middle + half x`, x being the variable with this index.
+    /// `middle + half x`, where x is the variable with this index.
     pub(super) fn about(middle: S, half: S, variable: usize) -> BoxPolynomial<S> {
         let mut out = BoxPolynomial::constant(middle);
         let mut exponents = [0; VARIABLES_MAXIMUM];
@@ -276,7 +278,7 @@ impl<S: Decimal> BoxPolynomial<S> {
         out
     }
 
-    /// The same polynomial with x = 2 t - 1 in place of every variable.
+    /// Substitution x = 2 t - 1 in place of every variable.
     pub(super) fn with_shares(&self) -> BoxPolynomial<S> {
         let mut out = BoxPolynomial { terms: vec![], rest: self.rest };
         for (exponents, value) in &self.terms {
@@ -292,15 +294,16 @@ impl<S: Decimal> BoxPolynomial<S> {
         out
     }
 
-    /// Itself, unless an exponent is greater than this.
+    /// Result: this polynomial, or `None` if an exponent is greater than this.
     pub(crate) fn up_to(self, greatest: u8) -> Option<BoxPolynomial<S>> {
         let fits = self.terms.iter().flat_map(|(exponents, _)| exponents).all(|one| *one <= greatest);
         fits.then_some(self)
     }
 }
 
-/// The results of an expression as polynomials in the variables of a box, its parameters being such
-/// polynomials; `None` where it uses operations other than sums, products and quotients by numbers.
+/// The results of an expression as polynomials in the variables of a box, with its parameters as
+/// such polynomials; `None` if it uses operations other than sums, products and quotients by
+/// numbers.
 pub(crate) fn expanded<S: Decimal>(
     expression: &Expression,
     parameters: &[BoxPolynomial<S>],
@@ -336,7 +339,7 @@ pub(crate) fn expanded<S: Decimal>(
 pub(crate) struct InS<S>(pub(crate) Vec<BoxPolynomial<S>>);
 
 impl<S: Decimal> InS<S> {
-    /// With these numbers as coefficients, the highest power first.
+    /// Polynomial with these numbers as coefficients, the highest power first.
     pub(crate) fn of_decimals(coefficients: &[f64]) -> InS<S> {
         InS(coefficients.iter().rev().map(|&value| BoxPolynomial::number(value)).collect())
     }
@@ -364,12 +367,12 @@ impl<S: Decimal> InS<S> {
         InS(out)
     }
 
-    /// Its degree; `None` where all its coefficients are zero.
+    /// Degree; `None` if all coefficients are zero.
     pub(crate) fn degree(&self) -> Option<usize> {
         self.0.iter().rposition(|coefficient| !coefficient.is_zero())
     }
 
-    /// How often s divides it.
+    /// Number of times that s divides it.
     pub(crate) fn powers_of_s(&self) -> Option<usize> {
         self.0.iter().position(|coefficient| !coefficient.is_zero())
     }

@@ -1,4 +1,4 @@
-//! From an audit to its proof.
+//! Proof of the result of an audit.
 
 use phea_dynamics::pieces::{WorkPiece, Workers};
 use phea_dynamics::portable;
@@ -25,36 +25,36 @@ use crate::verification::{
     Audit, AuditProblem, PlantPoint, SpecificationFinding, SpecificationMargin, TrackingJudgement,
 };
 
-/// How far a proof goes.
+/// Accuracy and limits of a proof.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProofOptions {
     /// Largest width of the enclosure of a supremum, dB.
     pub width_db: f64,
     /// Largest number of leaves of one panel.
     pub leaves_maximum: usize,
-    /// Largest number of control points of all boxes that one claim may take; the time is in
-    /// proportion to them.
+    /// Largest number of control points of all boxes that one claim may use; the time is
+    /// proportional to them.
     pub points_maximum: u64,
-    /// The owner of the threads; the proof does not depend on it.
+    /// The worker threads; the proof does not depend on them.
     pub workers: Workers,
 }
 
 impl Default for ProofOptions {
-    /// 0.05 dB, enough leaves for every known example, and one thread.
+    /// Defaults: 0.05 dB, enough leaves for every known example, and one thread.
     fn default() -> ProofOptions {
         let workers = Workers::CALLER;
         ProofOptions { width_db: 0.05, leaves_maximum: 100_000, points_maximum: 1_000_000_000, workers }
     }
 }
 
-/// Reserve for the rounding of the checker, as a share of |V|^2: at first, and where that did not
-/// suffice.
+/// Reserve for the rounding of the checker, as a fraction of |V|^2: first attempt, and second if
+/// that fails.
 const ROOMS: [f64; 2] = [1e-11, 3e-5];
 /// Largest number of halvings on the way to a leaf.
 const DEPTH_MAXIMUM: usize = 120;
-/// Plants that are always examined: the nominal one, and the least stable that the audit found.
+/// Plants that are always examined: the nominal one, and the least stable one that the audit found.
 const NAMED: usize = 2;
-/// From the lowest to the highest frequency.
+/// Band from the lowest to the highest frequency.
 const WHOLE: [f64; 2] = [0.0, f64::INFINITY];
 
 /// Proves or refutes the result of an audit.
@@ -63,8 +63,8 @@ const WHOLE: [f64; 2] = [0.0, f64::INFINITY];
 /// [`Stopped`] by the watch.
 ///
 /// # Example
-/// k/s with k from 1 to 4, closed with gain 1, is stable; its |T| reaches 1 at zero frequency,
-/// which stays within 1.2 for every plant.
+/// Plants k/s with k from 1 to 4, closed with gain 1, are stable; |T| reaches 1 at zero frequency,
+/// and stays within 1.2 for every plant.
 /// ```
 /// # use phea_dynamics::controller::Controller;
 /// # use phea_dynamics::linear::TransferFunction;
@@ -134,7 +134,7 @@ pub fn prove(
     let mut prover = Prover { problem, certificate: certificate.clone(), options, effort };
     let stability = prover.stability(audit, &mut part(&mut *watch, "proving", [0.0, share]))?;
     let mut certified = prover.certificate;
-    // each specification is shown of the same loop, and needs no claim of another
+    // each specification is proven for one loop, without the claims of others
     let mut found: Vec<Option<(SpecificationProof, Vec<Claim>)>> = vec![None; problem.specifications.len()];
     let each = found.iter_mut().zip(&audit.specifications).enumerate();
     let pieces = each.map(|(index, (place, finding))| {
@@ -156,7 +156,7 @@ pub fn prove(
     Ok(Proof { certificate: Some(certified), stability, specifications })
 }
 
-/// For a loop that cannot be stated as a certificate.
+/// Result for a loop that cannot be stated as a certificate.
 fn nothing(problem: &AuditProblem<'_>, reason: NotProven) -> Proof {
     let one = SpecificationProof::without(Standing::NotProven(reason.clone()));
     Proof {
@@ -180,7 +180,7 @@ struct Prover<'a> {
 }
 
 impl Prover<'_> {
-    /// Keeps a claim that the checker confirms.
+    /// Retains a claim that the checker confirms; returns true if it does.
     fn keeps(&mut self, claim: Claim) -> bool {
         let confirmed = check_claim(&self.certificate, &claim).is_ok();
         if confirmed {
@@ -210,7 +210,7 @@ impl Prover<'_> {
         })
     }
 
-    /// One box, in which one of these plants is stable.
+    /// Proof for one box, in which one of these plants is stable.
     fn stable_box(
         &mut self,
         members: &[CertificateMember],
@@ -218,7 +218,7 @@ impl Prover<'_> {
     ) -> Result<Result<StableBox, Standing>, Stopped> {
         let mut stable = None;
         for (index, member) in members.iter().enumerate() {
-            // in a sampled loop every other plant is judged by the box alone
+            // in a sampled loop every other plant is determined by the box
             if stable.is_some() && self.certificate.sampling.is_some() && index >= NAMED {
                 break;
             }
@@ -267,7 +267,7 @@ impl Prover<'_> {
         })
     }
 
-    /// The same for a sampled loop.
+    /// The position of the poles of a sampled loop.
     fn counted(&self, member: &CertificateMember, watch: Watch<'_>) -> Result<PoleLocation, Stopped> {
         let (Some(at), Some(sampling)) =
             (Loop::<f64>::at(&self.certificate, member), &self.certificate.sampling)
@@ -301,7 +301,7 @@ impl Prover<'_> {
         })
     }
 
-    /// Trees that show that U is not zero at any frequency.
+    /// Trees that prove that U is not zero at any frequency.
     fn never_zero(
         &self,
         claimed: &Claimed<f64>,
@@ -353,7 +353,7 @@ impl Prover<'_> {
         Ok(whole)
     }
 
-    /// One side of a specification, which is given by its index.
+    /// One side of a specification, given by its index.
     fn side(
         &mut self,
         (specification, limited): (usize, &LimitedLoop),
@@ -414,7 +414,7 @@ impl Prover<'_> {
         Ok(SpecificationProof { standing, least_db: is_reached.then(|| db(least)), most_db, worst })
     }
 
-    /// Keeps a claim that a ratio is not exceeded; returns that ratio in dB, or `None` if the
+    /// Retains a claim that a ratio is not exceeded; returns that ratio, dB, or `None` if the
     /// checker could not confirm it.
     fn keeps_most(
         &mut self,
@@ -426,7 +426,7 @@ impl Prover<'_> {
         Some(self.keeps(claim).then(|| db(ratio)))
     }
 
-    /// Where the audit found the specification to be worst.
+    /// Points where the audit found the specification to be worst.
     fn hints(&self, finding: &SpecificationFinding) -> Vec<PlantAtFrequency> {
         let cases = finding.worst_margins().chain(&finding.at_design_frequencies);
         cases.filter_map(|case| self.place(&case.plant, case.frequency_rad_per_s)).collect()
@@ -442,7 +442,7 @@ impl Prover<'_> {
     }
 }
 
-/// What a specification limits, the lower side first.
+/// Limited closed loops of a specification, the lower side first.
 pub(super) fn limited_loops(specification: &Specification) -> Vec<LimitedLoop> {
     let requirement = &specification.requirement;
     let (lower, upper) = requirement.limits();
@@ -457,7 +457,7 @@ pub(super) fn limited_loops(specification: &Specification) -> Vec<LimitedLoop> {
     sides.chain([(CertificateSide::Upper, upper)]).map(limited).collect()
 }
 
-/// The position of the poles of a loop with one plant: all within the boundary of stability, or at
+/// The position of the poles of a loop with one plant: all inside the stability boundary, or at
 /// least one on it or beyond.
 enum PoleLocation {
     Within(Option<PoleCount>),
@@ -466,7 +466,7 @@ enum PoleLocation {
 }
 
 impl SpecificationProof {
-    /// Both sides together: the worse verdict, and the greater of both suprema.
+    /// Combination of both sides: the worse verdict, and the greater of both suprema.
     fn and(self, other: SpecificationProof) -> SpecificationProof {
         if self.least_db.is_none() && self.standing == Standing::Proven {
             return other;

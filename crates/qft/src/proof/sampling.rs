@@ -1,6 +1,5 @@
-//! What a checker verifies for a sampled loop in addition to its claims: that its controller is
-//! sampled, that its prefilter is stable, and that the images beyond those enclosed one by one are
-//! bounded.
+//! Additional checks for a sampled loop: the controller is sampled, the prefilter is stable, and
+//! the images beyond those enclosed individually are bounded.
 
 use phea_dynamics::scalar::{Interval, Scalar};
 
@@ -17,7 +16,7 @@ const ORDER_MAXIMUM: usize = 64;
 /// Largest degree of a section.
 const SECTION_DEGREE_MAXIMUM: usize = 2;
 
-/// Controller and prefilter fit the loop.
+/// Checks that controller and prefilter fit the loop.
 pub(super) fn check_sampling(certificate: &Certificate) -> Result<(), Rejection> {
     let Certificate { feedback, prefilter, sampling, plant, .. } = certificate;
     let Some(sampling) = sampling else {
@@ -45,7 +44,7 @@ fn is_bound(bound: &RollOffBound) -> bool {
     bound.ratio.is_finite() && bound.ratio > 0.0 && (1..=ORDER_MAXIMUM).contains(&bound.order)
 }
 
-/// A gain and leading coefficients that are not zero, and no more zeros than poles.
+/// Checks for nonzero gain and leading coefficients, and no more zeros than poles.
 fn is_causal(Sections { gain, numerator, denominator }: &Sections) -> bool {
     let fits = |section: &Vec<f64>| {
         let leading = section.first().is_some_and(|leading| *leading != 0.0);
@@ -58,13 +57,13 @@ fn is_causal(Sections { gain, numerator, denominator }: &Sections) -> bool {
         && degree(numerator) <= degree(denominator)
 }
 
-/// pi/T.
+/// End of the band, pi/T.
 pub(super) fn pi_over_t(certificate: &Certificate) -> Option<Interval> {
     let sampling = certificate.sampling.as_ref()?;
     Some(Interval::pi() / Interval::decimal(sampling.sample_time_s))
 }
 
-/// Poles of a sampled controller.
+/// Number of poles of a sampled controller.
 pub(super) fn poles_of_law(law: &ControlLaw) -> usize {
     match law {
         ControlLaw::Continuous(_) => 0,
@@ -72,7 +71,7 @@ pub(super) fn poles_of_law(law: &ControlLaw) -> usize {
     }
 }
 
-/// Whether all poles of the prefilter are within the unit circle, or to the left of the imaginary
+/// True if all poles of the prefilter are within the unit circle, or to the left of the imaginary
 /// axis.
 pub(super) fn prefilter_is_stable(certificate: &Certificate, around: &Loop<Interval>) -> bool {
     match &certificate.prefilter {
@@ -81,7 +80,7 @@ pub(super) fn prefilter_is_stable(certificate: &Certificate, around: &Loop<Inter
     }
 }
 
-/// Whether the roots of a polynomial in zeta = z - 1, of degree two at most, have |z| < 1.
+/// True if the roots of a polynomial in zeta = z - 1, of degree two at most, have |z| < 1.
 ///
 /// ```text
 /// p = zeta^2 + b1 zeta + b0:    p(z = 1) = b0 > 0,    p(z = -1) = 4 - 2 b1 + b0 > 0,    p(z = 0) = 1 - b1 + b0 < 1
@@ -103,7 +102,7 @@ fn is_within_circle(section: &[f64]) -> bool {
     }
 }
 
-/// The bounds on the images of a box.
+/// Checks the bounds on the images of a box.
 pub(super) fn check_bounds(
     certificate: &Certificate,
     of_box: usize,

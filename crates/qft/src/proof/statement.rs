@@ -1,4 +1,4 @@
-//! The loop of an audit as a certificate states it, and the variables of each plant.
+//! The loop of an audit as stated in a certificate, and the variables of each plant.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
@@ -17,11 +17,11 @@ use crate::closed_loop::Compensation;
 use crate::family::{Coordinate, Extent, Family, Spacing, UncertainFamily};
 use crate::specification::Limit;
 
-/// Terms of the series that replaces dead time: over a panel it turns by one radian to either side,
-/// so that the remainder is 2e-9.
+/// Number of terms of the series that replaces dead time: over a panel its phase changes by one
+/// radian to either side, so that the remainder is 2e-9.
 const DEAD_TIME_TERMS: usize = 12;
 
-/// The certificate of a loop, without a claim.
+/// The certificate of a loop, without claims.
 pub(super) fn stated(family: &Family, compensation: &Compensation) -> Result<Certificate, NotProven> {
     let Family::Uncertain(family) = family else { return Err(NotProven::Measured) };
     if compensation.rate_feed_forward() != 0.0 {
@@ -76,7 +76,7 @@ fn law(function: &TransferFunction) -> ControlLaw {
     }
 }
 
-/// Polynomials in z - 1 with these roots, which come in conjugate pairs.
+/// Polynomials in z - 1 with these roots, which form conjugate pairs.
 ///
 /// ```text
 /// z - p = (z - 1) + (1 - p),    (z - p)(z - conj p) = (z - 1)^2 + 2 Re(1 - p) (z - 1) + |1 - p|^2
@@ -106,7 +106,7 @@ fn quotient(function: &TransferFunction) -> Quotient {
     }
 }
 
-/// A limit.
+/// Statement of a limit.
 pub(super) fn limit(limit: &Limit) -> LimitOf {
     match limit {
         Limit::Constant(value) => LimitOf::Quotient(Quotient::constant(*value)),
@@ -157,11 +157,11 @@ fn boxes(family: &UncertainFamily) -> Result<(Vec<Vec<ParameterSegment>>, usize)
 
 /// Largest number of boxes into which a family is divided.
 const BOXES_MAXIMUM: usize = 256;
-/// Largest factor by which a parameter on a logarithmic scale changes within one box.
+/// Largest factor by which a logarithmic parameter changes within one box.
 const FACTOR_MAXIMUM: f64 = 1.6;
 
-/// Boxes in which a variable moves these parameters: more than one if it changes them by too large
-/// a factor for a single box.
+/// Boxes in which a variable moves these parameters: more than one if the factor of change is too
+/// large for a single box.
 fn parts(
     whole: &[ParameterSegment],
     moved: &[(usize, [f64; 2], bool)],
@@ -188,11 +188,12 @@ fn parts(
     (0..count as usize).map(|index| part(index as f64)).collect()
 }
 
-/// How far rounding may place a plant outside the box, as a share of the range of a parameter.
+/// Distance by which rounding may place a plant outside the box, as a fraction of the range of a
+/// parameter.
 const BESIDE: f64 = 1e-9;
 
-/// The variables of a plant that belongs to a box; `None` if it does not, as may be the case for a
-/// declared plant where parameters are correlated.
+/// The variables of a plant that belongs to a box; `None` if it does not, as may happen for a
+/// declared plant with correlated parameters.
 fn variables_within(segments: &[ParameterSegment], variables: usize, values: &[f64]) -> Option<Vec<f64>> {
     let mut shares: Vec<Option<f64>> = vec![None; variables];
     let fits = segments.iter().zip(values).all(|(one, value)| {
@@ -232,13 +233,14 @@ impl ParameterSegment {
     }
 }
 
-/// Whether the parameters of a coordinate move along a straight line, as one alone always does.
+/// True if the parameters of a coordinate move along a straight line, which a single one always
+/// does.
 fn moves_straight(coordinate: &Coordinate) -> bool {
     coordinate.parameters.len() == 1 || coordinate.spacing.iter().all(|spacing| *spacing == Spacing::Linear)
 }
 
-/// The plant of a family with these values: the listed plant that has them, otherwise that of a box
-/// that contains them, otherwise the nearest one of the first box.
+/// The plant of a family with these values: the listed plant that has them, otherwise the one of a
+/// box that contains them, otherwise the nearest one of the first box.
 pub(super) fn member_of(plant: &CertifiedPlant, values: &[f64]) -> Option<CertificateMember> {
     let within = plant.boxes.iter().enumerate().find_map(|(of_box, segments)| {
         let variables = variables_within(segments, plant.variables, values)?;

@@ -12,11 +12,11 @@ use super::patch::at_point;
 use super::polynomial::InS;
 use super::walk::{ProofEffort, ProofRegion, WalkOutcome};
 
-/// Corners of a box that are evaluated before anything is shown.
+/// Corners of a box that are evaluated before any proof.
 const CORNERS_MAXIMUM: usize = 64;
-/// How often a tree may be restarted because the supremum turned out to be greater.
+/// Number of times that a tree may be restarted because the supremum turned out to be greater.
 const RAISES_MAXIMUM: usize = 48;
-/// The amount by which a ratio that is reached is lowered, so that rounding does not hide it.
+/// The amount by which a reached ratio is reduced, so that rounding cannot invalidate it.
 const ROUNDED: f64 = 1e-9;
 
 /// A plant and a frequency.
@@ -26,31 +26,31 @@ pub(super) struct PlantAtFrequency {
     pub(super) member: CertificateMember,
 }
 
-/// What was found about a supremum.
+/// Enclosure of a supremum.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct EnclosedSupremum {
-    /// A ratio that is reached, and where.
+    /// Ratio that is reached.
     pub(super) least: f64,
     pub(super) at: PlantAtFrequency,
     /// A ratio that is not exceeded, with its proof.
     pub(super) most: Option<(f64, Vec<Vec<FrequencyPanel>>)>,
-    /// Why there is no such proof.
+    /// Reason why there is no such proof.
     pub(super) open: Option<ProofRegion>,
 }
 
-/// Takes a ratio of eight digits to the next one below.
+/// Factor that rounds a ratio of eight digits down to the next one.
 const BELOW: f64 = 1.0 - 1e-7;
 
-/// What is looked for.
+/// Supremum to be enclosed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SoughtSupremum<'a> {
     /// Largest ratio of the two ends of the enclosure.
     pub(super) width: f64,
-    /// A ratio that decides: the search ends once it is shown or refuted, even if the enclosure
-    /// could be narrower.
+    /// Decisive ratio: the search ends once it is proven or refuted, even if the enclosure could be
+    /// narrower.
     pub(super) decisive: f64,
     pub(super) effort: ProofEffort<'a>,
-    /// Whether only points are evaluated.
+    /// True if only points are evaluated.
     pub(super) only_points: bool,
 }
 
@@ -74,7 +74,7 @@ pub(super) fn enclose(
         let near = found.least * wanted.width;
         let may_decide = found.least <= wanted.decisive;
         let ratio = portable::rounded(if may_decide { near.min(wanted.decisive) } else { near }, 8);
-        // rounded up it would decide nothing
+        // a ratio rounded up would be inconclusive
         let is_beyond = may_decide && ratio > wanted.decisive;
         let ratio = if is_beyond { portable::rounded(wanted.decisive * BELOW, 8) } else { ratio };
         match walk_boxes(certificate, (&claims, ratio), wanted.effort, watch)? {
@@ -89,7 +89,7 @@ pub(super) fn enclose(
             }
         }
     }
-    // what the checker can confirm at that point
+    // the value that the checker can confirm at that point
     let at = Loop::<f64>::at(certificate, &found.at.member).and_then(|at| at.claimed(limited, 1.0));
     let frequency_rad_per_s = found.at.frequency_rad_per_s;
     let pieces = at.iter().flatten().filter(|piece| piece.holds(frequency_rad_per_s));
@@ -99,7 +99,7 @@ pub(super) fn enclose(
     Ok(Some(found))
 }
 
-/// What became of a claim in all boxes.
+/// Results of a claim in all boxes.
 enum Boxes {
     Shown(Vec<Vec<FrequencyPanel>>),
     Wrong { at: PlantAtFrequency, ratio: f64 },
@@ -171,7 +171,7 @@ pub(super) fn corners(certificate: &Certificate, of_box: usize) -> impl Iterator
     })
 }
 
-/// |V|/|U| at a frequency; towards infinity the limit, where dead time does not matter there.
+/// Ratio |V|/|U| at a frequency; its limit towards infinity, if dead time does not matter there.
 fn ratio_at(claimed: &Claimed<f64>, frequency_rad_per_s: f64) -> f64 {
     let size = |value: Option<[f64; 2]>| {
         value.map_or(f64::NAN, |[re, im]| portable::magnitude(Complex64::new(re, im)))
@@ -183,7 +183,7 @@ fn ratio_at(claimed: &Claimed<f64>, frequency_rad_per_s: f64) -> f64 {
             let leading = |of: &[PolynomialProduct<f64>]| -> f64 {
                 of.iter().map(|part| part.of_s.0.get(degree).map_or(0.0, number)).sum()
             };
-            // dead time turns the part that it multiplies without limit
+            // the phase of the part multiplied by dead time changes without limit
             let value = |[own, late, _]: &[Vec<PolynomialProduct<f64>>; 3]| {
                 if leading(late) == 0.0 { leading(own).abs() } else { f64::NAN }
             };

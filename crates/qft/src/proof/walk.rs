@@ -1,5 +1,5 @@
-//! The prover: halves boxes until every leaf is shown, in plain numbers. The checker must confirm
-//! what it finds.
+//! The prover: halves boxes until every leaf is proven, in ordinary floating-point arithmetic. The
+//! checker must confirm the result.
 
 use std::cell::Cell;
 
@@ -11,14 +11,14 @@ use super::direction::{LeafOutcome, leaf, most_varied};
 use super::patch::Patch;
 use super::points::PanelRange;
 
-/// What became of a claim over a band.
+/// Result of a claim over a band.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum WalkOutcome {
-    /// These panels show it.
+    /// Panels that prove the claim.
     Shown(Vec<FrequencyPanel>),
-    /// It is refuted at this point: |V| is greater than |U| by this ratio.
+    /// The claim is refuted at this point: |V| is greater than |U| by this ratio.
     Wrong { at: Shares, ratio: f64 },
-    /// Too many leaves; this box is not shown.
+    /// Too many leaves; this box is not proven.
     Open(ProofRegion),
     /// Too many control points.
     TooLarge,
@@ -36,26 +36,26 @@ pub(crate) struct Shares {
 pub struct ProofRegion {
     /// Index of the box.
     pub of_box: usize,
-    /// From and to, rad/s.
+    /// Ends of the band, rad/s.
     pub band_rad_per_s: [f64; 2],
     /// The range of each variable, within 0 to 1.
     pub variables: Vec<[f64; 2]>,
 }
 
-/// How far a walk goes.
+/// Effort of a walk.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ProofEffort<'a> {
     /// Largest number of leaves of a panel.
     pub(crate) leaves: usize,
-    /// Halvings on the way to a leaf at most.
+    /// Largest number of halvings on the way to a leaf.
     pub(crate) depth: usize,
-    /// Reserve for the rounding of the checker, as a share of |V|^2.
+    /// Reserve for the rounding of the checker, as a fraction of |V|^2.
     pub(crate) room: f64,
-    /// What all walks of one claim may cost together.
+    /// Common budget of all walks of one claim.
     pub(crate) budget: &'a ProofBudget,
 }
 
-/// The cost of one claim, in control points: the time is in proportion to them.
+/// The cost of one claim, in control points: the time is proportional to them.
 #[derive(Debug)]
 pub(crate) struct ProofBudget {
     whole: u64,
@@ -67,7 +67,7 @@ impl ProofBudget {
         ProofBudget { whole: points, left: Cell::new(points) }
     }
 
-    /// Begins another claim.
+    /// Resets the budget for another claim.
     pub(crate) fn renew(&self) {
         self.left.set(self.whole);
     }
@@ -97,7 +97,7 @@ const PROVING: &str = "proving";
 /// Number of boxes after which the watch is consulted.
 const LOOK: usize = 64;
 
-/// Looks for a tree that shows |V| <= |U| over one panel, and returns it if it is found.
+/// Searches for a tree that proves |V| <= |U| over one panel, and returns it if it is found.
 pub(crate) fn walk(
     claimed: &Claimed<f64>,
     variables: usize,
@@ -141,8 +141,8 @@ pub(crate) fn walk(
     Ok(WalkOutcome::Shown(vec![FrequencyPanel { from: range.from, to: range.to, late: range.late, tree }]))
 }
 
-/// The outcome for a patch. If it would be shown with exactly known images, it is halved so that
-/// the images are known better.
+/// The outcome for a patch. If exactly known images would prove it, it is halved so that the images
+/// are known better.
 fn look(patch: &Patch<f64>, room: f64) -> LeafOutcome {
     let found = leaf(&patch.points(), room);
     let (LeafOutcome::Halve(_), Some((points, image))) = (found, patch.with_known_images()) else {
@@ -162,7 +162,7 @@ fn halved(sides: &[[f64; 2]], axis: usize) -> [Vec<[f64; 2]>; 2] {
     [lower, upper]
 }
 
-/// The frequency at this share of a panel.
+/// The frequency at this fraction of a panel.
 fn frequency(range: PanelRange, share: f64) -> f64 {
     match range.to.is_finite() {
         true => range.from + share * (range.to - range.from),

@@ -4,11 +4,11 @@ use phea_dynamics::portable;
 /// The limit of a magnitude over frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Limit {
-    /// The same at every frequency.
+    /// Limit that is equal at every frequency.
     Constant(f64),
     /// The magnitude of a rational function of s.
     Rational(TransferFunction),
-    /// Given at frequencies; between them straight in a double logarithmic diagram.
+    /// Values at given frequencies; interpolated linearly in a double logarithmic diagram.
     Table(LimitTable),
 }
 
@@ -18,14 +18,14 @@ pub struct LimitTable {
     points: Vec<(f64, f64)>,
 }
 
-/// Why a table of limits is rejected.
+/// Reason why a table of limits is rejected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LimitError {
     /// A table without points.
     #[error("a table of limits needs at least one point")]
     Empty,
-    /// Frequencies must be positive and increase, magnitudes be positive; this point (counted from
-    /// 0) violates that.
+    /// A point that violates the rules (counted from 0): frequencies must be positive and increase,
+    /// magnitudes must be positive.
     #[error(
         "point {0} of the table: frequencies must be positive and increase, magnitudes be positive and finite"
     )]
@@ -33,10 +33,11 @@ pub enum LimitError {
 }
 
 impl LimitTable {
-    /// A table of (frequency in rad/s, magnitude) pairs.
+    /// A table of pairs (frequency, rad/s; magnitude).
     ///
     /// # Errors
-    /// No points, a frequency that does not increase, a value that is not positive and finite.
+    /// A table without points, a frequency that does not increase, a value that is not positive and
+    /// finite.
     pub fn new(points: Vec<(f64, f64)>) -> Result<LimitTable, LimitError> {
         if points.is_empty() {
             return Err(LimitError::Empty);
@@ -53,7 +54,7 @@ impl LimitTable {
         Ok(LimitTable { points })
     }
 
-    /// The (frequency in rad/s, magnitude) pairs.
+    /// The pairs (frequency, rad/s; magnitude).
     pub fn points(&self) -> &[(f64, f64)] {
         &self.points
     }
@@ -72,8 +73,7 @@ impl LimitTable {
 }
 
 impl Limit {
-    /// The limit at this frequency; `None` beyond the ends of a table, where nothing is demanded or
-    /// promised.
+    /// The limit at this frequency; `None` beyond the ends of a table, where no limit applies.
     ///
     /// # Example
     /// ```
@@ -93,7 +93,7 @@ impl Limit {
         }
     }
 
-    /// This limit times a factor at every frequency.
+    /// Multiplies the limit by a factor at every frequency.
     ///
     /// # Errors
     /// [`LinearError`] for a factor that is not finite.

@@ -1,12 +1,13 @@
 //! Stability margins and the limits that guarantee them, in both directions.
 //!
-//! A limit on |L/(1+L)| or |1/(1+L)| keeps L out of a circle near -1, and so guarantees margins:
-//! each formula here is the place where that circle meets the negative real axis, the unit circle,
-//! or the point nearest to -1. All are attained by some L, so none can be sharpened. They hold for
-//! a loop that is stable when closed and satisfies the limit at every frequency.
+//! A limit on |L/(1+L)| or |1/(1+L)| excludes L from a circle near -1, and thereby guarantees
+//! margins: each formula here gives the point where that circle meets the negative real axis, the
+//! unit circle, or the point nearest to -1. All are attained by some L, so that none can be
+//! sharpened. They hold for a loop that is stable when closed and satisfies the limit at every
+//! frequency.
 //!
 //! # Example
-//! The thesis' limit of 1.3 on |L/(1+L)| (6.30) stands for a gain margin of 5 dB, almost:
+//! The thesis' limit of 1.3 on |L/(1+L)| (6.30) corresponds to a gain margin of almost 5 dB:
 //! ```
 //! use phea_dynamics::frequency::decibels;
 //! use phea_qft::specification::{
@@ -29,10 +30,10 @@ use phea_dynamics::range::RequiredRange;
 
 use super::{ClosedLoop, Limit, Requirement};
 
-/// Why a margin has no limit, or a limit no margin.
+/// Reason why a margin has no limit, or a limit no margin.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MarginError {
-    /// A number outside the range in which the formula has a meaning.
+    /// A number outside the range in which the formula is valid.
     #[error("{what} is {value}; it must be {expected}")]
     OutOfRange {
         /// Name of the number.
@@ -71,11 +72,11 @@ pub enum MarginNumber {
 /// limit at every frequency. Each is attained by some loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuaranteedMargins {
-    /// Factor above one by which the gain may grow; infinity where no increase is excluded.
+    /// Factor above one by which the gain may grow; infinity if no increase is excluded.
     pub gain_increase: f64,
-    /// Factor below one to which the gain may fall; zero where no reduction is excluded.
+    /// Factor below one to which the gain may fall; zero if no reduction is excluded.
     pub gain_reduction: f64,
-    /// Angle in rad, up to pi, from -1 to where |L| = 1; infinity where |L| can never be one.
+    /// Angle, up to pi, from -1 to the point where |L| = 1, rad; infinity if |L| can never be one.
     pub phase_rad: f64,
     /// Least distance |1 + L|.
     pub modulus: f64,
@@ -139,9 +140,9 @@ pub fn guaranteed_margins_of_sensitivity(limit: f64) -> Result<GuaranteedMargins
     })
 }
 
-/// The margins that a requirement guarantees where it holds at every frequency; `None` for a
-/// requirement that says nothing about them: another closed loop than |L/(1+L)| and |1/(1+L)|, or a
-/// limit that depends on frequency.
+/// The margins that a requirement guarantees if it holds at every frequency; `None` for a
+/// requirement that implies none: a closed loop other than |L/(1+L)| and |1/(1+L)|, or a limit that
+/// depends on frequency.
 ///
 /// # Errors
 /// [`MarginError::OutOfRange`] for a constant that is not positive and finite.
@@ -174,7 +175,7 @@ pub fn guaranteed_margins(requirement: &Requirement) -> Result<Option<Guaranteed
 /// ```
 ///
 /// # Errors
-/// [`MarginError::OutOfRange`].
+/// [`MarginError::OutOfRange`] for a factor outside the range.
 ///
 /// # Example
 /// ```
@@ -191,7 +192,7 @@ pub fn robust_stability_limit_for_gain_increase(factor: f64) -> Result<f64, Marg
 /// ```
 ///
 /// # Errors
-/// [`MarginError::OutOfRange`].
+/// [`MarginError::OutOfRange`] for a factor outside the range.
 ///
 /// # Example
 /// ```
@@ -201,14 +202,14 @@ pub fn robust_stability_limit_for_gain_reduction(factor: f64) -> Result<f64, Mar
     Ok(1.0 / (1.0 - between_zero_and_one(MarginNumber::GainReduction, factor)?))
 }
 
-/// The limit on |L/(1+L)| for this phase margin in rad (above zero, up to pi).
+/// The limit on |L/(1+L)| for this phase margin (above zero, up to pi), rad.
 ///
 /// ```text
 /// W = 1/(2 sin(phase/2))
 /// ```
 ///
 /// # Errors
-/// [`MarginError::OutOfRange`].
+/// [`MarginError::OutOfRange`] for an angle outside the range.
 ///
 /// # Example
 /// ```
@@ -220,14 +221,14 @@ pub fn robust_stability_limit_for_phase_margin(phase_rad: f64) -> Result<f64, Ma
     limit_for_phase_margin(phase_rad)
 }
 
-/// The limit on |L/(1+L)| that keeps |1 + L| at this distance (above zero, below one) or more.
+/// The limit on |L/(1+L)| that holds |1 + L| at this distance (above zero, below one) or more.
 ///
 /// ```text
 /// W = 1/distance - 1
 /// ```
 ///
 /// # Errors
-/// [`MarginError::OutOfRange`].
+/// [`MarginError::OutOfRange`] for a distance outside the range.
 ///
 /// # Example
 /// ```
@@ -245,7 +246,7 @@ pub fn robust_stability_limit_for_modulus_margin(distance: f64) -> Result<f64, M
 /// ```
 ///
 /// # Errors
-/// [`MarginError::OutOfRange`].
+/// [`MarginError::OutOfRange`] for a factor outside the range.
 ///
 /// # Example
 /// ```
@@ -263,7 +264,7 @@ pub fn sensitivity_limit_for_gain_increase(factor: f64) -> Result<f64, MarginErr
 /// ```
 ///
 /// # Errors
-/// [`MarginError::OutOfRange`].
+/// [`MarginError::OutOfRange`] for a factor outside the range.
 ///
 /// # Example
 /// ```
@@ -274,7 +275,7 @@ pub fn sensitivity_limit_for_gain_reduction(factor: f64) -> Result<f64, MarginEr
     Ok(factor / (1.0 - factor))
 }
 
-/// The limit on |1/(1+L)| for this phase margin in rad (above zero, up to pi): as for |L/(1+L)|,
+/// The limit on |1/(1+L)| for this phase margin (above zero, up to pi), rad: as for |L/(1+L)|,
 /// since both are equal where |L| = 1.
 ///
 /// ```text
@@ -282,7 +283,7 @@ pub fn sensitivity_limit_for_gain_reduction(factor: f64) -> Result<f64, MarginEr
 /// ```
 ///
 /// # Errors
-/// [`MarginError::OutOfRange`].
+/// [`MarginError::OutOfRange`] for an angle outside the range.
 ///
 /// # Example
 /// ```
@@ -294,16 +295,16 @@ pub fn sensitivity_limit_for_phase_margin(phase_rad: f64) -> Result<f64, MarginE
     limit_for_phase_margin(phase_rad)
 }
 
-/// The limit on |1/(1+L)| that keeps |1 + L| at this distance (above zero) or more.
+/// The limit on |1/(1+L)| that holds |1 + L| at this distance (above zero) or more.
 ///
 /// ```text
 /// W = 1/distance
 /// ```
 ///
-/// A loop that vanishes at high frequency cannot keep more than one.
+/// A loop that vanishes at high frequency cannot have a distance above one.
 ///
 /// # Errors
-/// [`MarginError::OutOfRange`].
+/// [`MarginError::OutOfRange`] for a distance outside the range.
 ///
 /// # Example
 /// ```
@@ -313,7 +314,7 @@ pub fn sensitivity_limit_for_modulus_margin(distance: f64) -> Result<f64, Margin
     Ok(1.0 / positive(MarginNumber::ModulusMargin, distance)?)
 }
 
-/// The angle at which |L| = 1 meets |1 + L| = 1/W; infinity where it cannot.
+/// The angle at which |L| = 1 meets |1 + L| = 1/W; infinity if it cannot.
 ///
 /// ```text
 /// 2 sin(phase/2) = 1/W
@@ -331,7 +332,7 @@ fn limit_for_phase_margin(phase_rad: f64) -> Result<f64, MarginError> {
     Ok(0.5 / sin(phase_rad / 2.0))
 }
 
-/// The limit on |L/(1+L)| that lets every loop tolerate this much additional delay in s (positive).
+/// The limit on |L/(1+L)| that lets every loop tolerate this much additional delay (positive), s.
 ///
 /// ```text
 /// |L/(1+L)| <= 1/(w tau)          since 1 + L e^(-s tau) = (1 + L)(1 + (e^(-s tau) - 1) L/(1+L))
@@ -341,7 +342,7 @@ fn limit_for_phase_margin(phase_rad: f64) -> Result<f64, MarginError> {
 /// Sufficient, by the small gain theorem: the loop may tolerate more.
 ///
 /// # Errors
-/// [`MarginError::OutOfRange`].
+/// [`MarginError::OutOfRange`] for a delay outside the range.
 ///
 /// # Example
 /// ```

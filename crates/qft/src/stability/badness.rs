@@ -10,7 +10,7 @@ pub(super) enum Badness {
     RealPart,
     Closeness,
     DelaySensitivity,
-    /// The largest |L| of a resonance: where it reaches one there is another crossover, which may
+    /// The largest |L| of a resonance: if it reaches one there is another crossover, which may
     /// tolerate much less delay.
     Peak,
 }
@@ -28,7 +28,7 @@ impl Badness {
         }
     }
 
-    /// For a plant without polynomials, whose poles are not known.
+    /// Value for a plant without polynomials, whose poles are unknown.
     pub(super) fn of_response(self, open_loop: &OpenLoop) -> Option<f64> {
         match self {
             Badness::Closeness => Some(-open_loop.closest_approach().distance),
@@ -37,7 +37,7 @@ impl Badness {
         }
     }
 
-    /// What is remembered about a plant.
+    /// Stored value for a plant.
     pub(super) fn among(self, plant: &[f64; 3]) -> f64 {
         let &[real_part, closeness, delay_sensitivity] = plant;
         match self {

@@ -7,12 +7,12 @@ use super::product::{RootProduct, products};
 use super::{Compensation, Irresolution};
 
 /// The path from the output back to the plant, as polynomials: G H in a continuous loop, G in a
-/// sampled one (where the sensor is sampled together with the plant).
+/// sampled one (whose sensor is sampled together with the plant).
 #[derive(Clone, Debug)]
 pub(crate) struct FeedbackPath {
     numerator: Polynomial,
     denominator: Polynomial,
-    /// The same for a sampled loop.
+    /// Root products of a sampled loop.
     products: Option<[RootProduct; 2]>,
     dead_time_s: f64,
     domain: TimeDomain,
@@ -25,9 +25,9 @@ pub(crate) struct FeedbackPath {
 /// sampled:     c(v) + n(v) z^(-k) = 0,  v = z - 1
 /// ```
 ///
-/// Around z = 1, where slow poles are crowded, v keeps the digits that z would lose. `delay` is T
-/// in s or k in samples; the boundary of stability is parametrised by an angle, w in rad/s or w T
-/// in rad. A sampled loop is judged by its products; its polynomials provide the starting points of
+/// Around z = 1, where slow poles are crowded, v retains the digits that z would lose. `delay` is T
+/// in s or k in samples; the stability boundary is parametrised by an angle, w in rad/s or w T in
+/// rad. A sampled loop is evaluated by its products; its polynomials provide the starting points of
 /// searches for roots.
 #[derive(Clone, Debug)]
 pub(super) struct Characteristic {
@@ -116,7 +116,7 @@ fn polynomials(function: &TransferFunction) -> Result<(Polynomial, Polynomial), 
 }
 
 impl Characteristic {
-    /// s = j w, or v = e^(j w T) - 1 without cancellation.
+    /// Boundary point s = j w, or v = e^(j w T) - 1 without cancellation.
     pub(super) fn boundary_point(&self, angle: f64) -> Complex64 {
         match self.domain {
             TimeDomain::Continuous => Complex64::new(0.0, angle),
@@ -127,7 +127,7 @@ impl Characteristic {
         }
     }
 
-    /// e^(-j angle delay)
+    /// Phase factor e^(-j angle delay).
     pub(super) fn lag(&self, angle: f64) -> Complex64 {
         if self.delay == 0.0 {
             return Complex64::new(1.0, 0.0);
@@ -136,7 +136,7 @@ impl Characteristic {
         Complex64::new(portable::cos(turn), portable::sin(turn))
     }
 
-    /// c and n with its delay, on the boundary of stability.
+    /// Values of c, and of n with its delay, on the stability boundary.
     pub(super) fn at(&self, angle: f64) -> (Complex64, Complex64) {
         let point = self.boundary_point(angle);
         let (denominator, numerator) = match &self.products {
@@ -146,17 +146,17 @@ impl Characteristic {
         (denominator, numerator * self.lag(angle))
     }
 
-    /// rad/s
+    /// Frequency, rad/s.
     pub(super) fn frequency(&self, angle: f64) -> f64 {
         angle / self.time_unit()
     }
 
-    /// 1 s, or the sample time: the unit of `delay`, and the inverse of the unit of the angle.
+    /// Unit of `delay`, and inverse of the unit of the angle: 1 s, or the sample time, s.
     pub(super) fn time_unit(&self) -> f64 {
         time_unit(self.domain)
     }
 
-    /// n_0/c_0, the gain of the loop at infinite frequency; `None` for a loop that is improper.
+    /// Ratio n_0/c_0, the gain of the loop at infinite frequency; `None` for an improper loop.
     pub(super) fn gain_at_infinity(&self) -> Option<f64> {
         match self.numerator.degree().cmp(&self.denominator.degree()) {
             std::cmp::Ordering::Less => Some(0.0),
@@ -174,7 +174,7 @@ impl Characteristic {
         (self.denominator.degree() as f64).max(numerator)
     }
 
-    /// Whether a dead time makes infinitely many poles unstable.
+    /// True if a dead time makes infinitely many poles unstable.
     pub(super) fn has_gain_above_one_at_infinity(&self) -> bool {
         self.domain == TimeDomain::Continuous
             && self.delay > 0.0
@@ -183,7 +183,7 @@ impl Characteristic {
 }
 
 impl Characteristic {
-    /// The equation whose poles have real parts reduced by this, in 1/s.
+    /// The equation whose poles have real parts reduced by this, 1/s.
     ///
     /// ```text
     /// continuous:  s = a + s'                    sampled:  z = r z', v = (r - 1) + r v', r = e^(a T)
@@ -210,7 +210,7 @@ impl Characteristic {
     }
 }
 
-/// p(shift + scale s) by Horner's rule.
+/// Polynomial p(shift + scale s) by Horner's rule.
 fn substituted(polynomial: &Polynomial, shift: f64, scale: f64) -> Polynomial {
     let factor = Polynomial::new(vec![scale, shift]);
     polynomial
@@ -226,7 +226,7 @@ fn time_unit(domain: TimeDomain) -> f64 {
     }
 }
 
-/// Horner's rule in working precision.
+/// Evaluates a polynomial by Horner's rule in working precision.
 pub(super) fn evaluate(polynomial: &Polynomial, point: Complex64) -> Complex64 {
     polynomial.coefficients().iter().fold(Complex64::new(0.0, 0.0), |sum, &c| sum * point + c)
 }

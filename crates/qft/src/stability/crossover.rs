@@ -1,8 +1,8 @@
-//! The dead time that brings a loop to the boundary of stability.
+//! The dead time that brings a loop to the stability boundary.
 //!
-//! Dead time turns L and leaves |L| alone, so poles can cross only at frequencies where |n| = |c|.
-//! These are roots of one real polynomial, in w^2 or in |z - 1|^2: none of them is overlooked
-//! between the points of a grid.
+//! Dead time rotates L and leaves |L| unchanged, so that poles can cross only at frequencies
+//! where |n| = |c|. These are roots of one real polynomial, in w^2 or in |z - 1|^2: none of them is
+//! missed between the points of a grid.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{LinearError, Polynomial, TimeDomain};
@@ -11,12 +11,12 @@ use phea_dynamics::portable;
 use super::Irresolution;
 use super::characteristic::{Characteristic, evaluate};
 
-/// The least further dead time at which a closed-loop pole reaches the boundary of stability.
+/// The least additional dead time at which a closed-loop pole reaches the stability boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CriticalDelay {
-    /// s; infinite if no dead time does.
+    /// Delay, s; infinite if no dead time does.
     pub delay_s: f64,
-    /// The gain crossover, rad/s; infinite where |L| does not fall below one.
+    /// The gain crossover, rad/s; infinite if |L| does not fall below one.
     pub frequency_rad_per_s: f64,
 }
 
@@ -26,7 +26,7 @@ impl CriticalDelay {
 }
 
 impl Characteristic {
-    /// The least of (arg L + pi)/w over all gain crossovers, the angle taken in [0, 2 pi).
+    /// The least of (arg L + pi)/w over all gain crossovers, with the angle in [0, 2 pi).
     pub(super) fn critical_delay(&self) -> Result<CriticalDelay, Irresolution> {
         let continuous = self.domain == TimeDomain::Continuous;
         if continuous && self.gain_at_infinity().is_none_or(|gain| gain.abs() >= 1.0) {
@@ -82,7 +82,7 @@ impl Characteristic {
         Ok(angles.collect())
     }
 
-    /// |p|^2 on the boundary of stability as a polynomial in q = |s|^2 or q = |v|^2.
+    /// Squared magnitude |p|^2 on the stability boundary as a polynomial in q = |s|^2 or q = |v|^2.
     ///
     /// ```text
     /// continuous:  s^2 = -q:          p = a(q) + b(q) s,    |p|^2 = a^2 + b^2 q
@@ -105,8 +105,8 @@ impl Characteristic {
         if continuous { squares } else { squares.sum(&times_q(&a.product(&b)).scaled(-1.0)) }
     }
 
-    /// Newton's method on ln|n| - ln|c| along the boundary; a crossover that it does not improve is
-    /// left as it was.
+    /// Refines a crossover by Newton's method on ln|n| - ln|c| along the boundary; one that it does
+    /// not improve is unchanged.
     fn polished(&self, start: f64) -> f64 {
         let (slope_c, slope_n) = (self.denominator.derivative(), self.numerator.derivative());
         let mut angle = start;

@@ -4,7 +4,7 @@
 //! ```text
 //! f(s) = c(s) + n(s) e^(-s T)          has no poles, so neither integrators nor an unstable plant need a detour
 //! Z = N/2 - (1/pi) (change of arg f(j w), w = 0 .. infinity)       N = degree of c
-//! Z = N - (1/pi) (change of arg f, w T = 0 .. pi)                  sampled: zeros on or outside of the unit circle
+//! Z = N - (1/pi) (change of arg f, w T = 0 .. pi)                  sampled: zeros on or outside the unit circle
 //! ```
 //!
 //! The steps are chosen so that f, expanded at the left end, stays within a disc that does not
@@ -18,26 +18,26 @@ use super::Irresolution;
 use super::characteristic::Characteristic;
 use super::product::RootProduct;
 
-/// Expansions that one loop may take.
+/// Largest number of expansions of one loop.
 const STEPS_MAXIMUM: usize = 50_000;
-/// Radius of the disc around f that a step may fill, as a share of |f|: below 1 the disc does not
-/// contain zero.
+/// Radius of the disc around f that a step may fill, as a fraction of |f|: below 1 the disc does
+/// not contain zero.
 const DISC: f64 = 0.95;
 
-/// The result of a walk along the boundary of stability.
+/// The result of a walk along the stability boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Encirclement {
-    /// Z
+    /// Number Z of unstable poles.
     pub(super) unstable_poles: usize,
-    /// The smallest |1 + L| = |f/c|, and the angle where it is.
+    /// The smallest |1 + L| = |f/c|, and its angle.
     pub(super) closest: (f64, f64),
 }
 
 impl Characteristic {
-    /// Walks along the boundary of stability.
+    /// Walks along the stability boundary.
     ///
     /// # Errors
-    /// [`Irresolution::NearBoundary`] where |f| is not above its rounding,
+    /// [`Irresolution::NearBoundary`] if |f| does not exceed its rounding error,
     /// [`Irresolution::Budget`], [`Irresolution::GainAtInfinity`] for a delayed loop with |L| >= 1
     /// at infinite frequency.
     pub(super) fn encirclement(&self) -> Result<Encirclement, Irresolution> {
@@ -46,10 +46,10 @@ impl Characteristic {
         Ok(Encirclement { unstable_poles, closest: self.closest(&visited) })
     }
 
-    /// Z alone.
+    /// Number Z of unstable poles, without the closest approach.
     ///
     /// # Errors
-    /// Those of [`Characteristic::encirclement`].
+    /// Errors of [`Characteristic::encirclement`].
     pub(super) fn unstable_poles(&self) -> Result<usize, Irresolution> {
         self.walked(&mut |_| {})
     }
@@ -81,15 +81,15 @@ impl Characteristic {
         Err(Irresolution::Budget { frequency_rad_per_s: self.frequency(angle) })
     }
 
-    /// |1 + L|; infinite at a pole of L.
+    /// Distance |1 + L|; infinite at a pole of L.
     pub(super) fn distance(&self, angle: f64) -> f64 {
         let (denominator, numerator) = self.at(angle);
         let distance = portable::magnitude(denominator + numerator) / portable::magnitude(denominator);
         if distance.is_nan() { f64::INFINITY } else { distance }
     }
 
-    /// The smallest distance: among the visited points, each minimum near the smallest is refined
-    /// between its neighbours.
+    /// The smallest distance: each minimum near the smallest visited point is refined between its
+    /// neighbours.
     fn closest(&self, visited: &[(f64, f64)]) -> (f64, f64) {
         const NEAR: f64 = 1.25;
         let nearer = |best: (f64, f64), next: (f64, f64)| if next.0 < best.0 { next } else { best };
@@ -130,7 +130,7 @@ impl Characteristic {
     }
 }
 
-/// f split into the parts without and with the delay, and the end of the walk.
+/// Function f split into the parts without and with the delay, and the end of the walk.
 struct BoundaryWalk<'a> {
     characteristic: &'a Characteristic,
     prompt: Polynomial,
@@ -138,8 +138,8 @@ struct BoundaryWalk<'a> {
     end: f64,
 }
 
-/// f around one point of the boundary, f(s + u) = sum a_k u^k + e^(-u T) sum b_k u^k: the sizes of
-/// a_k and b_k, or more.
+/// Expansion of f around one point of the boundary, f(s + u) = sum a_k u^k + e^(-u T) sum b_k u^k:
+/// bounds on the magnitudes of a_k and b_k.
 struct Expansion {
     value: Complex64,
     rounding: f64,
@@ -185,7 +185,7 @@ impl<'a> BoundaryWalk<'a> {
         }
     }
 
-    /// A sampled loop by its roots.
+    /// Expansion of a sampled loop by its roots.
     fn expanded_products(&self, angle: f64, numerator: &RootProduct, denominator: &RootProduct) -> Expansion {
         let point = self.characteristic.boundary_point(angle);
         let (c, n) = (denominator.at(point), numerator.at(point));
@@ -200,12 +200,12 @@ impl<'a> BoundaryWalk<'a> {
         }
     }
 
-    /// Z, from the change of arg f along the upper half of the boundary.
+    /// Number Z of unstable poles, from the change of arg f along the upper half of the boundary.
     fn unstable_poles(&self, turned: f64, last: Complex64, end: f64) -> Result<usize, Irresolution> {
         let pi = std::f64::consts::PI;
         let count = match self.characteristic.domain {
             TimeDomain::Continuous => {
-                // beyond the end f stays within a half plane around c_0 (j w)^N
+                // beyond the end, f stays within a half plane around c_0 (j w)^N
                 let mut direction = Complex64::new(self.prompt.leading_coefficient(), 0.0);
                 for _ in 0..self.prompt.degree() {
                     direction *= Complex64::new(0.0, 1.0);
@@ -223,7 +223,7 @@ impl<'a> BoundaryWalk<'a> {
 }
 
 impl Expansion {
-    /// The most by which f may differ from its value within a distance along the boundary.
+    /// Upper bound on the change of f within a distance along the boundary.
     fn change(&self, distance: f64, delay: f64) -> f64 {
         let sum = |sizes: &[f64]| sizes.iter().skip(1).rev().fold(0.0, |sum, size| (sum + size) * distance);
         let turned = self.delayed.first().copied().unwrap_or(0.0) * (delay * distance).min(2.0);
@@ -231,7 +231,7 @@ impl Expansion {
     }
 }
 
-/// |Re| + |Im|, which is never below the magnitude.
+/// Bound |Re| + |Im|, which is never below the magnitude.
 fn size(value: &Complex64) -> f64 {
     value.re.abs() + value.im.abs()
 }
@@ -251,8 +251,8 @@ fn taylor(polynomial: &Polynomial, point: Complex64) -> Vec<Complex64> {
     terms
 }
 
-/// Where the highest power takes over: beyond it |f/(c_0 s^N) - 1| stays below 1 in the whole right
-/// half plane.
+/// Frequency above which the highest power dominates: beyond it |f/(c_0 s^N) - 1| stays below 1 in
+/// the whole right half plane.
 fn end_of_axis(prompt: &Polynomial, delayed: &Polynomial) -> Result<f64, Irresolution> {
     let leading = prompt.leading_coefficient().abs();
     let improper = delayed.degree() > prompt.degree();
@@ -308,7 +308,7 @@ mod tests {
         roots
     }
 
-    /// The turns count the prescribed roots, whatever part of the polynomial is called numerator.
+    /// The turns count the prescribed roots, whichever part of the polynomial is the numerator.
     #[test]
     fn turns_count_the_roots_outside() {
         let mut seed = 7_u64;
@@ -336,7 +336,7 @@ mod tests {
             let found = continuous.encirclement().unwrap();
             assert_eq!(found.unstable_poles, outside, "{roots:?}");
 
-            // the same roots mapped to samples by (2 + s)/(2 - s), less one
+            // these roots mapped to samples by (2 + s)/(2 - s), less one
             let shifted: Vec<Complex64> = roots.iter().map(|root| 2.0 * root / (2.0 - root)).collect();
             let sampled = Characteristic {
                 denominator: Polynomial::from_roots(1.0, &shifted).unwrap(),

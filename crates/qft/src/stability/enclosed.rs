@@ -1,13 +1,12 @@
-//! Nyquist's count for a plant without polynomials, by enclosures: between two points nothing is
-//! missed.
+//! Nyquist's count for a plant without polynomials, by enclosures: complete between the points.
 //!
 //! ```text
 //! Z = P - (1/pi) (change of arg(1 + L), w = 0 .. infinity)
 //! ```
 //!
-//! From each frequency to the next 1 + L lies in a disc that does not contain zero, so that its
-//! turn is the angle between its ends. Below the first frequency the same holds for s^m (1 + L),
-//! where m is the number of integrators of the controller; above the last |L| stays below one.
+//! From each frequency to the next 1 + L stays in a disc that does not contain zero, so that its
+//! turn is the angle between its ends. Below the first frequency this holds for s^m (1 + L), where
+//! m is the number of integrators of the controller; above the last |L| stays below one.
 
 use num_complex::Complex64;
 use phea_dynamics::analytic::{Analytic, Disc};
@@ -19,14 +18,14 @@ use super::Irresolution;
 use super::measured::outside_of_stable_region;
 use crate::closed_loop::Compensation;
 
-/// Steps along the axis.
+/// Largest number of steps along the axis.
 const STEPS_MAXIMUM: usize = 100_000;
-/// If a step of this share of its frequency is still not enclosed, the loop counts as being on the
-/// boundary.
+/// Step, as a fraction of its frequency, at which a loop that is still not enclosed counts as being
+/// on the boundary.
 const SHORTEST: f64 = 1e-10;
-/// |L| that is never reached beyond the last frequency.
+/// Gain |L| that is never reached beyond the last frequency.
 const SMALL_GAIN: f64 = 0.5;
-/// How far above the range of the plant the loop is followed.
+/// Factor above the range of the plant up to which the loop is followed.
 const FAR_ABOVE: f64 = 1e4;
 
 /// A plant without polynomials within a continuous loop.
@@ -38,7 +37,7 @@ pub(super) struct EnclosedLoop<'a> {
 }
 
 impl EnclosedLoop<'_> {
-    /// Poles of the closed loop in the right half plane.
+    /// Number of closed-loop poles in the right half plane.
     pub(super) fn unstable_poles(&self) -> Result<usize, Irresolution> {
         let feedback = self.compensation.feedback();
         let of_plant = self.plant.unstable_poles().ok_or(Irresolution::OpenLoopPoles)?;
@@ -73,8 +72,8 @@ impl EnclosedLoop<'_> {
         Err(Irresolution::Budget { frequency_rad_per_s: from })
     }
 
-    /// The first frequency, and the turn of 1 + L up to there, passing m integrators on the right:
-    /// that of s^m (1 + L), less m pi/2.
+    /// The first frequency, and the turn of 1 + L up to it, passing m integrators on the right: the
+    /// turn of s^m (1 + L), less m pi/2.
     fn below(&self, integrators: i32) -> Result<(f64, f64), Irresolution> {
         let [mut first, _] = self.plant.range_rad_per_s();
         for _ in 0..40 {
@@ -92,7 +91,7 @@ impl EnclosedLoop<'_> {
         Err(Irresolution::LowEnd { frequency_rad_per_s: first, slope: None })
     }
 
-    /// L at one frequency.
+    /// Open loop L at one frequency.
     fn point(&self, frequency: f64, integrators: i32) -> Complex64 {
         let s = Complex64::new(0.0, frequency);
         let [plant, _] = self.plant.response(frequency);
@@ -112,16 +111,16 @@ impl EnclosedLoop<'_> {
         self.plant.enclosure(frequencies) * self.around(Disc::of_frequencies(frequencies))
     }
 
-    /// s^m G H e^(-s T_d)
+    /// Function s^m G H e^(-s T_d).
     fn around<A: Analytic>(&self, s: A) -> A {
         let delayed = (-s.scaled(self.delay_s)).exponential();
         factored(self.compensation.feedback(), s) * factored(self.sensor, s) * delayed
     }
 
-    /// Whether |L| stays below [`SMALL_GAIN`] from this frequency on.
+    /// True if |L| stays below [`SMALL_GAIN`] from this frequency on.
     ///
     /// ```text
-    /// |s - z| <= w (1 + |z|/w),   |s - p| >= w (1 - |p|/w)          both the nearer to w the higher it is
+    /// |s - z| <= w (1 + |z|/w),   |s - p| >= w (1 - |p|/w)          both tend to w as w grows
     /// ```
     fn stays_small(&self, frequency: f64) -> bool {
         let Some(plant) = self.plant.roll_off(frequency) else { return false };

@@ -1,4 +1,4 @@
-//! Stability of a family: every member, then the worst of what lies between them.
+//! Stability of a family: every member, then the worst plants between them.
 
 mod delayed;
 mod judged;
@@ -19,29 +19,30 @@ use crate::kept_plants::KeptPlants;
 use crate::verdict::{Evidence, PlantPoint, Verdict};
 use judged::{JudgedFamily, StabilitySearch};
 
-/// Pieces into which the plants are divided.
+/// Number of pieces into which the plants are divided for parallel work.
 const PIECES: usize = 8;
-/// Starts of the search for each worst case.
+/// Number of starts of the search for each worst case.
 const STARTS: usize = 4;
-/// Relative change of 1 + L by folding below which plants between those examined are not followed
-/// through it; of as many plants.
+/// Relative change of 1 + L by folding below which folding between the examined plants is ignored;
+/// number of plants for which it is computed.
 const FOLDED_LITTLE: f64 = 0.25;
 const FOLDING_PLANTS: usize = 40;
-/// Value of |1 + L| below which it is not distinguished from zero.
+/// Value of |1 + L| below which it counts as zero.
 const ZERO: f64 = 1e-6;
 
-/// What was found about a family.
+/// Stability results of a family.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FamilyStability {
     /// The verdict, its basis, and the plant nearest to instability.
     pub finding: StabilityFinding,
-    /// The least further dead time that makes a plant unstable; `None` unless the family is stable.
+    /// The least additional dead time that makes a plant unstable; `None` unless the family is
+    /// stable.
     pub delay_margin: Option<DelayMargin>,
 }
 
-/// Stability of a family: every member, then what lies between the members.
+/// Stability of a family: every member, then the plants between the members.
 ///
-/// Over a box, searches start from the worst members for the largest real part (where there are
+/// Over a box, searches start from the worst members for the largest real part (if there are
 /// poles), for the smallest
 /// |1 + L|, and for the least critical delay.
 ///
@@ -49,7 +50,7 @@ pub struct FamilyStability {
 /// [`Stopped`] by the watch.
 ///
 /// # Example
-/// s^2 = 2.5 with an uncertain gain and zero, k (s + a)/(s^2 - 2.5), needs C k a > 2.5:
+/// Plant k (s + a)/(s^2 - 2.5) with an uncertain gain and zero, which needs C k a > 2.5:
 /// ```
 /// use phea_dynamics::controller::{Compensator, Controller, Element};
 /// use phea_dynamics::linear::TransferFunction;
@@ -105,17 +106,17 @@ pub(crate) struct StabilityAudit<'a> {
     around: JudgedFamily<'a>,
     /// The members, the corners of the box, and plants between them whose modes fold.
     plants: Vec<PlantPoint>,
-    /// The last of them, once the others were examined.
+    /// Folding plants, the last of them, once the others are examined.
     folded: Folded,
-    /// Bound of what folding changes, where plants between need not be followed through it.
+    /// Bound on the effect of folding, if plants between need not be examined for it.
     folding: Option<f64>,
-    /// Real part, closeness and delay sensitivity of each plant, as far as it was examined.
+    /// Real part, closeness and delay sensitivity of each plant, as far as examined.
     badness: Vec<[f64; 3]>,
     /// Plants of a sampled loop whose critical delay is still an estimate.
     estimated: Vec<Vec<f64>>,
-    /// Whether the delay margin of a sampled loop is exact already, and not an estimate.
+    /// True if the delay margin of a sampled loop is already exact, not an estimate.
     resampled: bool,
-    /// The plants that were judged, within a sampled loop.
+    /// The evaluated plants, within a sampled loop.
     kept: &'a KeptPlants,
     record: StabilityRecord,
 }
@@ -124,7 +125,7 @@ pub(crate) struct StabilityAudit<'a> {
 const STAGE: &str = "stability";
 
 impl<'a> StabilityAudit<'a> {
-    /// A new audit; plants that were already sampled are not sampled again.
+    /// A new audit; plants already sampled are not sampled again.
     pub(crate) fn new(
         family: &'a Family,
         compensation: &'a Compensation,
@@ -164,7 +165,7 @@ impl<'a> StabilityAudit<'a> {
         Ok(())
     }
 
-    /// Examines members and corners that were not examined yet.
+    /// Examines members and corners not yet examined.
     pub(crate) fn look_at_plants(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         let new = self.plants.get(self.badness.len()..).unwrap_or_default();
         let chunks: Vec<&[PlantPoint]> = new.chunks(new.len().div_ceil(PIECES).max(1)).collect();
@@ -184,8 +185,8 @@ impl<'a> StabilityAudit<'a> {
         Ok(())
     }
 
-    /// Over a box, searches from the worst plants, and finds whether a pole passes through infinity
-    /// inside it.
+    /// Searches from the worst plants of a box, and determines whether a pole passes through
+    /// infinity inside it.
     fn look_between(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         let Family::Uncertain(family) = self.around.family else { return Ok(()) };
         // an unstable plant decides the verdict, and without polynomials a search is expensive
@@ -214,7 +215,7 @@ impl<'a> StabilityAudit<'a> {
         self.around.judged(self.kept, plant)
     }
 
-    /// Searches from these plants, and records where each search ends.
+    /// Searches from these plants, and records the end of each search.
     fn search(&mut self, tasks: Vec<StabilitySearch<'_>>, watch: Watch<'_>) -> Result<(), Stopped> {
         let around = &self.around;
         let search = |kept: &KeptPlants, task: StabilitySearch<'_>, watch: Watch<'_>| {
@@ -233,13 +234,13 @@ impl<'a> StabilityAudit<'a> {
     }
 
     /// Records a plant; an estimate of its delay no longer counts once the worst plants were
-    /// sampled anew.
+    /// resampled.
     fn take(&mut self, plant: PlantPoint, mut found: MemberStability) {
         found.critical_delay = found.critical_delay.filter(|_| !self.resampled);
         self.record.take(plant, &found);
     }
 
-    /// The worst plants that lie apart from each other, as shares of the box.
+    /// The worst plants that are distinct from each other, as fractions of the box.
     fn starts(&self, family: &UncertainFamily, badness: Badness) -> Vec<Vec<f64>> {
         let mut order: Vec<(f64, &PlantPoint)> =
             self.badness.iter().map(|plant| badness.among(plant)).zip(&self.plants).collect();
@@ -259,15 +260,15 @@ impl<'a> StabilityAudit<'a> {
         chosen
     }
 
-    /// Whether two plants lie so far apart, along one coordinate at least, that searches from both
-    /// may find different things.
+    /// True if two plants are so far apart, along at least one coordinate, that searches from them
+    /// may find different results.
     fn apart(&self, one: &[f64], other: &[f64]) -> bool {
         let distances = &self.folded.apart;
         one.iter().zip(other).zip(distances).any(|((a, b), distance)| (a - b).abs() > *distance)
     }
 
-    /// The plants between members and corners that are needed because of modes beyond half the
-    /// sampling rate, around the worst plants so far.
+    /// Plants between members and corners, needed because of modes beyond half the sampling rate,
+    /// around the worst plants so far.
     fn fold(&mut self) -> Folded {
         let Family::Uncertain(family) = self.around.family else { return Folded::none(0) };
         let dimension = family.coordinates().len();
@@ -293,9 +294,9 @@ impl<'a> StabilityAudit<'a> {
         folded
     }
 
-    /// Bound of the relative change of 1 + L by modes beyond half the sampling rate, wherever they
-    /// fold to: of the nominal plant, of corners and of members spread over the family; infinite
-    /// where it is not known of one.
+    /// Bound on the relative change of 1 + L by modes beyond half the sampling rate, at any folded
+    /// frequency: for the nominal plant, corners, and members spread over the family; infinite if
+    /// it is unknown for one.
     fn most_folding(&self) -> f64 {
         let step = self.plants.len().div_ceil(FOLDING_PLANTS).max(1);
         let JudgedFamily { compensation, .. } = self.around;
@@ -304,8 +305,8 @@ impl<'a> StabilityAudit<'a> {
         each.fold(0.0, f64::max)
     }
 
-    /// The plants that are of interest to other audits: those whose modes fold, and those nearest
-    /// to instability.
+    /// The plants relevant to other audits: those whose modes fold, and those nearest to
+    /// instability.
     pub(crate) fn plants_between(&self) -> Vec<Vec<f64>> {
         self.folded.plants.iter().cloned().chain(self.record.worst()).collect()
     }
@@ -333,7 +334,7 @@ impl<'a> StabilityAudit<'a> {
         Ok(())
     }
 
-    /// Judges plants on either side of a pole at infinity.
+    /// Evaluates plants on either side of a pole at infinity.
     fn through_infinity(&mut self) {
         let Family::Uncertain(family) = self.around.family else { return };
         match infinity::search(family, self.around.compensation) {
@@ -356,7 +357,7 @@ impl<'a> StabilityAudit<'a> {
         }
     }
 
-    /// What was found so far.
+    /// Results so far.
     pub(crate) fn result(&self) -> FamilyStability {
         let record = &self.record;
         let (verdict, plant, reason) = self.judgement();
@@ -418,7 +419,7 @@ impl<'a> StabilityAudit<'a> {
         self.plants.first().cloned().unwrap_or(PlantPoint::Measured(0))
     }
 
-    /// Whether what lies between the members belongs to the family.
+    /// True if plants between the members belong to the family.
     pub(crate) fn searched(&self) -> bool {
         match self.around.family {
             Family::Uncertain(family) => family.extent() == Extent::Box,

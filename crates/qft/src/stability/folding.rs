@@ -1,13 +1,13 @@
-//! Plants between those of a sampled family, needed where modes beyond half the sampling rate move.
+//! Plants between those of a sampled family, needed if modes beyond half the sampling rate move.
 //!
 //! ```text
 //! z = e^(pT):   while Im p moves by 2 pi/T, the sampled mode passes through the whole band, up and down
 //! ```
 //!
-//! Between two plants that a search over the box compares, such a mode may pass every frequency. So
-//! the coordinates that move it are sampled in steps over which its phase turns no further than its
-//! damping spreads it. Where this takes more plants than can be examined, nothing is claimed about
-//! the plants in between.
+//! Between two plants that a search over the box compares, such a mode may pass every frequency.
+//! Therefore the coordinates that move it are sampled in steps over which its phase changes by no
+//! more than the width due to its damping. If this requires more plants than can be examined, no
+//! claim is made about the plants in between.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::Polynomial;
@@ -15,50 +15,50 @@ use phea_dynamics::portable;
 
 use crate::family::UncertainFamily;
 
-/// A mode that has decayed to less than this after a sample leaves nothing to fold.
+/// Factor of decay per sample below which a mode is too weak to fold.
 const ALIVE: f64 = 0.01;
-/// Angles by which a mode may turn from one plant to the next, rad: the first for a mode without
-/// damping, the second the largest.
+/// Angles by which a mode may turn from one plant to the next, rad: first for a mode without
+/// damping, then the largest.
 const TURNS: [f64; 2] = [0.04, 0.7];
-/// Points of a line on which the roots are followed.
+/// Number of points of a line on which the roots are followed.
 const POINTS: usize = 48;
-/// Plants that may be added.
+/// Largest number of plants that may be added.
 pub(super) const PLANTS_MAXIMUM: usize = 4000;
 
-/// Half a pass of a mode through the band, as a share of a coordinate: two plants that lie farther
-/// apart belong to different passes.
+/// Half a pass of a mode through the band, as a fraction of a coordinate: two plants farther apart
+/// belong to different passes.
 const PASS: f64 = std::f64::consts::FRAC_PI_2;
-/// Shares of an unmoved coordinate beyond which two plants count as apart.
+/// Difference of fractions of an unmoved coordinate above which two plants count as distinct.
 const APART: f64 = 0.3;
 
-/// Additional plants to be examined, and whether there are enough for the modes.
+/// Additional plants to be examined, and true if there are enough for the modes.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Folded {
     pub(super) plants: Vec<Vec<f64>>,
     pub(super) complete: bool,
-    /// For each coordinate: the least distance between two shares at which searches from both may
-    /// find different results.
+    /// Least distance of two fractions of each coordinate at which searches from both may find
+    /// different results.
     pub(super) apart: Vec<f64>,
 }
 
-/// How a mode beyond half of the sampling rate moves along one coordinate.
+/// Movement of a mode beyond half of the sampling rate along one coordinate.
 #[derive(Clone, Copy, Debug, Default)]
 struct Movement {
-    /// Even steps that are short enough.
+    /// Number of even steps that are short enough.
     steps: usize,
-    /// rad
+    /// Total change of phase, rad.
     turn: f64,
 }
 
 impl Folded {
-    /// For a family without modes that fold.
+    /// Result for a family without modes that fold.
     pub(super) fn none(dimension: usize) -> Folded {
         Folded { plants: Vec::new(), complete: true, apart: vec![APART; dimension] }
     }
 }
 
 /// Plants of a family on the grid of those coordinates that move a mode beyond pi/T, for each of
-/// these shares of the others.
+/// these fractions of the others.
 pub(super) fn plants(family: &UncertainFamily, sample_time_s: f64, bases: &[Vec<f64>]) -> Folded {
     let dimension = family.coordinates().len();
     let movement = |coordinate: usize| {
@@ -94,7 +94,7 @@ pub(super) fn plants(family: &UncertainFamily, sample_time_s: f64, bases: &[Vec<
     Folded { plants, complete: grid <= PLANTS_MAXIMUM, apart: apart.collect() }
 }
 
-/// Each of these at this number of shares of one coordinate.
+/// Copies of each of these plants at this number of fractions of one coordinate.
 fn along(plants: &[Vec<f64>], coordinate: usize, count: usize) -> Vec<Vec<f64>> {
     let last = count.saturating_sub(1).max(1) as f64;
     let mut all = Vec::with_capacity(plants.len() * count);
@@ -110,7 +110,7 @@ fn along(plants: &[Vec<f64>], coordinate: usize, count: usize) -> Vec<Vec<f64>> 
     all
 }
 
-/// Along one coordinate, for the mode that needs the most steps.
+/// Movement along one coordinate, for the mode that needs the most steps.
 fn movement(family: &UncertainFamily, sample_time_s: f64, base: &[f64], coordinate: usize) -> Movement {
     let modes = |point: usize| {
         let mut shares = base.to_vec();
@@ -140,12 +140,13 @@ fn movement(family: &UncertainFamily, sample_time_s: f64, base: &[f64], coordina
         largest = largest.max(steps);
         before = here;
     }
-    // the steps are even: where the mode turns fastest, they must be short enough too
+    // the steps are even: they must also be short enough where the phase of the mode changes
+    // fastest
     let even = (largest * POINTS as f64).max(total).ceil();
     Movement { steps: if total > 1.0 { even.min(1e9) as usize } else { 0 }, turn }
 }
 
-/// The upper members of the pairs of poles, times T.
+/// The upper poles of the pairs, multiplied by T.
 fn modes(family: &UncertainFamily, sample_time_s: f64, shares: &[f64]) -> Vec<Complex64> {
     let Some(plant) = family.plant().coefficients(&family.values(shares)) else { return Vec::new() };
     let roots = Polynomial::new(plant.command.denominator).roots().unwrap_or_default();

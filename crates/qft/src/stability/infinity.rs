@@ -1,19 +1,19 @@
 //! Poles that pass through infinity between one plant of a box and the next.
 //!
-//! Between two plants a pole becomes unstable across the boundary of stability, where 1 + L
-//! vanishes at some frequency, or through infinity, where the leading coefficient of the
-//! characteristic equation vanishes without a trace at any frequency:
+//! Between two plants a pole becomes unstable across the stability boundary, where 1 + L vanishes
+//! at some frequency, or through infinity, where the leading coefficient of the characteristic
+//! equation vanishes without any effect at finite frequencies:
 //!
 //! ```text
 //! c_0 s^N + ... + (n_0 s^M + ...) e^(-s T) = 0
-//! no dead time:    c_0 + n_0 (c_0 where M < N, n_0 where M > N) keeps its sign
-//! dead time:       c_0 - n_0 and c_0 + n_0 keep theirs, |L(inf)| = |n_0/c_0| < 1
+//! no dead time:    c_0 + n_0 (c_0 if M < N, n_0 if M > N) keeps its sign
+//! dead time:       c_0 - n_0 and c_0 + n_0 keep their signs, |L(inf)| = |n_0/c_0| < 1
 //! sampled:         c_0 of the plant with its sensor, whose poles p become e^(pT); without dead time also c_0 + n_0 G(inf)
 //! ```
 //!
 //! The recorded coefficients are enclosed over the box, which is halved until each part has one
-//! sign, or a plant with the other sign is found. Where enclosures are too wide to decide, the
-//! least of them is searched for, as the worst plants of the other audits are.
+//! sign, or a plant with the other sign is found. If enclosures are too wide to decide, the least
+//! coefficient is searched for, like the worst plants in the other audits.
 
 use std::collections::VecDeque;
 
@@ -28,29 +28,30 @@ use crate::coordinate_climb::climb;
 use crate::family::{UncertainFamily, corners};
 use crate::verdict::PlantPoint;
 
-/// Parts of the box that are enclosed; fewer where none of the first ones is decided.
+/// Largest number of parts of the box that are enclosed; fewer if none of the first ones is
+/// decided.
 const PARTS_MAXIMUM: usize = 4000;
 const PARTS_WITHOUT_ANY: usize = 64;
-/// Starts of the search where the enclosures do not decide.
+/// Number of starts of the search if the enclosures do not decide.
 const STARTS: usize = 4;
-/// Share of its nominal value that counts as clearly not zero, after a search.
+/// Fraction of its nominal value that counts as clearly not zero after a search.
 const CLEAR_SHARE: f64 = 1e-3;
-/// Relative change of a coefficient by a parameter that counts.
+/// Relative change of a coefficient above which a parameter counts as moving it.
 const CHANGE: f64 = 1e-3;
-/// Additional plants between one sign and the other that are judged.
+/// Number of additional plants that are evaluated between one sign and the other.
 const BETWEEN: usize = 12;
 
-/// Whether a pole passes through infinity inside the box.
+/// Poles that pass through infinity inside the box.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Infinity {
-    /// No: the coefficients that must keep their sign do.
+    /// All coefficients retain their sign, as required: no pole passes through infinity.
     Kept,
-    /// Yes: these plants, given by their shares of the box, have the opposite sign to the first
-    /// member, or lie next to the change of sign.
+    /// A pole does: these plants, given by their fractions of the box, have the opposite sign to
+    /// the first member, or are next to the change of sign.
     Changed(Vec<Vec<f64>>),
-    /// No, as far as a search from members and corners finds.
+    /// Searches from members and corners find no such pole.
     Searched(SearchedInfinity),
-    /// Neither was shown: the search comes too near to zero.
+    /// Inconclusive: the search comes too close to zero.
     Open(SearchedInfinity),
 }
 
@@ -61,14 +62,14 @@ struct LoopAtInfinity {
     excess: i64,
     delay_s: f64,
     sampled: bool,
-    /// G(inf) of a sampled loop.
+    /// Feedthrough G(inf) of a sampled loop.
     feedthrough: f64,
 }
 
-/// Looks for a change of sign over the whole box.
+/// Searches for a change of sign over the whole box.
 pub(super) fn search(family: &UncertainFamily, compensation: &Compensation) -> Infinity {
     if !family.plant().is_rational() {
-        // its gain falls towards infinite frequency, which the count of every member requires
+        // the gain falls towards infinite frequency, as the count for every member requires
         return Infinity::Kept;
     }
     let around = LoopAtInfinity::new(compensation);
@@ -79,7 +80,7 @@ pub(super) fn search(family: &UncertainFamily, compensation: &Compensation) -> I
     let first: Vec<Option<bool>> = signs(&nominal, &nominal).into_iter().map(sign).collect();
     let mut open = VecDeque::from([BoxPart { low: vec![0.0; dimension], high: vec![1.0; dimension] }]);
     let (mut enclosed, mut decided) = (0, 0);
-    // the widest parts first, in which a plant with the other sign is found soonest
+    // the widest parts first, in which a plant with the other sign is found earliest
     while let Some(part) = open.pop_front() {
         enclosed += 1;
         if enclosed > PARTS_MAXIMUM || decided == 0 && enclosed > PARTS_WITHOUT_ANY {
@@ -126,7 +127,7 @@ fn sign(enclosure: Interval) -> Option<bool> {
 
 type Signs<'a> = &'a dyn Fn(&[f64], &[f64]) -> Vec<Interval>;
 
-/// Plants from the one with the other sign towards the change, on the line to the first member.
+/// Plants from the one with the opposite sign towards the change, on the line to the first member.
 fn between(from: &[f64], to: &[f64], is_first: &dyn Fn(&[f64]) -> bool) -> Vec<Vec<f64>> {
     let at = |share: f64| -> Vec<f64> {
         from.iter().zip(to).map(|(from, to)| from + share * (to - from)).collect()
@@ -146,7 +147,7 @@ fn between(from: &[f64], to: &[f64], is_first: &dyn Fn(&[f64]) -> bool) -> Vec<V
     plants
 }
 
-/// The search for the least of what must keep its sign, relative to the nominal plant.
+/// The search for the least coefficient that must keep its sign, relative to the nominal plant.
 struct Searched<'a> {
     family: &'a UncertainFamily,
     around: &'a LoopAtInfinity,
@@ -187,7 +188,7 @@ impl Searched<'_> {
         if least_share > CLEAR_SHARE { Infinity::Searched(searched) } else { Infinity::Open(searched) }
     }
 
-    /// Everything that must keep its sign, of one plant.
+    /// All coefficients of one plant that must keep their sign.
     fn numbers(&self, shares: &[f64]) -> Vec<f64> {
         let plant = self.family.plant().coefficients(&self.family.values(shares));
         plant.map_or(vec![], |plant| {
@@ -216,7 +217,7 @@ impl Searched<'_> {
     }
 }
 
-/// A part of the box, by the shares of two opposite corners.
+/// A part of the box, by the fractions of two opposite corners.
 struct BoxPart {
     low: Vec<f64>,
     high: Vec<f64>,
@@ -227,8 +228,8 @@ impl BoxPart {
         self.low.iter().zip(&self.high).map(|(low, high)| 0.5 * (low + high)).collect()
     }
 
-    /// Both halves along the coordinate whose halving narrows the enclosures most; `None` where no
-    /// coordinate has any width left.
+    /// Both halves along the coordinate whose halving narrows the enclosures most; `None` if no
+    /// coordinate has any remaining width.
     fn halved(&self, middle: &[f64], signs: Signs<'_>) -> Option<[BoxPart; 2]> {
         let mut chosen: Option<(f64, f64, usize)> = None;
         for (coordinate, ((&from, &to), &half)) in self.low.iter().zip(&self.high).zip(middle).enumerate() {
@@ -240,7 +241,7 @@ impl BoxPart {
             (*low.get_mut(coordinate)?, *high.get_mut(coordinate)?) = (half, half);
             let sizes = signs(&low, &high).into_iter().map(|one| one.high() - one.low());
             let left = sizes.fold(0.0, f64::max);
-            // among equals the widest
+            // among equal ones the widest
             if chosen.is_none_or(|(least, own, _)| left < least || (left == least && width > own)) {
                 chosen = Some((left, width, coordinate));
             }
@@ -276,7 +277,8 @@ impl LoopAtInfinity {
         }
     }
 
-    /// Enclosures of everything that must keep its sign while the shares run from `low` to `high`.
+    /// Enclosures of all coefficients that must keep their sign while the fractions run from `low`
+    /// to `high`.
     fn leading(&self, family: &UncertainFamily, low: &[f64], high: &[f64]) -> Vec<Interval> {
         let (from, to) = (family.values(low), family.values(high));
         let parameters: Vec<Interval> =
@@ -289,10 +291,10 @@ impl LoopAtInfinity {
         self.keeping(PlantCoefficients { command, dead_time_s, disturbance: None, rate: None }, delayed)
     }
 
-    /// The same from the coefficients of a plant.
+    /// Coefficients of a plant that must keep their sign.
     fn keeping<S: Scalar + PartialEq>(&self, plant: PlantCoefficients<S>, plant_delays: bool) -> Vec<S> {
         let zero = S::from(0.0);
-        // a coefficient that is zero for every plant does not count
+        // a coefficient that is zero for every plant is ignored
         let kept = |coefficients: Vec<S>| -> (S, i64) {
             let rest: Vec<S> = coefficients.into_iter().skip_while(|one| *one == zero).collect();
             (rest.first().copied().unwrap_or(zero), rest.len() as i64)

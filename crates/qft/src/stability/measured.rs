@@ -1,12 +1,12 @@
-//! Nyquist's count on the points of a response, and other results from the same points.
+//! Nyquist count on the points of a response, and other results from these points.
 //!
 //! ```text
 //! Z = P - (1/pi) (change of arg(1 + L), w = 0 .. infinity)        P: open-loop poles in the right half plane, stated with the measurement
 //! ```
 //!
-//! Nothing is assumed that the points do not show: turns between two of them, the loop below the
-//! first, and the loop above the last. Where a disc is known around each point, the count is that
-//! of every response within the discs.
+//! Nothing is assumed beyond the points: neither turns between two of them, nor the loop below the
+//! first or above the last. If a disc is given around each point, the count holds for every
+//! response within the discs.
 
 mod low_end;
 
@@ -22,44 +22,44 @@ use low_end::{LowEnd, opening};
 
 /// Largest turn between two points, rad.
 const TURN_MAXIMUM: f64 = std::f64::consts::FRAC_PI_3;
-/// tan([`TURN_MAXIMUM`])
+/// Tangent of [`TURN_MAXIMUM`].
 const SQRT_3: f64 = 1.732_050_807_568_877_2;
-/// Least distance of points of a resolved response, as a share of their frequency.
+/// Least distance of points of a resolved response, as a fraction of their frequency.
 const CLOSEST: f64 = 1e-9;
-/// |L| that is well below one.
+/// Gain |L| that counts as well below one.
 const SMALL_GAIN: f64 = 0.5;
-/// |L| that is well above one.
+/// Gain |L| that counts as well above one.
 const LARGE_GAIN: f64 = 2.0;
 /// Relative accuracy of the frequency of the least |1 + L|.
 const POLISHED: f64 = 1e-7;
 
-/// L, or P H, at one frequency.
+/// Open loop L, or P H, at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LoopPoint {
-    /// rad/s
+    /// Frequency, rad/s.
     frequency: f64,
     value: Complex64,
-    /// Radius of the disc around it that holds the true response; zero where it is exact.
+    /// Radius of the disc around it that contains the true response; zero if it is exact.
     radius: f64,
 }
 
-/// L at these frequencies, up to half the sampling rate.
+/// Open loop L at these frequencies, up to half the sampling rate.
 pub(super) struct OpenLoop<'a> {
     member: &'a Member,
     compensation: &'a Compensation,
     around: MeasuredLoop,
     points: Vec<LoopPoint>,
-    /// Whether the response is known between the points too.
+    /// True if the response is also known between the points.
     is_known_between: bool,
 }
 
-/// Which loop L is of.
+/// Choice of the loop L.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum MeasuredLoop {
-    /// G P H, that of the controller.
+    /// Loop G P H of the controller.
     Output,
-    /// -K P_v, the loop of a rate that is fed forward and moved by the command: its poles are those
-    /// of the plant that the controller sees.
+    /// Loop -K P_v of a rate that is fed forward and moved by the command: its poles are those of
+    /// the plant that the controller sees.
     Rate,
 }
 
@@ -75,8 +75,8 @@ pub(super) fn stability(member: &Member, compensation: &Compensation) -> MemberS
     }
 }
 
-/// P H of a measured plant at its points up to half the sampling rate: it does not change with the
-/// controller. Empty for other plants.
+/// Response P H of a measured plant at its points up to half the sampling rate: it is independent
+/// of the controller. Empty for other plants.
 pub(crate) fn points_with_sensor(member: &Member, compensation: &Compensation) -> Vec<LoopPoint> {
     let Member::Measured { plant, .. } = member else { return vec![] };
     let highest = compensation.highest_frequency_rad_per_s();
@@ -84,14 +84,14 @@ pub(crate) fn points_with_sensor(member: &Member, compensation: &Compensation) -
     frequencies.filter_map(|&frequency| point_with_sensor(member, frequency)).collect()
 }
 
-/// P H; `None` where it is not known.
+/// Response P H; `None` if it is unknown.
 fn point_with_sensor(member: &Member, frequency: f64) -> Option<LoopPoint> {
     let response = member.response(frequency)?;
     let radius = member.radius(frequency, &response) * portable::magnitude(response.sensor);
     Some(LoopPoint { frequency, value: response.plant * response.sensor, radius })
 }
 
-/// Whether a measured plant is stable within its loop, given its [`points_with_sensor`]: the status
+/// True if a measured plant is stable within its loop, given its [`points_with_sensor`]: the status
 /// of [`super::member_stability`] without the other results.
 pub(crate) fn is_stable(member: &Member, with_sensor: &[LoopPoint], compensation: &Compensation) -> bool {
     let Member::Measured { plant, sensor, .. } = member else { return false };
@@ -109,8 +109,8 @@ pub(crate) fn is_stable(member: &Member, with_sensor: &[LoopPoint], compensation
 }
 
 impl<'a> OpenLoop<'a> {
-    /// L at these frequencies in rad/s; where the response is known between them, at as many more
-    /// as are needed for 1 + L to turn little from each to the next.
+    /// Open loop L at these frequencies, rad/s; if the response is known between them, with as many
+    /// additional ones as needed for 1 + L to turn little between neighbours.
     pub(super) fn new(
         member: &'a Member,
         compensation: &'a Compensation,
@@ -126,8 +126,7 @@ impl<'a> OpenLoop<'a> {
         open_loop
     }
 
-    /// Adds these points, with as many between them as 1 + L needs where the response is known
-    /// there.
+    /// Adds these points, with as many between them as 1 + L needs if the response is known there.
     fn extend(&mut self, points: impl Iterator<Item = LoopPoint>) {
         for point in points {
             if self.is_known_between {
@@ -137,7 +136,7 @@ impl<'a> OpenLoop<'a> {
         }
     }
 
-    /// What is known about a loop with this number of unstable poles.
+    /// Stability results for a loop with this number of unstable poles.
     pub(super) fn stability(&self, unstable: usize) -> MemberStability {
         let stable = unstable == 0;
         MemberStability {
@@ -152,8 +151,8 @@ impl<'a> OpenLoop<'a> {
         }
     }
 
-    /// Points between the last one and this one, as many as are needed for 1 + L to turn little
-    /// from each to the next.
+    /// Inserts points between the last one and this one, as many as needed for 1 + L to turn little
+    /// between neighbours.
     fn fill_up_to(&mut self, end: LoopPoint) {
         let mut ahead = vec![end];
         while let (Some(&next), Some(&last)) = (ahead.last(), self.points.last()) {
@@ -172,7 +171,7 @@ impl<'a> OpenLoop<'a> {
         }
     }
 
-    /// L at any frequency; `None` where it is not known.
+    /// Open loop L at any frequency; `None` if it is unknown.
     fn at(&self, frequency: f64) -> Option<LoopPoint> {
         if self.around == MeasuredLoop::Rate {
             let back = self.member.fed_back(frequency)?;
@@ -182,7 +181,7 @@ impl<'a> OpenLoop<'a> {
         point_with_sensor(self.member, frequency).map(|point| point.times(feedback))
     }
 
-    /// Poles less zeros of L at the origin, if those of the plant are stated.
+    /// Number of poles less zeros of L at the origin, if stated for the plant.
     fn integrators(&self) -> Option<f64> {
         let Member::Measured { plant: MeasuredPlant { integrators, .. }, sensor, .. } = self.member else {
             return None;
@@ -199,8 +198,8 @@ impl<'a> OpenLoop<'a> {
         )
     }
 
-    /// Number of poles of the closed loop outside the stable region, given the number of those of
-    /// the plant.
+    /// Number of poles of the closed loop outside the stable region, given the number for the
+    /// plant.
     pub(super) fn unstable_closed_loop_poles(
         &self,
         of_plant: usize,
@@ -229,8 +228,8 @@ impl<'a> OpenLoop<'a> {
         if gain.is_nan() || gain > SMALL_GAIN {
             return Err(Irresolution::HighEnd { frequency_rad_per_s: last.frequency, gain });
         }
-        // from the first point to the last 1 + L turns by 2 pi rounds and the difference of the
-        // angles there, from the last on back to zero
+        // from the first point to the last, 1 + L turns by 2 pi rounds and the difference of the
+        // angles there, then from the last back to zero
         let turned =
             turned_below - portable::argument(1.0 + first.value) + 2.0 * std::f64::consts::PI * rounds;
         let count = own as f64 - turned / std::f64::consts::PI;
@@ -240,8 +239,8 @@ impl<'a> OpenLoop<'a> {
         Ok(count.round() as usize)
     }
 
-    /// The least |1 + L|: that of the points, refined around the least of them where the response
-    /// is known; the least within their discs.
+    /// The least |1 + L|: over the points, refined around the least of them if the response is
+    /// known; the least within their discs.
     pub(super) fn closest_approach(&self) -> Approach {
         let order =
             |one: &&[LoopPoint], other: &&[LoopPoint]| one[1].distance().total_cmp(&other[1].distance());
@@ -267,8 +266,8 @@ impl<'a> OpenLoop<'a> {
         if found < least.distance { Approach { distance: found, frequency_rad_per_s } } else { least }
     }
 
-    /// Crossovers lie where the line between two points crosses one, and where a disc touches the
-    /// unit circle.
+    /// Critical delay at the crossovers: where the line between two points crosses one, and where a
+    /// disc touches the unit circle.
     pub(super) fn critical_delay(&self) -> CriticalDelay {
         let mut least = CriticalDelay::NONE;
         let mut take = |point: &LoopPoint| {
@@ -288,7 +287,7 @@ impl<'a> OpenLoop<'a> {
         least
     }
 
-    /// Where |L| passes one between two points.
+    /// Point where |L| passes one between two points.
     fn crossing(&self, before: LoopPoint, after: LoopPoint) -> Option<LoopPoint> {
         let (mut low, mut high) = (before.frequency, after.frequency);
         for _ in 0..60 {
@@ -322,8 +321,8 @@ impl LoopPoint {
         portable::magnitude(self.value) >= 1.0
     }
 
-    /// The least delay that turns a point of the disc with |L| = 1 to -1, s; `None` where it has no
-    /// such point.
+    /// The least delay that rotates a point of the disc with |L| = 1 to -1, s; `None` if there is
+    /// no such point.
     ///
     /// ```text
     /// cos(opening) = (1 + |L|^2 - r^2)/(2 |L|)
@@ -331,7 +330,7 @@ impl LoopPoint {
     fn critical_delay(&self) -> Option<f64> {
         let size = portable::magnitude(self.value);
         let cosine = (1.0 + size * size - self.radius * self.radius) / (2.0 * size);
-        // beyond rounding of a crossover, whose disc is a point
+        // except for rounding of a crossover, whose disc is a point
         let opening = if self.radius == 0.0 {
             0.0
         } else {
@@ -343,7 +342,7 @@ impl LoopPoint {
     }
 }
 
-/// Whether 1 + L can be followed from one point to the next, wherever in their discs it is.
+/// Checks that 1 + L can be followed from one point to the next, anywhere in their discs.
 fn followed(from: LoopPoint, to: LoopPoint) -> Result<(), Irresolution> {
     let open = [from, to].map(|point| opening(1.0 + point.value, point.radius));
     let turn_rad = turn(from.value, to.value);
@@ -365,20 +364,20 @@ fn followed(from: LoopPoint, to: LoopPoint) -> Result<(), Irresolution> {
     })
 }
 
-/// The point of the boundary of stability at zero frequency: s = 0, or z = 1.
+/// The point of the stability boundary at zero frequency: s = 0, or z = 1.
 fn zero_frequency(function: &TransferFunction) -> Complex64 {
     Complex64::new(if function.domain() == TimeDomain::Continuous { 0.0 } else { 1.0 }, 0.0)
 }
 
-/// Whether [`turn`] is at most [`TURN_MAXIMUM`], by products alone.
+/// True if [`turn`] is at most [`TURN_MAXIMUM`], using only products.
 fn turns_little(before: Complex64, after: Complex64) -> bool {
     let is_small = |value: Complex64| value.norm_sqr() <= SMALL_GAIN * SMALL_GAIN;
     is_turned_little(1.0 + before, 1.0 + after)
         && (is_small(before) && is_small(after) || is_turned_little(before, after))
 }
 
-/// Whether the angle between two numbers is at most [`TURN_MAXIMUM`]; false where one of them is
-/// zero or NaN.
+/// True if the angle between two numbers is at most [`TURN_MAXIMUM`]; false if one of them is zero
+/// or NaN.
 ///
 /// ```text
 /// |arg(b/a)| <= pi/3          where |Im(b a*)| <= sqrt(3) Re(b a*)
@@ -388,8 +387,8 @@ fn is_turned_little(before: Complex64, after: Complex64) -> bool {
     product.re > 0.0 && product.im.abs() <= SQRT_3 * product.re && product.is_finite()
 }
 
-/// 1 where the argument of a number that turns by less than a right angle goes beyond pi, -1 where
-/// it goes back.
+/// Change of the number of rounds: 1 if the argument of a number that turns by less than a right
+/// angle passes pi, -1 if it passes back.
 fn rounds_begun(before: Complex64, after: Complex64) -> f64 {
     match (before.im.is_sign_negative(), after.im.is_sign_negative()) {
         (false, true) if after.re < 0.0 => 1.0,
@@ -398,8 +397,8 @@ fn rounds_begun(before: Complex64, after: Complex64) -> f64 {
     }
 }
 
-/// The angle that 1 + L turns by from one point to the next, and L itself where it is not small,
-/// whichever is wider, rad.
+/// Angle by which 1 + L, or L itself if it is not small, turns from one point to the next,
+/// whichever is larger, rad.
 fn turn(before: Complex64, after: Complex64) -> f64 {
     let own = portable::argument((1.0 + after) / (1.0 + before)).abs();
     if portable::magnitude(before).max(portable::magnitude(after)) > SMALL_GAIN {
@@ -409,7 +408,8 @@ fn turn(before: Complex64, after: Complex64) -> f64 {
     }
 }
 
-/// Poles outside of the stable region; those at zero frequency show in the measured loop.
+/// Number of poles outside the stable region; those at zero frequency are visible in the measured
+/// loop.
 pub(super) fn outside_of_stable_region(function: &TransferFunction) -> Result<usize, Irresolution> {
     let continuous = function.domain() == TimeDomain::Continuous;
     let excess = |pole: &Complex64| if continuous { pole.re } else { portable::magnitude(*pole) - 1.0 };

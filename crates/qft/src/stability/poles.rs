@@ -10,14 +10,14 @@ use super::product::RootProduct;
 /// beyond it the powers of z lose too many digits.
 const HIGHEST_SAMPLED_DEGREE: usize = 24;
 
-/// Number of sweeps over the roots of a sampled loop, and the share of its magnitude by which a
-/// root may move at once.
+/// Number of sweeps over the roots of a sampled loop, and the fraction of its magnitude by which a
+/// root may move in one step.
 const SWEEPS_MAXIMUM: usize = 20;
 const STEP_MAXIMUM: f64 = 0.1;
 
 impl Characteristic {
-    /// The largest real part of a closed-loop pole in 1/s, ln|z|/T in a sampled loop; minus
-    /// infinity for a loop without poles. `None` where a delay leaves no polynomial.
+    /// The largest real part of a closed-loop pole (ln|z|/T in a sampled loop), 1/s; minus infinity
+    /// for a loop without poles. `None` if a delay leaves no polynomial.
     pub(super) fn largest_real_part(&self) -> Result<Option<f64>, Irresolution> {
         let Some(polynomial) = self.closed_loop_polynomial()? else { return Ok(None) };
         let mut roots = polynomial.roots().map_err(Irresolution::Linear)?;
@@ -34,7 +34,7 @@ impl Characteristic {
         Ok(Some(roots.iter().map(real_part).fold(f64::NEG_INFINITY, f64::max)))
     }
 
-    /// The characteristic function by the roots of its parts, and its derivative.
+    /// The characteristic function from the roots of its parts, and its derivative.
     ///
     /// ```text
     /// f = c z^k + n,    f' = c' z^k + k c z^(k-1) + n'
@@ -51,7 +51,7 @@ impl Characteristic {
         (value + numerator, slope + numerator_slope)
     }
 
-    /// c + n, or c z^k + n.
+    /// Polynomial c + n, or c z^k + n.
     fn closed_loop_polynomial(&self) -> Result<Option<Polynomial>, Irresolution> {
         let mut denominator = self.denominator.clone();
         if self.delay > 0.0 {
@@ -74,8 +74,8 @@ impl Characteristic {
     }
 }
 
-/// Moves roots of an expanded polynomial to those of the function it stands for, all at once by the
-/// iteration of Ehrlich and Aberth; a root whose steps do not shrink is left where it is.
+/// Moves roots of an expanded polynomial to those of the function it represents, simultaneously by
+/// the iteration of Ehrlich and Aberth; a root whose steps do not shrink is unchanged.
 fn polish(roots: &mut [Complex64], function: impl Fn(Complex64) -> (Complex64, Complex64)) {
     let mut last = vec![Some(f64::INFINITY); roots.len()];
     for _ in 0..SWEEPS_MAXIMUM {

@@ -1,18 +1,18 @@
-//! A sampled polynomial kept as its roots: expanded in z, fast poles near z = 0 would cost the
+//! A sampled polynomial in factored form: expanded in z, fast poles near z = 0 would cost the
 //! digits of the slow ones.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::TransferFunction;
 use phea_dynamics::portable;
 
-/// gain (v - v_1) (v - v_2) ... with v = z - 1.
+/// Product gain (v - v_1) (v - v_2) ... with v = z - 1.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RootProduct {
     pub(super) gain: f64,
     pub(super) roots: Vec<Complex64>,
 }
 
-/// Numerator and denominator of a sampled function, its dead time left out.
+/// Numerator and denominator of a sampled function, without its dead time.
 pub(super) fn products(function: &TransferFunction) -> [RootProduct; 2] {
     let shifted = |roots: &[Complex64]| roots.iter().map(|root| root - 1.0).collect();
     [
@@ -55,7 +55,7 @@ impl RootProduct {
         terms
     }
 
-    /// With z = r z': the product over r to its degree, where `shift` is r - 1.
+    /// Product with z = r z', divided by r to its degree, where `shift` is r - 1.
     pub(super) fn moved(&self, shift: f64) -> RootProduct {
         let roots = self.roots.iter().map(|root| (root - shift) / (1.0 + shift)).collect();
         RootProduct { gain: self.gain, roots }

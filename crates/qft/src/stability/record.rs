@@ -1,4 +1,4 @@
-//! The worst results that were found for a family.
+//! The worst results found for a family.
 
 use super::{
     ClosestApproach, DelayMargin, Instability, Irresolution, MemberStability, SearchedInfinity,
@@ -6,7 +6,7 @@ use super::{
 };
 use crate::verdict::PlantPoint;
 
-/// The worst found so far.
+/// The worst results so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StabilityRecord {
     pub(super) unstable: Option<(f64, Instability, PlantPoint)>,
@@ -18,14 +18,14 @@ pub(super) struct StabilityRecord {
 }
 
 impl StabilityRecord {
-    /// The reason why the verdict is open, unless a plant already is.
+    /// Records the reason why the verdict is open, unless there is already one.
     pub(super) fn doubt(&mut self, reason: Irresolution, plant: PlantPoint) {
         if self.unresolved.is_none() {
             self.unresolved = Some((reason, plant));
         }
     }
 
-    /// Whether a plant is nearer to instability than any before.
+    /// True if a plant is nearer to instability than all previous ones.
     pub(super) fn is_worse(&self, found: &MemberStability) -> bool {
         let real_part = found.largest_real_part.zip(self.real_part.as_ref());
         let distance = found.closest_approach.zip(self.closest.as_ref());

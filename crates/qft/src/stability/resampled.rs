@@ -1,14 +1,14 @@
-//! The critical delay of a sampled loop, its plant held and sampled anew with each delay.
+//! The critical delay of a sampled loop, with its plant resampled for each delay.
 //!
-//! Phase over frequency at the crossovers of the sampled L is that delay where it is a whole number
-//! of samples. Between whole samples a delay also changes |L|: for k/s with k T = 1.25 this gives
-//! 0.66 samples instead of the true 0.8. Each time the loop is sampled anew, nearer to its limit,
-//! the error of the estimate of the remaining delay is smaller.
+//! Phase over frequency at the crossovers of the sampled L equals that delay if it is a whole
+//! number of samples. Between whole samples a delay also changes |L|: for k/s with k T = 1.25 this
+//! gives 0.66 samples instead of the true 0.8. Each time the loop is resampled, closer to its
+//! limit, the error of the estimated remaining delay decreases.
 //!
-//! Where a rate or an inner signal is fed back within the plant, the remaining delay is that of the
-//! controller's own path, and sampling the plant anew would delay the rate too: there phase over
-//! frequency is used. [`borne_delay`] is the search for any estimate of the remaining delay, such
-//! as that of the whole loop, cut at the command.
+//! If a rate or an inner signal is fed back within the plant, the remaining delay is that of the
+//! controller's path, and resampling the plant would also delay the rate: phase over frequency is
+//! used instead. [`borne_delay`] is the search for any estimate of the remaining delay, such as
+//! that of the whole loop, cut at the command.
 
 use phea_dynamics::uncertain_plant::PlantCoefficients;
 
@@ -16,13 +16,13 @@ use super::characteristic::FeedbackPath;
 use super::{CriticalDelay, StabilityStatus, of_member};
 use crate::closed_loop::{Compensation, moved_rate};
 
-/// The remaining delay, as a share of the whole, at which the search stops.
+/// The remaining delay, as a fraction of the total, at which the search stops.
 const TOLERANCE: f64 = 1e-9;
-/// Steps of the search, and then of halving.
+/// Number of steps of the search, and then of bisection.
 const STEPS_MAXIMUM: usize = 60;
 
-/// `None` for a loop that is not stable to begin with, and where a rate or an inner signal is fed
-/// back within the plant.
+/// Critical delay; `None` for a loop that is initially unstable, and if a rate or an inner signal
+/// is fed back within the plant.
 pub(super) fn critical_delay(
     plant: &PlantCoefficients<f64>,
     compensation: &Compensation,
@@ -40,12 +40,11 @@ pub(super) fn critical_delay(
     borne_delay(&remaining)
 }
 
-/// The delay at which a loop becomes unstable, from an estimate of what remains after each delay in
-/// s, which is `None` where the loop is unstable; `None` for a loop that is not stable to begin
-/// with.
+/// The delay at which a loop becomes unstable, from an estimate of the remainder after each delay,
+/// s, which is `None` if the loop is unstable; `None` for a loop that is initially unstable.
 ///
 /// # Example
-/// A loop that bears 3 s, by an estimate that is a fifth too long.
+/// Loop that tolerates 3 s, with an estimate that is a fifth too long.
 /// ```
 /// use phea_qft::stability::{CriticalDelay, borne_delay};
 /// let remaining = |delay_s: f64| {

@@ -11,18 +11,19 @@ use super::{Irresolution, MemberStability, StabilityStatus};
 use crate::closed_loop::{Compensation, Member};
 use crate::family::{COARSE, tabulated};
 
-/// Points per decade of a first look, which does not count poles.
+/// Points per decade of a first evaluation, which does not count poles.
 const POINTS_PER_DECADE: f64 = 30.0;
-/// |L| that integrators have reached where a look begins, and decades below the range of the plant that are tried for it.
+/// Gain |L| reached by integrators at the start of an evaluation, and number of decades searched
+/// below the range of the plant.
 const LARGE_GAIN: f64 = 2.0;
 const DECADES_BELOW: i32 = 9;
 
-/// How closed-loop poles are counted.
+/// Method of counting closed-loop poles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PoleCounting {
-    /// With 1 + L enclosed from each frequency to the next; in a sampled loop on points.
+    /// Enclosure of 1 + L between successive frequencies; points in a sampled loop.
     Enclosed,
-    /// On points between which 1 + L turns little, for a box that is searched for the least |1 + L|
+    /// Points between which 1 + L turns little, for a box that is searched for the least |1 + L|
     /// anyway.
     OnPoints,
 }
@@ -59,8 +60,8 @@ pub(super) fn stability(
     }
 }
 
-/// Poles in the unstable region of a plant whose rate or inner signal is fed back within it, as the
-/// controller sees it; `None` where nothing is fed back. H_p has no poles there.
+/// Number of unstable poles of a plant with internal feedback of a rate or inner signal, as the
+/// controller sees it; `None` if nothing is fed back. H_p has no poles there.
 pub(crate) fn own_poles(member: &Member, compensation: &Compensation) -> Option<Result<usize, Irresolution>> {
     let Member::Responding { plant, rate_feed_forward, inner_feedback, .. } = member else { return None };
     let [_, highest] = plant.range_rad_per_s();
@@ -85,7 +86,7 @@ fn on_points<'a>(
     OpenLoop::new(member, compensation, around, &table.frequencies_rad_per_s, true)
 }
 
-/// L on an even grid: cheap enough for a search to evaluate at every plant.
+/// Open loop L on an even grid: cheap enough for a search to evaluate at every plant.
 pub(super) fn first_look<'a>(member: &'a Member, compensation: &'a Compensation) -> Option<OpenLoop<'a>> {
     let Member::Responding { plant, .. } = member else { return None };
     let [from, to] = range(member, plant.as_ref(), compensation);
@@ -95,8 +96,8 @@ pub(super) fn first_look<'a>(member: &'a Member, compensation: &'a Compensation)
     Some(OpenLoop::new(member, compensation, MeasuredLoop::Output, &grid, true))
 }
 
-/// Frequencies of interest of the loop itself, rad/s: an integrator that is slower than the plant
-/// has its crossover below the range of the plant.
+/// Frequencies of interest of the loop, rad/s: an integrator slower than the plant has its
+/// crossover below the range of the plant.
 fn range(member: &Member, plant: &dyn RespondingPlant, compensation: &Compensation) -> [f64; 2] {
     let [mut from, to] = plant.range_rad_per_s();
     let integrates =

@@ -13,25 +13,25 @@ use super::{BuiltTemplate, Resolution, Template, TemplateError, TemplateOptions,
 use crate::closed_loop::{Compensation, MemberResponse};
 use crate::family::{Extent, Family, MeasuredFamily};
 
-/// The template of a family at one frequency.
+/// Builds the template of a family at one frequency.
 ///
 /// ```text
 /// template(w) = { P(jw) H(jw) : P in the family }                                                    thesis 3.1.1
 /// ```
 ///
-/// `points` are the members in order, then the plants that refinement found on the outline. The
-/// outline is known from within: its interior is filled by plants of the family, to the tolerance
-/// of its chords. Plants beyond it were searched for, from every point of the outline and with all
-/// witnesses, and none was found. Magnitude and phase are compared, with the phase continued from
-/// plant to plant; [`Template`] has an example. A member whose response is zero or infinite is left
-/// out; `NotResolved` names it.
+/// `points` are the members in order, then the plants found on the outline by refinement. The
+/// outline is an inner approximation: its interior is filled by plants of the family, to the
+/// tolerance of its chords. Plants beyond it were searched for, from every point of the outline and
+/// with all witnesses, and none was found. Plants are compared in magnitude and phase, with the
+/// phase continued from plant to plant; [`Template`] has an example. A member whose response is
+/// zero or infinite is omitted; `NotResolved` names it.
 ///
 /// # Errors
 /// [`TemplateError`] for tolerances that cannot be met, plants that cannot be sampled, measurements
-/// that do not reach, and a nominal plant that is zero or infinite.
+/// that do not cover the frequency, and a nominal plant that is zero or infinite.
 ///
 /// # Example
-/// Two measured plants, 1 and 2j at 1 rad/s: the template is these two points.
+/// Two measured plants, 1 and 2j at 1 rad/s: the template consists of these two points.
 /// ```
 /// use num_complex::Complex64;
 /// # use phea_dynamics::controller::Controller;
@@ -71,10 +71,10 @@ pub fn template(
     template_watched((family, compensation), frequency_rad_per_s, options, &mut unwatched)
 }
 
-/// The same under a watch, which is asked at each plant.
+/// Builds a template as [`template`] does, with a watch that is consulted at each plant.
 ///
 /// # Errors
-/// Those of [`template`], and [`TemplateError::Stopped`].
+/// Errors of [`template`], and [`TemplateError::Stopped`].
 pub(super) fn template_watched(
     (family, compensation): (&Family, &Compensation),
     frequency_rad_per_s: f64,
@@ -95,7 +95,7 @@ pub(super) fn template_watched(
     }
 }
 
-/// Corners of the polygon around a disc, 2 % outside of it.
+/// Number of corners of the polygon around a disc, 2 % outside it.
 const CORNERS: usize = 16;
 
 fn measured(
@@ -183,7 +183,7 @@ fn built(
     Ok(BuiltTemplate { template, evaluations })
 }
 
-/// P H
+/// Response P H.
 fn loop_response(response: MemberResponse) -> Complex64 {
     response.plant * response.sensor
 }
@@ -202,8 +202,8 @@ fn finite(point: TemplatePoint, frequency_rad_per_s: f64) -> Result<TemplatePoin
     Err(TemplateError::NotFinite { member: member.unwrap_or(0), response, frequency_rad_per_s })
 }
 
-/// The members that are points of the box; the nominal plant need not be one of them where
-/// parameters are correlated.
+/// The members that are points of the box; the nominal plant need not be one of them if parameters
+/// are correlated.
 fn member_witnesses(plants: &mut Plants, points: &[TemplatePoint]) -> Vec<usize> {
     let family = plants.family;
     let mut witnesses = vec![];
@@ -223,7 +223,7 @@ fn member_witnesses(plants: &mut Plants, points: &[TemplatePoint]) -> Vec<usize>
     witnesses
 }
 
-/// Plants on the outlines, each once, without those that are members.
+/// Plants on the outlines, each once, without the members.
 fn outline_points(
     plants: &Plants,
     outlines: &[Vec<Corner>],

@@ -1,9 +1,8 @@
 //! Two-dimensional faces of the box: the region that their edges enclose is filled.
 //!
-//! A closed curve of the box can be drawn together to a point within the box, so every response
-//! that its image winds around is the image of a plant. A face whose image is not folded is the
-//! inside of the image of its four edges; a face that is folded, or contains a resonance, is
-//! divided.
+//! A closed curve in the box can be contracted to a point within the box, so that every response
+//! that its image winds around is the image of a plant. The image of a face without folds is the
+//! interior of the image of its four edges; a face that folds, or contains a resonance, is divided.
 
 use super::plants::{BoxLine, Plants, Stop};
 
@@ -13,8 +12,8 @@ pub(super) struct FaceCell {
     depth: usize,
 }
 
-/// How often a face is divided, by the dimension of the box: where it is folded, and where a loop
-/// does not close.
+/// Number of times a face is divided, by the dimension of the box: if it folds, and if a loop does
+/// not close.
 fn depth_maximum(dimension: usize) -> (usize, usize) {
     match dimension {
         2 => (4, 6),
@@ -26,7 +25,7 @@ fn depth_maximum(dimension: usize) -> (usize, usize) {
 /// Initial divisions of an edge of the box: a narrower excursion may be missed.
 const PARTS: usize = 4;
 
-/// The edges of the box: line `axis` from each corner that has it at 0.
+/// The edges of the box: line `axis` from each corner with that coordinate at 0.
 pub(super) struct BoxEdges {
     lines: Vec<Vec<Option<BoxLine>>>,
 }
@@ -79,7 +78,7 @@ impl BoxEdges {
 }
 
 impl FaceCell {
-    /// Once around.
+    /// Closed walk around the cell.
     fn walk(&self) -> Vec<usize> {
         let start = self.sides[0].plants.first().copied();
         let sides = self.sides.iter().flat_map(|side| side.plants.iter().skip(1).copied());
@@ -91,7 +90,7 @@ impl FaceCell {
     }
 }
 
-/// Closed walks whose images enclose the region that the face covers.
+/// Closed walks whose images enclose the region covered by the face.
 pub(super) fn walks(plants: &mut Plants, face: FaceCell, found: &mut Vec<Vec<usize>>) -> Result<(), Stop> {
     let (folded_maximum, open_maximum) = depth_maximum(plants.family.coordinates().len());
     let mut pending = vec![face];
@@ -115,8 +114,8 @@ pub(super) fn walks(plants: &mut Plants, face: FaceCell, found: &mut Vec<Vec<usi
     Ok(())
 }
 
-/// A walk without a gap that does not close goes around a pole or a zero; its most extreme plant is
-/// near it.
+/// Records a walk without a gap that does not close: it encircles a pole or a zero, to which its
+/// most extreme plant is close.
 fn remember_open(plants: &mut Plants, walk: &[usize]) {
     if plants.unbroken(walk).len() > 1 {
         return;
@@ -130,7 +129,7 @@ fn remember_open(plants: &mut Plants, walk: &[usize]) {
     }
 }
 
-/// Whether the quarters of a cell have different orientations, judged by their corners.
+/// True if the quarters of a cell have different orientations, according to their corners.
 fn is_folded(plants: &Plants, cell: &FaceCell, centre: usize) -> bool {
     let middles: Vec<usize> = cell
         .sides

@@ -8,26 +8,26 @@ use super::plants::{BoxLine, PlantPosition, Plants, Stop};
 use super::region::{Corner, Region};
 use super::witness::{Outside, outside, probes, take_in};
 
-/// What is known about the image of a box.
+/// Known image of a box.
 pub(super) struct Exploration {
     witnesses: Vec<usize>,
     edges: Option<BoxEdges>,
-    /// Lines to witnesses away from the edges of a template without area.
+    /// Lines to witnesses away from the edges, for a template without area.
     branches: Vec<BoxLine>,
     walks: Vec<Vec<usize>>,
     region: Option<Region>,
-    /// The witness farthest outside of the region, if there is one.
+    /// The witness farthest outside the region, if any.
     pub(super) outside: Option<Outside>,
 }
 
 impl Exploration {
-    /// Nothing but witnesses.
+    /// An exploration with only witnesses.
     pub(super) fn new(witnesses: Vec<usize>) -> Exploration {
         Exploration { witnesses, edges: None, branches: vec![], walks: vec![], region: None, outside: None }
     }
 
     /// Polygons with corners no farther apart than the tolerance: pieces of the region, or lines
-    /// there and back where the template has no area.
+    /// traversed in both directions if the template has no area.
     pub(super) fn outlines(&self, plants: &Plants) -> Vec<Vec<Corner>> {
         match &self.region {
             Some(region) if region.has_area() => {
@@ -54,14 +54,14 @@ impl Exploration {
     }
 }
 
-/// Rounds of growth of a family that does not close.
+/// Rounds of growth for a family with a gap that does not close.
 const ROUNDS_BESIDE_A_GAP: usize = 1;
 
-/// Shortest line, in tolerances, that is not due to rounding.
+/// Shortest line, in tolerances, that is not a rounding error.
 const LENGTH_MINIMUM: f64 = 1e-9;
 
-/// Explores until nothing moves and all witnesses lie within, or until plants or rounds are used
-/// up; what was found until then is kept.
+/// Explores until nothing moves and all witnesses are inside, or until plants or rounds are used
+/// up; the results until then are retained.
 pub(super) fn explore(plants: &mut Plants, found: &mut Exploration) -> Result<(), Stop> {
     let dimension = plants.family.coordinates().len();
     if dimension == 0 {
@@ -95,8 +95,7 @@ pub(super) fn explore(plants: &mut Plants, found: &mut Exploration) -> Result<()
     }
 }
 
-/// A template without area is a line; a witness that is not on it is joined to it by a line of the
-/// box.
+/// Joins witnesses to a template without area, which is a line, by lines of the box.
 fn branch(plants: &mut Plants, found: &mut Exploration) -> Result<(), Stop> {
     for _ in 0..plants.options.rounds_maximum {
         let Some(beyond) = outside(plants, &found.lines(plants), &found.witnesses).into_iter().next() else {
@@ -109,7 +108,7 @@ fn branch(plants: &mut Plants, found: &mut Exploration) -> Result<(), Stop> {
     Err(Stop::Exhausted)
 }
 
-/// Rounds of growth; where nothing moves any more, witnesses outside are added.
+/// Performs rounds of growth; once nothing moves any more, adds the witnesses outside.
 fn refine(
     plants: &mut Plants,
     region: &mut Region,
@@ -117,7 +116,7 @@ fn refine(
     farthest: &mut Option<Outside>,
 ) -> Result<(), Stop> {
     let mut tried = BTreeSet::new();
-    // towards a pole of the family growth would never end
+    // towards a pole of the family, growth would never end
     let rounds = match plants.gap {
         Some(_) => plants.options.rounds_maximum.min(ROUNDS_BESIDE_A_GAP),
         None => plants.options.rounds_maximum,
@@ -136,7 +135,7 @@ fn refine(
     Err(Stop::Exhausted)
 }
 
-/// A region that is large enough for the places that were found.
+/// A region large enough for the places found.
 fn empty_region(plants: &Plants) -> Region {
     let places = || plants.list.iter().map(|plant| plant.place).filter(|place| place.is_finite());
     let corner = |start: f64, choose: fn(f64, f64) -> f64| PlantPosition {
@@ -147,8 +146,8 @@ fn empty_region(plants: &Plants) -> Region {
     Region::new(corner(f64::INFINITY, f64::min), corner(f64::NEG_INFINITY, f64::max), tolerance)
 }
 
-/// The same polygon with places between corners that lie farther apart than the tolerance: seams
-/// along which a piece was cut.
+/// Polygon with places added between corners farther apart than the tolerance: seams along which a
+/// piece was cut.
 fn divided(plants: &Plants, piece: &[Corner]) -> Vec<Corner> {
     let mut corners = vec![];
     for (from, to) in piece.iter().zip(piece.iter().cycle().skip(1)) {

@@ -1,16 +1,16 @@
 //! Growth of the region: plants on its contour are pushed outward over all coordinates, and the
 //! region that they sweep is filled.
 //!
-//! The edges of two-dimensional faces do not reach where magnitude and phase turn together inside
-//! the box (their gradients are parallel there). From a plant p on the contour, with outward normal
-//! n and tangent t in the plane of phase and magnitude z, the next one is the linear answer to
+//! The edges of two-dimensional faces do not reach folds inside the box, where the gradients of
+//! magnitude and phase are parallel. From a plant p on the contour, with outward normal n and
+//! tangent t in the plane of phase and magnitude z, the next one is the linear solution of
 //!
 //! ```text
 //! maximise n . dz     subject to t . dz = 0,   dz = sum_i (dz/dp_i) d_i,   p + d in the box, |d_i| <= reach
 //! ```
 //!
-//! taken when the plant found there really lies further out; the walk from the contour to the new
-//! plants and back is closed, so the region that it encloses is filled.
+//! accepted if the plant found there is indeed further out; the walk from the contour to the new
+//! plants and back is closed, so that the region it encloses is filled.
 
 use std::collections::BTreeSet;
 
@@ -21,20 +21,19 @@ use phea_dynamics::order::sort_by_number;
 /// Least outward gain of a push, in tolerances.
 const GAIN_MINIMUM: f64 = 0.1;
 
-/// Longest outward gain of one push, in tolerances: towards a pole there would be no end.
+/// Longest outward gain of one push, in tolerances: towards a pole it would be unlimited.
 const STRIDE_MAXIMUM: f64 = 20.0;
 
-/// Pushes of one plant in a round.
+/// Number of pushes of one plant in a round.
 const PUSHES: usize = 6;
 
-/// Share over which a slope is taken.
+/// Difference of a fraction over which a slope is computed.
 const SLOPE_SHARE: f64 = 1e-4;
 
-/// Smallest reach of a push, in shares.
+/// Smallest reach of a push, as a fraction.
 const REACH_MINIMUM: f64 = 0.003;
 
-/// One round: pushes every corner of the contour that was not tried before. Returns whether
-/// anything moved.
+/// Performs one round: pushes every new corner of the contour. Returns true if anything moved.
 pub(super) fn grow(
     plants: &mut Plants,
     region: &mut Region,
@@ -55,7 +54,7 @@ pub(super) fn grow(
     outcome.map(|()| !closed.is_empty())
 }
 
-/// Closed walks between a contour and what its plants are pushed to.
+/// Closed walks between a contour and the plants to which its corners are pushed.
 fn sweep(
     plants: &mut Plants,
     region: &Region,
@@ -99,7 +98,7 @@ fn sweep(
     Ok(())
 }
 
-/// The outward normal at a corner, in tolerances; the region lies on the left of the contour.
+/// The outward normal at a corner, in tolerances; the region is on the left of the contour.
 fn outward(plants: &Plants, before: Corner, corner: Corner, after: Corner) -> Option<[f64; 2]> {
     let arriving = direction(plants.steps(before.place, corner.place));
     let leaving = direction(plants.steps(corner.place, after.place));
@@ -117,7 +116,7 @@ fn direction(step: [f64; 2]) -> Option<[f64; 2]> {
     (length > 0.0 && length.is_finite()).then(|| [step[0] / length, step[1] / length])
 }
 
-/// Neighbours from a plant to the one it is pushed to along the normal; only itself where it cannot
+/// Neighbours from a plant to the one it is pushed to along the normal; only itself if it cannot
 /// move.
 fn pushed(plants: &mut Plants, plant: usize, normal: [f64; 2]) -> Result<Vec<usize>, Stop> {
     let mut trail = vec![plant];
@@ -162,7 +161,7 @@ fn further(
     Ok(None)
 }
 
-/// How phase and magnitude change with each share, in tolerances.
+/// Change of phase and magnitude with each fraction, in tolerances.
 fn slopes(plants: &mut Plants, from: usize) -> Result<Vec<[f64; 2]>, Stop> {
     let shares = plants.list[from].shares.clone();
     let mut slopes = vec![];
@@ -176,15 +175,15 @@ fn slopes(plants: &mut Plants, from: usize) -> Result<Vec<[f64; 2]>, Stop> {
     Ok(slopes)
 }
 
-/// The moves that lead farthest along the normal and, to first order, not along the contour.
+/// The moves that lead farthest along the normal and, to first order, do not move along the
+/// contour.
 ///
-/// For a price on moving sideways every coordinate goes to one of its ends; the price at which the
-/// sum turns is that of one coordinate, which goes part of its way.
+/// For a given price on moving sideways every coordinate goes to one of its ends; the price at
+/// which the sum changes sign is that of one coordinate, which goes part of the way.
 fn outward_moves(slopes: &[[f64; 2]], shares: &[f64], normal: [f64; 2], reach: f64) -> Vec<f64> {
     let tangent = [-normal[1], normal[0]];
     let ends = shares.iter().map(|&share| [(-share).max(-reach), (1.0 - share).min(reach)]);
-    // each coordinate: gain and drift per share, ends in the order in which a rising price visits
-    // them
+    // each coordinate: gain and drift per fraction, with the ends in the order of a rising price
     let rates: Vec<[f64; 2]> =
         slopes.iter().map(|&slope| [dot(slope, normal), dot(slope, tangent)]).collect();
     let ends: Vec<[f64; 2]> = ends

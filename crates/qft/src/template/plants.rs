@@ -1,4 +1,4 @@
-//! The plants that a template has evaluated, their places, and lines of neighbours between them.
+//! The plants evaluated for a template, their places, and lines of neighbours between them.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -8,7 +8,8 @@ use super::{TemplateError, TemplateOptions};
 use crate::closed_loop::{Compensation, MemberResponse};
 use crate::family::UncertainFamily;
 
-/// Where a plant lies: phase and magnitude of P H, the phase continued from neighbour to neighbour.
+/// Position of a plant: phase and magnitude of P H, with the phase continued from neighbour to
+/// neighbour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PlantPosition {
     pub(super) phase_deg: f64,
@@ -33,13 +34,13 @@ impl PlantPosition {
         self.phase_deg.is_finite() && self.magnitude_db.is_finite()
     }
 
-    /// The same response with the phase nearest to that of another place.
+    /// Response with the phase nearest to that of another position.
     pub(super) fn beside(self, other: PlantPosition) -> PlantPosition {
         PlantPosition { phase_deg: other.phase_deg + turned_deg(self.phase_deg - other.phase_deg), ..self }
     }
 }
 
-/// An angle brought to within half a turn.
+/// An angle reduced to within half a turn.
 fn turned_deg(angle_deg: f64) -> f64 {
     angle_deg - 360.0 * (angle_deg / 360.0).round()
 }
@@ -50,11 +51,11 @@ pub(super) struct TemplatePlant {
     pub(super) shares: Vec<f64>,
     pub(super) response: MemberResponse,
     pub(super) place: PlantPosition,
-    /// Whether the phase is continued from another plant.
+    /// True if the phase is continued from another plant.
     anchored: bool,
 }
 
-/// Two neighbours between which nothing closer was found.
+/// Two neighbours without a closer plant between them.
 #[derive(Clone, Debug)]
 pub(super) struct Gap {
     pub(super) phase_deg: f64,
@@ -63,7 +64,7 @@ pub(super) struct Gap {
     apart: f64,
 }
 
-/// Why refinement stopped.
+/// Reason why refinement stopped.
 pub(super) enum Stop {
     /// The allowed plants or rounds are used up.
     Exhausted,
@@ -77,7 +78,7 @@ impl From<Stopped> for Stop {
     }
 }
 
-/// Neighbours on a straight line of the box, with their share of its length.
+/// Neighbours on a straight line of the box, with their fraction of its length.
 #[derive(Clone, Debug)]
 pub(super) struct BoxLine {
     pub(super) plants: Vec<usize>,
@@ -93,13 +94,13 @@ impl BoxLine {
     }
 }
 
-/// Name of the stage.
+/// Name of the stage in progress reports.
 const STAGE: &str = "template";
 
-/// Smallest part of a line that is divided further: a gap that remains there does not close.
+/// Smallest part of a line that is divided further: a remaining gap does not close.
 const PART_MINIMUM: f64 = 1.0 / (1 << 20) as f64;
 
-/// All plants that were evaluated at one frequency.
+/// All plants evaluated at one frequency.
 pub(super) struct Plants<'a> {
     pub(super) family: &'a UncertainFamily,
     compensation: &'a Compensation,
@@ -107,7 +108,7 @@ pub(super) struct Plants<'a> {
     pub(super) options: TemplateOptions,
     pub(super) list: Vec<TemplatePlant>,
     pub(super) evaluations: usize,
-    /// Evaluations at which refinement stops.
+    /// Number of evaluations at which refinement stops.
     pub(super) evaluations_maximum: usize,
     pub(super) gap: Option<Gap>,
     watch: Watch<'a>,
@@ -135,12 +136,12 @@ impl<'a> Plants<'a> {
         }
     }
 
-    /// Tells the watch how many of the allowed plants were evaluated.
+    /// Reports the fraction of the allowed plants that were evaluated to the watch.
     pub(super) fn ask(&mut self) -> Result<(), Stopped> {
         tell(self.watch, STAGE, self.evaluations, self.evaluations_maximum)
     }
 
-    /// P, Pd and H at these parameter values.
+    /// Responses P, Pd and H at these parameter values.
     pub(super) fn response(&mut self, values: &[f64]) -> Result<MemberResponse, TemplateError> {
         self.evaluations += 1;
         self.ask()?;
@@ -175,13 +176,13 @@ impl<'a> Plants<'a> {
         self.list[plant].place
     }
 
-    /// From one plant to another, in tolerances of phase and magnitude.
+    /// Difference between two plants, in tolerances of phase and magnitude.
     pub(super) fn step(&self, from: usize, to: usize) -> [f64; 2] {
         let (from, to) = (self.place(from), self.place(to));
         self.steps(from, to.beside(from))
     }
 
-    /// From one place to another, in tolerances of phase and magnitude.
+    /// Difference between two positions, in tolerances of phase and magnitude.
     pub(super) fn steps(&self, from: PlantPosition, to: PlantPosition) -> [f64; 2] {
         [
             (to.phase_deg - from.phase_deg) / self.options.phase_deg,
@@ -200,7 +201,7 @@ impl<'a> Plants<'a> {
         self.place(plant).is_finite()
     }
 
-    /// Remembers a gap if it is the widest.
+    /// Records a gap if it is the widest.
     pub(super) fn remember_gap(&mut self, from: usize, to: usize) {
         let apart = self.apart(from, to);
         if self.gap.as_ref().is_some_and(|gap| gap.apart >= apart) {
@@ -218,8 +219,7 @@ impl<'a> Plants<'a> {
         self.gap = Some(Gap { phase_deg, magnitude_db, plant, apart });
     }
 
-    /// Remembers that a pole or a zero is near; of several plants the one with the largest
-    /// magnitude.
+    /// Records that a pole or a zero is near; of several plants the one with the largest magnitude.
     pub(super) fn remember_pole(&mut self, plant: usize) {
         let magnitude_db = self.place(plant).magnitude_db;
         let kept = self.gap.as_ref().is_some_and(|gap| {
@@ -232,7 +232,7 @@ impl<'a> Plants<'a> {
     }
 
     /// The straight line between two plants, halved until neighbours are at most a tolerance apart,
-    /// or no longer divided.
+    /// or no longer divisible.
     pub(super) fn line(&mut self, from: usize, to: usize, pieces: usize) -> Result<BoxLine, Stop> {
         let mut line = BoxLine { plants: vec![from], positions: vec![0.0] };
         let mut pending = vec![(1.0, to)];
@@ -298,8 +298,8 @@ impl<'a> Plants<'a> {
         Ok([first, second])
     }
 
-    /// The places along a closed walk of neighbours (the last repeats the first, and is left out);
-    /// `None` where it has a gap, or goes around a pole or a zero of the family.
+    /// The places along a closed walk of neighbours (the last repeats the first, and is omitted);
+    /// `None` if it has a gap, or encircles a pole or a zero of the family.
     pub(super) fn closed_walk(&self, walk: &[usize]) -> Option<Vec<(PlantPosition, usize)>> {
         let first = *walk.first()?;
         let mut places = vec![(self.place(first), first)];

@@ -1,8 +1,8 @@
 //! The region that a template is known to fill, as a union of polygons in the plane of phase and
 //! magnitude.
 //!
-//! Polygons are taken to integers (a step is 2^-26 of the template's extent) and united by
-//! `i_overlay`, exactly and in the same way on every machine.
+//! Polygons are converted to integers (a step is 2^-26 of the template's extent) and united by
+//! `i_overlay`, exactly and identically on every machine.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use i_overlay::i_shape::int::shape::{IntContour, IntShape, IntShapes};
 
 use super::plants::PlantPosition;
 
-/// A corner of an outline, and the plant there if it is one.
+/// A corner of an outline, and its plant if it is one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
     pub(super) place: PlantPosition,
@@ -29,9 +29,9 @@ pub(super) struct Region {
     /// Size of an integer step, degrees and dB.
     quantum: [f64; 2],
     shapes: IntShapes<i32>,
-    /// Integer steps in a turn.
+    /// Number of integer steps in a turn.
     turn: i64,
-    /// Integer steps in a tolerance of phase and of magnitude.
+    /// Number of integer steps in a tolerance of phase and of magnitude.
     tolerance: [f64; 2],
     plants: BTreeMap<(i64, i32), usize>,
 }
@@ -42,20 +42,20 @@ const EXTENT: f64 = (1 << 26) as f64;
 /// Largest coordinate of a place.
 const LIMIT: f64 = (1 << 29) as f64;
 
-/// Largest coordinate that the union of polygons takes.
+/// Largest coordinate accepted by the union of polygons.
 const FARTHEST: i32 = (1 << 30) - 1;
 
-/// Smallest step in tolerances: below it a template is a line.
+/// Smallest step below which a template counts as a line, in tolerances.
 const STEP_MINIMUM: f64 = 1e-9;
 
-/// Smallest area, as a share of the square of the extent, that is not due to rounding.
+/// Smallest area, as a fraction of the square of the extent, that is not a rounding error.
 const AREA_MINIMUM: f64 = 1e-6;
 
-/// Largest area of a region that is a line.
+/// Largest area of a region that counts as a line.
 const LINE_AREA: f64 = AREA_MINIMUM * EXTENT * EXTENT;
 
 impl Region {
-    /// An empty region, with integers for places from `low` to `high` and somewhat beyond.
+    /// An empty region, with integers for positions from `low` to `high` and somewhat beyond.
     pub(super) fn new(low: PlantPosition, high: PlantPosition, tolerance: [f64; 2]) -> Region {
         let step =
             |low: f64, high: f64, tolerance: f64| ((high - low) / EXTENT).max(tolerance * STEP_MINIMUM);
@@ -100,7 +100,7 @@ impl Region {
             let once = points.simplify(FillRule::NonZero, IntOverlayOptions::keep_all_points());
             contours.extend(once.into_iter().flatten());
         }
-        // as thin as rounding: a line, whose many contours on top of each other take long to unite
+        // as thin as rounding errors: a line, whose many overlapping contours take long to unite
         if contours.iter().map(area).sum::<f64>() <= LINE_AREA {
             self.shapes = contours.into_iter().map(|contour| vec![contour]).collect();
             return;
@@ -112,12 +112,12 @@ impl Region {
         }
     }
 
-    /// Whether the region consists of more than lines.
+    /// True if the region consists of more than lines.
     pub(super) fn has_area(&self) -> bool {
         self.shapes.iter().flatten().map(area).sum::<f64>() > LINE_AREA
     }
 
-    /// Identifies a place; the same after any number of turns.
+    /// Identifies a position independent of the number of turns.
     pub(super) fn key(&self, place: PlantPosition) -> Option<(i64, i32)> {
         self.point(place).map(|point| self.key_of(point))
     }
@@ -192,7 +192,7 @@ fn united(contours: &[IntContour<i32>]) -> IntShapes<i32> {
     shapes
 }
 
-/// Whether no place of a hole is more than half a tolerance away from its rim, because it is small
+/// True if no place of a hole is more than half a tolerance away from its rim, because it is small
 /// or thin.
 fn is_narrow(hole: &IntContour<i32>, tolerance: [f64; 2]) -> bool {
     let extent = |coordinate: fn(&IntPoint<i32>) -> i32| {

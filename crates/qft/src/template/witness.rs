@@ -1,4 +1,4 @@
-//! Witnesses: plants of the box that must lie within the region, and are added to it if they do
+//! Witnesses: plants of the box that must be inside the region, and are added to it if they are
 //! not.
 
 use super::plants::{PlantPosition, Plants, Stop};
@@ -8,7 +8,7 @@ use phea_dynamics::order::{ends, sort_by_number};
 /// Number of witnesses added at a time.
 const TAKEN_IN: usize = 8;
 
-/// A plant outside of the region, with its distance in tolerances and the nearest corners that are
+/// A plant outside the region, with its distance in tolerances and the nearest corners that are
 /// plants.
 pub(super) struct Outside {
     pub(super) plant: usize,
@@ -56,8 +56,8 @@ pub(super) fn take_in(plants: &mut Plants, region: &mut Region, outside: &[Outsi
     Ok(())
 }
 
-/// Distance of a place from the region, at any number of turns, and the plants at or next to the
-/// nearest corner.
+/// Distance of a position from the region, for any number of turns, and the plants at or next to
+/// the nearest corner.
 fn distance(plants: &Plants, contours: &[Vec<Corner>], place: PlantPosition) -> (f64, Option<[usize; 2]>) {
     let phases = || contours.iter().flatten().map(|corner| corner.place.phase_deg);
     let [low, high] = ends(phases());
@@ -100,7 +100,7 @@ fn distance_here(
     if inside { (0.0, nearest.1) } else { nearest }
 }
 
-/// Whether the ray from the origin to the right meets the segment.
+/// True if the ray from the origin to the right intersects the segment.
 fn crosses(start: [f64; 2], end: [f64; 2]) -> bool {
     (start[1] > 0.0) != (end[1] > 0.0)
         && start[0] - start[1] * (end[0] - start[0]) / (end[1] - start[1]) > 0.0

@@ -1,4 +1,4 @@
-//! Limits at zero and infinite frequency, where every function behaves like one power of s.
+//! Limits at zero and infinite frequency, where every function behaves like a power of s.
 
 use phea_dynamics::controller::RateSensor;
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
@@ -12,23 +12,23 @@ use super::criterion::{Criterion, MarginSide};
 use crate::closed_loop::{Compensation, FedForward, InnerPath, Member, closed, closed_at_rest};
 use crate::specification::{ClosedLoop, Limit};
 
-/// Which end of the frequency axis.
+/// End of the frequency axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum AxisEnd {
-    /// w -> 0
+    /// Zero frequency, w -> 0.
     Zero,
-    /// w -> infinity
+    /// Infinite frequency, w -> infinity.
     Infinity,
 }
 
-/// coefficient s^power
+/// Asymptote coefficient s^power.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PowerTerm {
     pub(crate) coefficient: f64,
     pub(crate) power: i32,
 }
 
-/// Sums of two asymptotes that cancel to this share of either are not resolved.
+/// Fraction of either asymptote below which a cancelled sum is not resolved.
 const CANCELLED: f64 = 1e-12;
 
 impl PowerTerm {
@@ -42,8 +42,8 @@ impl PowerTerm {
         PowerTerm { coefficient: self.coefficient / other.coefficient, power: self.power - other.power }
     }
 
-    /// The sum at an end: the greater of the two; for equal powers their sum, or its largest
-    /// magnitude where one of them turns without limit. If two cancel, the remainder is smaller
+    /// The sum at an end: the dominant term; for equal powers their sum, or its largest magnitude
+    /// if the phase of one of them changes without limit. If two cancel, the remainder is smaller
     /// than either.
     fn plus(self, other: PowerTerm, spun: bool, end: AxisEnd) -> PowerTerm {
         if other.coefficient == 0.0 {
@@ -80,7 +80,7 @@ impl PowerTerm {
         })
     }
 
-    /// The asymptote of a transfer function; in a sampled one z - 1 counts as s T, and there is no
+    /// The asymptote of a transfer function; for a sampled one z - 1 counts as s T, and there is no
     /// infinite frequency.
     pub(super) fn of_transfer_function(function: &TransferFunction, end: AxisEnd) -> Option<PowerTerm> {
         let (point, step) = match (function.domain(), end) {
@@ -112,7 +112,7 @@ impl PowerTerm {
         }
     }
 
-    /// Whether this one is greater than, like, or less than a constant at the end.
+    /// Comparison with a constant at the end: greater, of equal order, or less.
     fn order(self, end: AxisEnd) -> std::cmp::Ordering {
         match end {
             AxisEnd::Zero => 0.cmp(&self.power),
@@ -121,7 +121,8 @@ impl PowerTerm {
     }
 }
 
-/// P, Pd, G, F, H of one plant at an end; `spun` where dead time turns the loop without limit.
+/// Asymptotes of P, Pd, G, F, H for one plant at an end; `spun` if dead time changes the phase of
+/// the loop without limit.
 struct LoopAsymptotes {
     plant: PowerTerm,
     load_motion: PowerTerm,
@@ -135,15 +136,15 @@ struct LoopAsymptotes {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct EndMargin {
     pub(super) margin_db: f64,
-    /// The power of s that the closed loop follows.
+    /// The power of s of the closed loop's asymptote.
     pub(super) power: i32,
 }
 
 /// The limit of the margin; `None` if it does not exist.
 ///
-/// Without a prefilter tracking is judged by its spread, for which all prefilters are equivalent:
-/// the one is used that makes |T| as steep as its upper limit. It is the same for plants of equal
-/// power, and only these can be compared.
+/// Without a prefilter, tracking is assessed by its spread, for which all prefilters are
+/// equivalent: the one used makes |T| as steep as its upper limit. Plants of equal power share this
+/// prefilter, and only these can be compared.
 pub(super) fn margin(
     criterion: &Criterion,
     compensation: &Compensation,
@@ -155,7 +156,7 @@ pub(super) fn margin(
         && end == AxisEnd::Infinity
         && matches!(member, Member::Responding { .. })
     {
-        // an upper bound says nothing about a magnitude that must not fall
+        // an upper bound gives no conclusion about a magnitude that must not fall
         return None;
     }
     let parts = parts(compensation, member, with_prefilter, end)?;
@@ -191,8 +192,8 @@ pub(super) fn margin(
     Some(EndMargin { margin_db, power })
 }
 
-/// A limit over P G/(1+L) at an end; where dead time turns the loop, of its largest value; `None`
-/// where there is none.
+/// Ratio of a limit to P G/(1+L) at an end, to its largest value if dead time changes the phase of
+/// the loop; `None` if there is none.
 pub(crate) fn tracking_ratio(
     compensation: &Compensation,
     member: &Member,
@@ -204,7 +205,7 @@ pub(crate) fn tracking_ratio(
     Some(PowerTerm::of_limit(limit, end)?.over(closed))
 }
 
-/// Where the asymptote of the loop at zero frequency has unit magnitude, rad/s.
+/// Frequency at which the asymptote of the loop at zero frequency has unit magnitude, rad/s.
 pub(super) fn crossing(compensation: &Compensation, member: &Member) -> Option<f64> {
     let open_loop = parts(compensation, member, false, AxisEnd::Zero)?.open_loop;
     let frequency = portable::pow(open_loop.coefficient.abs(), -1.0 / f64::from(open_loop.power));
@@ -212,8 +213,8 @@ pub(super) fn crossing(compensation: &Compensation, member: &Member) -> Option<f
 }
 
 impl LoopAsymptotes {
-    /// 1 + L. Where L neither grows nor vanishes and dead time turns it, the magnitude that is
-    /// worse for the side.
+    /// Return difference 1 + L. If L neither grows nor vanishes and dead time changes its phase,
+    /// the magnitude that is worse for this side.
     fn one_plus_loop(&self, side: MarginSide, end: AxisEnd) -> Option<PowerTerm> {
         let open_loop = self.open_loop;
         if open_loop.coefficient == 0.0 {
@@ -270,7 +271,7 @@ fn parts(
             (of(command)?, path(disturbance), of(with_sensor)?, forward(fed_forward)?, false)
         }
         Member::Responding { plant, sensor, rate_feed_forward, rate_sensor, inner_feedback, .. } => {
-            // its load-motion path has the ends of the slow plant
+            // the load-motion path has the asymptotes of the slow plant
             let at_once = RateSensor { delay_s: 0.0, ..*rate_sensor };
             let inner = inner_feedback.as_ref();
             let slow = closed_at_rest(inner, closed(*rate_feed_forward, at_once, plant.slow()).ok()?);
@@ -296,7 +297,8 @@ fn parts(
     })
 }
 
-/// Whether the sensor of a rate that is fed forward turns it against the rest of the loop.
+/// True if the sensor of a rate that is fed forward shifts its phase relative to the rest of the
+/// loop.
 fn fed_late(member: &Member) -> bool {
     match member {
         Member::Continuous { fed_forward, .. } | Member::Sampled { fed_forward, .. } => {
@@ -306,7 +308,7 @@ fn fed_late(member: &Member) -> bool {
     }
 }
 
-/// A bound of the gain of a plant without polynomials towards infinite frequency.
+/// A bound on the gain of a plant without polynomials towards infinite frequency.
 fn rolled_off(plant: &dyn RespondingPlant) -> Option<PowerTerm> {
     let [_, from] = plant.range_rad_per_s();
     Some(PowerTerm { coefficient: plant.roll_off(from)? * from * from * from, power: -3 })

@@ -15,15 +15,15 @@ use crate::family::{Family, UncertainFamily, corners};
 use crate::kept_plants::KeptPlants;
 use crate::specification::Specification;
 
-/// A margin of minus this much still counts as met, unless another tolerance is requested, dB.
+/// Violation up to which a margin counts as met, unless another tolerance is requested, dB.
 pub const TOLERANCE_DB: f64 = 0.001;
 
-/// How a tracking specification is judged.
+/// Evaluation of a tracking specification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TrackingJudgement {
-    /// `lower <= |F P G/(1+L)| <= upper` with the prefilter that is given.
+    /// Limits `lower <= |F P G/(1+L)| <= upper` with the given prefilter.
     Magnitude,
-    /// Without a prefilter: by the spread of the family, which no prefilter changes.
+    /// Spread of the family, without a prefilter, which cannot change it.
     ///
     /// ```text
     /// margin = 20 log10(upper/lower) - 20 log10(max|T| / min|T|)
@@ -31,52 +31,52 @@ pub enum TrackingJudgement {
     Spread,
 }
 
-/// What an audit did.
+/// Work of an audit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AuditWork {
-    /// Number of plants that were examined, including corners of the box.
+    /// Number of plants examined, including corners of the box.
     pub plants: u64,
-    /// Searches inside the box.
+    /// Number of searches inside the box.
     pub searches: u64,
     /// Number of responses of one plant at one frequency.
     pub responses: u64,
     /// Number of plants of a sampled loop whose factors were computed.
     pub sampled: u64,
-    /// Number of plants of a sampled loop that searches tried.
+    /// Number of plants of a sampled loop evaluated by searches.
     pub tried: u64,
-    /// Searches that were left out, because a plant was known to violate the specification.
+    /// Number of searches that were skipped because a plant was known to violate the specification.
     pub(crate) skipped: u64,
 }
 
-/// The part of an audit that is done.
+/// Extent of an audit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum AuditEffort {
-    /// All of it.
+    /// Complete audit.
     Complete,
-    /// No search of the box for a specification of which a margin below this is known, dB.
+    /// Skips the search of the box for a specification with a known margin below this, dB.
     UntilBelow(f64),
-    /// The plants of the family and the corners of its box at every frequency, without a search
-    /// between them.
+    /// Only the plants of the family and the corners of its box at every frequency, without a
+    /// search between them.
     KnownPlants,
 }
 
-/// What is audited, and how.
+/// Input of an audit.
 #[derive(Clone, Copy, Debug)]
 pub struct AuditProblem<'a> {
     /// The plants.
     pub family: &'a Family,
-    /// The loop around each.
+    /// The loop around each plant.
     pub compensation: &'a Compensation,
     /// The specifications that the loop must satisfy with each plant.
     pub specifications: &'a [Specification],
-    /// How tracking is judged.
+    /// Evaluation of tracking.
     pub tracking: TrackingJudgement,
-    /// A margin of minus this much still counts as met, dB.
+    /// Violation up to which a margin counts as met, dB.
     pub tolerance_db: f64,
 }
 
 impl AuditProblem<'_> {
-    /// The specifications before anything was examined: not proven.
+    /// The specifications before any examination: not proven.
     pub(crate) fn unexamined(&self) -> Vec<SpecificationFinding> {
         let finding = |specification: &Specification| SpecificationFinding {
             requirement: specification.requirement.clone(),
@@ -98,14 +98,14 @@ impl AuditProblem<'_> {
 ///
 /// Every plant of the family and every corner of its box is examined over the whole band: at common
 /// frequencies, around its lightly damped roots, and in the limits of zero and infinite frequency;
-/// peaks are polished; then the box is searched from the worst of them. See the chapter on
+/// peaks are refined; then the box is searched from the worst of them. See the chapter on
 /// verification in the book.
 ///
 /// # Errors
 /// [`Stopped`] by the watch.
 ///
 /// # Example
-/// An integrator whose gain may double, closed with gain 1; |S| = w/|jw + k| never exceeds 1:
+/// Integrator whose gain may double, closed with gain 1; |S| = w/|jw + k| never exceeds 1:
 /// ```
 /// use phea_dynamics::controller::Controller;
 /// use phea_dynamics::linear::TransferFunction;
@@ -154,8 +154,8 @@ pub fn audit_specifications(
     audit_among(problem, &[], (&KeptPlants::default(), AuditEffort::Complete), watch)
 }
 
-/// The same, with further plants that another audit of the same box found worth examining, and with
-/// plants already sampled in the same loop.
+/// Audits the specifications, with additional plants that another audit of this box found worth
+/// examining, and with plants already sampled in this loop.
 pub(crate) fn audit_among(
     problem: &AuditProblem<'_>,
     others: &[Vec<f64>],
@@ -181,7 +181,7 @@ pub(crate) fn audit_among(
 /// Name of the stage in progress reports.
 const STAGE: &str = "specifications";
 
-/// What an audit has seen so far.
+/// Results of an audit so far.
 struct SpecificationAudit<'a> {
     problem: &'a AuditProblem<'a>,
     evaluator: Evaluator<'a>,
@@ -193,11 +193,11 @@ struct SpecificationAudit<'a> {
     /// The findings for each specification, in addition to the worst of the family at the common
     /// frequencies.
     cases: Vec<Vec<FoundMargin>>,
-    /// For each specification: a frequency at which a plant found in a search has no margin.
+    /// Frequency for each specification at which a plant found in a search has no margin.
     undefined: Vec<Option<f64>>,
     searches: usize,
     skipped: usize,
-    /// How many plants searches tried, and of how many of them all factors were needed.
+    /// Number of plants evaluated by searches, and number of those whose factors were all needed.
     tried: [usize; 2],
 }
 

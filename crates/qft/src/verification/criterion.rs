@@ -1,17 +1,17 @@
-//! One side of one requirement: a closed-loop magnitude and what it must stay below, or above.
+//! One side of one requirement: a closed-loop magnitude and its upper or lower limit.
 
 use crate::specification::{ClosedLoop, Limit, Specification};
 
-/// Whether the magnitude must stay below or above its limit.
+/// Side of the limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum MarginSide {
-    /// magnitude <= limit
+    /// Upper limit: magnitude <= limit.
     Below,
-    /// magnitude >= limit
+    /// Lower limit: magnitude >= limit.
     Above,
 }
 
-/// `magnitude <= limit` or `magnitude >= limit` of a closed loop over a band.
+/// Criterion `magnitude <= limit` or `magnitude >= limit` of a closed loop over a band.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Criterion {
     pub(super) closed_loop: ClosedLoop,
@@ -20,12 +20,12 @@ pub(super) struct Criterion {
     /// The corresponding upper limit, for tracking.
     pub(super) upper: Option<Limit>,
     /// The band where it applies: that of the specification, as far as a table and the sampling
-    /// reach, rad/s.
+    /// extend, rad/s.
     pub(super) band: [f64; 2],
 }
 
 impl Criterion {
-    /// Whether it applies at this frequency.
+    /// True if it applies at this frequency.
     pub(super) fn demands(&self, frequency: f64) -> bool {
         self.band[0] <= frequency && frequency <= self.band[1]
     }
@@ -47,7 +47,7 @@ pub(super) fn criteria(specification: &Specification, highest_frequency: f64) ->
         .collect()
 }
 
-/// The part of a band in which the limit exists and the loop has a response; nothing is demanded if
+/// The part of a band in which the limit exists and the loop has a response; there is no limit if
 /// an end is NaN.
 fn reach(limit: &Limit, band: [f64; 2], highest_frequency: f64) -> [f64; 2] {
     if band.iter().any(|end| end.is_nan()) {

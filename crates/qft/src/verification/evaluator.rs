@@ -1,5 +1,5 @@
-//! Margins of one plant: everything about a loop and its specifications except the family, and a
-//! count of the work.
+//! Margins of one plant: all of a loop and its specifications except the family, and a count of the
+//! work.
 
 use std::cell::Cell;
 
@@ -24,19 +24,19 @@ pub(super) struct Evaluator<'a> {
     pub(super) compensation: &'a Compensation,
     pub(super) criteria: Vec<Criterion>,
     pub(super) with_prefilter: bool,
-    /// Numerator and denominator of G H without its dead time, where both are continuous.
+    /// Numerator and denominator of G H without its dead time, if both are continuous.
     pub(super) compensator: Option<(Polynomial, Polynomial)>,
     /// Dead time of G H, s.
     pub(super) compensator_dead_time_s: f64,
     responses: Cell<u64>,
-    /// The power of s that the first plant's |T| follows at either end; plants with another power
-    /// have no spread there.
+    /// The power of s of the first plant's |T| at either end; plants with another power have no
+    /// spread there.
     steepness: [Cell<Option<i32>>; 2],
-    /// Plants that were found before.
+    /// Plants from earlier evaluations.
     pub(super) kept: &'a KeptPlants,
 }
 
-/// A loop without its plant, and its specifications, that several threads read.
+/// A loop without its plant, and its specifications, shared between threads.
 pub(super) struct EvaluatorSeed<'a> {
     compensation: &'a Compensation,
     criteria: Vec<Criterion>,
@@ -45,7 +45,7 @@ pub(super) struct EvaluatorSeed<'a> {
 }
 
 impl EvaluatorSeed<'_> {
-    /// An evaluator that knows these plants.
+    /// An evaluator with these plants.
     pub(super) fn evaluator<'k>(&'k self, kept: &'k KeptPlants) -> Evaluator<'k> {
         let own = Evaluator::new(self.compensation, self.criteria.clone(), self.with_prefilter, kept);
         Evaluator { steepness: self.steepness.map(Cell::new), ..own }
@@ -77,7 +77,7 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// The source of evaluators of the same margins, for pieces of work.
+    /// The source of evaluators of equal margins, for parallel tasks.
     pub(super) fn seed(&self) -> EvaluatorSeed<'a> {
         EvaluatorSeed {
             compensation: self.compensation,
@@ -87,12 +87,12 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// Counts responses that a piece of work evaluated.
+    /// Counts responses that a task evaluated.
     pub(super) fn count(&self, responses: u64) {
         self.responses.set(self.responses.get() + responses);
     }
 
-    /// Number of responses of a plant that were evaluated so far.
+    /// Number of responses of a plant evaluated so far.
     pub(super) fn responses(&self) -> u64 {
         self.responses.get()
     }
@@ -102,7 +102,7 @@ impl<'a> Evaluator<'a> {
         self.kept.member(self.compensation, plant, values).ok()
     }
 
-    /// A plant that a search tries; `None` if it cannot be sampled.
+    /// A trial plant of a search; `None` if it cannot be sampled.
     pub(super) fn trial(&self, plant: &UncertainPlant, values: &[f64]) -> Option<TrialPlant> {
         self.kept.trial(self.compensation, plant, values)
     }
@@ -116,8 +116,8 @@ impl<'a> Evaluator<'a> {
         at.closed(member)
     }
 
-    /// The margin of one plant to one criterion, in dB; at zero and infinite frequency its limit.
-    /// `None` where it is not defined or does not apply.
+    /// The margin of one plant to one criterion, dB; at zero and infinite frequency its limit.
+    /// `None` if it is undefined or does not apply.
     pub(super) fn margin_db(&self, criterion: usize, member: &Member, frequency: f64) -> Option<f64> {
         let criterion = self.criteria.get(criterion)?;
         let end = match frequency {
@@ -135,8 +135,8 @@ impl<'a> Evaluator<'a> {
         self.finite(criterion, member, frequency).map(|(_, margin_db)| margin_db)
     }
 
-    /// The margin that every plant of a disc has at most, in dB, at a frequency that is neither
-    /// zero nor infinite.
+    /// Upper bound on the margin for every plant of a disc at a frequency that is neither zero nor
+    /// infinite, dB.
     pub(super) fn certain_margin_db(&self, criterion: usize, member: &Member, frequency: f64) -> Option<f64> {
         let criterion = self.criteria.get(criterion)?;
         let only = std::slice::from_ref(criterion);
@@ -145,7 +145,7 @@ impl<'a> Evaluator<'a> {
         Some(decibels(at.excess(0, criterion, &closed)?.certain))
     }
 
-    /// The margin in dB of a plant that is tried: a sampled one by its modes, where they suffice.
+    /// The margin of a trial plant, dB: for a sampled one from its modes, if they suffice.
     pub(super) fn trial_margin_db(
         &self,
         criterion: usize,
@@ -159,8 +159,8 @@ impl<'a> Evaluator<'a> {
         self.margin_db(criterion, &*plant.whole(self.compensation)?, frequency)
     }
 
-    /// A quantity that vanishes at a resonance, and the margin in dB, at a frequency that is
-    /// neither zero nor infinite.
+    /// A quantity that vanishes at a resonance, and the margin, dB, at a frequency that is neither
+    /// zero nor infinite.
     pub(super) fn resonance(
         &self,
         criterion: usize,
@@ -225,7 +225,8 @@ impl<'a> Evaluator<'a> {
         (steepness.get() == Some(found.power)).then_some(found.margin_db)
     }
 
-    /// The local minimum of a margin between two frequencies, from one between them: (rad/s, dB).
+    /// The local minimum of a margin between two frequencies, starting from one between them:
+    /// (rad/s, dB).
     pub(super) fn polished(
         &self,
         criterion: usize,

@@ -1,4 +1,4 @@
-//! From margins to findings.
+//! Findings derived from margins.
 
 use std::ops::Range;
 
@@ -11,18 +11,18 @@ use crate::family::Family;
 use crate::specification::Specification;
 use phea_dynamics::order::sort_by_number;
 
-/// Violations below this are due to rounding, dB.
+/// Violation below which it counts as rounding error, dB.
 const ROUNDING_DB: f64 = 1e-9;
 /// Relative accuracy of the ends of violated bands.
 const EDGE_TOLERANCE: f64 = 1e-4;
 
-/// A margin that exceeds the worst by no more than this is as bad: it is read as the same, dB.
+/// Excess over the worst margin up to which a margin counts as equally bad, dB.
 const AS_BAD_DB: f64 = 0.05;
-/// Relative difference of the frequencies of one minimum, and share of the box over which its
-/// plants are near each other.
+/// Relative difference of the frequencies of one minimum, and fraction of the box within which its
+/// plants count as near each other.
 const SAME_FREQUENCY: f64 = 0.05;
 const SAME_SHARE: f64 = 0.5;
-/// Most places that are as bad as the worst.
+/// Largest number of places as bad as the worst.
 const PLACES_MAXIMUM: usize = 4;
 
 /// The criteria of one specification.
@@ -30,20 +30,20 @@ const PLACES_MAXIMUM: usize = 4;
 pub(super) struct SpecificationCriteria {
     pub(super) first: usize,
     pub(super) count: usize,
-    /// Whether their margins are summed, each with a plant of its own.
+    /// True if their margins are summed, each with a separate plant.
     pub(super) spread: bool,
 }
 
-/// A margin that was found.
+/// A margin found in an audit.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FoundMargin {
     pub(super) margin: SpecificationMargin,
-    /// Upper bound of the margin over the discs of a measurement, dB; the margin itself without
+    /// Upper bound on the margin over the discs of a measurement, dB; the margin itself without
     /// discs.
     pub(super) certain_db: f64,
     /// The criterion; both for a spread.
     pub(super) criteria: Vec<usize>,
-    /// Whether the margin has a minimum here, at a frequency inside the band.
+    /// True if the margin has a minimum here, at a frequency inside the band.
     pub(super) interior: bool,
 }
 
@@ -96,7 +96,8 @@ impl SpecificationCriteria {
         self.criteria().map(|first| SpecificationCriteria { first, count: 1, spread: false }).collect()
     }
 
-    /// The worst of the family at one frequency; `None` where nothing applies or is resolved.
+    /// The worst margin of the family at one frequency; `None` if no criterion applies or is
+    /// resolved.
     pub(super) fn combined(self, frequency: f64, worst: &[Option<WorstPlant>]) -> Option<EnvelopePoint> {
         let own = self
             .criteria()
@@ -123,7 +124,7 @@ impl SpecificationCriteria {
     }
 }
 
-/// A common frequency at which every criterion has a margin, and their spread has none.
+/// A common frequency at which every criterion has a margin, but their spread has none.
 pub(super) fn undefined(part: SpecificationCriteria, scan: &Scan) -> Option<f64> {
     let everywhere =
         |worst: &[Option<WorstPlant>]| part.criteria().all(|one| worst.get(one).is_some_and(Option::is_some));
@@ -214,7 +215,7 @@ impl Joining<'_> {
         }
     }
 
-    /// The minima that are as bad as the worst, one for each place.
+    /// The minima as bad as the worst, one for each place.
     fn as_bad(
         &self,
         worst: Option<&FoundMargin>,
@@ -237,7 +238,7 @@ impl Joining<'_> {
         places.into_iter().skip(1).map(margin).collect()
     }
 
-    /// Whether two margins are of one minimum: at about one frequency, with plants that are near
+    /// True if two margins belong to one minimum: at about one frequency, with plants that are near
     /// each other in most coordinates of the box.
     fn is_same_place(&self, one: &FoundMargin, other: &FoundMargin) -> bool {
         let [one, other] = [&one.margin, &other.margin];
@@ -255,7 +256,7 @@ impl Joining<'_> {
         2 * far < one.len().max(1)
     }
 
-    /// Whether a plant is known within confidence discs.
+    /// True if a plant is known within confidence discs.
     pub(super) fn has_discs(&self) -> bool {
         let Family::Measured(family) = self.family else { return false };
         family.plants().iter().any(|plant| !plant.radii.is_empty())
@@ -265,7 +266,7 @@ impl Joining<'_> {
         self.tolerance_db.max(ROUNDING_DB)
     }
 
-    /// The envelope, including what searches found between the plants.
+    /// The envelope, including the margins found by searches between the plants.
     fn drawn(&self, envelope: &[EnvelopePoint]) -> Vec<(f64, f64)> {
         let margin = |point: &EnvelopePoint| {
             let here = self.cases.iter().filter(|case| case.is_at(point.frequency));
@@ -274,7 +275,7 @@ impl Joining<'_> {
         envelope.iter().map(|point| (point.frequency, margin(point))).collect()
     }
 
-    /// Runs of frequencies at which some plant violates the specification, their ends refined.
+    /// Ranges of frequencies at which some plant violates the specification, with refined ends.
     fn violations(
         &self,
         scan: &mut Scan,

@@ -1,4 +1,4 @@
-//! The frequencies to be examined: a margin has no feature between them that they do not show.
+//! The frequencies to be examined: a margin has no feature between them that they miss.
 
 use num_complex::Complex64;
 use phea_dynamics::frequency::logarithmic_grid;
@@ -12,14 +12,15 @@ use crate::closed_loop::Member;
 use crate::family::{COARSE, tabulated};
 use crate::specification::{ClosedLoop, Limit};
 
-/// Points per decade in the range of the roots, and beyond it.
+/// Number of points per decade in the range of the roots, and beyond it.
 const POINTS_PER_DECADE: f64 = 40.0;
 const POINTS_PER_OUTER_DECADE: f64 = 8.0;
-/// Decades beyond the roots that are examined before the limit at the end of the axis takes over.
+/// Number of decades beyond the roots that are examined before the limit at the end of the axis
+/// applies.
 const OUTER_DECADES: f64 = 3.0;
-/// A root with a damping ratio below this one makes a peak that the grid could miss.
+/// Damping ratio below which the peak of a root could be missed by the grid.
 const LIGHTLY_DAMPED: f64 = 0.2;
-/// Angle by which dead time or a sample may turn a loop from one point to the next, rad.
+/// Largest phase change of a loop from one point to the next due to dead time or sampling, rad.
 const TURN: f64 = 0.3;
 /// Largest number of points added because of dead time.
 const TURNS_MAXIMUM: usize = 600;
@@ -30,19 +31,19 @@ pub(super) struct Features {
     pub(super) frequencies: Vec<f64>,
     /// Smallest and largest magnitude of a root, rad/s.
     pub(super) range: Option<[f64; 2]>,
-    /// Whether every resonance of the closed loop is among them; otherwise the turning of 1 + L
-    /// must decide.
+    /// True if every resonance of the closed loop is among them; otherwise the phase changes of 1 +
+    /// L are decisive.
     pub(super) complete: bool,
     pub(super) dead_time_s: f64,
 }
 
 impl Features {
-    /// Of a plant that has no response.
+    /// Features of a plant that has no response.
     pub(super) fn none() -> Features {
         Features { frequencies: Vec::new(), range: None, complete: true, dead_time_s: 0.0 }
     }
 
-    /// From roots in the s plane.
+    /// Features of roots in the s plane.
     fn of_roots(roots: &[Complex64], complete: bool, dead_time_s: f64) -> Features {
         let frequencies = roots.iter().flat_map(|root| around(*root)).collect();
         let sizes = roots.iter().map(|root| portable::magnitude(*root));
@@ -65,7 +66,7 @@ fn around(root: Complex64) -> Vec<f64> {
     offsets.map(|offset| centre + offset * width).filter(|frequency| *frequency > 0.0).collect()
 }
 
-/// What one plant adds: the roots of P, of Pd, and of 1 + L where that is a polynomial.
+/// Features of one plant: the roots of P, of Pd, and of 1 + L if that is a polynomial.
 pub(super) fn features(evaluator: &Evaluator<'_>, member: &Member) -> Features {
     match member {
         Member::Continuous { plant, .. } => {
@@ -139,7 +140,7 @@ fn roots_of(function: &TransferFunction) -> Vec<Complex64> {
     }
 }
 
-/// What controller, prefilter, sensor and limits add.
+/// Features of controller, prefilter, sensor and limits.
 pub(super) fn common_features(evaluator: &Evaluator<'_>) -> Features {
     let compensation = evaluator.compensation;
     let parts = [compensation.feedback(), compensation.prefilter(), compensation.sensor()];
@@ -151,8 +152,8 @@ pub(super) fn common_features(evaluator: &Evaluator<'_>) -> Features {
     Features::of_roots(&roots, true, compensation.delay_s())
 }
 
-/// The frequencies at which every plant is looked at: increasing, from zero (0) or to infinity
-/// where a band reaches there.
+/// The frequencies at which every plant is evaluated: increasing, from zero (0) or to infinity if a
+/// band extends there.
 pub(super) fn common_grid<'a>(
     evaluator: &Evaluator<'_>,
     features: impl Iterator<Item = &'a Features>,

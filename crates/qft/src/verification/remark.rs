@@ -1,4 +1,4 @@
-//! What was not looked at.
+//! Limitations of an examination.
 
 use super::criterion::{Criterion, MarginSide};
 use super::finding::{FoundMargin, Joining};
@@ -60,7 +60,7 @@ pub(super) fn remarks(
     remarks
 }
 
-/// Why a plant could not be judged at a frequency.
+/// Remark for a plant that could not be evaluated at a frequency.
 fn without_response(joining: &Joining, frequency_rad_per_s: f64, index: usize) -> Remark {
     let beyond = |range: &[f64; 2]| frequency_rad_per_s < range[0] || frequency_rad_per_s > range[1];
     let measured = measured_by_all(joining).filter(beyond);
@@ -73,7 +73,7 @@ fn without_response(joining: &Joining, frequency_rad_per_s: f64, index: usize) -
     }
 }
 
-/// Between which frequencies every plant was measured, rad/s.
+/// Range of frequencies at which every plant was measured, rad/s.
 fn measured_by_all(joining: &Joining) -> Option<[f64; 2]> {
     let ranges = joining.plants.iter().filter_map(|plant| plant.features.range);
     ranges.reduce(|one, other| [one[0].max(other[0]), one[1].min(other[1])])

@@ -21,14 +21,14 @@ pub(super) struct Fraction {
     pub(super) denominator: Complex64,
 }
 
-/// What is the same for every plant at one frequency.
+/// Data common to all plants at one frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LoopAt {
     pub(super) frequency: f64,
     feedback: Fraction,
     prefilter: Complex64,
     sensor: Complex64,
-    /// The square of the limit of each criterion; `None` where nothing is demanded.
+    /// The square of the limit of each criterion; `None` without a limit there.
     limits_squared: Vec<Option<f64>>,
     load_motion: bool,
 }
@@ -36,23 +36,23 @@ pub(super) struct LoopAt {
 /// The closed loop around one plant at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LoopAround {
-    /// a + b, whose zeros are the poles of the closed loop.
+    /// Sum a + b, whose zeros are the poles of the closed loop.
     pub(super) characteristic: Complex64,
     a: Complex64,
     b: Complex64,
     plant_numerator: Complex64,
     loop_denominator: Complex64,
     load_motion: Fraction,
-    /// How far the magnitudes reach where the plant is known within a disc.
+    /// Factors of the magnitudes for a plant known within a disc.
     disc: DiscFactors,
 }
 
-/// The square of how far a criterion is exceeded, over all plants that one response may be.
+/// The squared ratio of a magnitude to its limit, over all plants that one response may represent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Excess {
-    /// By the worst of them.
+    /// Excess of the worst plant.
     pub(super) worst: f64,
-    /// By all of them.
+    /// Excess of every plant.
     pub(super) certain: f64,
 }
 
@@ -61,7 +61,7 @@ impl Fraction {
         Fraction { numerator: value, denominator: Complex64::new(1.0, 0.0) }
     }
 
-    /// Of a quotient of polynomials at s = j w.
+    /// Value of a quotient of polynomials at s = j w.
     fn of_coefficients(coefficients: &RationalCoefficients<f64>, frequency: f64) -> Fraction {
         Fraction {
             numerator: at_imaginary(&coefficients.numerator, frequency),
@@ -69,7 +69,7 @@ impl Fraction {
         }
     }
 
-    /// Of a factored function at s = j w, or z = e^(j w T).
+    /// Value of a factored function at s = j w, or z = e^(j w T).
     pub(super) fn of_transfer_function(function: &TransferFunction, frequency: f64) -> Fraction {
         let point = match function.domain() {
             TimeDomain::Continuous => Complex64::new(0.0, frequency),
@@ -99,9 +99,9 @@ fn turned(angle: f64) -> Complex64 {
 }
 
 impl LoopAround {
-    /// What is nearly zero where a criterion has a peak: the characteristic value, with the
-    /// denominator of a Pd that has its own; the plant's numerator for a magnitude that must not
-    /// fall.
+    /// Quantity nearly zero where a criterion has a peak: the characteristic value, with the
+    /// denominator of a Pd that has a separate one; the plant's numerator for a magnitude with a
+    /// lower limit.
     pub(super) fn vanishing(&self, criterion: &Criterion) -> Complex64 {
         let own = self.load_motion.denominator != self.loop_denominator;
         match (criterion.side, criterion.closed_loop) {
@@ -115,8 +115,8 @@ impl LoopAround {
 }
 
 impl LoopAt {
-    /// G, F, H and the limits at a frequency that is neither zero nor infinite. Without a prefilter
-    /// F counts as 1.
+    /// Responses G, F, H and the limits at a frequency that is neither zero nor infinite. Without a
+    /// prefilter F counts as 1.
     pub(super) fn new(
         compensation: &Compensation,
         criteria: &[Criterion],
@@ -147,7 +147,7 @@ impl LoopAt {
         }
     }
 
-    /// The loop closed around a plant; `None` where a measurement does not reach.
+    /// The loop closed around a plant; `None` beyond the range of a measurement.
     pub(super) fn closed(&self, member: &Member) -> Option<LoopAround> {
         let frequency = self.frequency;
         let none = Fraction::of_value(Complex64::new(0.0, 0.0));
@@ -194,7 +194,7 @@ impl LoopAt {
         Some(self.around(plant_numerator, around, load_motion, radius))
     }
 
-    /// The same around a sampled plant by its modes; `None` where these do not say.
+    /// The loop closed around a sampled plant by its modes; `None` if these do not determine it.
     pub(super) fn closed_held(&self, held: &ModalPlant) -> Option<LoopAround> {
         let found = held.at(self.frequency)?;
         let over = |response: Complex64| Fraction {
@@ -221,13 +221,13 @@ impl LoopAt {
         let a = around.denominator * self.feedback.denominator;
         let b = around.numerator * self.feedback.numerator;
         let loop_denominator = around.denominator;
-        // a is that of the controller alone where a plant is known within a disc
+        // for a plant known within a disc, a belongs only to the controller
         let disc = DiscFactors::of(b / a, radius * portable::magnitude(self.feedback.numerator / a));
         let characteristic = a + b;
         LoopAround { characteristic, a, b, plant_numerator, loop_denominator, load_motion, disc }
     }
 
-    /// Pd + K V_d P over the denominator of Pd.
+    /// Sum Pd + K V_d P over the denominator of Pd.
     fn fed(&self, load_motion: Fraction, plant: Fraction, forward: Complex64) -> Fraction {
         if !self.load_motion || forward == Complex64::ZERO {
             return load_motion;
@@ -241,8 +241,8 @@ impl LoopAt {
         Fraction { numerator: load_motion.numerator + shared, ..load_motion }
     }
 
-    /// The square of how far a criterion is exceeded: (quantity/limit)^2 for an upper limit, its
-    /// inverse for a lower one. `None` where nothing is demanded; NaN where it is not defined.
+    /// The squared ratio of a magnitude to its limit: (quantity/limit)^2 for an upper limit, its
+    /// inverse for a lower one. `None` without a limit there; NaN if it is undefined.
     pub(super) fn excess(&self, index: usize, criterion: &Criterion, closed: &LoopAround) -> Option<Excess> {
         let limit = (*self.limits_squared.get(index)?)?;
         let numerator = match criterion.closed_loop {
@@ -271,7 +271,7 @@ impl LoopAt {
         })
     }
 
-    /// |Pd a|^2; a denominator that Pd shares with P drops out.
+    /// Squared magnitude |Pd a|^2; a denominator shared by Pd and P cancels.
     fn load_motion_squared(&self, closed: &LoopAround) -> f64 {
         let Fraction { numerator, denominator } = closed.load_motion;
         if denominator == closed.loop_denominator {
@@ -281,7 +281,7 @@ impl LoopAt {
     }
 }
 
-/// The margin in dB that belongs to a squared excess.
+/// The margin of a squared excess, dB.
 pub(super) fn decibels(excess: f64) -> f64 {
     0.0 - 10.0 * portable::log10(excess)
 }

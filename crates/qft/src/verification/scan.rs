@@ -1,4 +1,4 @@
-//! The look at every plant: the family's worst margin at each common frequency, and the peaks of
+//! Examination of every plant: the family's worst margin at each common frequency, and the peaks of
 //! each plant between them.
 
 use num_complex::Complex64;
@@ -11,35 +11,34 @@ use super::frequencies::Features;
 use super::response::{Excess, LoopAt};
 use crate::closed_loop::Member;
 
-/// A characteristic value that turns by more than this from one point to the next has a resonance
-/// between them: cos of it.
+/// Cosine of the largest angle by which a characteristic value turns from one point to the next
+/// without a resonance between them.
 const TURN_COSINE: f64 = 0.5;
-/// How often an interval is halved in search of a resonance.
+/// Number of times an interval is halved in search of a resonance.
 pub(super) const HALVINGS: usize = 40;
-/// Peaks are worth polishing if that could make them the worst: by this factor of the squared
-/// excess, 1.5 dB.
+/// Factor of the squared excess, 1.5 dB, by which refinement may raise a peak to the worst.
 pub(super) const WORTH_POLISHING: f64 = 0.7;
 
-/// A plant that is looked at.
+/// A plant that is examined.
 #[derive(Clone, Debug)]
 pub(super) struct ScannedPlant {
     pub(super) point: PlantPoint,
-    /// `None` where it cannot be sampled.
+    /// Member; `None` if it cannot be sampled.
     pub(super) member: Option<Member>,
     pub(super) features: Features,
 }
 
-/// The worst of the family at one frequency for one criterion.
+/// The worst plant of the family at one frequency for one criterion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct WorstPlant {
-    /// (quantity/limit)^2, or its inverse.
+    /// Squared ratio (quantity/limit)^2, or its inverse.
     pub(super) excess: f64,
     pub(super) plant: usize,
-    /// The greatest excess that some plant has wherever in its disc it is.
+    /// Greatest excess of a plant at every point of its disc.
     pub(super) certain: f64,
 }
 
-/// A local maximum of the excess of one plant, with the frequencies next to it.
+/// A local maximum of the excess of one plant, with its neighbouring frequencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Peak {
     pub(super) excess: f64,
@@ -47,20 +46,20 @@ pub(super) struct Peak {
     pub(super) bracket: [f64; 3],
 }
 
-/// What was seen so far.
+/// Results so far.
 #[derive(Clone, Debug)]
 pub(super) struct Scan {
     grid: Vec<(f64, Option<LoopAt>)>,
-    /// By frequency and criterion; `None` where nothing is demanded or resolved.
+    /// Worst plants by frequency and criterion; `None` without a limit, or if none is resolved.
     worst: Vec<Vec<Option<WorstPlant>>>,
-    /// By criterion.
+    /// Peaks by criterion.
     peaks: Vec<Vec<Peak>>,
-    /// By criterion: where a margin was demanded and not to be had, as frequency and plant.
+    /// Required but unavailable margin by criterion, as frequency and plant.
     unresolved: Vec<Option<(f64, usize)>>,
 }
 
-/// One plant at one frequency: an excess for each criterion, `None` where nothing is demanded or
-/// resolved.
+/// One plant at one frequency: an excess for each criterion, `None` without a limit, or if it is
+/// not resolved.
 struct PlantSample {
     frequency: f64,
     characteristic: Option<Complex64>,
@@ -79,7 +78,7 @@ impl Scan {
         }
     }
 
-    /// The common frequencies with the worst of each criterion.
+    /// The common frequencies with the worst plant for each criterion.
     pub(super) fn envelope(&self) -> impl Iterator<Item = (f64, &[Option<WorstPlant>])> {
         self.grid.iter().map(|point| point.0).zip(self.worst.iter().map(Vec::as_slice))
     }
@@ -113,7 +112,7 @@ impl Scan {
         self.worst.insert(place, worst);
     }
 
-    /// The worst of the family at any frequency, by criterion.
+    /// The worst plants of the family at any frequency, by criterion.
     pub(super) fn family_at(
         &mut self,
         evaluator: &Evaluator<'_>,
@@ -131,7 +130,7 @@ impl Scan {
         worst
     }
 
-    /// Examines one plant at all common frequencies and at its own.
+    /// Examines one plant at all common frequencies and at its individual ones.
     pub(super) fn look_at(&mut self, evaluator: &Evaluator<'_>, plant: &ScannedPlant, index: usize) {
         let common = std::mem::take(&mut self.grid);
         let mut samples = Vec::with_capacity(common.len() + plant.features.frequencies.len());
@@ -197,7 +196,7 @@ impl Scan {
         }
     }
 
-    /// Halves each interval over which the characteristic value turns so far that it may contain a
+    /// Halves each interval over which the characteristic value turns far enough to contain a
     /// resonance.
     fn with_resonances(
         &mut self,
@@ -246,7 +245,7 @@ impl Scan {
     }
 }
 
-/// G, F, H and limits at a frequency; `None` at the ends of the axis.
+/// Responses G, F, H and limits at a frequency; `None` at the ends of the axis.
 fn loop_at(evaluator: &Evaluator<'_>, frequency: f64) -> Option<LoopAt> {
     (frequency > 0.0 && frequency < f64::INFINITY).then(|| evaluator.loop_at(frequency))
 }
@@ -266,15 +265,14 @@ fn worse(so_far: Option<WorstPlant>, excess: Option<Excess>, plant: usize) -> Op
     }
 }
 
-/// A frequency between two samples if the characteristic value turns too far from one to the other.
+/// A frequency between two samples if the characteristic value turns too far between them.
 fn halved(behind: &PlantSample, ahead: &PlantSample) -> Option<f64> {
     let middle = (behind.frequency * ahead.frequency).sqrt();
     let turns = turns(behind.characteristic?, ahead.characteristic?);
     (turns && behind.frequency < middle && middle < ahead.frequency).then_some(middle)
 }
 
-/// Whether a value turns so far from one point to the next that there may be a resonance between
-/// them.
+/// True if a value turns far enough from one point to the next for a resonance between them.
 pub(super) fn turns(from: Complex64, to: Complex64) -> bool {
     let (from, to) = (from / portable::magnitude(from), to / portable::magnitude(to));
     (from.conj() * to).re < TURN_COSINE

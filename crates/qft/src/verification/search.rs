@@ -1,5 +1,6 @@
-//! The worst case inside the box: a local search over the shares of its coordinates, the frequency
-//! following its minimum; at a given frequency a share follows instead, where there is a resonance.
+//! The worst case inside the box: a local search over the fractions of its coordinates, with the
+//! frequency following its minimum; at a given frequency with a resonance, a fraction follows
+//! instead.
 
 mod resonance;
 
@@ -13,38 +14,38 @@ use crate::family::UncertainFamily;
 
 /// Largest number of sweeps over the coordinates.
 const SWEEPS_MAXIMUM: usize = 20;
-/// A sweep that gains less than this ends the search, dB.
+/// Gain of a sweep below which the search ends, dB.
 const GAIN_MINIMUM: f64 = 1e-6;
-/// Shares are found to this.
+/// Accuracy of a fraction.
 const SHARE_TOLERANCE: f64 = 1e-5;
-/// Accuracy of a sweep while its range is still wide, as a share of the range.
+/// Accuracy of a sweep while its range is still wide, as a fraction of the range.
 const SHARE_STEP: f64 = 1e-3;
 /// First relative step of a frequency that follows its minimum.
 const FREQUENCY_STEP: f64 = 0.01;
 
-/// Where a search starts.
+/// Start of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct SearchTask {
-    /// The criteria whose margins are summed, each with a plant of its own.
+    /// The criteria whose margins are summed, each with a separate plant.
     pub(super) criteria: Vec<usize>,
-    /// Shares of each plant.
+    /// Fractions of each plant.
     pub(super) shares: Vec<Vec<f64>>,
-    /// rad/s; zero and infinity are limits.
+    /// Frequency, rad/s; zero and infinity denote limits.
     pub(super) frequency: f64,
-    /// The range in which the frequency may move; `None` where it is given.
+    /// The range in which the frequency may move; `None` if it is fixed.
     pub(super) range: Option<[f64; 2]>,
-    /// Whether resonances between the plants are searched for at a given frequency.
+    /// True if resonances between the plants are searched for at a given frequency.
     pub(super) resonances: bool,
 }
 
-/// The end of a search, and the first plant on its way that has no margin at some frequency.
+/// The end of a search, and the first plant encountered that has no margin at some frequency.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct SearchOutcome {
     pub(super) found: Option<SearchEnd>,
     pub(super) undefined: Option<f64>,
 }
 
-/// Where a search ended.
+/// End of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct SearchEnd {
     pub(super) margin_db: f64,
@@ -62,7 +63,7 @@ struct SearchPoint {
     frequency: f64,
 }
 
-/// Goes downhill from a start until a sweep over all coordinates gains nothing.
+/// Descends from a start until a sweep over all coordinates gains nothing.
 pub(super) fn search(
     evaluator: &Evaluator<'_>,
     family: &UncertainFamily,
@@ -95,7 +96,7 @@ struct MarginDescent<'a> {
     evaluator: &'a Evaluator<'a>,
     family: &'a UncertainFamily,
     task: &'a SearchTask,
-    /// The share that follows its minimum.
+    /// The fraction that follows its minimum.
     follower: Option<SearchCoordinate>,
     undefined: &'a Cell<Option<f64>>,
 }
@@ -111,8 +112,8 @@ impl MarginDescent<'_> {
         self.settled(self.task.shares.clone(), members, self.task.frequency)
     }
 
-    /// The margin where a search ended, of the whole plants: what was found with their modes alone
-    /// is judged as every other plant is.
+    /// The margin at the end of a search for the whole plants: a result found only with their modes
+    /// is evaluated like that of every other plant.
     fn confirmed(&self, place: &SearchPoint) -> Option<f64> {
         let mut plants = self.task.criteria.iter().zip(&place.members);
         let sum = plants.try_fold(0.0, |sum, (&criterion, plant)| {
@@ -153,12 +154,13 @@ impl MarginDescent<'_> {
         place
     }
 
-    /// With a follower only its own plant moves, and the follower moves by itself.
+    /// True if a coordinate moves: with a follower, only those of its plant except the follower
+    /// itself.
     fn moves(&self, block: usize, coordinate: usize) -> bool {
         self.follower.is_none_or(|follower| follower.block == block && follower.coordinate != coordinate)
     }
 
-    /// A place whose frequency, or follower, is at its minimum.
+    /// A point whose frequency, or follower, is at its minimum.
     fn settled(
         &self,
         shares: Vec<Vec<f64>>,
@@ -199,7 +201,7 @@ impl MarginDescent<'_> {
         Some(if margin < here { (within(logarithm), margin) } else { (frequency, here) })
     }
 
-    /// The same place with another share of one coordinate, and its margin.
+    /// The point with another fraction of one coordinate, and its margin.
     fn moved(&self, place: &SearchPoint, block: usize, coordinate: usize, share: f64) -> Option<SearchPoint> {
         let mut shares = place.shares.clone();
         *shares.get_mut(block)?.get_mut(coordinate)? = share;
@@ -208,7 +210,7 @@ impl MarginDescent<'_> {
         self.settled(shares, members, place.frequency)
     }
 
-    /// The best place along one coordinate: the neighbourhood of this share, those of both ends
+    /// The best point along one coordinate: the neighbourhood of this fraction, those of both ends
     /// and, on the first sweep, that of the middle.
     fn along(
         &self,
@@ -236,7 +238,7 @@ impl MarginDescent<'_> {
         self.between(place, SearchCoordinate { block, coordinate }, ends, tolerance)
     }
 
-    /// The local minimum between two shares of one coordinate.
+    /// The local minimum between two fractions of one coordinate.
     fn between(
         &self,
         place: SearchPoint,
@@ -250,7 +252,7 @@ impl MarginDescent<'_> {
         best
     }
 
-    /// The margin with another share; the best place so far is kept.
+    /// The margin with another fraction; the best point so far is retained.
     fn tried(&self, best: &mut SearchPoint, along: SearchCoordinate, share: f64) -> f64 {
         match self.moved(best, along.block, along.coordinate, share) {
             Some(found) => {
@@ -262,7 +264,8 @@ impl MarginDescent<'_> {
         }
     }
 
-    /// Once more in the direction in which a sweep went, in steps that double, as long as it helps.
+    /// Continues in the direction of a sweep, in steps that double, as long as the margin
+    /// decreases.
     fn onwards(&self, from: &SearchPoint, to: SearchPoint) -> SearchPoint {
         let mut best = to.clone();
         let mut factor = 1.0;

@@ -1,4 +1,4 @@
-//! Where the searches inside the box begin.
+//! Starting points of the searches inside the box.
 
 use super::PlantPoint;
 use super::evaluator::Evaluator;
@@ -7,9 +7,9 @@ use super::scan::{Scan, ScannedPlant};
 use super::search::SearchTask;
 use crate::family::UncertainFamily;
 
-/// Number of local minima of a family's margin, and of plants, that are followed.
+/// Number of local minima of a family's margin, and of plants, from which searches start.
 pub(super) const STARTS: usize = 4;
-/// Frequencies further apart than by this factor count as different.
+/// Factor by which frequencies must differ to count as different.
 const FREQUENCY_RATIO: f64 = 1.1;
 
 /// The range of finite frequencies in which a search may move.
@@ -39,9 +39,9 @@ fn beside_violations(envelope: &[EnvelopePoint]) -> Vec<f64> {
     kept.take(2 * STARTS).collect()
 }
 
-/// Searches for one specification: at each design frequency and each end of the band, with the
-/// resonances there; next to violated frequencies; from its worst local minima, from the middle of
-/// the box, and from the plants with the worst peaks.
+/// Searches for one specification: at each design frequency and each end of the band, including
+/// resonances; next to violated frequencies; from its worst local minima, from the middle of the
+/// box, and from the plants with the worst peaks.
 pub(super) fn tasks(
     part: SpecificationCriteria,
     family: &UncertainFamily,
@@ -91,7 +91,7 @@ pub(super) fn tasks(
     tasks
 }
 
-/// Where a plant lies in the box; the middle for one that does not.
+/// Fractions of a plant in the box; the middle for one outside.
 fn shares(family: &UncertainFamily, point: Option<&PlantPoint>) -> Vec<f64> {
     match point {
         Some(PlantPoint::Parameters(values)) => family.shares(values),
@@ -99,8 +99,8 @@ fn shares(family: &UncertainFamily, point: Option<&PlantPoint>) -> Vec<f64> {
     }
 }
 
-/// The worst cases, each with a plant of its own, after the first few each with a frequency of its
-/// own.
+/// The worst cases, each with a different plant, and after the first few each with a different
+/// frequency.
 fn diverse<'a>(cases: impl Iterator<Item = &'a FoundMargin>) -> Vec<&'a FoundMargin> {
     let apart = |case: &FoundMargin, other: &&FoundMargin| {
         let ratio = case.margin.frequency_rad_per_s / other.margin.frequency_rad_per_s;

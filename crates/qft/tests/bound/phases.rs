@@ -25,10 +25,10 @@ fn template(responses: &[Complex64]) -> Template {
     }
 }
 
-/// Refined far below the default.
+/// Grid refined far below the default.
 const FINE: PhaseGrid = PhaseGrid { spacing_rad: 0.03, tolerance_db: 0.05, finest_rad: 1e-9 };
 
-/// The plant 1.
+/// The constant plant 1.
 fn unit() -> Template {
     template(&[Complex64::new(1.0, 0.0)])
 }
@@ -41,7 +41,7 @@ fn specification(requirement: Requirement) -> Specification {
     Specification { requirement, frequencies_rad_per_s: vec![1.0], band_rad_per_s: [1.0, 1.0] }
 }
 
-/// For the plant 1 the bound of |T| <= W ends where a ray touches the circle of |T| = W: at
+/// Bound of |T| <= W for the plant 1: it ends where a ray touches the circle of |T| = W, at
 /// arcsin(1/W) from -180 degrees.
 #[test]
 fn the_tip_of_a_closed_bound_is_found() {
@@ -73,8 +73,8 @@ fn any_grid_of_phases_ends() {
     assert!(function.bound(&endless).phases_rad.len() < 1000);
 }
 
-/// Ends of the bound at a phase, straight in dB between its neighbours; `None` where their
-/// intervals differ in number.
+/// Ends of the bound at a phase, interpolated linearly in dB between its neighbours; `None` if
+/// their numbers of intervals differ.
 fn interpolated_db(bound: &Bound, phase: f64) -> Option<Vec<f64>> {
     let right = bound.phases_rad.iter().position(|place| *place > phase)?;
     let (from, to) = (bound.phases_rad[right - 1], bound.phases_rad[right]);
@@ -120,11 +120,12 @@ fn between_its_phases_a_bound_is_as_straight_as_promised() {
             }
         }
     }
-    // The promise is kept at the middle between two phases; a kink next to it may double it.
+    // The tolerance is satisfied at the middle between two phases; a kink next to it may double it.
     assert!(worst < 0.11 && compared > 1000, "{worst} dB, {compared} compared");
 }
 
-/// |S| <= 800 forbids a disc of a fourteenth of a degree around each plant, far below the spacing of the grid.
+/// Limit |S| <= 800, which forbids a disc of a fourteenth of a degree around each plant, far below
+/// the spacing of the grid.
 #[test]
 fn no_small_island_is_overlooked() {
     let plants = [(1.0, 0.0), (0.2, 1.3), (2.0, -0.7), (1.0, 2.9)].map(|(magnitude, angle): (f64, f64)| {
@@ -148,8 +149,8 @@ fn no_small_island_is_overlooked() {
     }
 }
 
-/// At -180 degrees with the plant 1: g/|1 - g| <= W between W/(W + 1) and W/(W - 1), 1/|1 - g| <= W
-/// between 1 - 1/W and 1 + 1/W.
+/// Limits at -180 degrees with the plant 1: g/|1 - g| <= W between W/(W + 1) and W/(W - 1), 1/|1 -
+/// g| <= W between 1 - 1/W and 1 + 1/W.
 #[test]
 fn limits_at_and_beside_one_lose_no_digit() {
     let at = |requirement| function(&unit(), requirement).forbidden(-PI).intervals().to_vec();
@@ -180,7 +181,8 @@ fn limits_at_and_beside_one_lose_no_digit() {
     }
 }
 
-/// |G/(1 + L)| <= W with W |P| = 1: the quadratic turns into a line, and the bound into -|q|/(2 cos) and above.
+/// Limit |G/(1 + L)| <= W with W |P| = 1: the quadratic becomes a line, and the bound -|q|/(2 cos)
+/// and above.
 #[test]
 fn a_control_effort_at_the_gain_of_a_plant_is_a_half_plane() {
     for gain in [3.0, 0.7, 1e-6, 1e9] {
@@ -196,7 +198,8 @@ fn a_control_effort_at_the_gain_of_a_plant_is_a_half_plane() {
     }
 }
 
-/// No limit forbids nothing, a limit of zero everything, an identical pair of plants has no spread.
+/// Extreme limits: an infinite one forbids nothing, a limit of zero forbids everything, and an
+/// identical pair of plants has no spread.
 #[test]
 fn limits_at_the_ends_of_what_they_can_be() {
     let constant = Limit::Constant;
@@ -227,7 +230,8 @@ fn limits_at_the_ends_of_what_they_can_be() {
     assert!(matches!(refused(&none, constant(1.0)), BoundError::NoPlants { .. }));
 }
 
-/// |S| <= W and |T| <= W with W < 1: both reach their limits where |L| = 1 and 2 |cos(phi/2)| = 1/W; nearer to -180 degrees nothing is left.
+/// Limits |S| <= W and |T| <= W with W < 1: both reach their limits where |L| = 1 and
+/// 2 |cos(phi/2)| = 1/W; nearer to -180 degrees no gain remains.
 #[test]
 fn specifications_that_collide_are_named_with_their_phases() {
     let limit = Limit::Constant(0.9);
@@ -265,7 +269,7 @@ fn specifications_that_collide_are_named_with_their_phases() {
     assert_eq!(forbidding(0.1), [2]);
 }
 
-/// One specification that allows nothing anywhere is named alone.
+/// A specification that forbids every gain is named as the only one.
 #[test]
 fn a_specification_that_forbids_everything_stands_alone() {
     let impossible = specification(Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(0.0)));
@@ -278,7 +282,7 @@ fn a_specification_that_forbids_everything_stands_alone() {
     assert_eq!((collisions[0].specifications.as_slice(), collisions[0].phases_rad), (&[1][..], [-TAU, 0.0]));
 }
 
-/// |T| <= 2 forbids (2/3, 2) at -180 degrees.
+/// Limit |T| <= 2, which forbids (2/3, 2) at -180 degrees.
 #[test]
 fn a_loop_is_placed_with_its_distance_in_db() {
     let bounds = FrequencyBounds::new(

@@ -1,5 +1,5 @@
-//! The bounds against the plain method: the quadratic inequality of every plant, and for tracking
-//! of every pair of plants, as they stand in the literature.
+//! The bounds against the elementary method: the quadratic inequality of every plant, and for
+//! tracking of every pair of plants, as given in the literature.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -9,7 +9,7 @@ use phea_qft::template::{Template, TemplatePoint};
 
 use super::random::{Numbers, random_requirements, random_template, template_of};
 
-/// Where a g^2 + b g + c < 0 with g > 0, by the school formula.
+/// Gains g > 0 with a g^2 + b g + c < 0, by the textbook formula.
 fn school(a: f64, b: f64, c: f64) -> Vec<[f64; 2]> {
     let end = f64::INFINITY;
     if a == 0.0 {
@@ -28,8 +28,8 @@ fn school(a: f64, b: f64, c: f64) -> Vec<[f64; 2]> {
     if a > 0.0 { vec![[low, high]] } else { vec![[0.0, low], [high, end]] }
 }
 
-/// Plant by plant, and pair by pair for tracking (Chait and Yaniv 1993), with the sensor H in loop
-/// and closed loops.
+/// Bound plant by plant, and pair by pair for tracking (Chait and Yaniv 1993), with the sensor H in
+/// loop and closed loops.
 fn plain(template: &Template, requirement: &Requirement, phase_rad: f64) -> GainIntervals {
     let direction = Complex64::new(portable::cos(phase_rad), portable::sin(phase_rad));
     let limit = |limit: &Limit| limit.magnitude(template.frequency_rad_per_s).unwrap();
@@ -61,7 +61,7 @@ fn plain(template: &Template, requirement: &Requirement, phase_rad: f64) -> Gain
     GainIntervals::union_of(found)
 }
 
-/// |P_i G/(1 + L_i)| <= d |P_k G/(1 + L_k)| with x = P H/(P0 H0).
+/// Inequality |P_i G/(1 + L_i)| <= d |P_k G/(1 + L_k)| with x = P H/(P0 H0).
 fn pair(
     template: &Template,
     i: &TemplatePoint,
@@ -79,7 +79,7 @@ fn pair(
     )
 }
 
-/// Gaps narrower than rounding are closed in both, then every end must agree.
+/// Gaps narrower than rounding errors are closed in both bounds, then every end must agree.
 fn assert_same(found: &GainIntervals, expected: &GainIntervals, about: &str) {
     let closed = |union: &GainIntervals| {
         let widened = union.intervals().iter().map(|&[low, high]| [low, high * (1.0 + 1e-9)]);

@@ -1,4 +1,4 @@
-//! Bounds against the closed loops of every plant, computed one by one.
+//! Bounds against the closed loops of every plant, computed individually.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -8,7 +8,7 @@ use phea_qft::template::{Resolution, Template, TemplatePoint};
 
 use super::random::{Numbers, random_requirements, random_template};
 
-/// Nearer to its limit than this, a closed loop is not distinguished from one that meets it.
+/// Distance to a limit below which a closed loop counts as satisfying it, dB.
 const TOLERANCE_DB: f64 = 1e-9;
 
 fn response(template: &Template, point: &TemplatePoint, nominal_loop: Complex64) -> LoopResponse {
@@ -21,7 +21,7 @@ fn response(template: &Template, point: &TemplatePoint, nominal_loop: Complex64)
     }
 }
 
-/// The worst margin of these plants in dB; for tracking that of the spread.
+/// The worst margin of these plants, dB; for tracking that of the spread.
 fn worst_db<'a>(
     template: &Template,
     points: impl Iterator<Item = &'a TemplatePoint>,
@@ -71,7 +71,8 @@ fn outside_of_a_bound_every_plant_meets_the_limit_and_inside_one_does_not() {
     assert!(counts.iter().flatten().all(|&count| count > 100), "{counts:?}");
 }
 
-/// A family that fills a circle of the q-plane, known by plants on its rim and one in its middle.
+/// A family that fills a circle of the q-plane, represented by plants on its rim and one in its
+/// middle.
 fn disc(numbers: &mut Numbers) -> (Template, Vec<TemplatePoint>) {
     let one = Complex64::new(1.0, 0.0);
     let sensor = numbers.polar([0.5, 2.0], [-1.0, 0.0]);
@@ -114,7 +115,7 @@ fn disc(numbers: &mut Numbers) -> (Template, Vec<TemplatePoint>) {
 }
 
 /// Straight edges in the q-plane for all kinds but the control effort, whose edges are straight in
-/// the plane of P: there the edges between the corners are left out of the members.
+/// the plane of P: there the members omit the edges between the corners.
 #[test]
 fn a_filled_bound_serves_the_whole_region_and_forbids_only_what_a_plant_of_it_forbids() {
     let mut numbers = Numbers(0xD1B5_4A32_D192_ED03);
@@ -130,7 +131,7 @@ fn a_filled_bound_serves_the_whole_region_and_forbids_only_what_a_plant_of_it_fo
             for _ in 0..12 {
                 let nominal_loop = numbers.polar([0.05, 20.0], [-std::f64::consts::TAU, 0.0]);
                 let (gain, phase) = (portable::magnitude(nominal_loop), portable::argument(nominal_loop));
-                // A hair away from the plant with 1 + L = 0, whose closed loops are not numbers.
+                // Slightly away from the plant with 1 + L = 0, whose closed loops are undefined.
                 let response = -template.nominal / nominal_loop * (1.0 + 1e-6);
                 let itself = TemplatePoint { response, ..members[0].clone() };
                 let is_inside = inside(&template.outlines[0], template.nominal, -nominal_loop);
@@ -150,7 +151,7 @@ fn a_filled_bound_serves_the_whole_region_and_forbids_only_what_a_plant_of_it_fo
     assert!(counts.iter().all(|&count| count > 50), "{counts:?}");
 }
 
-/// Whether a point is within a convex polygon, whose corners are P0/q.
+/// True if a point is within a convex polygon, whose corners are P0/q.
 fn inside(outline: &[Complex64], nominal: Complex64, point: Complex64) -> bool {
     let corners: Vec<Complex64> = outline.iter().map(|corner| nominal / corner).collect();
     corners.iter().zip(corners.iter().cycle().skip(1)).all(|(from, to)| {
@@ -159,7 +160,7 @@ fn inside(outline: &[Complex64], nominal: Complex64, point: Complex64) -> bool {
     })
 }
 
-/// |G/(1 + L)| over a square of the plane of P, sampled densely.
+/// Control effort |G/(1 + L)| over a square of the plane of P, sampled densely.
 #[test]
 fn a_filled_bound_of_the_control_effort_serves_the_region_in_the_plane_of_the_plant() {
     let mut numbers = Numbers(0x1234_5678_9ABC_DEF1);

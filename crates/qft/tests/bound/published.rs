@@ -1,4 +1,4 @@
-//! Bounds of two published examples, for the listed plants alone.
+//! Bounds of two published examples, for only the listed plants.
 
 use num_complex::Complex64;
 use phea_dynamics::linear::{Polynomial, TransferFunction};
@@ -35,7 +35,7 @@ fn equally_spaced(from: f64, to: f64, count: u32) -> impl Iterator<Item = f64> +
     (0..count).map(move |index| from + (to - from) * f64::from(index) / f64::from(count - 1))
 }
 
-/// k/((s + a)(s + b)): forty plants along the edges of the family, and the nominal one.
+/// Plant k/((s + a)(s + b)): forty plants along the edges of the family, and the nominal one.
 fn example_a(frequency: f64) -> Template {
     let mut plants = vec![(1.0, 5.0, 30.0)];
     plants.extend(equally_spaced(1.0, 5.0, 10).flat_map(|a| [(10.0, a, 20.0), (1.0, a, 30.0)]));
@@ -57,7 +57,8 @@ fn specifications_of_a(frequency: f64) -> Vec<Requirement> {
     requirements
 }
 
-/// k a/(s (s + a)), k and a from 1 to 10 in steps of 0.5, and the spread its tracking may have.
+/// Plant k a/(s (s + a)) with k and a from 1 to 10 in steps of 0.5, and the allowed spread of its
+/// tracking.
 fn example_b(frequency: f64) -> (Template, Requirement) {
     let s = Complex64::new(0.0, frequency);
     let range = equally_spaced(1.0, 10.0, 19);

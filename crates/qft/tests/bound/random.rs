@@ -1,11 +1,11 @@
-//! Random templates and requirements, the same in every run.
+//! Reproducible random templates and requirements.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
 use phea_qft::specification::{ClosedLoop, Limit, Requirement};
 use phea_qft::template::{Resolution, Template, TemplatePoint};
 
-/// Numbers in [0, 1), the same in every run (Marsaglia 2003, xorshift).
+/// Reproducible numbers in [0, 1) (Marsaglia 2003, xorshift).
 pub(crate) struct Numbers(pub(crate) u64);
 
 impl Numbers {
@@ -20,7 +20,7 @@ impl Numbers {
         low + (high - low) * self.next()
     }
 
-    /// With a logarithm between these two.
+    /// A number between these two, uniform in its logarithm.
     pub(crate) fn factor(&mut self, low: f64, high: f64) -> f64 {
         portable::exp(self.between(portable::ln(low), portable::ln(high)))
     }
@@ -32,14 +32,14 @@ impl Numbers {
     }
 }
 
-/// A family with random spread, with a sensor that is one, common to all, or different from plant
+/// A family with random spread, whose sensor is one, common to all plants, or different from plant
 /// to plant.
 pub(crate) fn random_template(numbers: &mut Numbers) -> Template {
     let count = numbers.factor(1.0, 120.0) as usize;
     template_of(numbers, count)
 }
 
-/// The same with this number of plants.
+/// A random family with this number of plants.
 pub(crate) fn template_of(numbers: &mut Numbers, count: usize) -> Template {
     let spread = [1.0, numbers.factor(1.01, 30.0)];
     let angles = [0.0, numbers.factor(0.01, 6.0)];
@@ -66,8 +66,8 @@ pub(crate) fn template_of(numbers: &mut Numbers, count: usize) -> Template {
     }
 }
 
-/// Every kind, with limits on both sides of one and, where the school formula allows it, sometimes
-/// one itself, relative to what they limit.
+/// Requirements of every kind, with limits on both sides of one and, if the textbook formula allows
+/// it, sometimes one itself, relative to the limited quantity.
 pub(crate) fn random_requirements(numbers: &mut Numbers, template: &Template) -> Vec<Requirement> {
     let mut limit = |unit: f64| {
         let one = unit == 1.0 && numbers.next() < 0.2;

@@ -1,5 +1,5 @@
-//! Designs that serve a plant in addition to their family: they must be those of a family that has
-//! it among its members.
+//! Designs that serve a plant in addition to their family: they must equal those of a family that
+//! includes this plant.
 
 use phea_dynamics::uncertain_plant::UncertainPlant;
 use phea_dynamics::watch::unwatched;
@@ -13,7 +13,7 @@ use super::problems::{
     stability, structure, uncertain,
 };
 
-/// k/((s + 1)(T s + 1)), these values the nominal ones.
+/// Plant k/((s + 1)(T s + 1)) with these nominal values.
 fn lagging([gain, lag]: [f64; 2]) -> UncertainPlant {
     let parameters = [("k", gain, 1.0, 4.0), ("T", lag, 0.01, 0.4)];
     uncertain(&parameters, |p| (vec![p[0]], vec![p[1], p[1] + 1.0.into(), 1.0.into()]))
@@ -22,7 +22,7 @@ fn lagging([gain, lag]: [f64; 2]) -> UncertainPlant {
 const QUICK: [f64; 2] = [1.0, 0.01];
 const LATE: [f64; 2] = [4.0, 0.2];
 
-/// |T| <= 1.3 and |S| <= 2 |s/(s + 3)|, of the quick plant and these others.
+/// Limits |T| <= 1.3 and |S| <= 2 |s/(s + 3)|, for the fast plant and these others.
 fn regulation(others: &[[f64; 2]]) -> DesignProblem {
     let frequencies = [0.1, 1.0, 10.0];
     let sensitivity = Requirement::at_most(ClosedLoop::Sensitivity, rational(&[2.0, 0.0], &[1.0, 3.0]));
@@ -50,7 +50,7 @@ fn a_plant_beside_the_family_counts_as_a_member_does() {
     let alone = regulation(&[]);
     let without = designed(&alone, options());
     assert_met(&alone, &without, TrackingJudgement::Spread);
-    // the plant is worth taking in: the design that does not know it breaks a limit with it
+    // the additional plant matters: the design without it violates a limit for it
     assert_eq!(audited(&both, &without, TrackingJudgement::Spread).verdict, Verdict::Violated);
 
     let beside = DesignProblem { beside: vec![lagging(LATE)], ..alone };
@@ -77,7 +77,8 @@ fn a_design_goes_on_with_a_plant_that_it_takes_in() {
     assert_same(found, &designed(&both, options()));
 }
 
-/// What a plant and a second one cannot both have is shown by the relaxation of a family of both.
+/// Limits that a plant and a second one cannot both satisfy have the relaxation of a family of
+/// both.
 #[test]
 fn what_cannot_be_had_with_it_is_told_with_the_least_relaxation() {
     let too_late = [4.0, 0.4];

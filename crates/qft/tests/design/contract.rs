@@ -1,4 +1,5 @@
-//! What holds of every design: the same seed gives the same, and it may be stopped at any time.
+//! Properties of every design: equal seeds give equal results, and a design may be stopped at any
+//! time.
 
 use phea_qft::design::{ControllerChoice, DesignOptions, DesignStatus, design};
 use phea_qft::verification::{TrackingJudgement, Verdict};
@@ -14,12 +15,12 @@ fn the_same_seed_gives_the_same_design() {
     let problem = example_d();
     let [first, second, other] = [5, 5, 6].map(|seed| designed(&problem, complex_poles(seed)));
     assert_eq!(first, second);
-    // the seed is what makes the starting points
+    // the starting points depend on the seed
     assert_ne!(first.controller, other.controller);
 }
 
-/// Structures of growing order: wherever it is stopped, what is found is audited, and nothing that
-/// is met is given up for what is not.
+/// Structures of growing order: stopped at any point, the result is audited, and a design that
+/// meets the limits is not abandoned for one that does not.
 #[test]
 fn a_run_that_is_stopped_has_the_best_so_far() {
     let problem = example_d();

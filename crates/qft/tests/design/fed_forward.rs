@@ -1,5 +1,5 @@
-//! Designs whose loop feeds the rate of a disturbance forward: they must be those of a plant whose
-//! disturbance acts by that path.
+//! Designs whose loop feeds the rate of a disturbance forward: they must equal those of a plant
+//! whose disturbance acts through that path.
 
 use phea_dynamics::controller::Timing;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, RationalCoefficients, UncertainPlant};
@@ -13,8 +13,8 @@ use super::problems::{
     stability, structure, uncertain,
 };
 
-/// k/D with D = 0.05 s^2 + 1.05 s + 1 and k from 1 to 2, whose disturbance acts by (K k - 3)
-/// s/D; |T| <= 1.3 and
+/// Plant k/D with D = 0.05 s^2 + 1.05 s + 1 and k from 1 to 2, whose disturbance acts through (K
+/// k - 3) s/D; |T| <= 1.3 and
 /// |Y/D| <= 4 |s/(s + 3)|.
 fn regulation(gain_in_path: f64, rate_feed_forward: f64) -> DesignProblem {
     let parameters = uncertain(&[("k", 1.0, 1.0, 2.0)], |p| (vec![p[0]], vec![p[0]])).parameters().to_vec();

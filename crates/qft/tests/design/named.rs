@@ -1,5 +1,5 @@
-//! Controllers by their names: the shortest that is met, longer ones that earn their poles, and the
-//! notch against its closed form.
+//! Named controllers: the shortest that meets the limits, longer ones that earn their poles, and
+//! the notch against its closed form.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{NamedStructure, Objective};
@@ -30,18 +30,19 @@ fn family(denominator: [f64; 2]) -> Family {
     boxed(plant, Spacing::Linear, 3)
 }
 
-/// |S| <= w/corner up to 0.4 of the corner, which asks for one integrator of at least this gain.
+/// Limit |S| <= w/corner up to 0.4 of the corner, which requires one integrator of at least this
+/// gain.
 fn slow_errors(corner: f64) -> Specification {
     let requirement = Requirement::at_most(ClosedLoop::Sensitivity, rational(&[1.0, 0.0], &[corner]));
     demand(requirement, &[0.1 * corner, 0.2 * corner, 0.4 * corner], [0.0, 0.4 * corner])
 }
 
-/// k/((s + 1)(s/100 + 1)).
+/// Plant k/((s + 1)(s/100 + 1)).
 fn lag(corner: f64) -> DesignProblem {
     problem(family([0.01, 1.01]), vec![stability(1.2, &[0.3, 1.0, 3.0, 10.0]), slow_errors(corner)])
 }
 
-/// k/(s^2/w^2 + 2 D s/w + 1).
+/// Plant k/(s^2/w^2 + 2 D s/w + 1).
 fn resonant() -> Family {
     family([RESONANCE_RAD_PER_S.powi(-2), 2.0 * DAMPING / RESONANCE_RAD_PER_S])
 }
@@ -65,8 +66,8 @@ fn ending(outcome: &DesignOutcome, name: NamedStructure) -> Option<StructureEndi
     outcome.tried().iter().find(|one| one.name == Some(name)).map(|one| one.ending)
 }
 
-/// I alone makes T = k K/(s (s + 1) + k K) of the lag, whose peak is 1.2 at k K = 1.12: it follows
-/// errors up to a corner of 1, and a zero at -1 those beyond.
+/// Pure integral control gives T = k K/(s (s + 1) + k K) for the lag, whose peak is 1.2 at k K =
+/// 1.12: it satisfies the limits up to a corner of 1, and with a zero at -1 beyond.
 #[test]
 fn any_takes_the_shortest_that_is_met() {
     let shortest = any(f64::INFINITY);
@@ -81,13 +82,13 @@ fn any_takes_the_shortest_that_is_met() {
     }
 }
 
-/// The names that were tried, in turn.
+/// The names that were searched, in order.
 fn names(outcome: &DesignOutcome) -> Vec<NamedStructure> {
     outcome.tried().iter().filter_map(|one| one.name).collect()
 }
 
-/// Errors that are to vanish with w need an integrator, so that a gain alone is missed at low
-/// frequency; it is tried first where this is requested.
+/// Limits on the error that vanish with w require an integrator, so that a pure gain fails at low
+/// frequency; it is searched first if this is requested.
 #[test]
 fn a_gain_alone_is_tried_before_those_with_an_integrator() {
     let choice = |with_gain_alone| {
@@ -107,9 +108,10 @@ fn a_gain_alone_is_tried_before_those_with_an_integrator() {
     assert_eq!(names(&with), [vec![NamedStructure::Proportional], without].concat());
 }
 
-/// With L = K/(s P(s)) the resonance makes T = x/(1 - x), x = k K/(2 D w): I reaches a margin m of
-/// both limits where K = m corner and x/(1 - x) = 0.5/m, which is 0.995 dB. A low pass before the
-/// resonance reaches more, and takes the place of I where it gains more than a pole must earn.
+/// Resonance with L = K/(s P(s)), which gives T = x/(1 - x), x = k K/(2 D w): integral control
+/// reaches a margin m of both limits if K = m corner and x/(1 - x) = 0.5/m, which is 0.995 dB. A
+/// low pass before the resonance reaches more, and replaces integral control if it gains more than
+/// a pole must earn.
 #[test]
 fn a_longer_structure_must_earn_its_poles() {
     let at_most = |closed_loop, limit| Requirement::at_most(closed_loop, Limit::Constant(limit));
@@ -134,8 +136,8 @@ fn a_longer_structure_must_earn_its_poles() {
     assert_eq!(ending(&more, NamedStructure::PiLowPass), Some(StructureEnding::NotEarned));
 }
 
-/// An integrator before a resonance has |L| = K/(2 D w) there, so |T| <= 1.5 lets K reach
-/// 0.6 * 2 D w = 0.24 without a notch. A notch upon the resonance lets it reach half of w.
+/// An integrator before a resonance has |L| = K/(2 D w) there, so that |T| <= 1.5 lets K reach
+/// 0.6 * 2 D w = 0.24 without a notch. A notch at the resonance lets it reach half of w.
 #[test]
 fn a_notch_lies_upon_the_resonance() {
     let problem = resonance(4.0);
@@ -153,8 +155,8 @@ fn a_notch_lies_upon_the_resonance() {
     assert!(zero.re.abs() / magnitude(*zero) < 0.2, "{zero}");
 }
 
-/// A structure with a notch is its closed form at every frequency, and the margins of a loop move
-/// with its numbers as their slopes say.
+/// A structure with a notch equals its closed form at every frequency, and the margins of a loop
+/// change with its numbers according to their slopes.
 #[test]
 fn a_notch_is_its_closed_form() {
     let notch = StructureFactor::Notch {
@@ -199,13 +201,13 @@ fn a_notch_is_its_closed_form() {
     }
 }
 
-/// Of a structure with its numbers at the ends of their ranges, no pole is beyond the bound: a pair
-/// has two real ones where its damping ratio is more than 1, one of them beyond its natural
-/// frequency.
+/// Poles of a structure with its numbers at the ends of their ranges, none of which is beyond the
+/// bound: a pair has two real poles if its damping ratio is more than 1, one of them above its
+/// natural frequency.
 #[test]
 fn no_pole_is_faster_than_may_be_built() {
     let fastest_rad_per_s = 40.0;
-    // no controller of these orders satisfies it, so that all of them are tried
+    // no controller of these orders satisfies it, so that all of them are searched
     let hard = problem(resonant(), vec![stability(1.001, &[0.3, 1.0, 3.0, 10.0, 30.0]), slow_errors(60.0)]);
     let poles = PoleRange { least_damping_ratio: 0.3, fastest_rad_per_s };
     let controller = ControllerChoice::Grow { maximum_order: 4 };

@@ -1,4 +1,4 @@
-//! Problems that several tests share, and the audit that judges every answer anew.
+//! Problems shared by several tests, and the independent audit of every result.
 
 use phea_dynamics::controller::{Element, Timing};
 use phea_dynamics::expression::Recorded;
@@ -51,7 +51,7 @@ pub(crate) fn boxed(plant: UncertainPlant, spacing: Spacing, points: usize) -> F
     Family::Uncertain(UncertainFamily::new(plant, coordinates, members, Extent::Box).unwrap())
 }
 
-/// k a/(s (s + a)), k and a from 1 to 10.
+/// Plant k a/(s (s + a)), k and a from 1 to 10.
 pub(crate) fn servo() -> Family {
     let plant = uncertain(&[("k", 1.0, 1.0, 10.0), ("a", 1.0, 1.0, 10.0)], |p| {
         (vec![p[0] * p[1]], vec![1.0.into(), p[1], 0.0.into()])
@@ -59,7 +59,7 @@ pub(crate) fn servo() -> Family {
     boxed(plant, Spacing::Logarithmic, 7)
 }
 
-/// k/s, k from 1 to this.
+/// Plant k/s, k from 1 to this value.
 pub(crate) fn integrator(greatest: f64) -> Family {
     let plant = uncertain(&[("k", 1.0, 1.0, greatest)], |p| (vec![p[0]], vec![1.0.into(), 0.0.into()]));
     boxed(plant, Spacing::Linear, 3)
@@ -80,7 +80,7 @@ pub(crate) fn stability(limit: f64, frequencies: &[f64]) -> Specification {
     demand(Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(limit)), frequencies, EVERYWHERE)
 }
 
-/// The tracking of the servo up to this frequency, rad/s.
+/// Tracking limits of the servo up to this frequency, rad/s.
 pub(crate) fn following(frequencies: &[f64], to: f64) -> Specification {
     let requirement = Requirement::tracking(
         rational(&[120.0], &[1.0, 17.0, 82.0, 120.0]),
@@ -107,8 +107,8 @@ pub(crate) fn problem(family: Family, specifications: Vec<Specification>) -> Des
     }
 }
 
-/// Zeros and poles with corners and damping ratios in these ranges: of `I Z ZZ P PP` an integrator,
-/// a zero, a pair of zeros, and so on.
+/// Structure of zeros and poles with corners and damping ratios in these ranges: in `I Z ZZ P PP`
+/// an integrator, a zero, a pair of zeros, and so on.
 pub(crate) fn structure(
     text: &str,
     gain: [f64; 2],
@@ -127,8 +127,8 @@ pub(crate) fn structure(
     Structure { sign: 1.0, gain, parts: text.split_whitespace().map(part).collect() }
 }
 
-/// The least high-frequency gain among the controllers of a structure, tracking judged by its
-/// spread.
+/// The least high-frequency gain among the controllers of a structure, with tracking assessed by
+/// its spread.
 pub(crate) fn least_gain(structure: Structure, seed: u64) -> DesignOptions {
     DesignOptions {
         objective: Objective::LeastHighFrequencyGain,
@@ -147,7 +147,7 @@ pub(crate) fn designed(problem: &DesignProblem, options: DesignOptions) -> Desig
     design(problem, &options, &mut unwatched).unwrap().design.unwrap()
 }
 
-/// An audit of its own of a design.
+/// An independent audit of a design.
 pub(crate) fn audited(problem: &DesignProblem, design: &Design, tracking: TrackingJudgement) -> Audit {
     let compensation = Compensation::new(&design.controller, problem.sensor.clone()).unwrap();
     let problem = AuditProblem {
@@ -160,7 +160,7 @@ pub(crate) fn audited(problem: &DesignProblem, design: &Design, tracking: Tracki
     audit(&problem, &mut unwatched).unwrap()
 }
 
-/// That it is met, by its own account and by an audit of its own.
+/// Asserts that the design is met, by its result and by an independent audit.
 pub(crate) fn assert_met(problem: &DesignProblem, design: &Design, tracking: TrackingJudgement) {
     assert_eq!(design.status, DesignStatus::Met, "{:?}", design.rounds);
     let audit = audited(problem, design, tracking);
@@ -168,7 +168,7 @@ pub(crate) fn assert_met(problem: &DesignProblem, design: &Design, tracking: Tra
     assert_eq!(audit, design.audit);
 }
 
-/// 20 log10 |lim s^r G| and r.
+/// High-frequency gain 20 log10 |lim s^r G|, and r.
 pub(crate) fn high_frequency_gain(design: &Design) -> (f64, i32) {
     let function = design.controller.feedback.transfer_function().unwrap();
     let degree = function.poles().len() as i32 - function.zeros().len() as i32;

@@ -1,5 +1,5 @@
-//! Examples A, E and F: controllers with no more gain at high frequency than the published ones,
-//! which satisfy every specification.
+//! Examples A, E and F: controllers that satisfy every specification with no more gain at high
+//! frequency than the published ones.
 
 use phea_dynamics::portable;
 use phea_qft::design::{ControllerChoice, DesignOptions};
@@ -12,7 +12,8 @@ use super::problems::{
     stability, structure, uncertain,
 };
 
-/// k/((s + a)(s + b)): 38 different plants along the edges of a template, and nothing between them.
+/// Plant k/((s + a)(s + b)): 38 different plants along the edges of a template, without any between
+/// them.
 fn edge_plants() -> Family {
     let plant = uncertain(&[("k", 1.0, 1.0, 10.0), ("a", 5.0, 1.0, 5.0), ("b", 30.0, 20.0, 30.0)], |p| {
         (vec![p[0]], vec![1.0.into(), p[1] + p[2], p[1] * p[2]])
@@ -32,7 +33,7 @@ fn edge_plants() -> Family {
     Family::Uncertain(UncertainFamily::new(plant, vec![], members, Extent::Members).unwrap())
 }
 
-/// Example A.
+/// Example A of the published designs.
 #[test]
 fn edge_plants_with_less_gain_than_published() {
     let sensitivity = rational(&[0.02, 1.28, 14.96, 48.0], &[1.0, 14.4, 169.0]);
@@ -55,8 +56,8 @@ fn edge_plants_with_less_gain_than_published() {
     assert_met(&problem, &design, TrackingJudgement::Spread);
 }
 
-/// Example E: integrator and velocity gain are those of the published controller, for a controller
-/// of no gain satisfies |S| too.
+/// Example E: integrator and velocity gain are those of the published controller, because a
+/// controller without gain would also satisfy |S|.
 #[test]
 fn a_wheel_with_less_gain_than_published() {
     let parameters =
@@ -84,7 +85,7 @@ fn a_wheel_with_less_gain_than_published() {
     assert_met(&problem, &design, TrackingJudgement::Spread);
 }
 
-/// Example F: k (s + a)/(s^2 - 2.5) is stabilised by a gain alone.
+/// Example F: k (s + a)/(s^2 - 2.5) is stabilised by a pure gain.
 ///
 /// ```text
 /// s^2 + C k s + C k a - 2.5:       stable for C k a > 2.5;      |T| = C k a/(C k a - 2.5) at rest

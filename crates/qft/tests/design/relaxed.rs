@@ -1,5 +1,5 @@
-//! Contradictions: the smallest relaxation, the limits that stand against one another, and that the
-//! relaxed problem is met.
+//! Contradictions: the smallest relaxation, the conflicting limits, and proof that the relaxed
+//! problem is met.
 
 use phea_dynamics::linear::TransferFunction;
 use phea_qft::design::{Design, DesignProblem, DesignStatus, Relaxation};
@@ -20,7 +20,7 @@ fn times(limit: &Limit, factor: f64) -> Limit {
     }
 }
 
-/// Every upper limit raised and every lower one lowered by this number of dB.
+/// Every upper limit raised and every lower one reduced by this number of dB.
 fn relaxed(problem: &DesignProblem, relaxation_db: f64) -> DesignProblem {
     let factor = 10.0_f64.powf(relaxation_db / 20.0);
     let requirement = |one: &Requirement| match one.limits() {
@@ -57,7 +57,7 @@ fn integrator_problem(greatest: f64, [sensitivity, complementary]: [f64; 2]) -> 
     problem(integrator(greatest), specifications)
 }
 
-/// Under a gain g, of the plants k/s, k from 1 to c^(1/2):
+/// Closed form for a gain g and the plants k/s, k from 1 to c^(1/2):
 ///
 /// ```text
 /// |S|^2 = 1/(1 + g^2) <= R a^2        |T|^2 = c g^2/(1 + c g^2) <= R b^2        at 1 rad/s
@@ -92,7 +92,7 @@ fn the_relaxation_of_a_gain_alone_is_that_of_its_closed_form() {
     }
 }
 
-/// A delay that is required counts among what is relaxed. Under a gain g, of 1/s:
+/// A required delay is included in the relaxation. For a gain g and the plant 1/s:
 ///
 /// ```text
 /// |S|^2 = 1/(1 + g^2) <= R a^2  at 1 rad/s          delay = (pi/2)/g >= D/R^(1/2)
@@ -113,11 +113,11 @@ fn a_required_delay_is_relaxed_with_the_limits() {
     assert!((found.relaxation_db - 10.0 * ratio.log10()).abs() < 1e-3, "{found:?}");
     let reached = design.audit.delay_margin.as_ref().unwrap().delay_s;
     assert!((reached * ratio.sqrt() / delay_s - 1.0).abs() < 1e-3, "{reached}");
-    // the delay that is missed by no more than the relaxation is no news to the search
+    // a delay missed by no more than the relaxation is not new to the search
     assert_eq!(design.rounds.len(), 1);
 }
 
-/// Example D with corners no higher than 300 rad/s, where its least gain asks for 837 rad/s.
+/// Example D with corners no higher than 300 rad/s, where its least gain requires 837 rad/s.
 #[test]
 fn three_seeds_agree_on_the_relaxation_of_the_servo() {
     let problem = example_d();

@@ -1,4 +1,5 @@
-//! The reserve of a design is kept by every plant of the family, not by those of its samples alone.
+//! The reserve of a design is satisfied by every plant of the family, not only by those of its
+//! samples.
 
 use phea_dynamics::frequency::logarithmic_grid;
 use phea_dynamics::portable::{log10, magnitude};
@@ -9,10 +10,10 @@ use phea_qft::verification::TrackingJudgement;
 
 use super::problems::{assert_met, audited, designed, example_d, least_gain, structure};
 
-/// Plants along each parameter, and frequencies, of the dense judge.
+/// Number of plants along each parameter, and of frequencies, of the dense check.
 const ALONG: usize = 17;
 const FREQUENCIES: usize = 600;
-/// Accuracy to which a reserve is kept, dB.
+/// Accuracy to which a reserve is satisfied, dB.
 const WITHIN_DB: f64 = 1e-3;
 
 #[test]
@@ -53,7 +54,7 @@ fn every_plant_keeps_the_reserve() {
             }
         }
         assert!(least_db.iter().all(|least| *least > -WITHIN_DB), "{reserve_db} dB: {least_db:?}");
-        // the limits are reached but for the reserve
+        // the limits are reached except for the reserve
         let audit = audited(&problem, &design, TrackingJudgement::Spread);
         let worst_db = audit.specifications[0].worst.as_ref().unwrap().margin_db;
         assert!(worst_db > reserve_db - WITHIN_DB && worst_db < reserve_db + 0.01, "{worst_db}");

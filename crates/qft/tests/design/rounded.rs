@@ -1,4 +1,4 @@
-//! Designs for a computer that keeps few bits of each coefficient.
+//! Designs for a computer that stores few bits of each coefficient.
 
 use phea_dynamics::controller::{Controller, Element, Section, Timing};
 use phea_dynamics::watch::unwatched;
@@ -20,13 +20,13 @@ use super::problems::{
 
 const SAMPLE: f64 = 0.01;
 
-/// k/(s + 1), k from 1 to 2.
+/// Plant k/(s + 1), k from 1 to 2.
 fn lag() -> Family {
     let plant = uncertain(&[("k", 1.0, 1.0, 2.0)], |p| (vec![p[0]], vec![1.0.into(), 1.0.into()]));
     boxed(plant, Spacing::Linear, 3)
 }
 
-/// |T| <= 1.3 and |S| <= 2 |s/(s + 3)| at 100 Hz.
+/// Limits |T| <= 1.3 and |S| <= 2 |s/(s + 3)| at 100 Hz.
 fn regulation() -> DesignProblem {
     let frequencies = [0.1, 1.0, 10.0];
     let sensitivity = Requirement::at_most(ClosedLoop::Sensitivity, rational(&[2.0, 0.0], &[1.0, 3.0]));
@@ -54,8 +54,8 @@ fn coefficients(controller: &Controller) -> Vec<f64> {
 }
 
 /// A proportional-integral law in z is b0 + b1/z over 1 - 1/z, its integral gain (b0 + b1)/T: steps
-/// of 2^-6 in b0 and b1 are steps of 1.6/s in that gain. Rounding the least that satisfies the
-/// sensitivity breaks it; the design for those steps satisfies it.
+/// of 2^-6 in b0 and b1 are steps of 1.6/s in that gain. Rounding the least gain that satisfies the
+/// sensitivity violates it; the design for those steps satisfies it.
 #[test]
 fn coarse_coefficients_are_designed_for() {
     let problem = regulation();
@@ -70,7 +70,7 @@ fn coarse_coefficients_are_designed_for() {
         assert_eq!(broken.verdict, Verdict::Violated);
         let options = least_gain(proportional_integral(), 1);
         let design = designed(&problem, DesignOptions { coefficients: format, ..options });
-        // its audit is that of the controller which it hands out, and that one has the bits
+        // its audit is that of the returned controller, whose coefficients have these bits
         assert_met(&problem, &design, TrackingJudgement::Spread);
         assert_eq!(design.controller, rounded(&design.law, format).unwrap().controller);
         let step = 2.0_f64.powi(-i32::from(fraction_bits));
@@ -83,7 +83,7 @@ fn coarse_coefficients_are_designed_for() {
     }
 }
 
-/// The limits that bind a design are those that it touches: at the design frequencies, and where a
+/// The limits that bind a design are the active ones: at the design frequencies, and where a
 /// specification is worst between them.
 #[test]
 fn binding_limits_are_touched_ones() {
@@ -95,20 +95,20 @@ fn binding_limits_are_touched_ones() {
         let least = worst.clone().map(|case| case.margin_db).fold(f64::INFINITY, f64::min);
         let base = if objective == Objective::BestWorstMargin { least.max(0.0) } else { 0.0 };
         assert!(design.binding.iter().all(|one| one.margin_db <= base + 0.05), "{:?}", design.binding);
-        // each specification where it is worst, if it leaves no room there
+        // each specification where it is worst, if there is no slack
         for (index, case) in worst.enumerate().filter(|(_, case)| case.margin_db <= base + 0.05) {
             let is_it = |one: &SpecificationMargin| {
                 (one.specification, one.frequency_rad_per_s) == (index, case.frequency_rad_per_s)
             };
             assert!(design.binding.iter().any(is_it), "{case:?} of {:?}", design.binding);
         }
-        // the search ended at a limit, which lies between the design frequencies
+        // the search ended at a limit, which is between the design frequencies
         let at_design = |one: &SpecificationMargin| [0.1, 1.0, 10.0].contains(&one.frequency_rad_per_s);
         assert!(design.binding.iter().any(|one| !at_design(one)), "{:?}", design.binding);
     }
 }
 
-/// Of 24 bits nothing is lost that would be seen.
+/// Coefficients of 24 bits have no visible effect.
 #[test]
 fn fine_coefficients_cost_nothing() {
     let problem = regulation();
@@ -120,7 +120,7 @@ fn fine_coefficients_cost_nothing() {
     assert!((single.objective_db - exact.objective_db).abs() < 0.01, "{}", single.objective_db);
 }
 
-/// Nothing that needs a proportional gain above one can be kept in numbers below one.
+/// A controller that needs a proportional gain above one cannot be stored in numbers below one.
 #[test]
 fn a_format_that_holds_no_controller_is_told() {
     let options = least_gain(proportional_integral(), 1);
@@ -129,7 +129,7 @@ fn a_format_that_holds_no_controller_is_told() {
     assert!(matches!(error, LoopDesignError::Quantization(QuantizationError::TooLarge { .. })), "{error}");
 }
 
-/// A continuous controller has no coefficients that could be rounded.
+/// A continuous controller has no coefficients to round.
 #[test]
 fn a_continuous_controller_is_not_rounded() {
     let problem = DesignProblem { timing: Timing::default(), ..regulation() };
@@ -138,13 +138,13 @@ fn a_continuous_controller_is_not_rounded() {
     assert_eq!((design.status, design.controller), (DesignStatus::Met, design.law));
 }
 
-/// Whatever a converter rounds: 9 bits over 8 units, for a command or a measurement.
+/// Converter of 9 bits over 8 units, for a command or a measurement.
 fn converter() -> Converter {
     Converter::new(9, [-4.0, 4.0]).unwrap()
 }
 
-/// Output and command of k/(s + 1) sample by sample under a reference that wanders, with and
-/// without the roundings of this computer: the rms of the differences.
+/// Output and command of k/(s + 1) sample by sample for a varying reference, with and without the
+/// rounding of this computer: the rms of the differences.
 fn rms_of_rounding(controller: &Controller, k: f64, quantization: &Quantization) -> [f64; 2] {
     let sampled = controller.sampled(SAMPLE).unwrap();
     let decay = (-SAMPLE).exp();
@@ -173,7 +173,7 @@ fn rms_of_rounding(controller: &Controller, k: f64, quantization: &Quantization)
     squares.map(|sum| (sum / f64::from(samples)).sqrt())
 }
 
-/// The design with the greatest worst margin among those whose rounding does no more than this,
+/// The design with the greatest worst margin among those with no more than this effect of rounding,
 /// rms.
 fn allowed(quantization: &Quantization, of_output: f64, of_command: f64) -> (DesignProblem, Design) {
     let mut problem = regulation();
@@ -193,8 +193,9 @@ fn binds(design: &Design, specification: usize) -> bool {
     worst(specification) < least + 0.01 && design.binding.iter().any(|one| one.specification == specification)
 }
 
-/// What the rounded measurement may do to the command limits |G/(1+L)|: the less it may do, the
-/// less gain the controller has at pi/T, and the command of the loop that rounds satisfies it.
+/// Allowed effect of the rounded measurement on the command, which limits |G/(1+L)|: the smaller it
+/// is, the less gain the controller has at pi/T, and the command of the loop with rounding
+/// satisfies it.
 #[test]
 fn an_allowed_error_of_the_command_binds_the_gain() {
     let quantization = Quantization { measurement: Some(converter()), ..Quantization::default() };
@@ -214,8 +215,8 @@ fn an_allowed_error_of_the_command_binds_the_gain() {
     }
 }
 
-/// What the rounded command may do to the output limits |P/(1+L)|, which is 1/|G| where the loop is
-/// strong: here the less it may do, the more gain it takes.
+/// Allowed effect of the rounded command on the output, which limits |P/(1+L)|, equal to 1/|G|
+/// where the loop gain is high: the smaller it is, the more gain is required.
 #[test]
 fn an_allowed_error_of_the_output_binds_the_loop() {
     let quantization = Quantization { command: Some(converter()), ..Quantization::default() };

@@ -1,5 +1,5 @@
-//! The servo k a/(s (s + a)) of the examples B and D: the least high-frequency gain as an
-//! independent search finds it.
+//! The servo k a/(s (s + a)) of the examples B and D: the least high-frequency gain as found by an
+//! independent search.
 
 use phea_qft::design::{DesignOptions, PrefilterChoice};
 use phea_qft::verification::TrackingJudgement;
@@ -9,7 +9,7 @@ use super::problems::{
     structure,
 };
 
-/// One zero and two poles; a damping ratio of at least 1 keeps the poles real.
+/// One zero and two poles; a damping ratio of at least 1 makes the poles real.
 fn from_three_seeds(damping_ratio: [f64; 2], expected_db: f64) {
     let problem = example_d();
     for seed in 1..=3 {
@@ -20,7 +20,7 @@ fn from_three_seeds(damping_ratio: [f64; 2], expected_db: f64) {
         assert!((gain_db - design.objective_db).abs() < 1e-9, "{gain_db} {}", design.objective_db);
         assert_eq!(relative_degree, 1);
         assert_met(&problem, &design, TrackingJudgement::Spread);
-        // what lies between the plants and frequencies of the first search is found and kept to
+        // violations between the plants and frequencies of the first search are found and removed
         let [first, .., last] = design.rounds.as_slice() else { panic!("{:?}", design.rounds) };
         assert!(first.audited_margin_db.unwrap() < -0.005, "{first:?}");
         assert!(last.audited_margin_db.unwrap() > -0.001, "{last:?}");
@@ -41,7 +41,7 @@ fn complex_poles_from_three_seeds() {
     from_three_seeds([0.1, 5.0], 128.792);
 }
 
-/// Example B: tracking up to 10 rad/s with a prefilter that is designed as well.
+/// Example B: tracking up to 10 rad/s with a prefilter that is also designed.
 #[test]
 fn less_gain_than_published_with_a_prefilter() {
     let specifications = vec![

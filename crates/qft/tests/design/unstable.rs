@@ -1,5 +1,5 @@
-//! Plants with unstable and undamped poles, which hardly any random controller stabilises: two
-//! magnetic suspensions, a pendulum on a cart, an unstable resonance behind a delay, and a missile.
+//! Plants with unstable and undamped poles, which few random controllers stabilise: two magnetic
+//! suspensions, a pendulum on a cart, an unstable resonance with a delay, and a missile.
 
 use phea_dynamics::controller::Timing;
 use phea_dynamics::expression::Recorded;
@@ -44,8 +44,8 @@ fn suspension_tracking() -> Specification {
     demand(requirement, &SUSPENSION, [0.0, 30.0])
 }
 
-/// A magnet that is held above another one by their repulsion: k/(s^2 + a), undamped at 19.5 to
-/// 21.9 rad/s, within the band of tracking.
+/// A magnet levitated above another one by repulsion: k/(s^2 + a), undamped at 19.5 to 21.9 rad/s,
+/// within the band of tracking.
 fn repelled_magnet() -> DesignProblem {
     let plant = uncertain(&[("a", 430.25, 382.0, 478.5), ("k", 877.5, 811.0, 944.0)], |p| {
         (vec![p[1]], vec![1.0.into(), 0.0.into(), p[0]])
@@ -53,8 +53,7 @@ fn repelled_magnet() -> DesignProblem {
     problem(boxed(plant, Spacing::Linear, 3), vec![stability(1.2, &SUSPENSION), suspension_tracking()])
 }
 
-/// A magnet that hangs below another one by their attraction: k/(s^2 - a), and no demand beyond 30
-/// rad/s.
+/// A magnet suspended below another one by attraction: k/(s^2 - a), without limits beyond 30 rad/s.
 fn attracted_magnet() -> DesignProblem {
     let plant = uncertain(&[("a", 430.25, 382.0, 478.5), ("k", 1063.5, 1021.0, 1106.0)], |p| {
         (vec![p[1]], vec![1.0.into(), 0.0.into(), -p[0]])
@@ -116,7 +115,7 @@ fn pendulum() -> DesignProblem {
     problem(boxed(plant, Spacing::Linear, 2), vec![stability(2.1, &frequencies)])
 }
 
-/// A resonance at 503 rad/s behind an unstable pole at 55 to 111 1/s and 0.11 ms of delay.
+/// A resonance at 503 rad/s in series with an unstable pole at 55 to 111 1/s and 0.11 ms of delay.
 /// G = 92.56 (s/9.748 + 1)/(s (s/505.6 + 1)) is known to satisfy both limits.
 fn unstable_resonance() -> DesignProblem {
     const W: f64 = 503.116;
@@ -159,7 +158,8 @@ fn missile() -> DesignProblem {
     problem(boxed(plant, Spacing::Linear, 2), specifications)
 }
 
-/// That the problem is met from each of these seeds, by its own account and by an audit of its own.
+/// Asserts that the problem is met from each of these seeds, by its result and by an independent
+/// audit.
 fn assert_met_from(
     seeds: &[u64],
     problem: &DesignProblem,
@@ -208,7 +208,7 @@ fn an_unstable_resonance_with_delay_is_met_by_the_order_of_what_is_known() {
     assert_met_from(&[1], &unstable_resonance(), of_second_order, TrackingJudgement::Spread);
 }
 
-/// None of them by luck: `cargo xtask ci soak`.
+/// The results do not depend on lucky seeds: `cargo xtask ci soak`.
 #[test]
 #[ignore = "takes a minute; run before a release"]
 fn other_seeds_meet_them_too() {
@@ -225,9 +225,9 @@ fn a_missile_is_met() {
     assert_met_from(&[1], &missile(), with_prefilter, TrackingJudgement::Magnitude);
 }
 
-/// |1/(1+L)| <= 0.6 and |L/(1+L)| <= 0.6 up to infinity keep L between 2/3 and 3/2 wherever it is real: no gain alone does for a plant that
-/// falls from 1 to 0.2 between two frequencies, and no controller with fewer zeros than poles
-/// leaves any L at infinity.
+/// Limits |1/(1+L)| <= 0.6 and |L/(1+L)| <= 0.6 up to infinity, which confine L to between 2/3 and
+/// 3/2 wherever it is real: no pure gain does so for a plant that falls from 1 to 0.2 between two
+/// frequencies, and no controller with fewer zeros than poles has a nonzero L at infinity.
 #[test]
 fn a_pair_of_zeros_over_a_pair_of_poles_is_tried() {
     let plant = uncertain(&[("k", 1.0, 0.98, 1.02)], |p| {
@@ -242,9 +242,9 @@ fn a_pair_of_zeros_over_a_pair_of_poles_is_tried() {
     assert_eq!((design.structure.order(), design.structure.relative_degree()), (Ok(2), Ok(0)));
 }
 
-/// Plants of second order without damping, or with less than none: a lead of first order satisfies
+/// Second-order plants without damping, or with negative damping: a first-order lead satisfies
 /// their limits. A lag cannot: with k/s^2 or k/(s^2 - a) one coefficient of its closed loop is zero
-/// or negative whatever its gain.
+/// or negative for any gain.
 #[test]
 fn a_lead_of_first_order_is_tried() {
     let frequencies = [0.3, 1.0, 3.0, 10.0, 30.0, 100.0];

@@ -5,7 +5,8 @@ use phea_qft::specification::{ClosedLoop, Limit, Requirement};
 
 use super::problems::{boxed, decibels, demand, impossibilities, plain, problem, rational, single};
 
-/// |S| + |T| >= 1: a share of each is missing, and a common factor brings the sum to 1.
+/// Constraint |S| + |T| >= 1: a fraction of each is missing, and a common factor brings the sum
+/// to 1.
 #[test]
 fn sensitivity_against_complementary_sensitivity() {
     let of = |limit_of_s: f64| {
@@ -35,7 +36,7 @@ fn sensitivity_against_complementary_sensitivity() {
     assert!((2.0..=3.0).contains(frequency_rad_per_s));
     assert_eq!([sensitivity.specification, complementary.specification], [0, 1]);
     assert!((relaxation_db - decibels(1.0 / 0.8)).abs() < 1e-3);
-    // the bounds at the design frequency say the same
+    // the bounds at the design frequency agree
     let [Finding::Contradiction { frequency_rad_per_s: 2.0, conflicts, relaxation_db, .. }] = rest else {
         panic!("{rest:?}")
     };
@@ -44,7 +45,7 @@ fn sensitivity_against_complementary_sensitivity() {
     assert_eq!(conflicts.iter().map(|margin| margin.specification).collect::<Vec<_>>(), [0, 1]);
 }
 
-/// Control effort bounds |T| by |G S| |P|, a disturbance at the plant's input |S| by |P S|/|P|.
+/// Control effort limits |T| by |G S| |P|, a disturbance at the plant's input |S| by |P S|/|P|.
 #[test]
 fn effort_against_disturbance() {
     // ORIGIN: analytic, |P(j 2)| = 8/4 for 8/(s^2): |T| <= 0.2 * 2, |S| <= 1/2
@@ -67,8 +68,8 @@ fn effort_against_disturbance() {
     assert!(low <= truth && truth <= high + 1e-3 && high - low < 0.1, "{low} {truth} {high}");
 }
 
-/// Two plants of opposite phase and |T| <= 1.2: more gain for tracking is no gain at all, and it
-/// takes plants in the plural to see it.
+/// Two plants of opposite phase and |T| <= 1.2: more gain for tracking does not help, which only
+/// several plants show.
 #[test]
 fn spread_against_stability_takes_two_plants() {
     let of = |ratio: f64| {
@@ -78,7 +79,7 @@ fn spread_against_stability_takes_two_plants() {
         let effort = Requirement::at_most(ClosedLoop::ControlEffort, Limit::Constant(0.5));
         problem(family, vec![demand(tracking, &[1.0], [1.0, 1.0]), demand(effort, &[1.0], [1.0, 1.0])])
     };
-    // |G| must be small: the spread stays near 10, whatever the limits of |T|
+    // |G| must be small: the spread stays near 10, for any limit on |T|
     let found = impossibilities(&of(1.2));
     let Some(Finding::Contradiction { conflicts, relaxation_db, frequency_rad_per_s: 1.0, .. }) =
         found.first()
@@ -106,7 +107,7 @@ fn crossed_limits_of_tracking() {
     assert!((relaxation_db - decibels(lower / upper) / 2.0).abs() < 1e-9);
 }
 
-/// T = 1 at a pole on the axis, S = 1 and T = 0 at a zero.
+/// Contradictions on the axis: T = 1 at a pole, S = 1 and T = 0 at a zero.
 #[test]
 fn poles_and_zeros_on_the_axis() {
     let low = Requirement::at_most(ClosedLoop::RobustStability, Limit::Constant(0.9));

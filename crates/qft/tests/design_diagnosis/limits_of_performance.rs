@@ -22,7 +22,7 @@ fn limit_of_s(limit: f64) -> Requirement {
     Requirement::at_most(ClosedLoop::Sensitivity, Limit::Constant(limit))
 }
 
-/// A limit that falls short by 1 dB is found, with that 1 dB; one with 0.05 dB to spare is not.
+/// A limit that is 1 dB too strict is found, with that 1 dB; one with 0.05 dB to spare is not.
 fn check(family: &Family, requirement: impl Fn(f64) -> Requirement, least: f64, place: ConstraintPlace) {
     let of = |limit: f64| problem(family.clone(), vec![everywhere(requirement(limit))]);
     let short = constraints(&of(least / 10f64.powf(1.0 / 20.0)));
@@ -42,7 +42,7 @@ fn zero(z: f64) -> ConstraintPlace {
     ConstraintPlace::RightHalfPlaneZero(Complex64::new(z, 0.0))
 }
 
-/// |T| >= e^(p T_d) |z + p|/|z - p|, and the same without dead time for S.
+/// Least peak |T| >= e^(p T_d) |z + p|/|z - p|, and likewise without dead time for S.
 #[test]
 fn pole_zero_and_dead_time_raise_the_least_peak() {
     check(&single(&[1.0], &[1.0, -2.0], 0.3), limit_of_t, (0.6_f64).exp(), pole(2.0));
@@ -60,14 +60,16 @@ fn a_complex_pair_counts_twice() {
     check(&single(&[1.0, -3.0], &[1.0, -2.0, 5.0], 0.0), limit_of_s, 2.5, zero(3.0));
 }
 
-/// |G S| >= 1/|P_s(p)| with P_s = k/(s + p): 2 p/k for k/(s - p), which proportional control reaches.
+/// Least control effort |G S| >= 1/|P_s(p)| with P_s = k/(s + p): 2 p/k for k/(s - p), which
+/// proportional control reaches.
 #[test]
 fn an_unstable_plant_costs_control_effort() {
     let effort = |limit: f64| Requirement::at_most(ClosedLoop::ControlEffort, Limit::Constant(limit));
     check(&single(&[5.0], &[1.0, -3.0], 0.0), effort, 6.0 / 5.0, pole(3.0));
 }
 
-/// |P S| >= |P_m(z)| with P_m the plant without its zero: 4/(z + 1) (2 z) for 4 (z - s)/(s + 1)^2 with the zero reflected.
+/// Least disturbance response |P S| >= |P_m(z)| with P_m the plant without its zero: 4/(z + 1) (2
+/// z) for 4 (z - s)/(s + 1)^2 with the zero reflected.
 #[test]
 fn a_zero_costs_disturbance_rejection() {
     // ORIGIN: analytic, P = 4 (2 - s)/(s + 1)^2: |P_m(2)| = 4 (2 + 2)/9
@@ -76,8 +78,8 @@ fn a_zero_costs_disturbance_rejection() {
     check(&single(&[-4.0, 8.0], &[1.0, 2.0, 1.0], 0.0), disturbance, 16.0 / 9.0, zero(2.0));
 }
 
-/// A rational limit without roots in the right half plane counts by its value at the pole: M
-/// w_b/(s + w_b) allows poles up to (M - 1) w_b.
+/// A rational limit without roots in the right half plane acts by its value at the pole: M w_b/(s +
+/// w_b) allows poles up to (M - 1) w_b.
 #[test]
 fn a_pole_above_the_bandwidth_allowed_is_told() {
     let of = |p: f64| {
@@ -93,7 +95,7 @@ fn a_pole_above_the_bandwidth_allowed_is_told() {
     assert_eq!(impossibilities(&of(1.95)), []);
 }
 
-/// w_b < z (1 - 1/M) for |S| <= M s/(s + M w_b).
+/// Required bandwidth w_b < z (1 - 1/M) for |S| <= M s/(s + M w_b).
 #[test]
 fn a_zero_below_the_bandwidth_demanded_is_told() {
     let of = |bandwidth: f64| {
@@ -107,15 +109,15 @@ fn a_zero_below_the_bandwidth_demanded_is_told() {
     assert!((found[0].0.sensitivity - 20.0 / 26.0).abs() < 1e-3);
 }
 
-/// Where a limit ends, the peak beyond it is at least (1/limit) to the power of what the pole sees
-/// of one over the other.
+/// Forced peak beyond the end of a limit: at least (1/limit) to the power of the ratio of harmonic
+/// measures of both parts at the pole.
 #[test]
 fn what_is_not_limited_must_rise() {
     let limited = demand(limit_of_t(0.01), &[], [6.0, f64::INFINITY]);
     let found = forced_peak_db(&problem(single(&[1.0], &[1.0, -2.0], 0.0), vec![limited])).unwrap();
     let free = 2.0 / PI * (6.0_f64 / 2.0).atan();
     assert!((found - 40.0 * (1.0 - free) / free).abs() < 0.05, "{found}");
-    // and the sensitivity beside a zero
+    // the sensitivity near a zero likewise
     let limited = demand(limit_of_s(0.01), &[], [0.0, 3.0]);
     let found = forced_peak_db(&problem(single(&[1.0, -4.0], &[1.0, 2.0, 1.0], 0.0), vec![limited])).unwrap();
     let below = 2.0 / PI * (3.0_f64 / 4.0).atan();
@@ -124,7 +126,7 @@ fn what_is_not_limited_must_rise() {
 
 /// Bode's integral: with |S| <= e below b and |T| <= (a/w)^2 beyond a, |S| must rise between them.
 /// The areas of ln|S| are b ln(1/e) below 1 and at most (a - b) ln(peak) + a (pi/2 - ln 2) above.
-/// Dead time takes away more.
+/// Dead time reduces the area further.
 #[test]
 fn a_stable_plant_has_a_water_bed() {
     let of = |peak: f64, dead_time_s: f64| {
@@ -146,8 +148,8 @@ fn a_stable_plant_has_a_water_bed() {
     assert!(late[0].0.dead_time_s == 0.1 && late[0].1 > 1.0, "{late:?}");
 }
 
-/// In a sampled loop T = 1 at z = e^(pT), and each sample of delay costs e^(pT): the hold's own
-/// one, and those of the loop.
+/// Sampled loop: T = 1 at z = e^(pT), and each sample of delay costs e^(pT): that of the hold, and
+/// those of the loop.
 #[test]
 fn a_sampled_loop_is_judged_in_z() {
     let of = |limit: f64, delay_s: f64| -> DesignProblem {
@@ -164,8 +166,8 @@ fn a_sampled_loop_is_judged_in_z() {
     }
 }
 
-/// The zeros that sampling makes count as well: of 1/s^3 one lies at z = -3.73 (Astrom, Hagander
-/// and Sternby 1984).
+/// The zeros caused by sampling also count: for 1/s^3 one is at z = -3.73 (Astrom, Hagander and
+/// Sternby 1984).
 #[test]
 fn zeros_of_sampling_cost_sensitivity() {
     // ORIGIN: paper, Astrom, Hagander and Sternby (1984): z^2 + 4 z + 1
@@ -178,7 +180,8 @@ fn zeros_of_sampling_cost_sensitivity() {
         let continuous = problem(family.clone(), vec![everywhere(limit_of_s(limit))]);
         sampled(continuous, 0.001, 0.0)
     };
-    // with T = 0.001 the pole is e^0.002 and hardly counts: the constraint at the zero is S >= 1
+    // with T = 0.001 the pole is e^0.002 and has almost no effect: the constraint at the zero is
+    // S >= 1
     assert!(least > 1.0);
     assert_eq!(impossibilities(&of(1.02)), []);
     let found = constraints(&of(0.9));
@@ -188,7 +191,7 @@ fn zeros_of_sampling_cost_sensitivity() {
     }));
 }
 
-/// The sensor's dead time and zeros are within L and count like the plant's.
+/// The sensor's dead time and zeros are included in L and count like those of the plant.
 #[test]
 fn the_sensor_is_part_of_the_loop() {
     let slow = TransferFunction::gain_only(1.0).with_dead_time(0.3).unwrap();
@@ -198,8 +201,8 @@ fn the_sensor_is_part_of_the_loop() {
     assert!((found[0].1 - decibels((0.6_f64).exp() / 1.5)).abs() < 0.01);
 }
 
-/// Tracking wider than possible: a gain of 1 to 10 behind dead time cannot be made alike far beyond
-/// 1/T_d.
+/// Tracking wider than possible: plants with gains of 1 to 10 and dead time cannot respond alike
+/// far beyond 1/T_d.
 #[test]
 fn tracking_beyond_what_dead_time_leaves_is_told() {
     let of = |to: f64| {

@@ -1,4 +1,4 @@
-//! The mistakes of `examples/qft/mistakes`: each is explained, in one sentence, with its numbers.
+//! The mistakes of `examples/qft/mistakes`: each is found, with its numbers.
 
 use phea_qft::design::{ConstraintPlace, Finding, diagnose};
 use phea_qft::specification::{ClosedLoop, Limit, Requirement};
@@ -9,7 +9,7 @@ fn numbers<'t, const N: usize>(values: [f64; N]) -> Vec<phea_dynamics::expressio
     values.into_iter().map(Into::into).collect()
 }
 
-/// k/(s (s + 5)) with |S| <= |s/(s + 30)| and |T| <= |5/(s + 5)| both between 8 and 10 rad/s.
+/// Plant k/(s (s + 5)) with |S| <= |s/(s + 30)| and |T| <= |5/(s + 5)| both between 8 and 10 rad/s.
 #[test]
 fn contradictory_bounds() {
     let family = boxed(&[("k", 10.0, 10.0, 20.0)], 3, |p| plain(vec![p[0]], numbers([1.0, 5.0, 0.0]), 0.0));
@@ -31,14 +31,14 @@ fn contradictory_bounds() {
         _ => None,
     });
     let (frequency, [low, high]) = contradiction.unwrap();
-    // of the gains 10 and 20 the least loop must satisfy S and the greatest T: at phase 0, where
-    // 1/(1 + g) = s r and 2 g/(1 + 2 g) = t r
+    // for the gains 10 and 20, the smallest loop must satisfy S and the greatest T: at phase 0,
+    // where 1/(1 + g) = s r and 2 g/(1 + 2 g) = t r
     let (s, t) = (10.0 / 1000f64.sqrt(), 5.0 / 125f64.sqrt());
     let truth = decibels((s + t - (s * s + t * t).sqrt()) / (s * t));
     assert!(frequency == 10.0 && low <= truth && truth <= high + 1e-3, "{low} {truth} {high}");
 }
 
-/// Gains of 1 to 10 are to look alike up to 60 rad/s behind 0.1 s of dead time.
+/// Plants with gains of 1 to 10 and 0.1 s of dead time that are to respond alike up to 60 rad/s.
 #[test]
 fn wide_tracking() {
     let family = boxed(&[("k", 1.0, 1.0, 10.0)], 5, |p| plain(vec![p[0]], numbers([1.0, 0.0]), 0.1));
@@ -54,7 +54,7 @@ fn wide_tracking() {
     assert_eq!(explained.unwrap().specifications(), [0, 1]);
 }
 
-/// The pole at 4 rad/s, 4.2 at worst, with |T| <= |3/(s + 2)|: 3/6.2 is left where 1 is needed.
+/// The pole at 4 rad/s, 4.2 at worst, with |T| <= |3/(s + 2)|: 3/6.2 remains where 1 is needed.
 #[test]
 fn fast_unstable_pole() {
     let family = boxed(&[("k", 10.0, 8.0, 12.0), ("w", 4.0, 3.8, 4.2)], 3, |p| {

@@ -1,4 +1,4 @@
-//! Problems that several tests share.
+//! Problems shared by several tests.
 
 use phea_dynamics::controller::Timing;
 use phea_dynamics::expression::Recorded;
@@ -97,7 +97,8 @@ pub(crate) fn impossibilities(problem: &DesignProblem) -> Vec<Finding> {
     findings
 }
 
-/// The constraints of the right half plane among the findings, with the relaxation that each needs.
+/// The constraints of the right half plane among the findings, with the relaxation required by
+/// each.
 pub(crate) fn constraints(problem: &DesignProblem) -> Vec<(Constraint, f64)> {
     let of = |finding| match finding {
         Finding::RightHalfPlane { constraint, relaxation_db } => Some((constraint, relaxation_db)),
@@ -106,7 +107,7 @@ pub(crate) fn constraints(problem: &DesignProblem) -> Vec<(Constraint, f64)> {
     impossibilities(problem).into_iter().filter_map(of).collect()
 }
 
-/// The highest peak that is forced, dB.
+/// The highest forced peak, dB.
 pub(crate) fn forced_peak_db(problem: &DesignProblem) -> Option<f64> {
     diagnose(problem).into_iter().find_map(|finding| match finding {
         Finding::ForcedPeak { peak_db, .. } => Some(peak_db),

@@ -1,4 +1,4 @@
-//! No false alarm on what was published and can be met.
+//! Published problems that can be met, without false alarms.
 
 use phea_dynamics::expression::Recorded;
 use phea_dynamics::uncertain_plant::{PlantCoefficients, UncertainParameter, UncertainPlant};
@@ -17,7 +17,7 @@ fn silent(family: Family, specifications: Vec<Specification>) {
     assert_eq!(diagnose(&problem(family, specifications)), []);
 }
 
-/// k/((s + a)(s + b)), the plants of example 1 of Borghesani, Chait and Yaniv (1994).
+/// Plant k/((s + a)(s + b)), the plants of example 1 of Borghesani, Chait and Yaniv (1994).
 #[test]
 fn forty_edge_plants() {
     let named = |name: &str, nominal, minimum, maximum| UncertainParameter {
@@ -48,7 +48,8 @@ fn forty_edge_plants() {
     silent(Family::Uncertain(family), specifications);
 }
 
-/// k a/(s (s + a)), the servo of Horowitz and Sidi (1972), followed up to 10 and up to 15 rad/s.
+/// Plant k a/(s (s + a)), the servo of Horowitz and Sidi (1972), with tracking up to 10 and up to
+/// 15 rad/s.
 #[test]
 fn servo() {
     for to in [10.0, 15.0] {
@@ -64,7 +65,7 @@ fn servo() {
     }
 }
 
-/// k/(s^2 (s^2 + 2 k)): two masses and a spring.
+/// Plant k/(s^2 (s^2 + 2 k)): two masses and a spring.
 #[test]
 fn undamped() {
     let family = boxed(&[("k", 1.0, 0.5, 2.0)], 5, |p| {
@@ -74,7 +75,7 @@ fn undamped() {
     silent(family, vec![stability(2.25, &[0.01, 0.1, 0.9, 0.99, 1.01, 1.5, 2.01, 20.0])]);
 }
 
-/// k (s + a) w^2/(s^2 + 2 z w s + w^2) with |S| below 6 dB.
+/// Plant k (s + a) w^2/(s^2 + 2 z w s + w^2) with |S| below 6 dB.
 #[test]
 fn resonant() {
     let parameters = [("k", 2.0, 2.0, 5.0), ("a", 1.0, 1.0, 3.0), ("z", 0.3, 0.3, 0.6), ("w", 4.0, 4.0, 8.0)];
@@ -86,8 +87,8 @@ fn resonant() {
     silent(family, vec![demand(six_db, &[0.2, 0.5, 1.0, 3.0, 5.0, 7.0, 10.0, 20.0, 50.0], [0.2, 50.0])]);
 }
 
-/// k (s + a)/(s^2 - 2.5) with |T| <= 2.1: the published controller fails, but an unstable pole
-/// alone asks for no more than |T| = 1.
+/// Plant k (s + a)/(s^2 - 2.5) with |T| <= 2.1: the published controller fails, but an unstable
+/// pole requires only |T| = 1.
 #[test]
 fn unstable() {
     let of = |dead_time_s: f64| {

@@ -1,4 +1,5 @@
-//! What a loop does reach is never called impossible: limits are read off loops that exist.
+//! Performance that a loop reaches is never called impossible: limits are taken from existing
+//! loops.
 
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::expression::Recorded;
@@ -14,7 +15,7 @@ use phea_qft::verification::Verdict;
 
 use super::problems::{boxed, demand, impossibilities, plain, problem};
 
-/// Numbers between two ends, from a linear congruence.
+/// Numbers between two ends, from a linear congruential generator.
 struct Draw(u64);
 
 impl Draw {
@@ -24,8 +25,8 @@ impl Draw {
     }
 }
 
-/// A gain over a factor of two before an unstable pole, a zero or dead time, with a controller that
-/// need not stabilise it.
+/// A gain with a range of a factor of two in series with an unstable pole, a zero or dead time,
+/// with a controller that need not stabilise it.
 fn drawn(draw: &mut Draw) -> (Family, Vec<f64>, Controller) {
     let pole = draw.between(-2.0, 2.0);
     let zero = draw.between(8.0, 60.0) * if draw.between(0.0, 1.0) < 0.5 { -1.0 } else { 1.0 };
@@ -65,7 +66,7 @@ fn responses(family: &Family, gains: &[f64], around: &Compensation) -> Vec<(f64,
     frequencies.map(of).collect()
 }
 
-/// Limits that the loop just keeps, times a factor, each over a band of its own.
+/// Limits that the loop just satisfies, times a factor, each over a different band.
 fn specifications(
     responses: &[(f64, Vec<LoopResponse>)],
     draw: &mut Draw,
@@ -141,7 +142,7 @@ fn what_is_reached_is_possible_and_half_of_it_is_not() {
             timing: controller.timing,
             ..problem(family.clone(), specifications(&responses, &mut Draw(bands), factor))
         };
-        // between the points of a table the limit is straight, and the loop is not
+        // between the points of a table the limit is linear, and the loop is not
         let reached = impossibilities(&of(1.002));
         assert_eq!(reached, [], "{controller:?}");
         impossible += usize::from(!impossibilities(&of(0.5)).is_empty());

@@ -1,4 +1,4 @@
-//! What a family forbids as a whole.
+//! Limits of performance for a family as a whole.
 
 use num_complex::Complex64;
 use phea_qft::design::{DesignProblem, Finding, FindingSeverity, diagnose};
@@ -13,7 +13,7 @@ fn gain(least: f64, pole: f64) -> Family {
     boxed(&[("k", 1.0, least, 1.0)], 3, move |p| plain(vec![p[0]], vec![1.0.into(), (-pole).into()], 0.0))
 }
 
-/// k/(s - p): s - p + k G must be positive at p whatever G, so k G(p) > 0.
+/// Plant k/(s - p): s - p + k G must be positive at p for any G, so that k G(p) > 0.
 #[test]
 fn gains_of_both_signs_need_the_same_controller() {
     for pole in [0.0, 2.0] {
@@ -22,7 +22,7 @@ fn gains_of_both_signs_need_the_same_controller() {
         assert!((pole_rad_per_s - pole).abs() < 1e-12 && plants[0] != plants[1]);
         assert_eq!(diagnose(&problem(gain(0.5, pole), vec![])), []);
     }
-    // a stable plant may be left alone, unless integral action is asked for
+    // a stable plant needs no feedback, unless integral action is required
     let integral = Requirement::at_most(ClosedLoop::Sensitivity, rational(&[2.0, 0.0], &[1.0, 0.01]));
     assert_eq!(diagnose(&problem(gain(-1.0, -3.0), vec![])), []);
     let found = impossibilities(&problem(gain(-1.0, -3.0), vec![demand(integral, &[], [0.0, 1e-3])]));
@@ -40,7 +40,7 @@ fn a_delay_margin_beyond_two_time_constants() {
     assert!(matches!(found[0], Finding::DelayMargin { greatest_s: 0.5, .. }), "{found:?}");
 }
 
-/// (s - 1)/((s - 2)(s + 1)): one pole between the zero and infinity; (s - 3)/... has none.
+/// Plant (s - 1)/((s - 2)(s + 1)): one pole between the zero and infinity; (s - 3)/... has none.
 #[test]
 fn plants_that_no_stable_controller_stabilises() {
     let of = |zero: f64| {
@@ -92,8 +92,8 @@ fn a_static_gain_that_is_not_one() {
     assert_eq!(found[0].severity(), FindingSeverity::Warning);
 }
 
-/// Of a measured plant the response alone is known, and the dead time of the loop: the water bed is
-/// reported nevertheless.
+/// Measured plant with only a known response, and the dead time of the loop: the waterbed effect is
+/// nevertheless reported.
 #[test]
 fn measured_plants_have_a_water_bed_too() {
     let frequencies: Vec<f64> = (0..60).map(|index| 10f64.powf(-2.0 + 0.1 * f64::from(index))).collect();

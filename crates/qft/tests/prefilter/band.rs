@@ -9,7 +9,7 @@ use super::loops::{around, integrators, member, rational, servo, spaced, trackin
 
 const DECIBELS_PER_NEPER: f64 = 20.0 / std::f64::consts::LN_10;
 
-/// The margin of every member with any F is the margin of |F| to the band.
+/// The margin of every member with any F equals the margin of |F| to the band.
 #[test]
 fn the_band_says_what_every_member_says() {
     let (compensation, members, specification) = servo();
@@ -38,8 +38,8 @@ fn the_band_says_what_every_member_says() {
     }
 }
 
-/// It is 4e-5 dB too low at 0.09 rad/s, because it is too flat at zero: ln|F| = 0.00125 w^2, where
-/// the slowest plant asks for 0.0025 w^2.
+/// Published prefilter that is 4e-5 dB too low at 0.09 rad/s, because it is too flat at zero:
+/// ln|F| = 0.00125 w^2, where the slowest plant requires 0.0025 w^2.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
 fn the_published_prefilter_leaves_its_band_by_a_hair() {
@@ -55,8 +55,8 @@ fn the_published_prefilter_leaves_its_band_by_a_hair() {
     assert!(margins.windows(2).all(|pair| pair[0].share() <= pair[1].share()));
 }
 
-/// T = k/(s + k), so that ln|T| = -w^2/(2 k^2) near zero; the limits are lags of second order and
-/// first.
+/// Closed loop T = k/(s + k), so that ln|T| = -w^2/(2 k^2) near zero; the limits are lags of second
+/// and first order.
 #[test]
 fn towards_zero_the_edges_have_the_curvatures_of_the_closed_form() {
     let (compensation, members) = integrators(&[1.0, 4.0, 2.0]);
@@ -77,7 +77,7 @@ fn towards_zero_the_edges_have_the_curvatures_of_the_closed_form() {
     assert_eq!((lowest.least_member, lowest.greatest_member), (0, 1));
 }
 
-/// A band that begins above zero demands the value at zero all the same, where there is but one.
+/// A band that begins above zero nevertheless requires the value at zero, if it is unique.
 #[test]
 fn the_limits_meet_at_zero_below_the_band_too() {
     let (compensation, members) = integrators(&[1.0, 4.0]);
@@ -86,14 +86,14 @@ fn the_limits_meet_at_zero_below_the_band_too() {
     let band = PrefilterBand::of_family(&compensation, &members, &[0.05, 0.1, 1.0], &specification).unwrap();
     let frequencies: Vec<f64> = band.points().iter().map(|point| point.frequency_rad_per_s).collect();
     assert_eq!(frequencies, [0.0, 0.1, 1.0]);
-    // limits that lie apart at zero demand nothing there
+    // limits that are apart at zero require nothing there
     let apart = tracking(Limit::Constant(0.5), Limit::Constant(2.0), [0.1, 10.0]);
     let band = PrefilterBand::of_family(&compensation, &members, &[0.1, 1.0], &apart).unwrap();
     assert_eq!(band.points().len(), 2);
 }
 
-/// Without an integrator T(0) = k/(1 + k) differs: 1/2 and 4/5, which limits of 0.9 and 1.1 cannot
-/// both take.
+/// Plants without an integrator, whose T(0) = k/(1 + k) differs: 1/2 and 4/5, which limits of 0.9
+/// and 1.1 cannot both contain.
 #[test]
 fn plants_that_differ_at_rest_close_the_band_there() {
     let compensation = around(TransferFunction::gain_only(1.0));
@@ -111,7 +111,8 @@ fn plants_that_differ_at_rest_close_the_band_there() {
     assert_eq!(band.closed(2.0), None); // a tolerance of 2 dB at either edge opens it
 }
 
-/// T falls as 1/s, the upper limit as 1/s^2, the lower one as 1/s^3: F must fall as 1/s or 1/s^2.
+/// Closed loop T that falls as 1/s, with an upper limit as 1/s^2 and a lower one as 1/s^3: F must
+/// fall as 1/s or 1/s^2.
 #[test]
 fn the_limits_at_infinity_bound_the_relative_degree() {
     let (compensation, members) = integrators(&[1.0, 4.0]);
@@ -126,7 +127,7 @@ fn the_limits_at_infinity_bound_the_relative_degree() {
     assert_eq!(band.relative_degree(), [0, usize::MAX]);
 }
 
-/// At zero frequency a prefilter is listed if it is wrong there, and not for having no room.
+/// A prefilter is listed at zero frequency if it is wrong there, and not for having no room.
 #[test]
 fn a_prefilter_with_a_wrong_gain_is_told_so_at_rest() {
     let (compensation, members) = integrators(&[2.0]);
@@ -158,7 +159,7 @@ fn what_leaves_no_band_says_why() {
     assert_eq!(of(&nowhere, &[2.0], &constant()), error);
 }
 
-/// k/(s^2 + 4) has no response at 2 rad/s, and its closed loop k/(s^2 + 4 + k) is 1 there.
+/// Plant k/(s^2 + 4), which has no response at 2 rad/s; its closed loop k/(s^2 + 4 + k) is 1 there.
 #[test]
 fn an_undamped_pole_is_an_ordinary_point() {
     let around = around(TransferFunction::gain_only(1.0));

@@ -1,4 +1,4 @@
-//! Prefilters that are found, and why others are not.
+//! Fitted prefilters, and reasons why others are not found.
 
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::linear::{Discretization, TransferFunction};
@@ -55,8 +55,8 @@ fn around_prefilter(prefilter: &TransferFunction, half_db: f64, frequencies: &[f
     PrefilterBand::new(&extremes, &specification).unwrap()
 }
 
-/// In the middle of a band of constant width lies the prefilter that it was drawn around: nothing
-/// does better than half of the width, and nothing of lower order does as well.
+/// Band of constant width around a prefilter: that prefilter is found in the middle; no prefilter
+/// exceeds half of the width, and none of lower order reaches it.
 #[test]
 fn the_middle_of_a_band_is_found() {
     let mut frequencies = spaced(0.05, 200.0, 60);
@@ -90,7 +90,7 @@ fn the_middle_of_a_band_is_found() {
     }
 }
 
-/// The prefilter that is found meets the specification at the frequencies between and at rest,
+/// The fitted prefilter meets the specification between the frequencies and at zero frequency,
 /// which the published one just misses, and for every plant of the box.
 #[test]
 fn a_servo_gets_a_prefilter_that_its_audit_meets() {
@@ -130,7 +130,8 @@ fn a_servo_gets_a_prefilter_that_its_audit_meets() {
     assert_eq!(finding.worst.as_ref().map(|worst| worst.frequency_rad_per_s), Some(0.0)); // where there is no slack
 }
 
-/// T = k/(s + k): at 3 rad/s 0.8 and 0.3162, which limits of 1.5 to 1 cannot both take.
+/// Closed loop T = k/(s + k): at 3 rad/s 0.8 and 0.3162, which limits of 1.5 to 1 cannot both
+/// contain.
 #[test]
 fn a_closed_band_names_the_two_plants() {
     let (compensation, members) = integrators(&[2.0, 1.0, 4.0]);
@@ -141,7 +142,7 @@ fn a_closed_band_names_the_two_plants() {
     assert_eq!((point.frequency_rad_per_s, point.least_member, point.greatest_member), (3.0, 1, 2));
     let width_db = 20.0 * (1.5 * 0.1f64.sqrt() / 0.8).log10();
     assert!((point.width_db() - width_db).abs() < 1e-12);
-    // half of what is missing opens it, and no less
+    // half of the deficit opens it, and no less
     assert!(band.clone().relaxed(-width_db / 2.0 - 0.01).closed(0.001).is_some());
     let eased = band.relaxed(-width_db / 2.0 + 0.01);
     assert_eq!(eased.closed(0.001), None);
@@ -149,7 +150,7 @@ fn a_closed_band_names_the_two_plants() {
     assert!(fitted.worst.margin_db > 0.0);
 }
 
-/// Where the band is closed by less than the tolerance, the middle of it still counts as met.
+/// Band closed by less than the tolerance, whose middle still counts as met.
 #[test]
 fn a_band_closed_by_less_than_the_tolerance_is_met_within_it() {
     let lag = Element::RealPole { frequency: 2.0 }.transfer_function().unwrap();
@@ -164,7 +165,7 @@ fn a_band_closed_by_less_than_the_tolerance_is_met_within_it() {
     assert!(matches!(fitted_into(-0.015), PrefilterOutcome::NoBand(_)));
 }
 
-/// In a sampled loop the margins are those of the sampled prefilter, whichever way it is sampled.
+/// Margins in a sampled loop, which are those of the sampled prefilter for every discretisation.
 #[test]
 fn a_sampled_prefilter_has_the_margins_that_were_searched() {
     for discretization in [Discretization::Tustin, Discretization::Matched] {
@@ -190,15 +191,14 @@ fn a_sampled_prefilter_has_the_margins_that_were_searched() {
             "{worst:?} {:?}",
             fitted.worst
         );
-        // the continuous prefilter is another one at 60 rad/s, where the trapezoidal rule has moved
-        // it by a seventh
+        // the continuous prefilter differs at 60 rad/s, where the trapezoidal rule shifts it by a
+        // seventh
         let continuous = fitted.compensator.transfer_function().unwrap();
         assert!(band.margins(&continuous)[0] != worst);
     }
 }
 
-/// Before the samples the prefilter is fitted as in a continuous loop, and the band is that of the
-/// sampled one.
+/// Prefilter before the sampling, fitted as in a continuous loop, with the band of the sampled one.
 #[test]
 fn a_prefilter_before_the_samples_is_fitted_in_s() {
     let lag = Element::RealPole { frequency: 2.0 }.transfer_function().unwrap();
@@ -213,7 +213,7 @@ fn a_prefilter_before_the_samples_is_fitted_in_s() {
 }
 
 /// Analytic slopes of every margin against central differences, and the worst of them is the one
-/// that is judged.
+/// that is evaluated.
 #[test]
 fn the_slopes_of_a_fit_are_those_of_its_margins() {
     let range = [0.1, 100.0];

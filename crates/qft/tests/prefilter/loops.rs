@@ -1,4 +1,4 @@
-//! Loops that several tests share.
+//! Loops shared by several tests.
 
 use phea_dynamics::controller::{Compensator, Controller, Element};
 use phea_dynamics::linear::{Polynomial, TransferFunction};
@@ -27,7 +27,7 @@ pub(crate) fn member(compensation: &Compensation, numerator: &[f64], denominator
         .unwrap()
 }
 
-/// k/s for each k, closed with gain 1: T = k/(s + k).
+/// Plants k/s for each k, closed with gain 1: T = k/(s + k).
 pub(crate) fn integrators(gains: &[f64]) -> (Compensation, Vec<Member>) {
     let compensation = around(TransferFunction::gain_only(1.0));
     let members = gains.iter().map(|&k| member(&compensation, &[k], &[1.0, 0.0])).collect();
@@ -39,8 +39,8 @@ pub(crate) fn tracking(lower: Limit, upper: Limit, band: [f64; 2]) -> Specificat
     Specification { requirement, frequencies_rad_per_s: vec![], band_rad_per_s: band }
 }
 
-/// k a/(s (s + a)), k and a from 1 to 10, with the published controller; its tracking specification
-/// up to 10 rad/s.
+/// Plant k a/(s (s + a)), k and a from 1 to 10, with the published controller; its tracking
+/// specification up to 10 rad/s.
 pub(crate) fn servo() -> (Compensation, Vec<Member>, Specification) {
     let compensation = around(servo_controller());
     let Family::Uncertain(family) = servo_family() else { panic!("it is a box") };
@@ -79,7 +79,7 @@ pub(crate) fn servo_family() -> Family {
     Family::Uncertain(UncertainFamily::new(plant, coordinates, members, Extent::Box).unwrap())
 }
 
-/// Frequencies by equal factors.
+/// Logarithmically spaced frequencies.
 pub(crate) fn spaced(from: f64, to: f64, count: u32) -> Vec<f64> {
     let share = |index: u32| f64::from(index) / f64::from(count - 1);
     (0..count).map(|index| from * (to / from).powf(share(index))).collect()

@@ -26,7 +26,7 @@ fn chebyshev_fit_alternates() {
     assert!((strengths - 1.0).abs() < 1e-6, "the shares of the common margin: {:?}", descent.binding);
 }
 
-/// Rosenbrock's valley, cut by the unit circle: the optimum lies on it, found independently by its
+/// Rosenbrock's valley, cut by the unit circle: the optimum is on it, found independently by its
 /// angle.
 #[test]
 fn bent_valley_cut_by_a_circle() {
@@ -38,8 +38,8 @@ fn bent_valley_cut_by_a_circle() {
     assert!(descent.work.judgements < 60, "{:?}", descent.work);
 }
 
-/// Maratos (1978): every full step towards (1, 0) spoils the margin as much as the objective;
-/// uncorrected, steps shrink to nothing.
+/// Maratos (1978): every full step towards (1, 0) worsens the margin as much as it improves the
+/// objective; without correction, steps shrink to zero.
 #[test]
 fn full_steps_are_taken_along_a_curved_margin() {
     let objective = |x: &[f64]| 2.0 * (x[0] * x[0] + x[1] * x[1] - 1.0) - x[0];
@@ -50,8 +50,8 @@ fn full_steps_are_taken_along_a_curved_margin() {
     assert!((multiplier - 1.5).abs() < 1e-2, "{multiplier}");
 }
 
-/// Two margins that exclude one another: the worst is best half the way, and what is missing is
-/// said.
+/// Two margins that exclude each other: the worst margin is greatest half-way, and the deficit is
+/// reported.
 #[test]
 fn contradiction_is_named() {
     let margins = |x: &[f64]| vec![x[0] - 1.0 - x[1] * x[1], -3.0 - x[0]];
@@ -63,8 +63,8 @@ fn contradiction_is_named() {
     assert!(shares.len() == 2 && shares.iter().all(|share| (share - 0.5).abs() < 1e-3), "{shares:?}");
 }
 
-/// A margin that hardly moves costs a large multiplier, up to which the penalty must grow; where
-/// less than it moves is tolerated, it costs nothing.
+/// A margin that hardly changes has a large multiplier, up to which the penalty must grow; if the
+/// tolerance exceeds its change, it has no effect.
 #[test]
 fn nearly_flat_margin_is_kept_or_tolerated() {
     let mut problem = Formula::new(1, |x| (x[0] - 3.0).powi(2), |x| vec![1e-4 * (1.0 - x[0])]);

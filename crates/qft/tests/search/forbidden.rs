@@ -8,8 +8,8 @@ fn squared_radius(x: &[f64]) -> f64 {
     x[0] * x[0] + x[1] * x[1]
 }
 
-/// Within the unit disc nothing is stable, and it lies across the straight way; the margin falls
-/// towards it, as that of a loop does.
+/// Unstable unit disc across the straight path; the margin falls towards it, as that of a loop
+/// does.
 #[test]
 fn descent_goes_around_an_unstable_region() {
     let objective = |x: &[f64]| (x[0] - 2.0).powi(2) + x[1] * x[1];
@@ -19,7 +19,8 @@ fn descent_goes_around_an_unstable_region() {
     assert!(descent.judgement.unwrap().stable);
 }
 
-/// Where no margin warns of the region, the descent stops at its edge, outside, and says so.
+/// Region without a margin that falls towards it: the descent stops at its edge, outside, and
+/// reports this.
 #[test]
 fn descent_stops_at_an_edge_without_warning() {
     let mut problem = Formula::new(1, |x| x[0], |_| vec![1.0]);

@@ -1,4 +1,4 @@
-//! A problem written down as formulae, its slopes by central differences.
+//! A problem given by formulae, with slopes by central differences.
 
 use phea_dynamics::watch::unwatched;
 use phea_qft::loop_shaping::{
@@ -16,7 +16,7 @@ pub(crate) struct Formula {
     pub(crate) bounds: Vec<[f64; 2]>,
     pub(crate) objective: Objective,
     pub(crate) margins: Margins,
-    /// Where a loop would be unstable: margins are not to be believed there.
+    /// Measure of instability of a loop; if it is positive, margins are invalid.
     pub(crate) instability: Objective,
 }
 

@@ -99,8 +99,8 @@ fn hock_schittkowski_113() {
     check_objective(Formula::new(10, objective, margins), &start, 24.3062091);
 }
 
-/// Charalambous and Bandler: the least of the greatest of three functions, at a kink of two (the
-/// first) or three of them (the second).
+/// Charalambous and Bandler: the least of the greatest of three functions, at a kink between two
+/// (the first) or three of them (the second).
 #[test]
 fn charalambous_bandler() {
     fn check(margins: fn(&[f64]) -> Vec<f64>, expected: f64) {

@@ -1,4 +1,4 @@
-//! A loop: the servo with uncertain gain and pole, its plants on the edges of a grid, few
+//! Loop of the servo with uncertain gain and pole, its plants on the edges of a grid, few
 //! frequencies.
 //!
 //! ```text
@@ -15,10 +15,10 @@ use phea_qft::loop_shaping::{
 
 use super::formula::differences;
 
-/// Points of k and of a; frequencies of |T|, and of its spread.
+/// Number of values of k and of a; of frequencies of |T|, and of its spread.
 const POINTS: usize = 7;
 const FREQUENCIES: [usize; 2] = [61, 41];
-/// Plants whose margins are given for each frequency, the worst ones.
+/// Number of the worst plants whose margins are given for each frequency.
 const PLANTS_GIVEN: usize = 3;
 
 #[derive(Clone)]
@@ -26,11 +26,11 @@ struct Servo {
     bounds: [[f64; 2]; 4],
     plants: Vec<[f64; 2]>,
     closed: Vec<f64>,
-    /// rad/s, and the spread allowed there, dB.
+    /// Frequency, rad/s, and the allowed spread there, dB.
     tracked: Vec<[f64; 2]>,
 }
 
-/// `count` points from 10^low to 10^high.
+/// Logarithmic grid of `count` points from 10^low to 10^high.
 fn decades(low: f64, high: f64, count: usize) -> Vec<f64> {
     let share = |i: usize| i as f64 / (count - 1) as f64;
     (0..count).map(|i| 10_f64.powf(low + share(i) * (high - low))).collect()
@@ -62,7 +62,7 @@ impl Servo {
         }
     }
 
-    /// |T| of a plant, dB.
+    /// Magnitude |T| of a plant, dB.
     fn closed_db(x: &[f64], [k, a]: [f64; 2], frequency: f64) -> f64 {
         let s = Complex64::new(0.0, frequency);
         let [g, z, p, q] = [x[0].exp(), x[1].exp(), x[2].exp(), x[3].exp()];
@@ -70,7 +70,7 @@ impl Servo {
         db(open / (1.0 + open))
     }
 
-    /// How far the worst plant misses the conditions of Routh for s^4 + c3 s^3 + c2 s^2 + c1
+    /// Degree to which the worst plant violates the Routh conditions for s^4 + c3 s^3 + c2 s^2 + c1
     /// s + c0, relative to their terms.
     fn instability(&self, x: &[f64]) -> f64 {
         let [g, z, p, q] = [x[0].exp(), x[1].exp(), x[2].exp(), x[3].exp()];
@@ -81,7 +81,7 @@ impl Servo {
         self.plants.iter().map(missed).fold(0.0, f64::max)
     }
 
-    /// The plants of the least values at a frequency, the least first.
+    /// The plants with the least values at a frequency, the least first.
     fn least(values: &[f64]) -> Vec<usize> {
         let mut order: Vec<usize> = (0..values.len()).collect();
         order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));

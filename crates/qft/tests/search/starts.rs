@@ -44,9 +44,9 @@ fn equal_seeds_give_equal_bytes() {
     assert_ne!(format!("{first:?}"), format!("{other:?}"));
 }
 
-/// Stable is only a ball, within which lies the smaller ball that the margin allows, as with the
-/// loops of a controller. It holds a six-thousandth of the box: no sample is expected there,
-/// evolution follows the instability.
+/// Stable ball that contains the smaller ball allowed by the margin, as with the loops of a
+/// controller. It occupies a six-thousandth of the box: no sample is expected there, and evolution
+/// follows the instability.
 #[test]
 fn evolution_finds_a_small_stable_region() {
     fn outside(x: &[f64]) -> f64 {
@@ -72,7 +72,7 @@ fn nothing_stable_is_reported_with_the_least_instability() {
 }
 
 /// Rosenbrock's valley: every descent ends at (1, 1) after many steps, and those that come near the
-/// end of the first one are not completed.
+/// end of the first are not completed.
 #[test]
 fn a_descent_that_comes_near_an_end_is_not_completed() {
     let valley = |x: &[f64]| vec![-100.0 * (x[1] - x[0] * x[0]).powi(2) - (1.0 - x[0]).powi(2)];
@@ -82,17 +82,17 @@ fn a_descent_that_comes_near_an_end_is_not_completed() {
     let (one, all) = (searched(&mut problem, options(1)), searched(&mut problem, options(8)));
     assert_eq!([one.ends.len(), all.ends.len()], [1, 8]);
     assert!(all.ends.iter().all(|end| end.x == one.x), "{:?}", all.ends);
-    // each joins as it comes within a twentieth of the bounds, not at the bottom of the valley
+    // each joins once it is within a twentieth of the bounds, not at the bottom of the valley
     assert!(all.work.slopes < 3 * one.work.slopes, "{:?} {:?}", all.work, one.work);
 }
 
-/// Workers that take the pieces from the last to the first.
+/// Workers that take the tasks from the last to the first.
 fn backwards(pieces: Vec<WorkPiece<'_>>, _: &'static str, watch: Watch<'_>) -> Result<(), Stopped> {
     pieces.into_iter().rev().try_for_each(|piece| piece(&mut *watch))
 }
 
-/// Samples and descents need nothing of one another: whoever works on how many of them at once, in
-/// whatever order, finds the same and counts the same work, also where descents join.
+/// Samples and descents are independent of each other: any number of workers, in any order, finds
+/// equal results and counts equal work, also if descents join.
 #[test]
 fn the_result_does_not_depend_on_the_workers() {
     let valley = |x: &[f64]| vec![-100.0 * (x[1] - x[0] * x[0]).powi(2) - (1.0 - x[0]).powi(2)];
@@ -113,8 +113,8 @@ fn the_result_does_not_depend_on_the_workers() {
     }
 }
 
-/// Starts that end feasible and starts that do not: the feasible one wins, whatever the others
-/// reach.
+/// Starts with and without a feasible end: the feasible one wins, independent of the values of the
+/// others.
 #[test]
 fn feasible_ends_come_first() {
     let margins = |x: &[f64]| vec![(0.5 - (x[0] - 3.0).abs()).max(-0.1 - (x[0] + 3.0).powi(2))];

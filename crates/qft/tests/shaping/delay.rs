@@ -1,4 +1,4 @@
-//! The margin to a demanded delay, against the delay that each loop really tolerates.
+//! The margin to a required delay, against the actual critical delay of each loop.
 
 use phea_dynamics::controller::{Controller, Element, Timing};
 use phea_dynamics::frequency::logarithmic_grid;
@@ -16,7 +16,7 @@ use phea_qft::verification::PlantPoint;
 
 use super::random::Draw;
 
-/// k (s^2/400 + s/100 + 1)/(s (s^2/100 + d s/5 + 1)) without any specification.
+/// Plant k (s^2/400 + s/100 + 1)/(s (s^2/100 + d s/5 + 1)) without any specification.
 fn problem(delay_s: f64) -> DesignProblem {
     let parameter = |name: &str, minimum: f64, maximum: f64| UncertainParameter {
         name: name.into(),
@@ -61,7 +61,7 @@ fn points() -> Vec<PlantPoint> {
         .to_vec()
 }
 
-/// The least delay that one of the plants tolerates; `None` where one is unstable.
+/// The least delay that one of the plants tolerates; `None` if one is unstable.
 fn borne(samples: &Samples, structure: &Structure, x: &[f64]) -> Option<f64> {
     let controller = Controller { feedback: structure.compensator(x), ..Controller::default() };
     let around = Compensation::new(&controller, TransferFunction::gain_only(1.0)).unwrap();
@@ -104,7 +104,7 @@ fn its_slopes_are_those_of_central_differences() {
         let x = draw.point(&structure().bounds());
         let judged = shaping.judge(&x).worst_margin_db;
         let slopes = shaping.slopes(&x);
-        // peaks count for the slopes only
+        // peaks count only for the slopes
         let row = slopes.margins.iter().find(|row| (row.margin_db - judged).abs() < 1e-9).unwrap();
         for (index, slope) in row.slopes.iter().enumerate() {
             let mut at = |step: f64| {
@@ -118,7 +118,7 @@ fn its_slopes_are_those_of_central_differences() {
     }
 }
 
-/// The resonance at 10 rad/s comes up to 0.8, where the phase tolerates some 30 ms.
+/// The resonance at 10 rad/s reaches 0.8, where the phase tolerates some 30 ms.
 #[test]
 fn a_peak_below_one_is_a_row_before_it_is_a_crossover() {
     let x = [0.7f64, 5.0, 5.0].map(f64::ln);

@@ -1,4 +1,4 @@
-//! Margins of the samples against those of one plant after the other.
+//! Margins of the samples against those computed plant by plant.
 
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::linear::{Discretization, TransferFunction};
@@ -24,7 +24,7 @@ fn response(around: &Compensation, member: &Member, frequency: f64) -> LoopRespo
     }
 }
 
-/// The least margin of the plants at a frequency within the band, one after the other.
+/// The least margin of the plants at a frequency within the band, computed plant by plant.
 fn plain(
     specification: &Specification,
     around: &Compensation,

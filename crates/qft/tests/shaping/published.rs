@@ -1,4 +1,4 @@
-//! Published controllers, as a search sees them at the frequencies of its grid.
+//! Published controllers, evaluated by a search at the frequencies of its grid.
 
 use phea_dynamics::controller::{Compensator, Element, Timing};
 use phea_dynamics::expression::Recorded;
@@ -55,7 +55,7 @@ fn stability(limit: f64) -> Specification {
     specification(requirement, &[0.1, 1.0, 10.0, 100.0], EVERYWHERE)
 }
 
-/// The shaping around a published controller, and the point where it is that controller.
+/// The shaping around a published controller, and the point at which it equals that controller.
 fn shaping(
     family: Family,
     specifications: Vec<Specification>,
@@ -91,7 +91,7 @@ fn at(shaping: &Shaping, x: &[f64], specification: usize, frequency: f64) -> f64
     here.map(|margin| margin.margin_db).fold(f64::INFINITY, f64::min)
 }
 
-/// What a grid finds is never worse than the truth, and here not much better.
+/// Margin of a grid, which is never worse than the truth, and here not much better.
 #[track_caller]
 fn near(found: f64, truth: f64) {
     assert!(truth - 1e-3 < found && found < truth + 0.03, "{found} {truth}");
@@ -129,7 +129,7 @@ fn forty_edge_plants() {
     }
 }
 
-/// k a/(s (s + a))
+/// Plant k a/(s (s + a)).
 fn servo() -> Family {
     let parameters = vec![parameter("k", 1.0, 10.0), parameter("a", 1.0, 10.0)];
     let plant = recorded(parameters, |p| (vec![p[0] * p[1]], vec![1.0.into(), p[1], 0.0.into()]));
@@ -161,8 +161,8 @@ fn two_servo_designs() {
     let specifications = vec![stability(1.2), following(15.0)];
     let (second, x) = shaping(servo(), specifications, &optimised, None);
     near(worst(&second, &x, 0), -0.0239);
-    // the spread just fits at the end of the band; between the plants of the grid it is a little
-    // larger
+    // the spread is just allowed at the end of the band; between the plants of the grid it is
+    // slightly larger
     near(at(&second, &x, 1, 15.0), 2.410e-4);
     let gain_db = second.structure().high_frequency_gain_db(&x).unwrap();
     assert!((gain_db - 130.79).abs() < 0.005, "{gain_db}"); // ORIGIN: paper, the published high-frequency gain
@@ -213,7 +213,7 @@ fn rig<'t>(p: &[Recorded<'t>]) -> (Vec<Recorded<'t>>, Vec<Recorded<'t>>) {
     (numerator, denominator)
 }
 
-/// The thesis' controller at the corners of Table 6.3, where its worst plants are at low frequency;
+/// The thesis' controller at the corners of Table 6.3, where its plants are worst at low frequency;
 /// with its prefilter, and by spread.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
@@ -256,10 +256,10 @@ fn the_published_force_controller() {
     for (frequency, margin) in [(1.0, -0.2849), (5.0, -3.5248), (10.0, -5.6409), (20.0, -5.7733)] {
         assert!((at(&with_prefilter, &x, 2, frequency) - margin).abs() < 1e-4);
     }
-    // the piston on the load cell, at a corner of the box; inside it is a little higher
+    // the piston on the load cell, at a corner of the box; inside the box it is slightly higher
     let peak = 1.3 * 10f64.powf(-worst(&with_prefilter, &x, 0) / 20.0);
     assert!(peak > 8.0 && peak < 11.887, "{peak}");
-    // 6.6 dB of spread where 2.06 are allowed
+    // 6.6 dB of spread where 2.06 dB are allowed
     let (by_spread, x) = shaping(family, specifications, &published, None);
     assert!((at(&by_spread, &x, 2, 10.0) - (2.06 - 6.6)).abs() < 0.06);
 }

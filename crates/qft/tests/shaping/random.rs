@@ -1,4 +1,4 @@
-//! Random structures and problems that several tests share, from fixed seeds.
+//! Random structures and problems shared by several tests, from fixed seeds.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Element, Timing};
@@ -12,18 +12,18 @@ use phea_qft::loop_shaping::{Structure, StructureFactor};
 use phea_qft::specification::{ClosedLoop, Limit, LimitTable, Requirement, Specification};
 use phea_qft::verification::PlantPoint;
 
-/// A linear congruential generator (Knuth's MMIX constants), so that the draws are the same
+/// A linear congruential generator (Knuth's MMIX constants), so that the draws are identical
 /// everywhere.
 pub(crate) struct Draw(pub(crate) u64);
 
 impl Draw {
-    /// Evenly in [0, 1).
+    /// A number uniform in [0, 1).
     pub(crate) fn share(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// By equal factors between two numbers.
+    /// A number between these two, uniform in its logarithm.
     pub(crate) fn factor(&mut self, low: f64, high: f64) -> f64 {
         low * (high / low).powf(self.share())
     }
@@ -34,7 +34,7 @@ impl Draw {
     }
 }
 
-/// Three zeros and five poles, an integrator among them.
+/// Structure of three zeros and five poles, including an integrator.
 pub(crate) fn structure(draw: &mut Draw) -> Structure {
     let mut range = |low: f64, high: f64| {
         let middle = draw.factor(low, high);
@@ -85,8 +85,8 @@ pub(crate) fn specifications() -> Vec<Specification> {
     ]
 }
 
-/// k w^2 (s/5 + 1)/((s/a + 1)(s^2 + 2 d w s + w^2)) e^(-0.003 s) with load motion behind the same
-/// resonance, and a sensor.
+/// Plant k w^2 (s/5 + 1)/((s/a + 1)(s^2 + 2 d w s + w^2)) e^(-0.003 s) with load motion through
+/// this resonance, and a sensor.
 pub(crate) fn problem(timing: Timing) -> DesignProblem {
     let parameter = |name: &str, minimum: f64, maximum: f64| UncertainParameter {
         name: name.into(),
@@ -136,7 +136,7 @@ pub(crate) fn problem(timing: Timing) -> DesignProblem {
     }
 }
 
-/// The members of its family.
+/// The members of the problem's family.
 pub(crate) fn plants(problem: &DesignProblem) -> Vec<PlantPoint> {
     match &problem.family {
         Family::Uncertain(family) => family.members().iter().cloned().map(PlantPoint::Parameters).collect(),

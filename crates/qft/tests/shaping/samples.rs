@@ -1,4 +1,4 @@
-//! Which plants and frequencies are looked at.
+//! Plants and frequencies that are evaluated.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Element, Timing};
@@ -34,7 +34,7 @@ fn with_family(family: Family, limit: f64) -> DesignProblem {
     }
 }
 
-/// k/(s^2 + 1): without damping.
+/// Plant k/(s^2 + 1), without damping.
 fn undamped() -> DesignProblem {
     let k = UncertainParameter { name: "k".into(), nominal: 1.0, minimum: 1.0, maximum: 4.0 };
     let plant = UncertainPlant::record(vec![k], |p| PlantCoefficients {
@@ -50,7 +50,7 @@ fn undamped() -> DesignProblem {
     with_family(Family::Uncertain(family), 2.0)
 }
 
-/// At the pole of an undamped plant |T| is 1, whatever its gain.
+/// Pole of an undamped plant, at which |T| is 1 for any gain.
 #[test]
 fn an_undamped_pole_is_looked_at_from_beside() {
     let problem = undamped();
@@ -73,7 +73,7 @@ fn a_counterexample_adds_its_plant_everywhere_and_its_frequency_for_itself() {
     assert_eq!(shaping.samples().plants().len(), 7);
     assert_eq!(shaping.samples().frequencies_rad_per_s(), [1.0, 3.0, 10.0]);
     assert_eq!(shaping.samples().pairs(), 7 + 2 + 7);
-    // more demands, and a structure that is evaluated where they are
+    // more requirements, and a structure that is evaluated at their frequencies
     assert!(shaping.judge(&[0.5]).worst_margin_db <= before.worst_margin_db);
     let found = shaping.margins(&[0.5]);
     let direct = Samples::new(&problem, &all[9..11], &[3.0]).unwrap();
@@ -95,7 +95,7 @@ fn a_point_of_another_family_is_refused() {
     }
 }
 
-/// A measured plant is looked at where it was measured.
+/// A measured plant is evaluated where it was measured.
 #[test]
 fn beyond_a_measurement_nothing_is_looked_at() {
     let frequencies: Vec<f64> = (1..=50).map(f64::from).collect();
@@ -126,12 +126,12 @@ fn the_grid_covers_the_bands_and_what_lies_above_their_ends() {
     assert!(grid.windows(2).all(|pair| pair[0] < pair[1]));
     assert!(grid[0] <= 0.5 / 20.0 && *grid.last().unwrap() >= 30.0 * 20.0, "{grid:?}");
     assert!([1.0, 15.0, 40.0].iter().all(|given| grid.contains(given)));
-    // no hole within the dense part
+    // no gap within the dense part
     let dense = grid.windows(2).filter(|pair| pair[0] > 0.5 && pair[1] < 30.0);
     assert!(dense.clone().count() > 30);
     assert!(dense.into_iter().all(|pair| pair[1] / pair[0] < 10f64.powf(1.0 / 20.0) * (1.0 + 1e-6)));
-    // a sampled loop ends at pi/T; above the last band the grid goes on, as dense, a factor 30
-    // further or to pi/T
+    // a sampled loop ends at pi/T; above the last band the grid continues with this density, a
+    // factor 30 further or to pi/T
     problem.timing.sample_time_s = Some(0.02);
     let sampled = search_frequencies(&problem, &all, 20.0).unwrap();
     assert_eq!(*sampled.last().unwrap(), std::f64::consts::PI / 0.02);
@@ -148,7 +148,8 @@ fn the_grid_covers_the_bands_and_what_lies_above_their_ends() {
     above(&problem, 30.0 * 15.0);
 }
 
-/// The resonances of lightly damped plants are among the frequencies, but not all of a crowd.
+/// The resonances of lightly damped plants are among the frequencies, but not all of them if
+/// crowded.
 #[test]
 fn peaks_are_looked_at() {
     let problem = undamped();
@@ -156,8 +157,8 @@ fn peaks_are_looked_at() {
     assert!(grid.contains(&1.0));
 }
 
-/// A structure whose fixed part is no function, and one that cannot be sampled, are refused at
-/// once.
+/// A structure whose fixed part is not a transfer function, and one that cannot be sampled, are
+/// rejected at once.
 #[test]
 fn a_structure_without_a_response_is_refused() {
     let problem = undamped();

@@ -12,8 +12,8 @@ fn moved(x: &[f64], index: usize, step: f64) -> Vec<f64> {
     x.iter().enumerate().map(|(at, &x)| if at == index { x + step } else { x }).collect()
 }
 
-/// Where there is one frequency, one specification and the worst plant is the worst alone, the
-/// first row is the worst margin.
+/// Single margin: with one frequency, one specification and a uniquely worst plant, the first row
+/// is the worst margin.
 fn check_single(problem: &DesignProblem, draw: &mut Draw, with_prefilter: bool) {
     let structure = structure(draw);
     let x = draw.point(&structure.bounds());
@@ -48,7 +48,7 @@ fn margins_of_each_kind_move_with_their_slopes() {
     }
 }
 
-/// Near a point, the least of the linear rows is the worst margin of all plants and frequencies, to
+/// The least of the linear rows near a point is the worst margin of all plants and frequencies, to
 /// second order.
 #[test]
 fn the_rows_together_foretell_the_worst_margin() {
@@ -83,8 +83,8 @@ fn the_rows_together_foretell_the_worst_margin() {
     }
 }
 
-/// Slopes are those of the samples as they are now, whatever was judged before: with a further
-/// plant and frequency, and under other limits, as those of a shaping that judged nothing.
+/// Slopes depend only on the present samples: with an additional plant and frequency, and with
+/// other limits, they equal those of a new shaping.
 #[test]
 fn slopes_do_not_depend_on_what_was_judged_before() {
     let mut draw = Draw(24);

@@ -1,4 +1,4 @@
-//! Structures against the controllers that they stand for.
+//! Structures against the controllers that they represent.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
@@ -31,8 +31,8 @@ fn frequencies() -> Vec<f64> {
     logarithmic_grid(0.1, 780.0, 25).unwrap()
 }
 
-/// In a continuous loop and in one sampled by any rule, the response is that of the loop around the
-/// controller.
+/// Response of the structure: equal to that of the loop around the controller, continuous or
+/// sampled by any rule.
 #[test]
 fn the_response_is_that_of_the_controller_in_its_loop() {
     let mut draw = Draw(3);
@@ -76,7 +76,7 @@ fn slopes_are_those_of_central_differences() {
     }
 }
 
-/// s^r G at a frequency far beyond all corners, and its slopes.
+/// Value of s^r G at a frequency far beyond all corners, and its slopes.
 #[test]
 fn the_high_frequency_gain_is_a_limit() {
     let mut draw = Draw(5);
@@ -99,7 +99,7 @@ fn the_high_frequency_gain_is_a_limit() {
     }
 }
 
-/// By Tustin's rule, what is left at pi/T of G without its zeros there is the same limit.
+/// Value of G at pi/T without its zeros there, which by Tustin's rule equals this limit.
 #[test]
 fn the_high_frequency_gain_of_a_sampled_controller_is_what_its_zeros_at_the_end_leave() {
     let mut draw = Draw(6);
@@ -120,7 +120,7 @@ fn a_controller_and_its_point_belong_together() {
         let structure = structure(&mut draw);
         let x = draw.point(&structure.bounds());
         let given = structure.compensator(&x);
-        // the same function, however it is written
+        // this function in another form
         let general = Compensator::new(vec![Element::General(given.transfer_function().unwrap())]);
         for compensator in [&given, &general] {
             let found = structure.point_of(compensator).unwrap();
@@ -163,7 +163,7 @@ fn what_does_not_fit_has_no_point() {
     assert_eq!(structure.point_of(&without_integrator), None);
 }
 
-/// Roots that cannot be had as logarithms stay as they are.
+/// Roots that cannot be expressed by logarithms remain fixed.
 #[test]
 fn unstable_and_undamped_roots_are_not_free() {
     let pair = |re: f64, im: f64| [Complex64::new(re, im), Complex64::new(re, -im)];

@@ -15,7 +15,7 @@ fn motor() -> UncertainFamily {
     })
 }
 
-/// Neighbours on every outline are within the tolerance, and as close as the resolution says.
+/// Neighbours on every outline are within the tolerance, and as close as the resolution states.
 fn assert_resolved(template: &Template) {
     let options = TemplateOptions::default();
     let Resolution::Resolved { phase_deg, magnitude_db } = template.resolution else {
@@ -31,9 +31,9 @@ fn assert_resolved(template: &Template) {
     }
 }
 
-/// k a/(s(s+a)): a is known from the phase, -90 deg - atan(w/a), then k by the magnitude; one of
-/// the two is at an end all along the outline, and the area between the four arcs is ln(k ratio)
-/// times the range of phase.
+/// Plant k a/(s(s+a)): a follows from the phase, -90 deg - atan(w/a), then k from the magnitude;
+/// one of the two is at an end along the whole outline, and the area between the four arcs is ln(k
+/// ratio) times the range of phase.
 #[test]
 fn a_motor_is_bounded_by_four_arcs() {
     for frequency in [0.1, 1.0, 10.0, 100.0] {
@@ -64,7 +64,7 @@ fn members_come_first_and_the_nominal_plant_before_them() {
         assert_eq!(point.response, family.plant().response(values, 2.0).unwrap());
     }
     assert!(built.template.points.iter().skip(members.len()).all(|point| point.member.is_none()));
-    // members, edges, one centre; slopes along the outline and probes
+    // members, edges, one centre; then slopes along the outline and probes
     assert!(built.evaluations < 1_000, "{}", built.evaluations);
 }
 
@@ -98,7 +98,7 @@ fn two_gains_in_series_are_a_segment_too() {
 }
 
 /// A lag too short to matter bends k/s by 3e-8 degrees at most: the polygons of its faces are as
-/// thin as rounding, and the template is the segment of k alone.
+/// thin as rounding errors, and the template is the segment of k.
 // ORIGIN: analytic, 1/(w (T w + 1)) beside k/w
 #[test]
 fn a_parameter_that_hardly_moves_the_plant_leaves_a_segment() {
@@ -114,7 +114,7 @@ fn a_parameter_that_hardly_moves_the_plant_leaves_a_segment() {
     assert!((highest - 200.0).abs() < 1e-6 && (lowest - 2.0).abs() < 1e-6, "{lowest} to {highest}");
 }
 
-/// The watch is asked at each plant, and where it answers no there is no template.
+/// The watch is consulted at each plant; if it returns false there is no template.
 #[test]
 fn a_template_asks_its_watch_at_each_plant() {
     let (family, options) = (Family::Uncertain(motor()), TemplateOptions::default());
@@ -138,7 +138,8 @@ fn a_template_asks_its_watch_at_each_plant() {
     }
 }
 
-/// -(x^2 + y^2) - 1 on x, y from -1 to 1: the edges of the box reach from -3 to -2, its middle -1.
+/// Image -(x^2 + y^2) - 1 with x, y from -1 to 1: the edges of the box extend from -3 to -2, and
+/// its middle is -1.
 #[test]
 fn a_line_reaches_beyond_the_edges_of_the_box() {
     let family = family(&[("x", -1.0, 1.0, Linear), ("y", -1.0, 1.0, Linear)], 2, |p| {
@@ -166,7 +167,7 @@ fn a_dead_time_is_an_arc() {
         assert!((magnitude(*response) - 3.0).abs() < 1e-12);
         assert!((-2.0 - 1e-12..=-0.4 + 1e-12).contains(&argument(*response)));
     }
-    // 1.6 rad there and as many back in steps of at most 2 degrees
+    // 1.6 rad forwards and as many backwards in steps of at most 2 degrees
     assert!(outline.len() as f64 >= 2.0 * 1.6_f64.to_degrees() / 2.0);
 }
 
@@ -178,8 +179,8 @@ fn gain_and_dead_time() -> UncertainFamily {
     })
 }
 
-/// k e^(-sT) over 4.5 rad of phase: a bent strip around the origin, of area ln 2 times 4.5 in the
-/// logarithmic plane.
+/// Plant k e^(-sT) over 4.5 rad of phase: a curved strip around the origin, of area ln 2 times 4.5
+/// in the logarithmic plane.
 #[test]
 fn a_bent_strip_keeps_its_hollow() {
     let template = built(&gain_and_dead_time(), 5.0).template;
@@ -194,7 +195,7 @@ fn a_bent_strip_keeps_its_hollow() {
     }
 }
 
-/// Over 18 rad of phase the strip closes to a ring: its hollow stays empty, and nothing is covered
+/// A strip over 18 rad of phase closes to a ring: its interior stays empty, and no part is covered
 /// twice.
 #[test]
 fn more_than_a_turn_is_a_ring() {
@@ -211,8 +212,8 @@ fn more_than_a_turn_is_a_ring() {
     }
 }
 
-/// k/((s+a)(s+b)): the forty plants on four edges of the box that a published example chose are the
-/// rim of the template.
+/// Plant k/((s+a)(s+b)): the forty plants on four edges of the box, as chosen in a published
+/// example, form the rim of the template.
 #[test]
 fn the_edge_plants_of_a_published_example_are_the_rim() {
     let ranges = [("k", 1.0, 10.0, Logarithmic), ("a", 1.0, 5.0, Logarithmic), ("b", 20.0, 30.0, Linear)];

@@ -7,8 +7,8 @@ use super::support::{
     Shares, apart, beyond, built, coefficients, family, from_rim, quadratic_family, random_values, winding,
 };
 
-/// Real and imaginary part are quadratic in the parameters: images are folded, and their rim runs
-/// through the inside of the box.
+/// Real and imaginary part are quadratic in the parameters: images are folded, and their rim is
+/// partly the image of interior points of the box.
 #[test]
 fn no_random_plant_lies_outside() {
     let options = TemplateOptions::default();
@@ -58,8 +58,8 @@ fn nearest(family: &UncertainFamily, target: Complex64) -> Complex64 {
     best
 }
 
-/// Holes narrower than a tolerance count as filled, so a plant may be half a tolerance away, but no
-/// farther.
+/// Holes narrower than a tolerance count as filled, so that a plant may be half a tolerance away,
+/// but no farther.
 #[test]
 fn what_an_outline_winds_around_is_a_plant() {
     let options = TemplateOptions::default();
@@ -83,8 +83,8 @@ fn what_an_outline_winds_around_is_a_plant() {
     assert!(inside > 200, "{inside}");
 }
 
-/// With real part 5 + x and imaginary part y^2 at 1 rad/s, y from -1 to 1, the fold y = 0 lies
-/// inside the box and all four edges enclose nothing.
+/// Fold y = 0 for the real part 5 + x and imaginary part y^2 at 1 rad/s, y from -1 to 1: it is
+/// inside the box, and the four edges enclose no area.
 #[test]
 fn a_fold_inside_the_box_is_found() {
     let family = family(&[("x", 0.0, 1.0, Linear), ("y", -1.0, 1.0, Linear)], 2, |p| {

@@ -15,8 +15,8 @@ fn motor() -> UncertainFamily {
     })
 }
 
-/// With a small sample time and H = 1/(0.1 s + 1) every point is P H within the lag of the hold,
-/// half a sample.
+/// Small sample time and H = 1/(0.1 s + 1): every point is P H within the lag of the hold, half a
+/// sample.
 #[test]
 fn sampling_delay_and_sensor_are_within_the_points() {
     let sensor =
@@ -134,7 +134,7 @@ fn what_cannot_be_is_refused() {
         let refused = template(&family, &plain_loop(), 1.0, &options);
         assert!(matches!(refused, Err(TemplateError::Tolerance { .. })));
     }
-    // an integrator has no response at frequency 0
+    // an integrator has no response at zero frequency
     let refused = template(&family, &plain_loop(), 0.0, &TemplateOptions::default());
     assert!(matches!(refused, Err(TemplateError::NotFinite { member: 0, .. })));
 }

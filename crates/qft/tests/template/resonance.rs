@@ -5,7 +5,7 @@ use phea_qft::template::{Resolution, TemplateOptions};
 
 use super::support::{built, built_with, coefficients, family};
 
-/// k (s+a) w^2/(s^2 + 2 z w s + w^2)
+/// Plant k (s+a) w^2/(s^2 + 2 z w s + w^2).
 fn resonant(damping: f64) -> UncertainFamily {
     let ranges = [
         ("k", 2.0, 5.0, Logarithmic),
@@ -26,7 +26,7 @@ fn unresolved_near(resolution: &Resolution) -> (f64, f64, &[f64]) {
     }
 }
 
-/// k w^2/(s^2 + w^2) at 6 rad/s with w from 4 to 8: real, positive above 6, negative below.
+/// Plant k w^2/(s^2 + w^2) at 6 rad/s with w from 4 to 8: real, positive above 6, negative below.
 #[test]
 fn an_undamped_resonance_is_named() {
     for points in [2, 3, 4] {
@@ -38,7 +38,7 @@ fn an_undamped_resonance_is_named() {
         assert!((phase - 180.0).abs() < 1e-6 && (near[1] - 6.0).abs() < 1e-5, "{near:?}");
         assert!(built.evaluations <= family.members().len() + TemplateOptions::default().evaluations_maximum);
         assert!(built.template.points.iter().all(|point| magnitude(point.response).is_finite()));
-        // it falls into a positive and a negative part
+        // the template splits into a positive and a negative part
         let sides = |sign: f64| {
             built.template.outlines.iter().filter(|outline| outline.iter().all(|r| r.re * sign > 0.0)).count()
         };
@@ -75,8 +75,8 @@ fn a_lightly_damped_resonance_closes_at_its_peak() {
     }
 }
 
-/// With a damping from negative to positive all edges close, but the phase turns by 360 degrees
-/// around the box.
+/// Damping from negative to positive: all edges close, but the phase turns by 360 degrees around
+/// the box.
 #[test]
 fn a_pole_inside_the_box_is_noticed() {
     let family = family(&[("z", -0.11, 0.1, Linear), ("w", 4.0, 8.1, Linear)], 2, |p| {
@@ -100,8 +100,8 @@ fn a_spent_budget_is_said() {
     }
 }
 
-/// Folds inside a box are reached in several rounds; with fewer the template says that it had not
-/// settled.
+/// Folds inside a box are reached in several rounds; with fewer the template reports that it is not
+/// resolved.
 #[test]
 fn rounds_that_do_not_settle_are_said() {
     let unsettled = |rounds_maximum: usize| {

@@ -12,7 +12,7 @@ fn actuator<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
     coefficients(numerator, denominator)
 }
 
-/// Ranges of thesis Table 6.3.
+/// Parameter ranges of thesis Table 6.3.
 const RANGES: [Range; 6] = [
     ("viscous_friction", 100.0, 3e4, Logarithmic),
     ("flow_gain", 3.23e-5, 5.61e-5, Linear),
@@ -22,8 +22,8 @@ const RANGES: [Range; 6] = [
     ("valve_damping_ratio", 0.72, 1.08, Linear),
 ];
 
-/// Thousands of plants for a box of six dimensions, not millions, and no random plant outside; the
-/// piston's resonance at 1300 rad/s too.
+/// Thousands of plants for a box of six dimensions, not millions, and no random plant outside, also
+/// for the piston's resonance at 1300 rad/s.
 #[test]
 fn an_actuator_is_resolved_with_little_work() {
     let family = family(&RANGES, 3, actuator);

@@ -1,4 +1,4 @@
-//! Families to take templates of, and what their outlines enclose.
+//! Families for templates, and functions of their outlines.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Controller;
@@ -46,7 +46,7 @@ where
     UncertainFamily::new(plant, coordinates, members, Extent::Box).unwrap()
 }
 
-/// A continuous loop without delay, its sensor 1.
+/// A continuous loop without delay, with sensor 1.
 pub(crate) fn plain_loop() -> Compensation {
     Compensation::new(&Controller::default(), TransferFunction::gain_only(1.0)).unwrap()
 }
@@ -67,21 +67,21 @@ pub(crate) fn polar(magnitude: f64, phase_rad: f64) -> Complex64 {
     Complex64::new(magnitude * cos(phase_rad), magnitude * sin(phase_rad))
 }
 
-/// How often a closed polygon goes around a point.
+/// Number of times a closed polygon winds around a point.
 pub(crate) fn winding(outline: &[Complex64], point: Complex64) -> i32 {
     let next = outline.iter().cycle().skip(1);
     let turn: f64 = outline.iter().zip(next).map(|(a, b)| argument((b - point) / (a - point))).sum();
     (turn / std::f64::consts::TAU).round() as i32
 }
 
-/// Distance of a response from what the outlines enclose, in tolerances (degrees and dB), none
-/// inside.
+/// Distance of a response from the region enclosed by the outlines, in tolerances (degrees and dB),
+/// zero inside.
 pub(crate) fn beyond(outlines: &[Vec<Complex64>], response: Complex64, options: &TemplateOptions) -> f64 {
     let inside = outlines.iter().any(|outline| winding(outline, response) != 0);
     if inside { 0.0 } else { from_rim(outlines, response, options) }
 }
 
-/// Distance of a response from the outlines themselves, in tolerances.
+/// Distance of a response from the outlines, in tolerances.
 pub(crate) fn from_rim(outlines: &[Vec<Complex64>], response: Complex64, options: &TemplateOptions) -> f64 {
     let mut least = f64::INFINITY;
     for outline in outlines {
@@ -101,8 +101,7 @@ pub(crate) fn apart(first: Complex64, second: Complex64, options: &TemplateOptio
     hypot(argument(ratio).to_degrees() / options.phase_deg, decibel / options.magnitude_db)
 }
 
-/// Area of a polygon in the plane of ln|P| and phase in radians, which must not be wider than a
-/// turn.
+/// Area of a polygon in the plane of ln|P| and phase, rad, which must not be wider than a turn.
 pub(crate) fn logarithmic_area(outline: &[Complex64]) -> f64 {
     let mut place = (ln(magnitude(outline[0])), argument(outline[0]));
     let mut area = 0.0;
@@ -155,8 +154,8 @@ pub(crate) fn quadratic_family(dimension: usize, seed: u64) -> UncertainFamily {
     })
 }
 
-/// Numbers in [0, 1), the same every time (multiplicative congruence modulo 2^31 - 1; Park and
-/// Miller 1988).
+/// Reproducible numbers in [0, 1) (multiplicative congruence modulo 2^31 - 1; Park and Miller
+/// 1988).
 pub(crate) struct Shares(pub(crate) u64);
 
 impl Shares {

@@ -1,4 +1,4 @@
-//! Two plants that are as bad as each other, at different frequencies.
+//! Two equally bad plants at different frequencies.
 
 use phea_dynamics::controller::Timing;
 use phea_dynamics::expression::Recorded;
@@ -9,7 +9,7 @@ use phea_qft::verification::{PlantPoint, TrackingJudgement};
 
 use super::plants::{audited, compensation, parameter, rational, specification};
 
-/// a^2/(s (s + a)): P(s/a) for P = 1/(s (s + 1)).
+/// Plant a^2/(s (s + a)): P(s/a) for P = 1/(s (s + 1)).
 fn scaled<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
     PlantCoefficients {
         command: RationalCoefficients {
@@ -22,7 +22,7 @@ fn scaled<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
     }
 }
 
-/// A plant whose frequencies are those of another times 10 has the same peak of |S| there.
+/// A plant whose frequencies are those of another times 10 has an equal peak of |S| there.
 #[test]
 fn a_plant_scaled_in_frequency_is_as_bad() {
     let plant = UncertainPlant::record(vec![parameter("a", 1.0, 1.0, 10.0)], scaled).unwrap();

@@ -39,7 +39,7 @@ fn judged(
     audited(family, &around, specifications, TrackingJudgement::Magnitude).0
 }
 
-/// k e^(-0.2 s)/(tau s + 1)
+/// Plant k e^(-0.2 s)/(tau s + 1).
 fn process() -> Family {
     let parameters = vec![parameter("k", 1.0, 0.8, 1.25), parameter("tau", 1.0, 0.8, 1.5)];
     let plant = UncertainPlant::record(parameters, |p| PlantCoefficients {
@@ -96,8 +96,8 @@ fn a_process_with_dead_time() {
     check(&judged(&process(), Controller { timing, ..controller }, &specifications[..1]), &truths);
 }
 
-/// k w^2 e^(-s T)/(s (s^2 + 2 d w s + w^2)), damped less the stiffer it is, force cell
-/// 1/(s/800 + 1) with 0.5 ms of its own.
+/// Plant k w^2 e^(-s T)/(s (s^2 + 2 d w s + w^2)), with damping that decreases with stiffness, and
+/// a force cell 1/(s/800 + 1) with 0.5 ms of dead time.
 // ORIGIN: recomputed by comparisons/compare_verify.py
 #[test]
 fn a_load_frame_with_everything_at_once() {

@@ -1,4 +1,4 @@
-//! Limits at zero and infinite frequency, and peaks that no grid meets.
+//! Limits at zero and infinite frequency, and peaks that no grid contains.
 
 use phea_dynamics::controller::Timing;
 use phea_dynamics::linear::TransferFunction;
@@ -12,7 +12,7 @@ use super::plants::{along, audited, compensation, on_grid, parameter, rational, 
 
 const EVERYWHERE: [f64; 2] = [0.0, f64::INFINITY];
 
-/// k numerator/denominator e^(-s T), k from 1 to 2.
+/// Family k numerator/denominator e^(-s T) with k from 1 to 2.
 fn gain_times(numerator: &[f64], denominator: &[f64], dead_time_s: f64) -> Family {
     let plant = UncertainPlant::record(vec![parameter("k", 1.0, 1.0, 2.0)], |p| PlantCoefficients {
         command: RationalCoefficients {
@@ -75,7 +75,7 @@ fn an_integrator_tracks_at_zero_frequency_and_sees_nothing_at_infinity() {
     check(&sensitivity, decibels(0.9), f64::INFINITY);
     assert_eq!(sensitivity.verdict, Verdict::Violated);
     let [from, to] = sensitivity.violations[0].band_rad_per_s;
-    // w = 0.9/sqrt(1 - 0.81), and a little above for the tolerance of 0.001 dB
+    // w = 0.9/sqrt(1 - 0.81), and slightly above for the tolerance of 0.001 dB
     assert!((from / (0.9 / 0.19f64.sqrt()) - 1.0).abs() < 1e-3 && to == f64::INFINITY, "{from}");
     // |S| against s/(s + 3): 3/k at zero, 1 at infinity, both margins known
     let sloped =
@@ -100,7 +100,7 @@ fn a_lower_limit_above_a_vanishing_magnitude_is_violated_without_end() {
     let constant = Limit::Constant;
     let tracking = Requirement::tracking(constant(0.5), constant(1.1));
     check(&judged(&integrator, &unity(1.0), tracking, EVERYWHERE), f64::NEG_INFINITY, f64::INFINITY);
-    // a lower limit that falls as fast keeps a margin: k/w against 0.25/w
+    // a lower limit that falls equally fast leaves a margin: k/w against 0.25/w
     let lower = Limit::Rational(rational(&[0.25], &[1.0, 0.25]));
     let tracking = Requirement::tracking(lower, constant(1.1));
     let finding = judged(&integrator, &unity(1.0), tracking, EVERYWHERE);
@@ -110,7 +110,7 @@ fn a_lower_limit_above_a_vanishing_magnitude_is_violated_without_end() {
 
 #[test]
 fn dead_time_turns_a_loop_that_does_not_vanish_through_its_worst_phase() {
-    // L = k/4 e^(-s T): |1 + L| comes down to 1 - k/4, again and again
+    // L = k/4 e^(-s T): |1 + L| repeatedly falls to 1 - k/4
     let family = gain_times(&[1.0], &[1.0], 0.1);
     let finding = judged(
         &family,
@@ -134,7 +134,7 @@ fn a_loop_of_minus_one_at_zero_frequency_is_not_resolved() {
     assert_ne!(finding.verdict, Verdict::Met, "{finding:?}");
 }
 
-/// w^2/(s^2 + 2 d w s + w^2) in a loop of gain g: the peak of P/(1+L) is 1/((1 + g) 2 e
+/// Resonance w^2/(s^2 + 2 d w s + w^2) in a loop of gain g: the peak of P/(1+L) is 1/((1 + g) 2 e
 /// sqrt(1 - e^2)) with e = d/sqrt(1 + g).
 fn resonance_peak(gain: f64, damping: f64) -> f64 {
     let closed = damping / (1.0 + gain).sqrt();
@@ -162,7 +162,7 @@ fn a_peak_a_millionth_wide_is_found() {
 #[test]
 fn the_worst_interior_minimum_is_stated_beside_an_end() {
     let family = gain_times(&[1.0], &[1.0, 0.4, 1.0], 0.0);
-    // |P/(1+L)| = k/|1 + k g - w^2 + 0.4 jw|, against 1/s: worst at infinity for a limit that falls faster still
+    // |P/(1+L)| = k/|1 + k g - w^2 + 0.4 jw|, against 1/s: worst at infinity for a limit that falls even faster
     let limit = Limit::Rational(rational(&[1.0], &[0.01, 0.1, 1.0, 1.0]));
     let finding = judged(
         &family,
@@ -176,8 +176,8 @@ fn the_worst_interior_minimum_is_stated_beside_an_end() {
     assert!((1.0..2.0).contains(&interior.frequency_rad_per_s), "{interior:?}");
 }
 
-/// Without a prefilter any roll-off serves: k/(s + k) spreads by 2 at infinity, where the limits
-/// are 4 apart, and by nothing at zero.
+/// Spread without a prefilter, for which any roll-off is suitable: k/(s + k) spreads by 2 at
+/// infinity, where the limits are 4 apart, and by nothing at zero.
 #[test]
 fn a_spread_has_limits_at_both_ends() {
     let integrator = gain_times(&[1.0], &[1.0, 0.0], 0.0);
@@ -191,7 +191,7 @@ fn a_spread_has_limits_at_both_ends() {
     assert_eq!(findings[0].verdict, Verdict::Met);
 }
 
-/// Bands, limits and plants without sense are answered, not met and not panicked over.
+/// Meaningless bands, limits and plants give a result other than `Met`, without a panic.
 #[test]
 fn senseless_demands_are_not_met() {
     let integrator = gain_times(&[1.0], &[1.0, 0.0], 0.0);
@@ -209,9 +209,9 @@ fn senseless_demands_are_not_met() {
     }
 }
 
-/// k/(s + 1) behind 0.1 s, k from 1 to 2, with Pd = -2 s/(s + 10) and the rate of the disturbance
-/// fed forward: Pd + K s P tends to (K k - 0.2) s at zero, where 1 + L is 1 + k, sampled or not,
-/// and at infinity to -2 + K k e^(-0.1 s), of which the delay makes 2 + K k.
+/// Plant k/(s + 1) with 0.1 s of dead time, k from 1 to 2, with Pd = -2 s/(s + 10) and rate
+/// feed-forward: Pd + K s P tends to (K k - 0.2) s at zero, where 1 + L is 1 + k, sampled or not,
+/// and at infinity to -2 + K k e^(-0.1 s), which the delay makes 2 + K k.
 #[test]
 fn a_rate_that_is_fed_forward_has_its_share_in_both_ends() {
     let plant = UncertainPlant::record(vec![parameter("k", 1.0, 1.0, 2.0)], |p| PlantCoefficients {
@@ -224,7 +224,7 @@ fn a_rate_that_is_fed_forward_has_its_share_in_both_ends() {
         rate: None,
     });
     let family = on_grid(plant.unwrap(), vec![along(0, Spacing::Linear, 2)]);
-    // grows by more than |Y/D| from zero on
+    // exceeds |Y/D| from zero on
     let limit = Limit::Rational(rational(&[1.0, 0.1, 0.0], &[1.0, 6.0, 9.0]));
     for (gain, at_zero) in [(1.0, 1.8 / 3.0), (0.1, 0.1 / 2.0), (-0.5, 1.2 / 3.0)] {
         for sample_time_s in [None, Some(0.1)] {

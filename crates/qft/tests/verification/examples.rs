@@ -1,4 +1,4 @@
-//! Published designs, each with the truth about it on dense grids.
+//! Published designs, with their true margins on dense grids.
 
 use phea_dynamics::controller::Timing;
 use phea_dynamics::expression::Recorded;
@@ -56,13 +56,13 @@ fn judged(
     audited(family, around, specifications, TrackingJudgement::Magnitude).0
 }
 
-/// The finding's worst excess over its limit, dB, and where it is.
+/// The finding's worst excess over its limit, dB, and its frequency.
 fn excess(finding: &SpecificationFinding) -> (f64, f64) {
     let worst = finding.worst.as_ref().unwrap();
     (-worst.margin_db, worst.frequency_rad_per_s)
 }
 
-/// k/((s + a)(s + b)): 40 plants along the edges of a template, and nothing between them.
+/// Plant k/((s + a)(s + b)): 40 plants along the edges of a template, without any between them.
 fn edge_plants() -> Family {
     let parameters =
         vec![parameter("k", 1.0, 1.0, 10.0), parameter("a", 5.0, 1.0, 5.0), parameter("b", 30.0, 20.0, 30.0)];
@@ -101,7 +101,7 @@ fn forty_edge_plants_with_both_published_controllers() {
         assert_eq!(finding.verdict, Verdict::Met);
         assert!((excess(finding).0 - truth).abs() < 1e-3, "{:?}", finding.worst);
     }
-    // met at all its design frequencies, and not between them
+    // met at all its design frequencies, but not between them
     let real = feedback(rational(&zero, &[1.0 / 165.0, 1.0]));
     let findings = judged(&family, &real, &specifications[..1]);
     let (worst, frequency) = excess(&findings[0]);
@@ -110,7 +110,7 @@ fn forty_edge_plants_with_both_published_controllers() {
     assert!(findings[0].at_design_frequencies.iter().all(|case| case.margin_db > 0.0));
 }
 
-/// k a/(s (s + a))
+/// Plant k a/(s (s + a)).
 fn servo() -> Family {
     let parameters = vec![parameter("k", 1.0, 1.0, 10.0), parameter("a", 1.0, 1.0, 10.0)];
     let plant = recorded(parameters, |p| (vec![p[0] * p[1]], vec![1.0.into(), p[1], 0.0.into()]));
@@ -134,7 +134,7 @@ fn two_servo_designs() {
     let prefilter = rational(&[1.0], &[1.0 / 16.0, 0.35, 1.0]);
     let findings = judged(&family, &compensation(published, prefilter, Timing::default()), &servo);
     assert!((excess(&findings[0]).0 + 0.1256).abs() < 1e-4, "{:?}", findings[0].worst);
-    // exceeded by 4e-5 dB, which the tolerance forgives
+    // exceeded by 4e-5 dB, within the tolerance
     let worst = findings[1].worst.as_ref().unwrap();
     assert!((worst.margin_db + 4.11e-5).abs() < 1e-7 && findings[1].verdict == Verdict::Met, "{worst:?}");
 
@@ -145,8 +145,8 @@ fn two_servo_designs() {
     let (worst, frequency) = excess(&findings[0]);
     assert_eq!(findings[0].verdict, Verdict::Violated);
     assert!((worst - 0.0239).abs() < 1e-3 && (frequency / 2.912 - 1.0).abs() < 2e-3, "{worst} {frequency}");
-    // without its prefilter: the spread just fits at the upper end of the band, and has no slack at
-    // zero frequency
+    // without its prefilter: the spread is just allowed at the upper end of the band, and has no
+    // slack at zero frequency
     let tracking = &findings[1];
     let (last, margin) = tracking.envelope.last().copied().unwrap();
     assert!(tracking.verdict == Verdict::Met && last == 15.0 && (margin - 2.410e-4).abs() < 2e-7, "{margin}");

@@ -1,5 +1,4 @@
-//! The worst plant at a frequency that is given, where the resonance that lies there belongs to no
-//! plant of the grid.
+//! The worst plant at a given frequency whose resonance there belongs to no plant of the grid.
 
 use phea_dynamics::controller::Timing;
 use phea_dynamics::expression::Recorded;
@@ -12,7 +11,7 @@ use phea_qft::verification::{PlantPoint, TrackingJudgement};
 use super::plants::{along, audited, compensation, on_grid, parameter, rational, stability};
 use super::properties::{COARSE, Case, Draw, damped_case};
 
-/// k/(s^2 (s^2 + 2 k))
+/// Plant k/(s^2 (s^2 + 2 k)).
 fn carts<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
     let zero = || Recorded::from(0.0);
     PlantCoefficients {
@@ -27,7 +26,7 @@ fn carts<'t>(p: &[Recorded<'t>]) -> PlantCoefficients<Recorded<'t>> {
 }
 
 /// Two carts and a spring (Wie and Bernstein 1992): the grid has plants next to those whose
-/// resonance lies there.
+/// resonance is at the frequency.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
 fn a_spring_between_two_of_the_grid_resonates_at_the_given_frequency() {
@@ -46,7 +45,7 @@ fn a_spring_between_two_of_the_grid_resonates_at_the_given_frequency() {
     }
 }
 
-/// By the specification's own definition.
+/// Margin by the specification's definition.
 fn margin_db(
     around: &Compensation,
     specification: &Specification,
@@ -65,7 +64,7 @@ fn margin_db(
     specification.margin_db(&response, frequency).unwrap()
 }
 
-/// Shares of plants of which the last coordinate is looked at closely.
+/// Fractions of plants, closely spaced in the last coordinate.
 fn close_look() -> impl Iterator<Item = [f64; 4]> {
     (0..3 * 3 * 2 * 400).map(|index| {
         let (near, far) = (index % 400, index / 400);
@@ -86,7 +85,7 @@ fn least(case: &Case, frequency: f64) -> Vec<f64> {
     least
 }
 
-/// What is left of the spread that a tracking specification allows over the same box, in dB.
+/// Remainder of the spread that a tracking specification allows over this box, dB.
 fn spread_left(case: &Case, frequency: f64, allowed: f64) -> f64 {
     let Family::Uncertain(family) = &case.family else { panic!("a box") };
     let (mut least, mut greatest) = (f64::INFINITY, 0.0_f64);
@@ -100,8 +99,8 @@ fn spread_left(case: &Case, frequency: f64, allowed: f64) -> f64 {
     20.0 * (allowed * least / greatest).log10()
 }
 
-/// 24 lightly damped boxes whose resonances pass the given frequencies: none of 7,200 plants is
-/// worse than what was found.
+/// Lightly damped boxes whose resonances pass the given frequencies, 24 of them: none of 7,200
+/// plants is worse than the result.
 #[test]
 fn no_plant_of_a_close_look_is_worse_at_a_given_frequency() {
     let mut missed = Vec::new();
@@ -130,7 +129,7 @@ fn no_plant_of_a_close_look_is_worse_at_a_given_frequency() {
     assert!(missed.is_empty(), "{missed:#?}");
 }
 
-/// The same for both plants of a spread.
+/// Spread of both plants over twelve boxes of this kind: none is worse than the result.
 #[test]
 fn no_two_plants_of_a_close_look_spread_further_at_a_given_frequency() {
     let mut missed = Vec::new();

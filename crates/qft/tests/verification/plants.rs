@@ -1,4 +1,4 @@
-//! Plants, loops and specifications that several tests share.
+//! Plants, loops and specifications shared by several tests.
 
 use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 use phea_dynamics::linear::{Polynomial, TransferFunction};

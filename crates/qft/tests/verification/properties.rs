@@ -1,5 +1,5 @@
-//! What holds for any plant: nothing drawn at random is worse than the worst that is stated; limits
-//! and frequencies scale.
+//! Properties for any plant: no random point is worse than the worst case stated; limits and
+//! frequencies scale.
 
 use phea_dynamics::controller::Timing;
 use phea_dynamics::expression::Recorded;
@@ -11,25 +11,25 @@ use phea_qft::verification::{SpecificationFinding, TrackingJudgement};
 
 use super::plants::{along, audited, compensation, on_grid, parameter, rational, specification};
 
-/// A linear congruential generator (Knuth's MMIX constants), so that the draws are the same
+/// A linear congruential generator (Knuth's MMIX constants), so that the draws are identical
 /// everywhere.
 pub(crate) struct Draw(pub(crate) u64);
 
 impl Draw {
-    /// Evenly in [0, 1).
+    /// A number uniform in [0, 1).
     pub(crate) fn share(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// By equal factors between two numbers.
+    /// A number between these two, uniform in its logarithm.
     pub(crate) fn factor(&mut self, low: f64, high: f64) -> f64 {
         low * (high / low).powf(self.share())
     }
 }
 
-/// k w^2 (1 + s/z)/((1 + s/a) (s^2 + 2 d w s + w^2)) in units of `scale` rad/s; parameters k, a, d,
-/// w.
+/// Plant k w^2 (1 + s/z)/((1 + s/a) (s^2 + 2 d w s + w^2)) in units of `scale` rad/s; parameters k,
+/// a, d, w.
 fn resonant<'t>(p: &[Recorded<'t>], zero: f64, scale: f64) -> PlantCoefficients<Recorded<'t>> {
     let [k, a, d, w] = [p[0], p[1], p[2], p[3]];
     let number = |value: f64| Recorded::from(value);
@@ -60,7 +60,7 @@ fn case(seed: u64, scale: f64, factor: f64, points: [usize; 4]) -> Case {
     damped_case(seed, [0.003, 0.5], scale, factor, points)
 }
 
-/// The same, the least damping ratio drawn between these.
+/// A random box and loop with a random least damping ratio between these two.
 pub(crate) fn damped_case(seed: u64, damping: [f64; 2], scale: f64, factor: f64, points: [usize; 4]) -> Case {
     let mut draw = Draw(seed);
     let mut range = |name: &str, low: f64, high: f64| {
@@ -118,8 +118,8 @@ fn worst(finding: &SpecificationFinding) -> f64 {
     finding.worst.as_ref().unwrap().margin_db
 }
 
-/// 24 boxes, 5 specifications each, 10,000 plants and frequencies each, judged by the
-/// specification's own definition.
+/// Twenty-four random boxes with 5 specifications each and 10,000 plants and frequencies each,
+/// evaluated by the specification's definition.
 #[test]
 fn no_plant_and_frequency_drawn_at_random_is_worse_than_the_worst_case_found() {
     for seed in 0..24 {
@@ -159,7 +159,7 @@ fn no_plant_and_frequency_drawn_at_random_is_worse_than_the_worst_case_found() {
     }
 }
 
-/// The worst case inside the box does not depend on the grid that its search started from.
+/// The worst case inside the box does not depend on the grid from which its search started.
 #[test]
 fn a_finer_grid_finds_the_same_worst_case() {
     let mut compared = 0;
@@ -167,7 +167,7 @@ fn a_finer_grid_finds_the_same_worst_case() {
         let coarse = findings(&case(seed, 1.0, 1.0, COARSE));
         let fine = findings(&case(seed, 1.0, 1.0, [3, 4, 3, 5]));
         for (coarse, fine) in coarse.iter().zip(&fine) {
-            // a box that reaches the border of stability has peaks without end
+            // a box that extends to the stability boundary has unbounded peaks
             if worst(fine) > -40.0 {
                 compared += 1;
                 assert!(
@@ -182,7 +182,7 @@ fn a_finer_grid_finds_the_same_worst_case() {
     assert!(compared > 20, "{compared}");
 }
 
-/// Limits x dB higher leave margins x dB larger.
+/// Limits higher by x dB give margins larger by x dB.
 #[test]
 fn margins_follow_limits() {
     let factor = 10f64.powf(0.15);
@@ -208,7 +208,7 @@ fn margins_follow_limits() {
     assert!(compared > 10, "{compared}");
 }
 
-/// Everything a hundred times faster has the same margins at a hundred times the frequency.
+/// Problems a hundred times faster have equal margins at a hundred times the frequency.
 #[test]
 fn frequency_scales() {
     let mut compared = 0;
@@ -229,7 +229,7 @@ fn frequency_scales() {
     assert!(compared > 10, "{compared}");
 }
 
-/// The same input gives the same findings and the same work.
+/// Repeated audits give equal findings and equal work.
 #[test]
 fn an_audit_repeats_itself() {
     let one = case(5, 1.0, 1.0, COARSE);

@@ -1,4 +1,4 @@
-//! How far data, tables and samples reach, and what cannot be resolved.
+//! Range of data, tables and samples, and cases that cannot be resolved.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Controller, Timing};
@@ -22,7 +22,7 @@ fn judged(family: &Family, around: &Compensation, specification: &Specification)
     audited(family, around, specifications, TrackingJudgement::Magnitude).0.remove(0)
 }
 
-/// k/(s (s + 1)), measured at 40 frequencies a decade.
+/// Plants k/(s (s + 1)), measured at 40 frequencies per decade.
 fn measured(gains: &[f64], from: f64, to: f64) -> Family {
     let points = (40.0 * (to / from).log10()) as usize + 1;
     let frequencies: Vec<f64> =
@@ -70,7 +70,7 @@ fn a_measured_family_is_judged_where_it_was_measured_and_not_beyond() {
     assert!(beyond.remarks.contains(&reach), "{:?}", beyond.remarks);
     let everywhere = judged(&family, &unity(), &stability(3.0, &[1.0], [0.0, f64::INFINITY]));
     assert_eq!(everywhere.verdict, Verdict::NotProven);
-    // a violation is one, however little is known elsewhere
+    // a violation counts, however little is known elsewhere
     let violated = judged(&family, &unity(), &stability(1.5, &[1.0], [0.0, f64::INFINITY]));
     assert_eq!(violated.verdict, Verdict::Violated);
 }
@@ -95,7 +95,7 @@ fn servo(points: usize) -> Family {
 fn nothing_is_demanded_beyond_the_ends_of_a_table() {
     let table = |points: &[(f64, f64)]| Limit::Table(LimitTable::new(points.to_vec()).unwrap());
     let everywhere = [0.0, f64::INFINITY];
-    // the peak of the worst plant lies at sqrt(4 - 1/2) rad/s, beyond this table
+    // the peak of the worst plant is at sqrt(4 - 1/2) rad/s, beyond this table
     let low = Requirement::at_most(ClosedLoop::RobustStability, table(&[(0.1, 1.5), (1.0, 1.5)]));
     let low = judged(&servo(2), &unity(), &specification(low, &[0.5], everywhere));
     assert_eq!(low.verdict, Verdict::Met);
@@ -106,14 +106,14 @@ fn nothing_is_demanded_beyond_the_ends_of_a_table() {
     let worst = through.worst.as_ref().unwrap();
     assert!((worst.margin_db - 20.0 * (1.5 / servo_peak(4.0)).log10()).abs() < 1e-6);
     assert!((worst.frequency_rad_per_s - 3.5f64.sqrt()).abs() < 1e-6);
-    // a table outside of the band demands nothing, which is not the same as being met
+    // a table outside the band sets no limit, which does not count as met
     let outside = Requirement::at_most(ClosedLoop::RobustStability, table(&[(20.0, 1.5), (30.0, 1.5)]));
     let outside = judged(&servo(2), &unity(), &specification(outside, &[], [0.1, 10.0]));
     assert_eq!((outside.verdict, outside.worst), (Verdict::NotProven, None));
 }
 
-/// Load motion acts on the plant itself: |Pd/(1+L)|, with Pd = -2 s/(s + 10), is 2 at infinity and
-/// peaks where |S| does.
+/// Load motion acts directly on the plant: |Pd/(1+L)|, with Pd = -2 s/(s + 10), is 2 at infinity
+/// and peaks where |S| does.
 #[test]
 fn load_motion_has_a_path_of_its_own() {
     let requirement = Requirement::at_most(ClosedLoop::LoadMotion, Limit::Constant(1.0));
@@ -127,8 +127,8 @@ fn load_motion_has_a_path_of_its_own() {
     assert!((finding.at_design_frequencies[0].margin_db + 20.0 * truth.log10()).abs() < 1e-5);
 }
 
-/// A sensor in the loop, a hold and a delay: the audit agrees with the specification's own
-/// definition on a dense grid.
+/// A sensor in the loop, a hold and a delay: the audit agrees with the specification's definition
+/// on a dense grid.
 #[test]
 fn a_sampled_loop_is_judged_up_to_half_its_sampling_frequency() {
     for (sensor, rate_feed_forward) in
@@ -173,8 +173,7 @@ fn a_sampled_loop_is_judged_up_to_half_its_sampling_frequency() {
     }
 }
 
-/// A plant with more zeros than poles cannot be held and sampled: the verdict does not pretend
-/// otherwise.
+/// A plant with more zeros than poles cannot be held and sampled: it is not proven.
 #[test]
 fn a_plant_that_cannot_be_sampled_is_not_proven() {
     let plant = UncertainPlant::record(vec![parameter("k", 1.0, 1.0, 2.0)], |p| PlantCoefficients {
@@ -196,9 +195,9 @@ fn a_plant_that_cannot_be_sampled_is_not_proven() {
     assert!(finding.remarks.iter().any(cannot), "{:?}", finding.remarks);
 }
 
-/// A bilinear prefilter, a bilinear controller, and a prefilter of second order have zeros at
-/// z = -1: at pi/T nothing of the reference arrives, so that no lower limit is met there, and this
-/// is said; with a band that ends below, or without zero, nothing of the kind is said.
+/// A bilinear prefilter, a bilinear controller, and a prefilter of second order have zeros at z =
+/// -1: at pi/T the reference has no effect, so that no lower limit is met there, and this is
+/// reported; with a band that ends below pi/T, or without a zero, it is not reported.
 #[test]
 fn no_lower_limit_is_met_where_the_prefilter_ends_at_zero() {
     let plant = UncertainPlant::record(vec![], |_| PlantCoefficients {

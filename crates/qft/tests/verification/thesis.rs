@@ -67,15 +67,15 @@ fn margin_at(finding: &SpecificationFinding, frequency: f64) -> f64 {
     at(finding, frequency).margin_db
 }
 
-/// The violations that the published controller has: with plant and frequency.
+/// Violations of the published controller, with plant and frequency.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
 fn the_published_controller_fails_its_own_specification() {
     let family = thesis_family([3, 3, 5, 3, 3, 3]);
     let (findings, work) =
         audited(&family, &thesis_loop(0.0), &thesis_specifications(), TrackingJudgement::Magnitude);
-    // 1216 plants, 64 corners and what the searches end at, some 350 frequencies each, and a third
-    // more for peaks and searches
+    // 1216 plants, 64 corners and the ends of searches, some 350 frequencies each, and a third more
+    // for peaks and searches
     assert!((1280..1300).contains(&work.plants) && work.responses < 600_000, "{work:?}");
     let [stability, sensitivity, tracking] = &findings[..] else { panic!("three findings") };
     assert!(findings.iter().all(|finding| finding.verdict == Verdict::Violated));
@@ -110,7 +110,7 @@ fn the_published_controller_fails_its_own_specification() {
     assert_eq!(tracking.interior, None, "the worst is an interior one already");
 }
 
-/// Dead time damps this resonance or feeds it: it is part of every verdict.
+/// Dead time damps this resonance or excites it: it is part of every verdict.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
 fn delay_is_part_of_the_verdict() {
@@ -133,8 +133,7 @@ fn delay_is_part_of_the_verdict() {
     }
 }
 
-/// Without a prefilter the spread is judged: |T| differs by 6.6 dB at 10 rad/s where the limits
-/// allow 2.06.
+/// Spread without a prefilter: |T| differs by 6.6 dB at 10 rad/s where the limits allow 2.06 dB.
 // ORIGIN: recomputed by comparisons/recompute_audit.py
 #[test]
 fn tracking_without_a_prefilter_is_judged_by_its_spread() {

@@ -1,4 +1,4 @@
-//! The audits of an attempt: first of each additional plant by itself, then of the family, which
+//! The audits of an attempt: first of each additional plant separately, then of the family, which
 //! takes longer.
 
 use phea_dynamics::watch::{Watch, part};
@@ -17,7 +17,7 @@ use crate::verification::{Audit, AuditEffort, AuditProblem, Verdict};
 /// Accuracy to which a relaxation is found, dB.
 const RELAXATION_TOLERANCE_DB: f64 = 0.005;
 
-/// How far beyond a margin that is new one lies that ends an audit, dB.
+/// Distance beyond the threshold for new margins that ends an audit, dB.
 const CLEARLY_DB: f64 = 0.05;
 
 impl Attempt {
@@ -42,7 +42,7 @@ impl Attempt {
         Ok(audit_with(&problem, (kept, effort), &mut part(watch, AUDITING, WHOLE))?)
     }
 
-    /// The audit of the family, and whether it is complete.
+    /// The audit of the family, and true if it is complete.
     fn audit_of_family(
         &self,
         kept: &KeptPlants,
@@ -52,7 +52,7 @@ impl Attempt {
         self.audit_of(&self.shaping.samples().problem().family, (kept, effort), watch)
     }
 
-    /// The audit of the family that the attempt ends with; `None` where an audit that stops at
+    /// The audit of the family that the attempt ends with; `None` if an audit that stops at
     /// counterexamples found some, which were added to the samples.
     fn audit_or_learn(
         &mut self,
@@ -82,8 +82,8 @@ impl Attempt {
         Ok(Some(audit))
     }
 
-    /// The outcome of the attempt by its audits; `None` where they found counterexamples, which
-    /// were added to the samples.
+    /// The outcome of the attempt by its audits; `None` if they found counterexamples, which were
+    /// added to the samples.
     pub(super) fn audited(
         &mut self,
         kept: &KeptPlants,
@@ -126,8 +126,8 @@ impl Attempt {
         }))
     }
 
-    /// Whether a loop that satisfies its limits misses the reserve at plants that were not among
-    /// the samples, which are now.
+    /// True if a loop that satisfies its limits misses the reserve at plants that were not among
+    /// the samples; these plants are added.
     fn misses_reserve(&mut self, audit: &Audit, judgement: &Judgement) -> Result<bool, LoopDesignError> {
         if self.relaxes || self.options.reserve_db <= 0.0 {
             return Ok(false);
@@ -136,8 +136,7 @@ impl Attempt {
         self.takes_in(&examples)
     }
 
-    /// The audit of an attempt as it stands, if it has not ended or has ended without a stable
-    /// loop.
+    /// The audit of an unfinished attempt, or of one that ended without a stable loop.
     pub(in crate::design) fn audited_as_it_is(
         &mut self,
         kept: &KeptPlants,
@@ -150,7 +149,7 @@ impl Attempt {
         Ok(self.audit_of_family(kept, AuditEffort::Complete, watch)?.0)
     }
 
-    /// What an audit teaches the search.
+    /// Counterexamples of an audit for the search.
     fn examples(&self, audit: &Audit, judgement: &Judgement) -> Vec<Counterexample> {
         let mut examples = unstable_plant(audit);
         let relaxation_db = if self.relaxes { -judgement.worst_margin_db } else { 0.0 };
@@ -160,11 +159,10 @@ impl Attempt {
         examples
     }
 
-    /// Margins that count as new, for single limits and for tracking: those that miss the reserve,
-    /// and are worse than all that were evaluated where the search was content with less, or sought
-    /// the worst margin itself.
-    /// Limits of tracking may meet, and a margin to them counts by its share of the room: a
-    /// negative one is new.
+    /// Thresholds of new margins, for single limits and for tracking: margins that miss the
+    /// reserve, and that are worse than all evaluated ones if the search accepted less, or
+    /// maximised the worst margin itself. The two tracking limits may meet, and a margin to them
+    /// counts as a fraction of the distance between them: a negative one is new.
     pub(super) fn new_margins(&self, judgement: &Judgement) -> NewMargins {
         let worst_db = judgement.worst_margin_db;
         let ordinary = 0.5 * self.options.tolerance_db;
@@ -172,7 +170,7 @@ impl Attempt {
             Aim::WorstMargin if self.relaxes => [RELAXATION_TOLERANCE_DB - worst_db.min(0.0); 2],
             Aim::WorstMargin => [ordinary.min(RELAXATION_TOLERANCE_DB - worst_db), ordinary],
             Aim::Objective => {
-                // a search that ends within the tolerance is not told of the same margin again
+                // a search that ends within the tolerance does not receive the same margin again
                 let missed = (RELAXATION_TOLERANCE_DB - worst_db).min(self.options.tolerance_db);
                 [ordinary.max(missed); 2]
             }
@@ -181,8 +179,8 @@ impl Attempt {
         NewMargins { below_db, reserve_db }
     }
 
-    /// A margin that is new by so much, even for two limits that count twice, that no worse one
-    /// need be searched for before the next descent, dB.
+    /// A margin so clearly new, even for two limits that count twice, that no worse one need be
+    /// searched for before the next descent, dB.
     fn clearly_new_db(&self, judgement: &Judgement) -> f64 {
         let NewMargins { below_db: [single, tracking], .. } = self.new_margins(judgement);
         -2.0 * single.max(tracking) - CLEARLY_DB

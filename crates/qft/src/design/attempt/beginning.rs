@@ -1,26 +1,26 @@
-//! The starting points of a search, and how widely it looks.
+//! The starting points of a search, and its width.
 
 use crate::loop_shaping::{Aim, DescentOptions, SearchOptions, SearchProblem, Shaping};
 
-/// Largest number of points that stabilise the nominal plant with which a search begins.
+/// Largest number of starting points that stabilise the nominal plant.
 const STABILISING_MAXIMUM: usize = 24;
 
-/// Points that a search evaluates before those that are spread over the bounds.
+/// Points that a search evaluates before those spread over the bounds.
 #[derive(Clone, Debug, Default)]
 pub(in crate::design) struct StartingPoints {
-    /// What a simpler controller does.
+    /// Points equivalent to a simpler controller.
     pub(in crate::design) simpler: Vec<Vec<f64>>,
-    /// What stabilises the nominal plant.
+    /// Points that stabilise the nominal plant.
     pub(in crate::design) stabilising: Vec<Vec<f64>>,
-    /// How widely is searched.
+    /// Width of the search.
     pub(in crate::design) effort: SearchEffort,
 }
 
-/// How widely a search looks.
+/// Width of a search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::design) enum SearchEffort {
-    /// One descent to its end, for a structure that is looked at only because it may be far better
-    /// than one that is met.
+    /// One descent to its end, for a structure that is examined only because it may be far better
+    /// than a valid one.
     Least,
     /// Few starts, for a structure of few numbers.
     Small,
@@ -31,7 +31,8 @@ pub(in crate::design) enum SearchEffort {
 }
 
 impl SearchEffort {
-    /// For the same structure with more plants: the first search has shown where optima lie.
+    /// Effort for the same structure with more plants: the first search has shown where the optima
+    /// are.
     pub(in crate::design) fn again(self) -> SearchEffort {
         match self {
             SearchEffort::Usual => SearchEffort::Small,
@@ -41,7 +42,7 @@ impl SearchEffort {
 }
 
 /// The best of these points: those that stabilise every plant by their worst margin, then the
-/// others by how far from it they are.
+/// others by their distance from stability.
 pub(super) fn best_of(shaping: &mut Shaping, points: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let mut judged: Vec<((bool, f64), Vec<f64>)> = Vec::with_capacity(points.len());
     for x in points {
@@ -53,9 +54,9 @@ pub(super) fn best_of(shaping: &mut Shaping, points: Vec<Vec<f64>>) -> Vec<Vec<f
     judged.into_iter().map(|(_, x)| x).take(STABILISING_MAXIMUM).collect()
 }
 
-/// The gain is scanned, because hardly any gain suits a random shape. More descents are completed
-/// for a relaxation, whose result is a number, and for a plant that is hard to stabilise, which has
-/// many local optima.
+/// Options of a search. The gain is scanned, because few gains suit a random shape. More descents
+/// are completed for a relaxation, whose result is a number, and for a plant that is hard to
+/// stabilise, which has many local optima.
 pub(super) fn search_options(aim: Aim, seed: u64, relaxes: bool, effort: SearchEffort) -> SearchOptions {
     let descent = DescentOptions { reserve_db: 0.0, ..DescentOptions::new(aim) };
     let (samples, starts, finished) = match (effort, relaxes) {

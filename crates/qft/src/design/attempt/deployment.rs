@@ -1,10 +1,10 @@
-//! The controller of an attempt as it is deployed, with the coefficients that the computer stores.
+//! Deployment of the controller of an attempt, with the coefficients that the computer stores.
 //!
-//! The search shapes a loop without rounding, for rounded coefficients have no slopes. What is
-//! judged, audited and handed out is the rounded controller. Where it violates a limit that the
-//! search satisfied, the limits of the search are tightened by what rounding cost, and a little
-//! more, until the rounded controller satisfies the limits too: rounding moves a controller by a
-//! limited amount in an unpredictable direction.
+//! The search shapes a loop without rounding, for rounded coefficients have no slopes. The rounded
+//! controller is evaluated, audited and returned. If it violates a limit that the search satisfied,
+//! the limits of the search are tightened by the loss due to rounding, and a little more, until the
+//! rounded controller also satisfies the limits: rounding moves a controller by a limited amount in
+//! an unpredictable direction.
 
 use phea_dynamics::controller::Controller;
 use phea_dynamics::watch::Watch;
@@ -14,17 +14,17 @@ use crate::closed_loop::Compensation;
 use crate::design::quantization::{CoefficientFormat, rounded};
 use crate::loop_shaping::{Aim, Judgement, SearchProblem};
 
-/// The limits of the search are tightened by this multiple of what is missing.
+/// Multiple of the deficit by which the limits of the search are tightened.
 const DRAWN: f64 = 1.25;
-/// By how much the limits are tightened where the rounded controller is not stable or cannot be
-/// stored, dB; doubled each time.
+/// Tightening of the limits if the rounded controller is not stable or cannot be stored, dB;
+/// doubled each time.
 const DRAWN_BLINDLY_DB: f64 = 0.1;
-/// How often the limits of a search are tightened.
+/// Largest number of times the limits of a search are tightened.
 const DRAWS_MAXIMUM: usize = 24;
 
 impl Attempt {
-    /// The controller as it is deployed: in z and with rounded coefficients where the loop is
-    /// sampled and coefficients are rounded.
+    /// The deployed controller: in z if the loop is sampled, with rounded coefficients if a format
+    /// is given.
     pub(in crate::design) fn deployed(&self) -> Result<Controller, LoopDesignError> {
         let law = self.shaping.controller(&self.x);
         if !self.rounds_coefficients() {
@@ -33,13 +33,13 @@ impl Attempt {
         Ok(rounded(&law, self.options.coefficients)?.controller)
     }
 
-    /// The loop of what is deployed.
+    /// The loop of the deployed controller.
     pub(super) fn compensation(&self) -> Result<Compensation, LoopDesignError> {
         let problem = self.shaping.samples().problem();
         Ok(Compensation::new(&self.deployed()?, problem.sensor.clone())?)
     }
 
-    /// The deployed controller, judged by the samples; unusable where its coefficients cannot be
+    /// The deployed controller, evaluated on the samples; unusable if its coefficients cannot be
     /// stored.
     pub(super) fn judgement(&mut self) -> Judgement {
         if !self.rounds_coefficients() {
@@ -53,7 +53,7 @@ impl Attempt {
         judgement
     }
 
-    /// Descends further inside its limits, as long as rounding violates one that the search
+    /// Descends further inside its limits, as long as rounding violates a limit that the search
     /// satisfied. This does not apply when the worst margin itself is maximised.
     pub(super) fn draw_in(&mut self, watch: Watch<'_>) -> Result<(), Leave> {
         if !self.rounds_coefficients() || self.aim == Aim::WorstMargin {

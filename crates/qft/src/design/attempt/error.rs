@@ -1,4 +1,4 @@
-//! Why a design cannot go on.
+//! Error of a design.
 
 use phea_dynamics::linear::LinearError;
 use phea_dynamics::watch::Stopped;
@@ -7,7 +7,7 @@ use crate::design::quantization::QuantizationError;
 use crate::loop_shaping::SamplesError;
 use crate::prefilter::PrefilterError;
 
-/// Why a design cannot go on.
+/// Reason why a design cannot continue.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LoopDesignError {
     /// A part is not a transfer function, or cannot be sampled.

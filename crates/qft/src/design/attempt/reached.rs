@@ -1,4 +1,4 @@
-//! What an attempt reached, by which structures of different length are compared.
+//! Figure of merit of an attempt, for the comparison of structures of different length.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Objective;
@@ -9,7 +9,7 @@ use super::Attempt;
 use crate::closed_loop::Compensation;
 
 impl Attempt {
-    /// A number by which it is compared with attempts of other length, dB, the less the better: the
+    /// Figure of merit for the comparison with attempts of other length, dB, smaller is better: the
     /// objective, or minus the worst margin. The high-frequency gain, whose unit depends on the
     /// relative degree, is replaced by the largest gain from the sensor's noise to the command.
     ///

@@ -7,9 +7,9 @@ use crate::kept_plants::KeptPlants;
 use crate::loop_shaping::SearchProblem;
 
 impl Attempt {
-    /// Descends from the best of the points that it begins with, again with what the plants of the
-    /// samples violate between their frequencies. Returns whether a controller was found that makes
-    /// these plants stable.
+    /// Descends from the best of the starting points, and again with the violations of the sampled
+    /// plants between their frequencies. Returns true if a controller was found that stabilises
+    /// these plants.
     pub(in crate::design) fn reshape(
         &mut self,
         kept: &KeptPlants,

@@ -1,4 +1,4 @@
-//! A prefilter of one pole in place of a longer one whose further poles do next to nothing.
+//! A prefilter of one pole in place of a longer one whose further poles have almost no effect.
 
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::portable;
@@ -10,16 +10,16 @@ use crate::kept_plants::KeptPlants;
 /// Least order of a prefilter: with one pole a step of the reference reaches the controller without
 /// a jump.
 const LEAST_ORDER: usize = 1;
-/// Poles this many times as fast as the slowest one do next to nothing.
+/// Factor by which poles are faster than the slowest one if they have almost no effect.
 const FAST: f64 = 10.0;
 
 impl Attempt {
-    /// What was met, with a prefilter of one pole where its further ones do next to nothing, every
-    /// specification is met without them and what is reached ([`Attempt::reached_db`]) is not worse
-    /// by more than they must earn; as it is where the watch stops that.
+    /// Replaces the prefilter by one with a single pole if its further poles have almost no effect,
+    /// every specification is met without them, and the result ([`Attempt::reached_db`]) worsens by
+    /// no more than those poles must earn. Returns the original attempt if the watch stops this.
     ///
     /// # Errors
-    /// Those of [`Attempt::run`].
+    /// Errors of [`Attempt::run`].
     pub(in crate::design) fn with_shorter_prefilter(
         self,
         ending: AttemptEnding,
@@ -49,7 +49,7 @@ impl Attempt {
         }
     }
 
-    /// True where the prefilter has more than one pole, and all but one are fast.
+    /// True if the prefilter has more than one pole, and all but one are fast.
     fn has_needless_poles(&self) -> bool {
         let Ok(prefilter) = self.shaping.controller(&self.x).prefilter.transfer_function() else {
             return false;
@@ -59,8 +59,8 @@ impl Attempt {
         matches!(sizes[..], [slowest, next, ..] if next >= FAST * slowest)
     }
 
-    /// A prefilter fitted to the controller at hand, and descents with both until search and audit
-    /// agree.
+    /// A prefilter fitted to the present controller, followed by descents with both until search
+    /// and audit agree.
     fn refitted(&mut self, kept: &KeptPlants, watch: Watch<'_>) -> Result<AttemptEnding, Leave> {
         self.x.truncate(self.structure.dimension());
         self.shape_with(None)?;

@@ -14,7 +14,7 @@ use crate::verification::PlantPoint;
 /// Plants that are examined: the nominal one, corners of the box, members.
 const PLANTS_MAXIMUM: usize = 96;
 const CORNERS_MAXIMUM: usize = 64;
-/// Real parts below this share of a root's magnitude count as zero.
+/// Fraction of a root's magnitude below which its real part counts as zero.
 const ON_THE_AXIS: f64 = 1e-9;
 
 /// A plant within its loop.
@@ -22,17 +22,17 @@ const ON_THE_AXIS: f64 = 1e-9;
 pub(super) struct PlantWithinLoop {
     pub(super) point: PlantPoint,
     pub(super) member: Member,
-    /// P alone, where it is rational.
+    /// Plant P, if it is rational.
     pub(super) command: Option<RationalCoefficients<f64>>,
     /// Poles of P H in the open right half plane, rad/s.
     pub(super) unstable_poles: Vec<Complex64>,
-    /// Their images in the plane of the loop.
+    /// Images of these poles in the plane of the loop.
     pub(super) poles: Vec<Complex64>,
     /// Images of the zeros of P H that are in the open half plane.
     pub(super) zeros: Vec<Complex64>,
-    /// Zeros at z = infinity: samples of delay.
+    /// Number of zeros at z = infinity: samples of delay.
     pub(super) delays: usize,
-    /// Dead time of plant, sensor and loop, s; in a sampled loop it is within `delays`.
+    /// Dead time of plant, sensor and loop, s; in a sampled loop it is included in `delays`.
     pub(super) dead_time_s: f64,
     /// Frequencies of the poles of P H on the axis, rad/s.
     pub(super) axis_poles: Vec<f64>,
@@ -88,7 +88,8 @@ fn strided<T>(all: &[T], most: usize) -> impl Iterator<Item = &T> {
 }
 
 impl PlantWithinLoop {
-    /// No root is known for a plant without polynomials; conclusions that need no roots still hold.
+    /// Candidate for a plant without polynomials: its roots are unknown; conclusions that need no
+    /// roots still hold.
     fn without_roots(point: PlantPoint, member: Member, compensation: &Compensation) -> PlantWithinLoop {
         let dead_time_s = compensation.delay_s() + compensation.sensor().dead_time_s();
         let sample = compensation.sample_time_s();
@@ -107,7 +108,7 @@ impl PlantWithinLoop {
         }
     }
 
-    /// `None` for a plant that is zero, or whose roots are not found.
+    /// Candidate for a rational plant; `None` if the plant is zero, or its roots are not found.
     fn rational(
         point: PlantPoint,
         command: RationalCoefficients<f64>,
@@ -151,13 +152,13 @@ impl PlantWithinLoop {
         })
     }
 
-    /// |S| at a point of the half plane over the mean of |S| on the boundary: its zeros are the unstable poles.
+    /// Magnitude |S| at a point of the half plane over its mean on the boundary; the zeros are the
+    /// unstable poles.
     pub(super) fn sensitivity_factor(&self, point: Complex64) -> f64 {
         vanishing(point, &self.poles)
     }
 
-    /// The same of |T|: its zeros are those of P H, and dead time is of magnitude 1 on the
-    /// boundary.
+    /// Likewise for |T|: its zeros are those of P H, and dead time has magnitude 1 on the boundary.
     pub(super) fn complementary_factor(&self, plane: Plane, point: Complex64) -> f64 {
         let delays = plane.image_of_delay().map_or(1.0, |delay| {
             let one = vanishing(point, &[Complex64::new(delay, 0.0)]);
@@ -166,7 +167,7 @@ impl PlantWithinLoop {
         vanishing(point, &self.zeros) * delays * portable::exp(-point.re * self.dead_time_s)
     }
 
-    /// Dead time of the loop with its samples of delay, s.
+    /// Dead time of the loop including its samples of delay, s.
     pub(super) fn delay_s(&self, plane: Plane) -> f64 {
         self.dead_time_s + plane.sample_time_s.unwrap_or(0.0) * self.delays as f64
     }
@@ -176,8 +177,8 @@ fn is_right(root: &Complex64) -> bool {
     root.re > ON_THE_AXIS * portable::magnitude(*root)
 }
 
-/// Zeros outside the unit circle. Those next to z = 1 are left out: rounding may have moved them
-/// there.
+/// Zeros outside the unit circle. Zeros next to z = 1 are omitted: rounding may have moved them
+/// outside.
 fn images_of_z(plane: Plane, zeros: &[Complex64]) -> Vec<Complex64> {
     const NEXT_TO: f64 = 1e-6;
     let scale = plane.image_of_delay().unwrap_or(1.0);

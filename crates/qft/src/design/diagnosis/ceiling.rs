@@ -1,5 +1,5 @@
-//! The upper limits of |S| and |T| of one plant that all specifications together leave, frequency
-//! by frequency.
+//! The upper limits of |S| and |T| of one plant that result from all specifications, frequency by
+//! frequency.
 
 use phea_dynamics::portable;
 
@@ -48,18 +48,18 @@ pub(super) fn demanded(specification: &Specification, frequency: f64) -> Option<
     (0.0..f64::INFINITY).contains(&limit).then_some(limit)
 }
 
-/// What specifications demand at one frequency, of which plants.
+/// The requirements at one frequency, and their plants.
 #[derive(Clone, Debug)]
 pub(super) struct FrequencyDemand {
     /// Specification with its limit.
     demands: Vec<(usize, f64)>,
     /// Responses of the candidates.
     responses: Vec<Option<MemberResponse>>,
-    /// Plants with which tracking compares the others: those of extreme magnitude and phase.
+    /// Plants of extreme magnitude and phase, with which tracking compares the others.
     partners: Vec<MemberResponse>,
 }
 
-/// The demands on all candidates over all frequencies of a boundary.
+/// The requirements on all candidates over all frequencies of a boundary.
 #[derive(Clone, Debug)]
 pub(super) struct Ceilings<'a> {
     pub(super) boundary: &'a BoundaryCells,
@@ -169,7 +169,8 @@ fn node(specifications: &[Specification], candidates: &[PlantWithinLoop], freque
     FrequencyDemand { demands, responses, partners }
 }
 
-/// The responses of least and greatest magnitude, and those that lag and lead the first one most.
+/// The responses of least and greatest magnitude, and those with the largest lag and lead relative
+/// to the first.
 fn extremes(responses: &[Option<MemberResponse>]) -> Vec<MemberResponse> {
     let known: Vec<MemberResponse> = responses.iter().flatten().copied().collect();
     let Some(first) = known.first().copied() else { return Vec::new() };

@@ -1,7 +1,7 @@
 //! Design frequencies at which every loop is forbidden by the bounds of some plants.
 //!
-//! Only a few plants and the phases of a grid are examined, and yet a loop that is not found does
-//! not exist: between two phases L0 turns by a factor 1 + e,
+//! Only a few plants and the phases of a grid are examined, but if no loop is found, none exists:
+//! between two phases L0 changes by a factor 1 + e,
 //!
 //! ```text
 //! |T'| = |T| |1 + e|/|1 + e T|,  |S'| = |S|/|1 + e T|,     both greater by at most (1 + |e|)/(1 - |e| |T|)
@@ -30,20 +30,20 @@ use crate::verification::{PlantPoint, SpecificationMargin};
 
 /// Design frequencies that are examined.
 const FREQUENCIES_MAXIMUM: usize = 64;
-/// Phases of the first look.
+/// Phase spacing of the first search, rad.
 const COARSE_RAD: f64 = PI / 36.0;
-/// |e| (1 + |T|) between two phases of the fine grid.
+/// Spacing |e| (1 + |T|) between two phases of the fine grid.
 const FINE: f64 = 0.008;
-/// Loops with a larger |T| than this are not considered.
+/// Largest |T| of the loops considered.
 const COMPLEMENTARY_MAXIMUM: f64 = 60.0;
-/// Smaller contradictions are left to the search, dB.
+/// Least contradiction that is not left to the search, dB.
 const TOLERANCE_DB: f64 = 0.01;
 const RELAXATION_MAXIMUM_DB: f64 = 200.0;
 
-/// The plants at one frequency and what is demanded of them there.
+/// The plants at one frequency and the requirements on them there.
 struct DemandedPlants<'a> {
     frequency: f64,
-    /// Requirements with the limits they have at this frequency, as constants.
+    /// Specifications with their limits at this frequency, as constants.
     specifications: Vec<(usize, Specification)>,
     plants: Vec<(&'a PlantPoint, MemberResponse)>,
     template: Template,
@@ -75,7 +75,7 @@ pub(super) fn contradictions(
     found.into_iter().map(|(_, finding)| finding).collect()
 }
 
-/// The greatest |T| that the limits allow any plant; `None` where they allow too much for a
+/// The greatest |T| that the limits allow any plant; `None` if they allow too much for a
 /// conclusion.
 fn largest_complementary(
     specifications: &[Specification],
@@ -177,7 +177,7 @@ impl<'a> DemandedPlants<'a> {
         Some(([low, high], finding))
     }
 
-    /// Phase and gain of a loop that the relaxed limits allow, where the allowed gains reach
+    /// Phase and gain of a loop that the relaxed limits allow, where the range of allowed gains is
     /// widest.
     fn allowed(&self, relaxation_db: f64, spacing_rad: f64) -> Option<[f64; 2]> {
         if !relaxation_db.is_finite() {
@@ -212,7 +212,7 @@ impl<'a> DemandedPlants<'a> {
         conflicts.collect()
     }
 
-    /// The worst margin of one specification, and how much 1 dB of relaxation improves it.
+    /// The worst margin of one specification, and its improvement per dB of relaxation.
     fn margin(
         &self,
         index: usize,
@@ -250,9 +250,9 @@ impl<'a> DemandedPlants<'a> {
     }
 }
 
-/// A relaxation that is certainly too small, from the least one found on the grid: the allowance
-/// for the gap between two phases is subtracted. Limits grow at most with the square of a
-/// relaxation, and so does the largest |T|.
+/// A relaxation proven too small, from the least one found on the grid: the allowance for the gap
+/// between two phases is subtracted. Limits grow at most with the square of a relaxation, and so
+/// does the largest |T|.
 fn proven_db(high_db: f64, turn: f64, largest_complementary: f64) -> f64 {
     const COVERED: f64 = 0.1;
     let far = (COVERED / (turn * largest_complementary)).sqrt();
@@ -261,7 +261,7 @@ fn proven_db(high_db: f64, turn: f64, largest_complementary: f64) -> f64 {
     decibels(factor / slack) - 1e-3
 }
 
-/// The specification at one frequency alone, its limits relaxed by a factor.
+/// The specification at one frequency only, its limits relaxed by a factor.
 fn constant(specification: &Specification, frequency: f64, factor: f64) -> Option<Specification> {
     let (lower, upper) = specification.requirement.limits();
     let upper = Limit::Constant(factor * upper.magnitude(frequency)?);

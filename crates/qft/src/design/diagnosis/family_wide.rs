@@ -1,4 +1,4 @@
-//! What no controller can achieve for the family as a whole, or for one plant whatever its limits.
+//! Limits of performance for the family as a whole, and for one plant independent of its limits.
 
 use num_complex::Complex64;
 use phea_dynamics::order::sort_numbers;
@@ -7,22 +7,22 @@ use super::candidate::PlantWithinLoop;
 use super::finding::Finding;
 use crate::specification::{ClosedLoop, Specification};
 
-/// Poles of two plants that differ by less than this share count as equal.
+/// Relative difference below which poles of two plants count as equal.
 const SAME: f64 = 1e-9;
 
-/// The sign of a closed loop's polynomial where it does not depend on the controller alone.
+/// The sign of a closed loop's polynomial where it depends on more than the controller.
 struct Sign {
     pole: f64,
     positive: bool,
     candidate: usize,
 }
 
-/// Plants of different sign.
+/// Finding for plants of different sign.
 ///
 /// The characteristic function D Gd + N Gn e^(-sT) of a stable loop has no zero on [0, inf), and
-/// for large s the sign of Gd times the leading coefficient of D. Where D (or, with integral
-/// action, Gd) vanishes it is N Gn: so the sign of N there over the leading coefficient of D must
-/// be the same for all plants.
+/// for large s has the sign of Gd times the leading coefficient of D. Where D (or, with integral
+/// action, Gd) vanishes it equals N Gn: so the sign of N there over the leading coefficient of D
+/// must be the same for all plants.
 pub(super) fn gain_signs(specifications: &[Specification], candidates: &[PlantWithinLoop]) -> Vec<Finding> {
     let integral = specifications.iter().any(demands_integral_action);
     let signs: Vec<Sign> = candidates
@@ -52,7 +52,7 @@ pub(super) fn gain_signs(specifications: &[Specification], candidates: &[PlantWi
     found
 }
 
-/// Whether S(0) = 0 is required.
+/// True if S(0) = 0 is required.
 fn demands_integral_action(specification: &Specification) -> bool {
     let (requirement, band) = (&specification.requirement, specification.band_rad_per_s);
     requirement.closed_loop() == ClosedLoop::Sensitivity
@@ -82,7 +82,7 @@ fn signs(index: usize, candidate: &PlantWithinLoop, integral: bool) -> Vec<Sign>
         .collect()
 }
 
-/// Whether P vanishes for large real s.
+/// True if P vanishes for large real s.
 fn is_strictly_proper(candidate: &PlantWithinLoop) -> bool {
     let degree = |coefficients: &[f64]| {
         coefficients.iter().position(|c| *c != 0.0).map_or(0, |first| coefficients.len() - first)
@@ -93,8 +93,8 @@ fn is_strictly_proper(candidate: &PlantWithinLoop) -> bool {
     candidate.dead_time_s > 0.0 || candidate.delays > 0 || candidate.command.as_ref().is_some_and(proper)
 }
 
-/// The required delay margin exceeds 2/p, the most that a linear time-invariant controller of a
-/// continuous loop can achieve for a plant with the real unstable pole p (Middleton and Miller
+/// Finding: the required delay margin exceeds 2/p, the most that a linear time-invariant controller
+/// of a continuous loop can achieve for a plant with the real unstable pole p (Middleton and Miller
 /// 2007).
 pub(super) fn delay_margin(minimum_s: f64, candidates: &[PlantWithinLoop]) -> Option<Finding> {
     let fastest = candidates.iter().flat_map(|candidate| {
@@ -111,8 +111,8 @@ pub(super) fn delay_margin(minimum_s: f64, candidates: &[PlantWithinLoop]) -> Op
     })
 }
 
-/// A plant with an odd number of real unstable poles between two of its real zeros in the right
-/// half plane, infinity included: no stable controller stabilises it (Youla, Bongiorno and Lu
+/// Finding: a plant with an odd number of real unstable poles between two of its real zeros in the
+/// right half plane, infinity included. No stable controller stabilises it (Youla, Bongiorno and Lu
 /// 1974).
 pub(super) fn unstable_controller(candidates: &[PlantWithinLoop]) -> Option<Finding> {
     candidates.iter().find_map(|candidate| {
@@ -137,7 +137,7 @@ pub(super) fn unstable_controller(candidates: &[PlantWithinLoop]) -> Option<Find
     })
 }
 
-/// Design frequencies beyond pi/T, or beyond what was measured.
+/// Design frequencies beyond pi/T, or beyond the range of a measurement.
 pub(super) fn out_of_reach(
     specifications: &[Specification],
     candidates: &[PlantWithinLoop],

@@ -1,19 +1,19 @@
-//! What is known about a problem before any search.
+//! Findings on a problem before any search.
 
 use num_complex::Complex64;
 
 use crate::verification::{PlantPoint, SpecificationMargin};
 
-/// How much a finding says.
+/// Severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FindingSeverity {
-    /// No controller meets the specifications.
+    /// Proof that no controller meets the specifications.
     Impossible,
-    /// It is hard, or probably not what was intended.
+    /// Warning that the problem is hard, or probably not what was intended.
     Warning,
 }
 
-/// The point where T or S is the same for every controller, or where S + T = 1 is compared with the
+/// The point where T or S is independent of the controller, or where S + T = 1 is compared with the
 /// limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ConstraintPlace {
@@ -26,7 +26,7 @@ pub enum ConstraintPlace {
     Point(f64),
 }
 
-/// What the limits allow at a point s of the right half plane.
+/// Greatest |S| and |T| that the limits allow at a point s of the right half plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Constraint {
     /// The point.
@@ -39,10 +39,10 @@ pub struct Constraint {
     pub sensitivity: f64,
     /// The greatest |T(s)| that the limits allow.
     pub complementary: f64,
-    /// At a pole the frequency above which |T| must stay below 1, at a zero that up to which |S|
-    /// must, rad/s.
+    /// Frequency above which |T| must stay below 1 (at a pole), or up to which |S| must (at a
+    /// zero), rad/s.
     pub crossover_rad_per_s: Option<f64>,
-    /// The specifications that matter.
+    /// The relevant specifications.
     pub specifications: Vec<usize>,
 }
 
@@ -55,43 +55,42 @@ pub struct SharedLimit {
     pub limit: f64,
 }
 
-/// A fact about a problem that no search can change.
+/// A fact about a problem, independent of any search.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Finding {
-    /// The lower limit of tracking lies above the upper one.
+    /// The lower tracking limit is above the upper one.
     CrossedLimits {
         /// Index of the specification.
         specification: usize,
-        /// Where they are worst crossed, rad/s.
+        /// Frequency at which they cross most, rad/s.
         frequency_rad_per_s: f64,
         /// The lower limit there.
         lower: f64,
         /// The upper limit there.
         upper: f64,
-        /// How far the upper limit would have to be raised and the lower one lowered for them to
-        /// meet, dB.
+        /// Least relaxation of both limits for which they meet, dB.
         relaxation_db: f64,
     },
-    /// At one frequency the limits allow only |S| + |T| < 1, although S + T = 1.
+    /// The limits allow only |S| + |T| < 1 at one frequency, although S + T = 1.
     SumBelowOne {
-        /// Where it is worst, rad/s.
+        /// Frequency at which the sum is least, rad/s.
         frequency_rad_per_s: f64,
         /// The plant.
         plant: PlantPoint,
-        /// What is left of |S|.
+        /// Remaining limit of |S|.
         sensitivity: SharedLimit,
-        /// What is left of |T|.
+        /// Remaining limit of |T|.
         complementary: SharedLimit,
-        /// The least relaxation of every limit that would suffice, dB.
+        /// The least relaxation of every limit that suffices, dB.
         relaxation_db: f64,
     },
-    /// At one design frequency every loop is forbidden by some bound.
+    /// The bounds at one design frequency together forbid every loop.
     Contradiction {
-        /// rad/s
+        /// Frequency, rad/s.
         frequency_rad_per_s: f64,
         /// Phase of the nominal loop where the contradiction is least, rad.
         phase_rad: f64,
-        /// Its gain there.
+        /// Gain of the nominal loop there.
         gain: f64,
         /// The margin of each specification in conflict there.
         conflicts: Vec<SpecificationMargin>,
@@ -99,33 +98,33 @@ pub enum Finding {
         /// this frequency, dB.
         relaxation_db: [f64; 2],
     },
-    /// A pole of P H on the axis makes T = 1 there, which a limit forbids.
+    /// A pole of P H on the axis gives T = 1 there, which a limit forbids.
     PoleOnTheAxis {
-        /// rad/s
+        /// Frequency, rad/s.
         frequency_rad_per_s: f64,
         /// The plant.
         plant: PlantPoint,
         /// The limit of |T|.
         complementary: SharedLimit,
     },
-    /// A zero of P on the axis makes S = 1 and F P G S = 0 there, which a limit forbids.
+    /// A zero of P on the axis gives S = 1 and F P G S = 0 there, which a limit forbids.
     ZeroOnTheAxis {
-        /// rad/s
+        /// Frequency, rad/s.
         frequency_rad_per_s: f64,
         /// The plant.
         plant: PlantPoint,
-        /// The specification, with its limit of |S|, or the lower one of tracking.
+        /// The specification, with its limit of |S|, or its lower tracking limit.
         limit: SharedLimit,
     },
-    /// At a point of the right half plane the limits allow only |S| + |T| < 1.
+    /// The limits allow only |S| + |T| < 1 at a point of the right half plane.
     RightHalfPlane {
-        /// What is left there.
+        /// Remaining limits at the point.
         constraint: Constraint,
-        /// The least relaxation of every limit that would suffice at this point, dB; infinite if
-        /// none does.
+        /// The least relaxation of every limit that suffices at this point, dB; infinite if none
+        /// does.
         relaxation_db: f64,
     },
-    /// Plants whose gain has different signs where every closed loop must have the same.
+    /// The gains of some plants differ in sign although every closed loop requires one sign.
     GainSign {
         /// 0 for the static gain, otherwise the unstable pole that the plants have in common,
         /// rad/s.
@@ -139,39 +138,40 @@ pub enum Finding {
         pole_rad_per_s: f64,
         /// The plant.
         plant: PlantPoint,
-        /// What is asked for, s.
+        /// Required delay margin, s.
         demanded_s: f64,
-        /// What no linear controller exceeds, 2/p, s.
+        /// Greatest delay margin of any linear controller, 2/p, s.
         greatest_s: f64,
     },
-    /// Where nothing is limited, |S| or |T| must rise at least this far.
+    /// The limits force |S| or |T| to rise at least this far where it is not limited.
     ForcedPeak {
-        /// What the limits allow at the point, the unlimited part of the axis left out.
+        /// Limits at the point, without the unlimited part of the axis.
         constraint: Constraint,
         /// The least peak, dB.
         peak_db: f64,
     },
-    /// Only a controller that is unstable itself can stabilise the plant.
+    /// The plant can be stabilised only by an unstable controller.
     UnstableController {
         /// The plant.
         plant: PlantPoint,
-        /// An odd number of its real unstable poles lies between these zeros (the second may be
-        /// infinite), rad/s.
+        /// Zeros (the second may be infinite) between which there is an odd number of its real
+        /// unstable poles, rad/s.
         between_zeros_rad_per_s: [f64; 2],
     },
-    /// Design frequencies beyond the range of the loop or of a measurement: nothing is known there.
+    /// Design frequencies beyond the range of the loop or of a measurement: there are no data
+    /// there.
     OutOfReach {
         /// Index of the specification.
         specification: usize,
-        /// The first of them, rad/s.
+        /// The first of these frequencies, rad/s.
         frequency_rad_per_s: f64,
-        /// What is reached, rad/s.
+        /// Range of the loop or the measurement, rad/s.
         reach_rad_per_s: [f64; 2],
-        /// The measured plant; `None` where the sampling ends the band.
+        /// The measured plant; `None` if the sampling ends the band.
         plant: Option<PlantPoint>,
     },
-    /// The limits of tracking at zero frequency exclude 1: the output would not follow the
-    /// reference at rest.
+    /// The tracking limits at zero frequency exclude 1: the output would not follow a constant
+    /// reference.
     StaticGain {
         /// Index of the specification.
         specification: usize,
@@ -183,7 +183,7 @@ pub enum Finding {
 }
 
 impl Finding {
-    /// How much it says.
+    /// Severity of the finding.
     pub fn severity(&self) -> FindingSeverity {
         match self {
             Finding::CrossedLimits { .. }
@@ -201,7 +201,7 @@ impl Finding {
         }
     }
 
-    /// Indices of the specifications that it concerns, in increasing order.
+    /// Indices of the specifications concerned, in increasing order.
     pub fn specifications(&self) -> Vec<usize> {
         let mut all = match self {
             Finding::SumBelowOne { sensitivity, complementary, .. } => {
@@ -229,7 +229,7 @@ impl Finding {
     }
 
     /// The least common relaxation of all limits below which no design can meet them, dB: a lower
-    /// bound of what a design would need. `None` where no relaxation helps or none is needed.
+    /// bound on the relaxation of a design. `None` where no relaxation helps or none is needed.
     pub fn relaxation_db(&self) -> Option<f64> {
         match self {
             Finding::CrossedLimits { relaxation_db, .. }

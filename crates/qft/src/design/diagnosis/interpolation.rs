@@ -1,6 +1,6 @@
-//! S + T = 1 holds in the right half plane, where the limits on the axis bound both.
+//! Identity S + T = 1 in the right half plane, where the limits on the axis bound both functions.
 //!
-//! S and T of a stable loop are analytic and bounded there, so that at any of its points the
+//! S and T of a stable loop are analytic and bounded there, so that at any point of it the
 //! logarithm of their magnitude is at most the mean of its boundary values, weighted by harmonic
 //! measure and reduced by the contribution of their zeros (Poisson and Jensen):
 //!
@@ -17,18 +17,18 @@ use super::ceiling::{Ceiling, Ceilings};
 use super::finding::{Constraint, ConstraintPlace, Finding};
 use super::plane::{Plane, share};
 
-/// Deficits below this are left to the search, since the error of the cells can be as large. 0.1
-/// dB.
+/// Least deficit that is not left to the search, 0.1 dB, since the discretisation error of the
+/// cells can be as large.
 const TOLERANCE: f64 = 0.0115;
-/// What they may err elsewhere.
+/// Error of the cells elsewhere.
 const ROUNDING: f64 = 1e-6;
-/// Peaks below this are not reported, dB.
+/// Least peak that is reported, dB.
 const PEAK_DB: f64 = 6.0;
-/// A share of the axis that counts as zero.
+/// Fraction of the axis that counts as zero.
 const NOTHING: f64 = 1e-9;
-/// Specifications whose limit rules over less of the axis are not named.
+/// Fraction of the axis below which a specification whose limit is the lowest there is not named.
 const NAMED: f64 = 0.01;
-/// Real points looked at.
+/// Number of real points examined per decade.
 const POINTS_PER_DECADE: f64 = 12.0;
 const POINTS_MAXIMUM: f64 = 200.0;
 const RELAXATION_MAXIMUM_DB: f64 = 400.0;
@@ -47,7 +47,7 @@ enum LimitKind {
     Point,
 }
 
-/// What the limits allow at a point, apart from the share of the axis on which nothing is limited.
+/// Limits at a point, without the fraction of the axis without a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Left {
     sensitivity: f64,
@@ -61,7 +61,7 @@ struct Deficit {
     spot: Spot,
     candidate: usize,
     left: Left,
-    /// ln of what |S| + |T| lacks, over the free share if there is one.
+    /// Logarithm of the deficit of |S| + |T|, over the free fraction if there is one.
     lack: f64,
 }
 
@@ -71,7 +71,7 @@ impl Left {
     }
 }
 
-/// Mean logarithms of the limits in each cell; infinite where nothing is limited.
+/// Mean logarithms of the limits in each cell; infinite without a limit.
 type LimitCurve = Vec<[f64; 2]>;
 
 fn curve(ceilings: impl Iterator<Item = Ceiling>) -> LimitCurve {
@@ -111,8 +111,8 @@ fn left(
     }
 }
 
-/// The worst impossibility at a pole, at a zero and elsewhere; where there is none, the highest
-/// peak that is unavoidable.
+/// The worst impossibility at a pole, at a zero and elsewhere; if there is none, the highest
+/// unavoidable peak.
 pub(super) fn findings(ceilings: &Ceilings, candidates: &[PlantWithinLoop]) -> Vec<Finding> {
     let plane = ceilings.boundary.plane;
     let shares =
@@ -161,7 +161,7 @@ fn impossible(ceilings: &Ceilings, candidates: &[PlantWithinLoop], deficits: &[D
     };
     let roots: Vec<&Deficit> = [LimitKind::Pole, LimitKind::Zero].into_iter().filter_map(of_kind).collect();
     let known = roots.iter().map(|deficit| deficit.lack).fold(0.0, f64::max);
-    // a point adds nothing to a pole or a zero that shows the same
+    // a point is redundant next to a pole or a zero with the same finding
     let point = of_kind(LimitKind::Point).filter(|point| roots.is_empty() || point.lack > known + 0.1);
     roots
         .into_iter()
@@ -198,7 +198,7 @@ fn relaxation_db(ceilings: &Ceilings, candidate: &PlantWithinLoop, deficit: &Def
     least_relaxation_db(RELAXATION_MAXIMUM_DB, enough)
 }
 
-/// The least relaxation that is enough, to 1e-4 dB; infinite if the greatest is not.
+/// The least sufficient relaxation, to 1e-4 dB; infinite if the greatest is not sufficient.
 pub(super) fn least_relaxation_db(greatest_db: f64, enough: impl Fn(f64) -> bool) -> f64 {
     if !enough(greatest_db) {
         return f64::INFINITY;
@@ -278,6 +278,6 @@ fn real_points(ceilings: &Ceilings) -> Vec<Complex64> {
     let step = decades * std::f64::consts::LN_10 / count;
     let inner = (0..count as u32).map(|index| low * portable::exp(step * f64::from(index)));
     let points = inner.chain([high]).map(|s| Complex64::new(s, 0.0));
-    // the ends of the plane are the image of no point
+    // the ends of the plane are not the image of any point
     points.filter(|at| ceilings.boundary.plane.root(*at).re.is_finite()).collect()
 }

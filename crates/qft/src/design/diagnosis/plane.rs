@@ -18,7 +18,7 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// Where a frequency lies on the boundary.
+    /// Place of a frequency on the boundary.
     pub(super) fn place(self, frequency: f64) -> f64 {
         match self.sample_time_s {
             None => frequency,
@@ -35,7 +35,7 @@ impl Plane {
         }
     }
 
-    /// Where a root of the continuous plant lies: z = e^(sT) in a sampled loop.
+    /// Image of a root of the continuous plant: z = e^(sT) in a sampled loop.
     pub(super) fn image(self, root: Complex64) -> Complex64 {
         match self.sample_time_s {
             None => root,
@@ -46,7 +46,7 @@ impl Plane {
         }
     }
 
-    /// The root whose image this or its conjugate is, ln(z)/T in a sampled loop.
+    /// Root whose image this or its conjugate is, ln(z)/T in a sampled loop.
     pub(super) fn root(self, image: Complex64) -> Complex64 {
         match self.sample_time_s {
             None => image,
@@ -76,8 +76,8 @@ pub(super) fn share(point: Complex64, [from, to]: [f64; 2]) -> f64 {
     (angle(to) - angle(from) + mirrored(to) - mirrored(from)) / PI
 }
 
-/// The magnitude at a point of the function of magnitude 1 on the boundary that vanishes at these
-/// roots alone (Blaschke).
+/// The magnitude at a point of the function of magnitude 1 on the boundary that vanishes at exactly
+/// these roots (Blaschke).
 ///
 /// ```text
 /// prod |s0 - r|/|s0 + conj r|
@@ -94,7 +94,7 @@ pub(super) struct BoundaryCells {
     pub(super) plane: Plane,
     /// `[from, to]` of each cell.
     pub(super) cells: Vec<[f64; 2]>,
-    /// rad/s, two for each cell.
+    /// Frequencies, two for each cell, rad/s.
     pub(super) frequencies: Vec<f64>,
     /// The last frequency of interest: beyond it the limits are powers of s.
     pub(super) highest: f64,
@@ -102,11 +102,11 @@ pub(super) struct BoundaryCells {
 
 const CELLS_PER_DECADE: f64 = 48.0;
 const DECADES_MAXIMUM: f64 = 14.0;
-/// How far the cells extend beyond the frequencies of interest.
+/// Factor by which the cells extend beyond the frequencies of interest.
 const REACH: f64 = 1e3;
 
 impl BoundaryCells {
-    /// Cells around these places, none of which lies inside a cell. On the first and the last cell
+    /// Cells around these places, none of which is inside a cell. On the first and the last cell
     /// the mean logarithm of a power of s is exact.
     pub(super) fn new(plane: Plane, places: &[f64]) -> BoundaryCells {
         let sound = |place: &&f64| **place > 0.0 && place.is_finite();
@@ -132,8 +132,8 @@ impl BoundaryCells {
     }
 }
 
-/// The two points of Gauss in the logarithm; on the first and the last cell the one at which a
-/// logarithm has its mean.
+/// The two Gauss points in the logarithm of frequency; on the first and the last cell the point at
+/// which a logarithm equals its mean.
 fn nodes([from, to]: [f64; 2]) -> [f64; 2] {
     let e = std::f64::consts::E;
     if from == 0.0 {
@@ -152,8 +152,8 @@ fn nodes([from, to]: [f64; 2]) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    /// ln|f| of a function without zeros in the right half plane is the mean of its boundary
-    /// values, in either plane.
+    /// The mean value theorem for harmonic functions: ln|f| of a function without zeros in the
+    /// right half plane is the mean of its boundary values, in either plane.
     #[test]
     fn the_mean_over_the_boundary_is_the_value_at_the_point() {
         for (sample_time_s, point) in [

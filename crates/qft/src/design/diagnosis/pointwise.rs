@@ -1,4 +1,4 @@
-//! What is impossible at a single frequency, plant by plant.
+//! Limits of performance at a single frequency, plant by plant.
 
 use phea_dynamics::frequency::decibels;
 use phea_dynamics::portable;
@@ -10,12 +10,12 @@ use super::interpolation::least_relaxation_db;
 use crate::closed_loop::Compensation;
 use crate::specification::{ClosedLoop, Specification};
 
-/// The deficit of two limits below which nothing is reported, dB: each verdict tolerates 0.001 dB.
+/// Least deficit of two limits that is reported, dB: each verdict tolerates 0.001 dB.
 const TOLERANCE_DB: f64 = 0.002;
 const RELAXATION_MAXIMUM_DB: f64 = 400.0;
 
-/// Tracking limits that are crossed, each specification where it is worst, over its design
-/// frequencies and those of the cells.
+/// Tracking limits that cross, each specification where it is worst, over its design frequencies
+/// and those of the cells.
 pub(super) fn crossed(specifications: &[Specification], frequencies: &[f64]) -> Vec<Finding> {
     let of = |(index, specification): (usize, &Specification)| {
         if !specification.requirement.is_tracking() {
@@ -38,7 +38,7 @@ pub(super) fn crossed(specifications: &[Specification], frequencies: &[f64]) -> 
     specifications.iter().enumerate().filter_map(of).collect()
 }
 
-/// The frequency and plant for which the limits of S and T add up to least, if that is below 1.
+/// The frequency and plant for which the limits of S and T have the least sum, if it is below 1.
 pub(super) fn sum_below_one(ceilings: &Ceilings, candidates: &[PlantWithinLoop]) -> Option<Finding> {
     let sum = |ceiling: Ceiling| ceiling.sensitivity.limit + ceiling.complementary.limit;
     let all = (0..candidates.len()).flat_map(|candidate| {
@@ -107,7 +107,7 @@ fn below_one(limit: f64) -> bool {
     decibels(limit) < -TOLERANCE_DB
 }
 
-/// The limit that S = 1 and F P G S = 0 exceed.
+/// The limit that S = 1 and F P G S = 0 violate.
 fn forbidden_by_zero(
     specification: &Specification,
     candidate: &PlantWithinLoop,
@@ -127,7 +127,7 @@ fn forbidden_by_zero(
     }
 }
 
-/// Tracking limits that exclude 1 at rest.
+/// Tracking limits that exclude 1 at zero frequency.
 pub(super) fn static_gains(specifications: &[Specification]) -> Vec<Finding> {
     let of = |(index, specification): (usize, &Specification)| {
         let (Some(lower), upper) = specification.requirement.limits() else { return None };

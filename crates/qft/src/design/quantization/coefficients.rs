@@ -1,35 +1,35 @@
-//! Controllers whose coefficients were rounded: what is verified is what is deployed.
+//! Controllers with rounded coefficients: the deployed controller is the one that is verified.
 
 use phea_dynamics::controller::{CoefficientFormat, Compensator, Controller, Element, Section};
 use phea_dynamics::linear::{TimeDomain, TransferFunction};
 
 use super::QuantizationError;
 
-/// A controller as it is deployed.
+/// A deployed controller.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoundedController {
     /// The controller of these sections, to be audited: feedback and prefilter are in z, a
-    /// prefilter that acts before the samples as it was.
+    /// prefilter that acts before the sampling is unchanged.
     pub controller: Controller,
-    /// G with the coefficients with which it runs.
+    /// Sections of G with the deployed coefficients.
     pub feedback: Vec<Section>,
-    /// F likewise; empty where it acts before the sampling.
+    /// Sections of F likewise; empty if it acts before the sampling.
     pub prefilter: Vec<Section>,
 }
 
 /// The controller with its coefficients rounded to this format, section by section.
 ///
-/// A continuous compensator is sampled first, by the controller's own timing. A section with a pole
-/// at z = 1 keeps it: a_1 + a_2 = -1 holds after rounding, too, since an integrator that leaks, or
-/// grows, is another controller.
+/// A continuous compensator is first sampled with the controller's timing. A section with a pole at
+/// z = 1 retains it: a_1 + a_2 = -1 also holds after rounding, since a leaking or growing
+/// integrator would be another controller.
 ///
 /// # Errors
 /// [`QuantizationError::Continuous`] for a controller without sample time,
-/// [`QuantizationError::TooLarge`], [`QuantizationError::Vanished`], and those of sampling.
+/// [`QuantizationError::TooLarge`], [`QuantizationError::Vanished`], and errors of sampling.
 ///
 /// # Example
-/// A lag of 20 rad/s at 1 kHz: its gain at zero frequency is (b_0 + b_1)/(1 - p), where 1 - p =
-/// 0.02 has lost two digits.
+/// Lag of 20 rad/s at 1 kHz, whose static gain is (b_0 + b_1)/(1 - p), where 1 - p = 0.02 has lost
+/// two digits.
 /// ```
 /// use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 /// use phea_qft::design::quantization::{CoefficientFormat, rounded};
@@ -84,7 +84,7 @@ fn rounded_section(section: &Section, format: CoefficientFormat) -> Result<Secti
     if !integrates || format == CoefficientFormat::Double {
         return Ok(Section { numerator, denominator: plain });
     }
-    // one of the two differences is exact in every format that holds both ones
+    // one of the two differences is exact in every format that represents both ones
     let [first, second] = plain;
     let kept = [[first, -1.0 - first], [-1.0 - second, second]]
         .into_iter()

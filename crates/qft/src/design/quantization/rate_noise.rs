@@ -1,5 +1,5 @@
-//! The effect of the noise of a rate that is fed forward, or of an inner signal that is fed back,
-//! on command and output.
+//! The effect of sensor noise on command and output, for a rate that is fed forward or an inner
+//! signal that is fed back.
 //!
 //! ```text
 //! u = -G y_H + K (H_v v + n),    y = P u,  y_H = P H u,  v = P_v u
@@ -12,25 +12,25 @@ use super::QuantizationError;
 use super::rounding_effect::{DelayedSections, SAMPLES_MAXIMUM, SampledLoop, Sums};
 use crate::closed_loop::{Compensation, Member};
 
-/// What one sample of noise does to the output and to the command.
+/// Effect of one sample of noise on the output and on the command.
 type OutputAndCommand = (Sums, Sums);
 type SumsOfNoise = Result<Option<OutputAndCommand>, QuantizationError>;
 
-/// The largest effect of white noise of the rate among the plants, rms in the unit of what it acts
-/// on.
+/// The largest effect of white noise of the rate among the plants, rms in the unit of the affected
+/// signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateNoise {
-    /// On the command as the plant receives it.
+    /// Effect on the command as the plant receives it, rms.
     pub command_rms: f64,
     /// Index of the plant with this rms.
     pub command_plant: usize,
-    /// On the output.
+    /// Effect on the output, rms.
     pub output_rms: f64,
     /// Index of the plant with this rms.
     pub output_plant: usize,
 }
 
-/// What white noise of this rms does, at the samples, where the rate is fed forward.
+/// Effect of white noise of this rms at the samples of the rate that is fed forward.
 ///
 /// # Errors
 /// [`QuantizationError::Continuous`] for a continuous loop or a plant without polynomials;
@@ -38,8 +38,8 @@ pub struct RateNoise {
 /// for a controller that cannot be run.
 ///
 /// # Example
-/// With next to no feedback the command is K n, and the output of a lag is a geometric series of
-/// it.
+/// Loop with almost no feedback: the command is K n, and the output of a lag is its geometric
+/// series.
 /// ```
 /// use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 /// use phea_dynamics::linear::TransferFunction;
@@ -78,13 +78,13 @@ pub fn rate_noise(
     )
 }
 
-/// What white noise of this rms of the inner signal does, at the samples, where it is fed back.
+/// Effect of white noise of this rms at the samples of the inner signal that is fed back.
 ///
 /// # Errors
-/// As [`rate_noise`].
+/// Errors as for [`rate_noise`].
 ///
 /// # Example
-/// Without anything that comes back the command is k n.
+/// Loop without feedback: the command is k n.
 /// ```
 /// use phea_dynamics::controller::{Compensator, Controller, Element, InnerFeedback, Timing};
 /// use phea_dynamics::linear::TransferFunction;
@@ -137,8 +137,7 @@ pub fn inner_noise(
     )
 }
 
-/// The sums of what output and command do, of each member in its loop, the largest of them times a
-/// size.
+/// The largest sums of output and command over the members in their loops, times a scale.
 fn worst_of(
     members: &[Member],
     size: f64,
@@ -164,8 +163,8 @@ fn worst_of(
     Ok(worst)
 }
 
-/// The sums of what output and command of the plant do after one K n; `None` if they do not settle.
-/// The loop is around P', whose input is all of the command but what P_v feeds back.
+/// The sums of output and command of the plant after one K n; `None` if they do not settle. The
+/// loop is around P', whose input is the command less the feedback through P_v.
 fn response(
     mut around: SampledLoop,
     mut rate: Option<DelayedSections>,
@@ -185,9 +184,9 @@ fn response(
     })
 }
 
-/// The sums of what output and command of the plant do after one n of the inner signal; `None` if
-/// they do not settle. The loop is around P', whose input is all of the command but what P_p feeds
-/// back; H_p acts on the noise and on the signal alike.
+/// The sums of output and command of the plant after one n of the inner signal; `None` if they do
+/// not settle. The loop is around P', whose input is the command less the feedback through P_p; H_p
+/// acts on the noise and on the signal alike.
 fn inner_response(
     mut around: SampledLoop,
     mut inner: Option<DelayedSections>,

@@ -1,10 +1,10 @@
-//! The effect of the rounding of converters on force and command.
+//! The effect of converter rounding on force and command.
 //!
 //! ```text
 //! y(k) = sum h(i) e(k - i),  |e| <= q/2:      |y| <= q/2 sum |h(i)|,       white e:  rms(y) = q/sqrt(12) sqrt(sum h(i)^2)
 //! ```
 //!
-//! The responses h are those of the closed loop to one rounding, run sample by sample.
+//! The responses h are those of the closed loop to one rounding error, computed sample by sample.
 
 use std::collections::VecDeque;
 
@@ -14,89 +14,87 @@ use phea_dynamics::linear::{LinearError, TimeDomain, TransferFunction};
 use super::{Quantization, QuantizationError};
 use crate::closed_loop::{Compensation, Member};
 
-/// Least and greatest number of samples that are run.
+/// Least and greatest number of samples computed.
 const SAMPLES_MINIMUM: usize = 4096;
 pub(super) const SAMPLES_MAXIMUM: usize = 1 << 21;
-/// The last half of the samples may add this share.
+/// Fraction that the last half of the samples may add.
 const SETTLED: f64 = 1e-6;
 
-/// The largest effect of a rounding among the plants, in the unit of what it acts on.
+/// The largest effect of rounding over the plants, in the unit of the affected signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoundingEffect {
-    /// The most that any rounding can cause at any sample: q/2 times the sum of |h|.
+    /// The largest possible effect of rounding at any sample: q/2 times the sum of |h|.
     pub peak: f64,
     /// Index of the plant with this peak.
     pub peak_plant: usize,
-    /// Rms effect of roundings that are independent of each other: q/sqrt(12) times the root of the
-    /// sum of h^2.
+    /// Rms effect of independent rounding errors: q/sqrt(12) times the root of the sum of h^2.
     pub rms: f64,
     /// Index of the plant with this rms.
     pub rms_plant: usize,
 }
 
-/// Whether the loop can come to rest between the levels of its converters.
+/// Ability of the loop to come to rest between the levels of its converters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitCycle {
-    /// The controller does not integrate, so that it need not find the one command that leaves no
-    /// error.
+    /// The controller does not integrate, so that it need not find the one command without error.
     NotIntegrating,
-    /// Some level of the command leaves no error that the measurement shows, for every plant.
+    /// Some level of the command leaves no error visible in the measurement, for every plant.
     CanRest {
-        /// The most by which one step of the command changes the measurement at rest.
+        /// Largest change of the measurement at rest for one step of the command.
         rest_step: f64,
         /// One step of the measurement.
         measurement_step: f64,
     },
-    /// For this plant perhaps no level does: the command then alternates between two of them for
-    /// ever.
+    /// A plant without such a level is possible: the command then alternates between two levels
+    /// indefinitely.
     Expected {
         /// Index of the plant with the largest step.
         plant: usize,
-        /// How much one step of the command changes the measurement at rest; infinite for a plant
-        /// that integrates.
+        /// Change of the measurement at rest for one step of the command; infinite for a plant that
+        /// integrates.
         rest_step: f64,
         /// One step of the measurement.
         measurement_step: f64,
     },
 }
 
-/// The effects of the converters on a loop; `None` for an effect whose converter is absent.
+/// The effects of the converters on a loop; `None` if the converter is absent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoundingEffects {
-    /// The rounded command on the output.
+    /// Effect of the rounded command on the output.
     pub force_from_command: Option<RoundingEffect>,
-    /// The rounded measurement on the output.
+    /// Effect of the rounded measurement on the output.
     pub force_from_measurement: Option<RoundingEffect>,
-    /// The rounded measurement on the command.
+    /// Effect of the rounded measurement on the command.
     pub command_from_measurement: Option<RoundingEffect>,
-    /// Steps by which the command jumps at once where the measurement moves by one step, |G(z =
-    /// infinity)| q_y/q_u: far above one, the last bit of the sensor shakes the valve; far below
-    /// one, the valve does not respond to it until the controller has integrated.
+    /// Immediate change of the command, in steps of the command, for one step of the
+    /// measurement, |G(z = infinity)| q_y/q_u: far above one, the last bit of the sensor shakes the
+    /// valve; far below one, the valve does not respond until the controller has integrated.
     pub command_steps_at_once: Option<f64>,
-    /// Whether the loop can come to rest.
+    /// Ability of the loop to come to rest.
     pub limit_cycle: Option<LimitCycle>,
 }
 
-/// What rounding does to the loops of these plants, at the samples.
+/// Effects of rounding on the loops of these plants, at the samples.
 ///
 /// An integrating controller can rest if one step of the command moves the measurement by less than
-/// one step of its own,
+/// one step of the measurement,
 ///
 /// ```text
 /// |P H (z = 1)| q_u < q_y
 /// ```
 ///
 /// Source: Peterchev and Sanders (2003), the condition on resolutions. Friction and dead band of a
-/// valve cause limit cycles of their own, which a linear loop does not show.
+/// valve cause additional limit cycles, which a linear loop does not reveal.
 ///
 /// # Errors
-/// [`QuantizationError::Continuous`] for a continuous loop or a plant that was measured;
+/// [`QuantizationError::Continuous`] for a continuous loop or a measured plant;
 /// [`QuantizationError::NotSettled`] for a loop that is not stable; [`QuantizationError::Linear`]
 /// for a controller that cannot be run.
 ///
 /// # Example
-/// k/s with the gain g closes to z - 1 + K, K = g k T. A rounded command moves the output by k T (1
-/// - K)^n, in all by 1/g:
+/// Plant k/s with the gain g, which closes to z - 1 + K with K = g k T. A rounded command moves the
+/// output by k T (1 - K)^n, in total by 1/g:
 /// ```
 /// use phea_dynamics::controller::{Compensator, Controller, Element, Timing};
 /// use phea_dynamics::linear::TransferFunction;
@@ -178,13 +176,13 @@ fn limit_cycle(
     }
 }
 
-/// G(z = infinity)
+/// Direct feedthrough G(z = infinity).
 fn at_once(feedback: &TransferFunction) -> f64 {
     let prompt = feedback.zeros().len() == feedback.poles().len() && feedback.dead_time_s() == 0.0;
     if prompt { feedback.gain() } else { 0.0 }
 }
 
-/// Keeps the larger peak and the larger rms.
+/// Updates the larger peak and the larger rms.
 fn take(worst: &mut Option<RoundingEffect>, found: RoundingEffect) {
     let kept = worst.get_or_insert(found);
     if found.peak > kept.peak {
@@ -243,7 +241,7 @@ impl Sums {
     }
 }
 
-/// Sections in series behind whole samples of delay.
+/// Sections in series after whole samples of delay.
 #[derive(Clone, Debug)]
 pub(super) struct DelayedSections {
     sections: Vec<Section>,
@@ -270,20 +268,20 @@ impl SampledLoop {
         Ok(SampledLoop { output, measured, feedback })
     }
 
-    /// The sums of what output and command do after one error of command and measurement; `None` if
-    /// they do not settle.
+    /// The sums of output and command after one error of command and measurement; `None` if they do
+    /// not settle.
     fn response(&self, error: [f64; 2]) -> Option<(Sums, Sums)> {
         let (mut running, mut error) = (self.clone(), error);
         Sums::settled(&mut || running.step(std::mem::take(&mut error)))
     }
 
-    /// One sample: output and command.
+    /// Advances by one sample; returns output and command.
     ///
     /// ```text
     /// u = -G m,   m = P H v + e_y,   y = P v,   v = u + e_u
     /// ```
     ///
-    /// Where both controller and plant have direct feedthrough, u is solved for.
+    /// If both controller and plant have direct feedthrough, the equation is solved for u.
     pub(super) fn step(&mut self, [command_error, measurement_error]: [f64; 2]) -> (f64, f64) {
         let (plant, controller) = (self.measured.at_once(), self.feedback.at_once());
         let measured = self.measured.free() + plant * command_error + measurement_error;
@@ -310,7 +308,7 @@ impl DelayedSections {
         Ok(DelayedSections { sections, states, waiting: VecDeque::from(vec![0.0; samples]) })
     }
 
-    /// By how much an input of one changes the output at once.
+    /// Immediate change of the output for a unit input.
     pub(super) fn at_once(&self) -> f64 {
         if !self.waiting.is_empty() {
             return 0.0;

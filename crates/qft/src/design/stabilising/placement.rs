@@ -1,4 +1,4 @@
-//! Where the poles of a loop are put, and the controller that puts them there.
+//! Placement of the poles of a loop, and the controller that places them.
 
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
@@ -7,17 +7,17 @@ use phea_dynamics::portable;
 
 /// Least damping ratio of mirrored pairs.
 const DAMPING_RATIO: f64 = 0.7;
-/// A pole damped less than this counts as undamped: the loop has to move it.
+/// Damping ratio below which a pole counts as undamped: the loop has to move it.
 const UNDAMPED: f64 = 1e-3;
 
-/// Whether a loop has to move a pole: it is unstable or undamped, and not at the origin.
+/// True if a loop has to move a pole: it is unstable or undamped, and not at the origin.
 pub(super) fn has_to_move(pole: Complex64) -> bool {
     let size = portable::magnitude(pole);
     size > 0.0 && pole.re > -UNDAMPED * size
 }
 
-/// The mirror image of a pole in the left half plane, well damped; of one at the origin, a slow
-/// pole.
+/// The well-damped mirror image of a pole in the left half plane; a slow pole for one at the
+/// origin.
 pub(super) fn mirror(pole: Complex64, slow: f64) -> Complex64 {
     let size = portable::magnitude(pole);
     if size == 0.0 {
@@ -42,8 +42,8 @@ pub(super) fn observer_poles(poles: &[Complex64]) -> Vec<Complex64> {
     left.collect()
 }
 
-/// Those that have to move first, the others by their magnitude; conjugates stay together, the
-/// upper one first.
+/// Sorts poles that have to move first, then the others by their magnitude; conjugates stay
+/// together, the upper one first.
 pub(super) fn by_need(poles: &mut [Complex64]) {
     poles.sort_by(|one, other| {
         let key = |pole: &Complex64| (!has_to_move(*pole), portable::magnitude(*pole));
@@ -53,8 +53,8 @@ pub(super) fn by_need(poles: &mut [Complex64]) {
     });
 }
 
-/// x (monic) and y of the least degrees with d x + n y = target: d has degree n, x and y have
-/// degree n - 1, the target 2 n - 1.
+/// Polynomials x (monic) and y of least degree with d x + n y = target: d has degree n, x and y
+/// have degree n - 1, the target 2 n - 1.
 pub(super) fn placed(
     d: &Polynomial,
     n: &Polynomial,
@@ -91,8 +91,8 @@ pub(super) fn placed(
 mod tests {
     use super::*;
 
-    /// 1/(s^2 - 1) with both poles mirrored and one observer pole at 1: (s^2 - 1)(s + 3) + (4 s +
-    /// 4) = (s + 1)^3, so that G = 4 (s + 1)/(s + 3).
+    /// Plant 1/(s^2 - 1) with both poles mirrored and one observer pole at 1: (s^2 - 1)(s + 3) + (4
+    /// s + 4) = (s + 1)^3, so that G = 4 (s + 1)/(s + 3).
     #[test]
     fn poles_are_placed() {
         let d = Polynomial::new(vec![1.0, 0.0, -1.0]);
@@ -106,8 +106,8 @@ mod tests {
         }
     }
 
-    /// A pair of undamped poles becomes one with a damping ratio of 0.7 and the same magnitude, an
-    /// unstable real pole its image.
+    /// A pair of undamped poles becomes one with a damping ratio of 0.7 and unchanged magnitude, an
+    /// unstable real pole its mirror image.
     #[test]
     fn poles_are_mirrored() {
         let pair = mirror(Complex64::new(0.0, -2.0), 0.1);

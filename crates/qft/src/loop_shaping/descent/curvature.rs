@@ -1,15 +1,15 @@
-//! The curvature of a Lagrangian, learnt from how its slopes change.
+//! The curvature of a Lagrangian, estimated from changes of its slopes.
 
 use super::super::subproblem::dot;
 
-/// Share of the present curvature that a change of slopes must show; otherwise it is mixed with the
-/// expected change (Powell 1978).
+/// Fraction of the present curvature that a change of slopes must show; otherwise it is mixed with
+/// the expected change (Powell 1978).
 const DAMPING: f64 = 0.2;
 
-/// An entry beyond this indicates a kink and not a curvature, dB per square neper.
+/// Largest entry due to curvature, dB per square neper; a larger one indicates a kink.
 const LARGEST: f64 = 1e6;
 
-/// A positive definite matrix B, kept by the damped BFGS formula.
+/// A positive definite matrix B, updated by the damped BFGS formula.
 ///
 /// ```text
 /// B' = B - B d d.B/(d.B d) + y y./(d.y),      y -> theta y + (1 - theta) B d so that d.y >= 0.2 d.B d
@@ -22,7 +22,7 @@ pub(crate) struct Curvature {
 }
 
 impl Curvature {
-    /// The same curvature |d.y|/(d.d) in every direction; `None` where step or change carry no
+    /// Initial curvature |d.y|/(d.d), equal in every direction; `None` if step or change carry no
     /// information.
     pub(crate) fn first(step: &[f64], change: &[f64]) -> Option<Curvature> {
         let size = dot(step, change).abs() / dot(step, step);
@@ -35,13 +35,13 @@ impl Curvature {
         self.rows[row][column]
     }
 
-    /// B d
+    /// Product B d.
     pub(crate) fn times(&self, step: &[f64]) -> Vec<f64> {
         self.rows.iter().map(|row| dot(row, step)).collect()
     }
 
-    /// B', from a step d and the change y of the slopes along it; `None` where a kink or rounding
-    /// has made it useless.
+    /// Updated matrix B', from a step d and the change y of the slopes along it; `None` if a kink
+    /// or rounding makes it useless.
     pub(super) fn updated(&self, step: &[f64], change: &[f64]) -> Option<Curvature> {
         let expected = self.times(step);
         let before = dot(step, &expected);
@@ -72,8 +72,7 @@ impl Curvature {
 mod tests {
     use super::*;
 
-    /// Along conjugate steps of a quadratic function the formula finds its matrix, whatever it
-    /// began with.
+    /// Along conjugate steps of a quadratic function the formula finds its matrix, from any start.
     #[test]
     fn a_quadratic_function_is_learnt_exactly() {
         let hessian = |d: &[f64]| vec![4.0 * d[0] + d[1], d[0] + 3.0 * d[1]];

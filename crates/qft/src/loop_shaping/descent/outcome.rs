@@ -1,49 +1,48 @@
-//! What a descent ends with.
+//! Outcome of a descent.
 
 use crate::loop_shaping::search::Judgement;
 
-/// Why a descent ended.
+/// Final status of a descent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DescentStatus {
-    /// No small step gains more than the tolerance, and no margin misses its reserve by more: a
-    /// local optimum.
+    /// Optimum: smaller steps gain less than the tolerance, and every margin satisfies its reserve
+    /// within it; a local optimum.
     Converged,
-    /// No small step brings the worst margin nearer to the reserve, dB: a local optimum of the
-    /// worst margin.
+    /// Local optimum of the worst margin: small steps do not bring it nearer to the reserve, dB.
     Infeasible {
-        /// The worst margin there.
+        /// The worst margin at the end, dB.
         worst_margin_db: f64,
     },
-    /// Only steps smaller than this gain anything, and less than was predicted: there is a kink, or
-    /// the slopes do not match the margins.
+    /// Only steps smaller than this improve the result, and by less than predicted: there is a
+    /// kink, or the slopes do not match the margins.
     TrustRegionTooSmall {
-        /// Size of the last step that was tried, in units of x.
+        /// Size of the last step, in units of x.
         radius: f64,
     },
-    /// The steps allowed were made.
+    /// The step budget is used up.
     BudgetSpent {
-        /// How many.
+        /// Number of steps.
         steps: usize,
     },
-    /// The subproblem had no usable answer several times in succession.
+    /// The subproblem had no usable solution several times in succession.
     NoStep {
-        /// The penalty then, dB for each dB.
+        /// The final penalty, dB per dB.
         penalty: f64,
     },
     /// The start is not stable, or has margins that are NaN.
     StartUnusable,
-    /// The start lies outside of the bounds.
+    /// The start is outside the bounds.
     StartOutside,
 }
 
-/// Where a descent ended.
+/// End of a descent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DescentResult {
-    /// x
+    /// Free numbers x.
     pub x: Vec<f64>,
-    /// Its judgement; `None` for a start outside of the bounds.
+    /// Evaluation of the end; `None` for a start outside the bounds.
     pub judgement: Option<Judgement>,
-    /// Why it ended there.
+    /// Final status.
     pub status: DescentStatus,
     /// The margins that limited the last step, the strongest first.
     pub binding: Vec<Binding>,
@@ -54,11 +53,11 @@ pub struct DescentResult {
 /// Work done: counts, not times.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DescentWork {
-    /// Points judged.
+    /// Number of points evaluated.
     pub judgements: usize,
-    /// Points at which slopes were taken.
+    /// Number of points at which slopes were computed.
     pub slopes: usize,
-    /// Convex subproblems solved.
+    /// Number of convex subproblems solved.
     pub subproblems: usize,
 }
 
@@ -77,8 +76,8 @@ impl std::ops::Add for DescentWork {
 /// A margin that limits a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Binding {
-    /// Its [`MarginRow::sample`](crate::loop_shaping::MarginRow::sample).
+    /// Index [`MarginRow::sample`](crate::loop_shaping::MarginRow::sample) of the margin.
     pub sample: usize,
-    /// What one dB more of this margin would gain: dB of the objective, or of the common margin.
+    /// Gain per dB of this margin: dB of the objective, or of the common margin.
     pub multiplier: f64,
 }

@@ -1,11 +1,12 @@
-//! A point with everything that is known about its neighbourhood.
+//! A point with all margins known in its neighbourhood.
 
 use std::collections::BTreeMap;
 
 use super::super::search::{Aim, Judgement, MarginRow, Slopes};
 use super::super::subproblem::dot;
 
-/// A point, its judgement, its slopes, and margins that a refused step has shown to matter nearby.
+/// A point with its evaluation, its slopes, and margins that a rejected step has shown to matter
+/// nearby.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct DescentPoint {
     pub(super) x: Vec<f64>,
@@ -16,7 +17,7 @@ pub(super) struct DescentPoint {
 }
 
 impl DescentPoint {
-    /// All margins that are known around here, those from other points last.
+    /// All margins known here, those from other points last.
     pub(super) fn rows(&self) -> Vec<MarginRow> {
         self.slopes.margins.iter().chain(&self.beyond).cloned().collect()
     }
@@ -25,7 +26,7 @@ impl DescentPoint {
         self.slopes.margins.iter().map(|row| (row.sample, row)).collect()
     }
 
-    /// The margins of another place that are not among those here, continued to here along their
+    /// The margins of another point that are missing here, extrapolated to this point along their
     /// slopes. None of them is worse here than the worst margin, which is known.
     fn unknown_rows(&self, there: &DescentPoint) -> Vec<MarginRow> {
         let known = self.by_sample();
@@ -39,8 +40,8 @@ impl DescentPoint {
         continued.collect()
     }
 
-    /// The rows here, shifted so that they have the margins found at the end of a step, together
-    /// with those that only appear there.
+    /// The rows here, shifted so that they have the margins found at the end of a step, and those
+    /// that appear only there.
     pub(super) fn corrected_rows(&self, there: &DescentPoint, step: &[f64]) -> Vec<MarginRow> {
         let found = there.by_sample();
         let corrected = |row: &MarginRow| match found.get(&row.sample) {
@@ -52,7 +53,7 @@ impl DescentPoint {
         rows
     }
 
-    /// The same point, with the margins that only appear at the end of a rejected step.
+    /// Copy of this point with the margins that appear only at the end of a rejected step.
     pub(super) fn with_rows_of(mut self, there: &DescentPoint) -> DescentPoint {
         let unknown = self.unknown_rows(there);
         self.beyond.retain(|row| unknown.iter().all(|new| new.sample != row.sample));
@@ -60,8 +61,8 @@ impl DescentPoint {
         self
     }
 
-    /// How much the slopes of the Lagrangian f - sum lambda_i m_i change from here to there; a
-    /// margin that is not given at both points is taken as linear.
+    /// Change of the slopes of the Lagrangian f - sum lambda_i m_i between two points; a margin not
+    /// given at both points is taken as linear.
     pub(super) fn change_of_slopes(&self, there: &DescentPoint, aim: Aim, multipliers: &[f64]) -> Vec<f64> {
         let slopes = there.slopes.objective_slopes.iter().zip(&self.slopes.objective_slopes);
         let mut change: Vec<f64> = match aim {

@@ -1,18 +1,19 @@
 //! Quantities at |L| = 1: the delay that a plant tolerates, and the bandwidth of the nominal loop.
 //!
 //! ```text
-//! delay = (arg L + pi)/w at each gain crossover w,      margin = 20 log10(least delay/delay demanded)
+//! delay = (arg L + pi)/w at each gain crossover w,      margin = 20 log10(least delay/required delay)
 //! ```
 //!
-//! Poles of a stable loop cross to the right half plane at a gain crossover only, so this is the
-//! complete demand: it is exact except for the frequency of the crossover and the phase there,
-//! which are interpolated between the frequencies of the samples, ln|L| and arg L straight over ln
-//! w. The margin is as steep for a demand that is missed as for one that is met, and falls to minus
-//! infinity as a loop becomes unstable. In a sampled loop it is that of the sampled L, exact for a
-//! delay of whole samples. A crossover appears or vanishes when a peak of |L| passes through 1; so
-//! the peaks below 1 and the dips above it at which the phase alone would violate the demand are
-//! also margins for the slopes, though not for the judgement. Where |L| of a continuous loop is
-//! still above 1 at the highest column, it is assumed to fall as 1/w from there, with its phase.
+//! Poles of a stable loop cross to the right half plane only at a gain crossover, so that this is
+//! the complete requirement: it is exact except for the frequency of the crossover and the phase
+//! there, which are interpolated between the frequencies of the samples, ln|L| and arg L linearly
+//! in ln w. The margin is as steep for a violated requirement as for a satisfied one, and falls to
+//! minus infinity as a loop becomes unstable. In a sampled loop it refers to the sampled L, exact
+//! for a delay of whole samples. A crossover appears or vanishes when a peak of |L| passes through
+//! 1; therefore the peaks below 1 and the dips above it at which the phase would violate the
+//! requirement also give slopes of margins, but are not evaluated as margins. If |L| of a
+//! continuous loop is still above 1 at the highest column, it is assumed to fall as 1/w from there,
+//! with its phase.
 
 use std::f64::consts::PI;
 
@@ -22,32 +23,34 @@ use phea_dynamics::portable;
 use super::super::samples::FrequencyColumn;
 use super::super::structure::DECIBELS_PER_NEPER;
 
-/// A peak or dip that comes this near to 1 is a margin, in nepers.
+/// Distance of a peak or dip from 1 below which it is a margin, nepers.
 const NEAR: f64 = 0.7;
-/// An angle this little below zero is rounding, rad.
+/// Negative angle that counts as rounding error, rad.
 const ROUNDING: f64 = 1e-12;
 
-/// L of one plant at one column.
+/// Open loop L of one plant at one column.
 #[derive(Clone, Copy, Debug)]
 struct LoopValue {
     column: usize,
-    /// rad/s
+    /// Frequency, rad/s.
     frequency: f64,
     open: Complex64,
-    /// |L|^2
+    /// Squared magnitude |L|^2.
     square: f64,
 }
 
-/// |L|^2 of each plant at the last two columns that it was evaluated at; NaN before them.
+/// Squared magnitude |L|^2 of each plant at the last two columns where it was evaluated; NaN before
+/// them.
 struct Trails {
     before: Vec<f64>,
     last: Vec<f64>,
-    /// The last of these columns, and the place of the plant in it.
+    /// The last of these columns for each plant, and the plant's place in it.
     columns: Vec<usize>,
     places: Vec<usize>,
 }
 
-/// Plants whose |L|^2 are compared together: mostly none of them passes through 1 or turns.
+/// Number of plants whose |L|^2 are compared together: mostly none of them passes through 1 or
+/// turns.
 const TOGETHER: usize = 16;
 
 impl Trails {
@@ -61,19 +64,19 @@ impl Trails {
         }
     }
 
-    /// True where |L| passes through 1 from the last column to one with this |L|^2.
+    /// True if |L| passes through 1 from the last column to one with this |L|^2.
     fn passes(last: f64, square: f64) -> bool {
         !last.is_nan() & ((last >= 1.0) != (square >= 1.0))
     }
 
-    /// True where it does, or turned at the last column.
+    /// True if |L| passes through 1, or turned at the last column.
     fn is_notable(before: f64, last: f64, square: f64) -> bool {
         let peak = (last < 1.0) & (before < last) & (square <= last);
         let dip = (last > 1.0) & (before > last) & (square >= last);
         Self::passes(last, square) | peak | dip
     }
 
-    /// Notable ones of the first plants, by their |L|^2 at a column.
+    /// The notable ones of the first plants, by their |L|^2 at a column.
     fn notable(&self, squares: &[f64]) -> Vec<usize> {
         let mut found = Vec::new();
         let trails = self.before.chunks(TOGETHER).zip(self.last.chunks(TOGETHER));
@@ -88,7 +91,7 @@ impl Trails {
         found
     }
 
-    /// Moves the first plants on to a column.
+    /// Moves the first plants to a column.
     fn advance_all(&mut self, index: usize, squares: &[f64]) {
         let count = squares.len().min(self.last.len());
         self.before[..count].copy_from_slice(&self.last[..count]);
@@ -97,7 +100,7 @@ impl Trails {
         self.places[..count].iter_mut().enumerate().for_each(|(place, own)| *own = place);
     }
 
-    /// Moves one plant on to a column.
+    /// Moves one plant to a column.
     fn advance(&mut self, plant: usize, (index, place): (usize, usize), square: f64) {
         self.before[plant] = self.last[plant];
         self.last[plant] = square;
@@ -105,7 +108,7 @@ impl Trails {
     }
 }
 
-/// Which way |L| turns at a column.
+/// Direction in which |L| turns at a column.
 #[derive(Clone, Copy, Debug)]
 enum Bend {
     /// A peak below 1.
@@ -114,47 +117,47 @@ enum Bend {
     Dip,
 }
 
-/// ln|L| through zero between two columns.
+/// Zero crossing of ln|L| between two columns.
 #[derive(Clone, Copy, Debug)]
 struct Crossover {
-    /// ln w
+    /// Logarithm of the frequency, ln w.
     logarithm: f64,
-    /// ln w of the upper column less that of the lower one.
+    /// Difference of ln w between the upper and the lower column.
     width: f64,
-    /// Where between the columns, from 0 to 1.
+    /// Position between the columns, from 0 to 1.
     share: f64,
-    /// Derivative of the share with respect to ln|L| at either column.
+    /// Derivative of this position with respect to ln|L| at either column.
     share_slopes: [f64; 2],
 }
 
-/// A number in dB that depends on G at some columns.
+/// A quantity in dB that depends on G at some columns.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ColumnDependence {
     pub(crate) value_db: f64,
-    /// It moves by Re(factor d ln G), summed over these columns.
+    /// Terms of the change Re(factor d ln G), summed over these columns.
     pub(crate) terms: Vec<(usize, Complex64)>,
 }
 
-/// What becomes of L above the columns.
+/// Behaviour of L above the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum AboveColumns {
-    /// It falls as 1/w.
+    /// Decay as 1/w.
     Falling,
-    /// There is none: the columns of a sampled loop end at pi/T.
+    /// End of the response: the columns of a sampled loop end at pi/T.
     Nothing,
 }
 
 /// The margins to a required delay.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct DelayMargins {
-    /// At gain crossovers.
+    /// Margins at gain crossovers.
     pub(crate) crossovers: Vec<ColumnDependence>,
-    /// Where a crossover may appear or vanish.
+    /// Margins where a crossover may appear or vanish.
     pub(crate) peaks: Vec<ColumnDependence>,
 }
 
-/// The margins of this number of plants to a delay in s, one plant after the other, each at the
-/// centre where it is known within discs; empty where no delay is required.
+/// The margins of this number of plants to a delay, s, one plant after the other, each at the
+/// centre of its disc if it has one; empty if no delay is required.
 pub(crate) fn delay_margins(
     columns: &[FrequencyColumn],
     feedback: &[Complex64],
@@ -193,25 +196,25 @@ pub(crate) fn delay_margins(
     DelayMargins { crossovers: of_plants(search.crossovers), peaks: of_plants(search.peaks) }
 }
 
-/// The search for margins to a delay, on its way through the columns.
+/// The search for margins to a delay, in progress through the columns.
 struct DelaySearch<'a> {
     columns: &'a [FrequencyColumn],
     feedback: &'a [Complex64],
     delay_s: f64,
     trails: Trails,
-    /// Each with its plant.
+    /// Crossovers, each with its plant.
     crossovers: Vec<(usize, ColumnDependence)>,
     peaks: Vec<(usize, ColumnDependence)>,
 }
 
 impl DelaySearch<'_> {
-    /// A plant at a place in a column.
+    /// Open loop of a plant at a place in a column.
     fn value(&self, index: usize, place: usize) -> Option<LoopValue> {
         let (column, feedback) = self.columns.get(index).zip(self.feedback.get(index))?;
         Some(LoopValue::of(index, column, place, *feedback))
     }
 
-    /// A plant that is notable at a place in a column.
+    /// Records a notable plant at a place in a column.
     fn note(&mut self, plant: usize, (index, place): (usize, usize), square: f64) {
         let Trails { before, last, columns, places } = &self.trails;
         let (before, last, from) = (before[plant], last[plant], (columns[plant], places[plant]));
@@ -226,7 +229,7 @@ impl DelaySearch<'_> {
         self.peaks.extend(bend.and_then(|bend| peak(bend, &lower, self.delay_s)).map(|peak| (plant, peak)));
     }
 
-    /// On to a column of the first plants in their order.
+    /// Advances the first plants, in their order, to a column.
     fn go_on_with_all(&mut self, index: usize, squares: &[f64]) {
         for place in self.trails.notable(squares) {
             self.note(place, (index, place), squares[place]);
@@ -234,7 +237,7 @@ impl DelaySearch<'_> {
         self.trails.advance_all(index, squares);
     }
 
-    /// On to a column of any plants; of one within a disc the first response is the centre.
+    /// Advances any plants to a column; for one within a disc the first response is the centre.
     fn go_on(&mut self, index: usize, column: &FrequencyColumn, squares: &[f64]) {
         for (place, (&plant, &square)) in column.plants.iter().zip(squares).enumerate() {
             if self.trails.columns.get(plant).is_none_or(|last| *last == index) {
@@ -247,7 +250,7 @@ impl DelaySearch<'_> {
         }
     }
 
-    /// Beyond the last column, where |L| falls as 1/w.
+    /// Continues beyond the last column, where |L| falls as 1/w.
     fn go_beyond(&mut self) {
         let Trails { last, columns, places, .. } = &self.trails;
         let ends = last.iter().enumerate().filter(|(_, square)| **square >= 1.0);
@@ -259,8 +262,8 @@ impl DelaySearch<'_> {
     }
 }
 
-/// The highest gain crossover of the nominal loop, 20 log10 of its frequency in rad/s; beyond the
-/// columns |L| is assumed to fall as 1/w. `None` where the nominal plant is not evaluated.
+/// The highest gain crossover of the nominal loop, 20 log10 of its frequency, rad/s; beyond the
+/// columns |L| is assumed to fall as 1/w. `None` if the nominal plant is not evaluated.
 pub(crate) fn bandwidth(columns: &[FrequencyColumn], feedback: &[Complex64]) -> Option<ColumnDependence> {
     let path = nominal_path(columns, feedback);
     let (first, last) = (path.first()?, path.last()?);
@@ -284,7 +287,7 @@ pub(crate) fn bandwidth(columns: &[FrequencyColumn], feedback: &[Complex64]) -> 
     })
 }
 
-/// L of the nominal plant along the columns; its centre where it is known within discs.
+/// Open loop of the nominal plant along the columns; the centre if it is known within discs.
 fn nominal_path(columns: &[FrequencyColumn], feedback: &[Complex64]) -> Vec<LoopValue> {
     let values = columns.iter().zip(feedback).enumerate().filter_map(|(index, (column, feedback))| {
         let place = column.plants.iter().position(|plant| *plant == 0)?;
@@ -299,17 +302,17 @@ impl LoopValue {
         LoopValue { column: index, frequency: column.frequency, open, square: open.norm_sqr() }
     }
 
-    /// ln w
+    /// Logarithm of the frequency, ln w.
     fn logarithm_of_frequency(&self) -> f64 {
         portable::ln(self.frequency)
     }
 
-    /// ln|L|
+    /// Logarithm of the magnitude, ln|L|.
     fn size(&self) -> f64 {
         0.5 * portable::ln(self.square)
     }
 
-    /// arg L + pi, in (-pi, pi].
+    /// Angle arg L + pi, in (-pi, pi].
     fn angle(&self) -> f64 {
         portable::argument(-self.open)
     }
@@ -369,7 +372,7 @@ fn bend([low, here, high]: [f64; 3]) -> Option<Bend> {
     }
 }
 
-/// |L| at a peak or dip, where the phase alone would not tolerate the delay.
+/// Margin of |L| at a peak or dip where the phase would not tolerate the delay.
 fn peak(bend: Bend, point: &LoopValue, delay_s: f64) -> Option<ColumnDependence> {
     let size = point.size();
     if size.abs() >= NEAR {
@@ -386,7 +389,7 @@ fn peak(bend: Bend, point: &LoopValue, delay_s: f64) -> Option<ColumnDependence>
     })
 }
 
-/// The same angle in [0, 2 pi).
+/// An angle normalised to [0, 2 pi).
 fn positive(angle: f64) -> f64 {
     if angle < -ROUNDING { angle + 2.0 * PI } else { angle.max(0.0) }
 }

@@ -1,4 +1,4 @@
-//! Of many margins, the worst one and those that may become it nearby.
+//! Selection of margins: the worst one, and those that may become the worst nearby.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -7,22 +7,23 @@ use super::DECIBELS_PER_NEPER;
 
 /// Largest change of ln G for which a margin may be needed.
 const REACH: f64 = 0.5;
-/// Plants whose magnitude squared is further from the worst one's than by this factor, 12 dB, are
-/// not considered.
+/// Factor between a plant's magnitude squared and the worst one's beyond which the plant is not
+/// considered, 12 dB.
 const WINDOW: f64 = 16.0;
-/// Plants that are kept of one column and demand.
+/// Largest number of plants retained for one column and requirement.
 const PLANTS_MAXIMUM: usize = 4;
-/// Relative difference of two squares whose margins may round to the same number, and a difference
-/// of two c that is rounding.
+/// Relative difference of two squares whose margins may round to equal numbers, and difference of
+/// two c that counts as rounding error.
 const ROUNDING: f64 = 1e-9;
 
 /// One margin: `d margin/dx = -(20/ln 10) Re(c d ln G/dx)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MarginCandidate {
     pub(crate) margin_db: f64,
-    /// c; for a lower limit its negative, for a spread the difference of the c of both plants.
+    /// Coefficient c; its negative for a lower limit, the difference of both plants' c for a
+    /// spread.
     pub(crate) sensitivity: Complex64,
-    /// Index of the plant, of the one with the greatest magnitude in a spread.
+    /// Index of the plant; in a spread, of the one with the greatest magnitude.
     pub(crate) plant: usize,
     /// The plant with the least magnitude, in a spread.
     pub(crate) other: Option<usize>,
@@ -41,7 +42,7 @@ pub(crate) struct LimitedPlants<'a> {
     pub(crate) plants: &'a [usize],
     /// The square of the limited magnitude of each plant.
     pub(crate) squares: &'a [f64],
-    /// The greatest of them for a limit from above, the least for one from below.
+    /// The greatest square for an upper limit, the least for a lower one.
     pub(crate) worst: f64,
     /// The square of the limit.
     pub(crate) allowed: f64,
@@ -100,23 +101,22 @@ impl LimitedPlants<'_> {
     }
 }
 
-/// dB of the magnitude with this square.
+/// Magnitude with this square, dB.
 pub(crate) fn half_decibels(squared: f64) -> f64 {
     DECIBELS_PER_NEPER * 0.5 * portable::ln(squared)
 }
 
-/// The one with the least margin; what is not a number is left out.
+/// The candidate with the least margin; NaN is ignored.
 pub(crate) fn worst_of(all: impl Iterator<Item = MarginCandidate>) -> Option<MarginCandidate> {
     all.filter(MarginCandidate::is_finite).min_by(|one, other| one.margin_db.total_cmp(&other.margin_db))
 }
 
-/// The worst, then each time the one that threatens most to become it; what is not a number is left
-/// out.
+/// The worst candidate, then successively the one that threatens most to become it; NaN is ignored.
 pub(crate) fn prominent(worst: MarginCandidate, mut others: Vec<MarginCandidate>) -> Vec<MarginCandidate> {
     others.retain(MarginCandidate::is_finite);
     let mut chosen = Vec::with_capacity(PLANTS_MAXIMUM);
     chosen.push(worst);
-    // of each, the square of the distance from the nearest that is chosen
+    // for each, the square of the distance from the nearest selected one
     let mut distances = vec![f64::INFINITY; others.len()];
     let mut newest = worst;
     while chosen.len() < PLANTS_MAXIMUM {
@@ -146,14 +146,14 @@ mod tests {
 
     use super::*;
 
-    /// All margins within the window, computed.
+    /// Selection from all margins within the window, computed.
     fn by_all(plants: &LimitedPlants<'_>, coefficients: &[Complex64]) -> Vec<MarginCandidate> {
         let within = plants.places().filter(|(_, square)| plants.is_within(*square));
         let all: Vec<_> = within.map(|(place, _)| plants.candidate(place, coefficients[place])).collect();
         worst_of(all.iter().copied()).map_or(vec![], |worst| prominent(worst, all))
     }
 
-    /// Squares close to each other and far apart, equal ones, and c that are spread or alike.
+    /// Squares close together, far apart and equal, and c that are spread or equal.
     #[test]
     fn margins_that_are_not_computed_do_not_matter() {
         let mut state = stream(11, 1);

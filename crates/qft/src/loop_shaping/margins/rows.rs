@@ -7,7 +7,7 @@ use super::prominent::{LimitedPlants, MarginCandidate, half_decibels, prominent,
 use super::{ColumnLoop, Demand, LimitedSide, extremes};
 
 /// The worst margin of the column, and those that may become the worst nearby: after the worst,
-/// each time the plant whose c lies farthest from those already chosen, relative to its distance.
+/// successively the plant whose c is farthest from those already chosen, relative to its distance.
 pub(crate) fn candidates(
     demand: &Demand,
     column: &FrequencyColumn,

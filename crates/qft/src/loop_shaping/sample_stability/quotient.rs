@@ -4,7 +4,7 @@
 //! w = (z - 1)/(z + 1):   z - p = ((2 + r) w - r)/(1 - w)  with r = p - 1,      z = (1 + w)/(1 - w)
 //! ```
 //!
-//! The factors of 1 - w are multiplied out. A slow pole lies near w = s T/2, so that no digits are
+//! The factors of 1 - w are multiplied out. A slow pole is near w = s T/2, so that no digits are
 //! lost.
 
 use num_complex::Complex64;
@@ -16,7 +16,7 @@ use crate::closed_loop::Member;
 /// Samples of delay that may become factors of w.
 const DELAY_MAXIMUM: f64 = 24.0;
 
-/// Numerator over denominator, nothing cancelled; both of the same degree in w.
+/// Numerator over denominator, without cancellation; both of equal degree in w.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct BilinearQuotient {
     numerator: RoundedPolynomial,
@@ -24,7 +24,8 @@ pub(super) struct BilinearQuotient {
 }
 
 impl BilinearQuotient {
-    /// P H of a member; `None` for a measurement, and for a dead time that leaves no polynomials.
+    /// Quotient P H of a member; `None` for a measurement, and for a dead time that leaves no
+    /// polynomials.
     pub(super) fn of_member(member: &Member) -> Option<BilinearQuotient> {
         match member {
             Member::Continuous { plant, sensor, .. } if plant.dead_time_s == 0.0 => {
@@ -42,8 +43,8 @@ impl BilinearQuotient {
         }
     }
 
-    /// P H of a continuous member with dead time T, which is replaced by its Padé approximation of
-    /// third order; `None` for other members.
+    /// Quotient P H of a continuous member with dead time T, which is replaced by its third-order
+    /// Padé approximation; `None` for other members.
     ///
     /// ```text
     /// e^(-sT) ~ p(-sT)/p(sT),      p(u) = u^3/120 + u^2/10 + u/2 + 1
@@ -93,7 +94,7 @@ impl BilinearQuotient {
         })
     }
 
-    /// The characteristic polynomial of a loop with both.
+    /// The characteristic polynomial of a loop with both quotients.
     pub(super) fn closed(&self, other: &BilinearQuotient) -> RoundedPolynomial {
         RoundedPolynomial::sum_of_products(&[
             (&self.denominator, &other.denominator),
@@ -102,19 +103,20 @@ impl BilinearQuotient {
     }
 }
 
-/// The polynomial times this number of these factors.
+/// The polynomial times this power of this factor.
 fn raised(polynomial: RoundedPolynomial, factor: &[f64], count: usize) -> RoundedPolynomial {
     let factor = RoundedPolynomial::exact(factor);
     (0..count).fold(polynomial, |product, _| product.times(&factor))
 }
 
-/// gain (z - z_1) (z - z_2) ... without its factors of 1 - w.
+/// Polynomial gain (z - z_1) (z - z_2) ... without its factors of 1 - w.
 fn in_w(gain: f64, roots: &[Complex64]) -> RoundedPolynomial {
     let upper = roots.iter().filter(|root| root.im >= 0.0);
     upper.fold(RoundedPolynomial::exact(&[gain]), |product, root| product.times(&factor_in_w(*root)))
 }
 
-/// (2 + r) w - r of a real root, and the product of that of a root with that of its conjugate.
+/// Factor (2 + r) w - r of a real root, and for a complex root its product with that of the
+/// conjugate.
 fn factor_in_w(root: Complex64) -> RoundedPolynomial {
     let (re, im) = (root.re - 1.0, root.im);
     if im == 0.0 {

@@ -1,21 +1,22 @@
-//! Polynomials whose coefficients are known up to their rounding, and Routh's table of them.
+//! Polynomials whose coefficients are known up to their rounding, and their Routh table.
 
-/// Coefficients, highest power first, each with a bound of its error. Leading ones may be zero:
-/// roots at infinity.
+/// Coefficients, highest power first, each with an error bound. Leading ones may be zero: roots at
+/// infinity.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RoundedPolynomial {
     values: Vec<f64>,
     errors: Vec<f64>,
 }
 
-/// Whether all roots have negative real parts.
+/// Test that all roots have negative real parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Hurwitz {
-    /// They do.
+    /// All roots have negative real parts.
     Yes,
-    /// At least one root has a non-negative real part, or lies at infinity.
+    /// The polynomial has a root with a non-negative real part, or at infinity.
     No,
-    /// Undecided because of the errors of the coefficients or the rounding of the table.
+    /// The test is undecided because of the errors of the coefficients or the rounding of the
+    /// table.
     Undecided,
 }
 
@@ -45,8 +46,8 @@ impl RoundedPolynomial {
         let (mut values, mut errors) = (vec![0.0; degree + 1], vec![0.0; degree + 1]);
         for (left, right) in pairs {
             let offset = degree - left.degree() - right.degree();
-            // each product is rounded once, and each sum of as many products as overlap, and of two
-            // such sums
+            // each product is rounded once, as is each sum of as many products as overlap, and of
+            // two such sums
             let roundings = (left.degree().min(right.degree()) + 4) as f64 * f64::EPSILON;
             for (power, (a, a_error)) in left.values.iter().zip(&left.errors).enumerate() {
                 let (slack, size) = (a_error + roundings * a.abs(), a.abs() + a_error);
@@ -77,16 +78,16 @@ impl RoundedPolynomial {
         }
     }
 
-    /// Routh's table: all roots lie in the left half plane if and only if its first column has one
+    /// Routh's table: all roots are in the left half plane if and only if its first column has one
     /// sign.
     ///
     /// ```text
     /// r_0 = c_0, c_2, c_4, ...      r_1 = c_1, c_3, ...      r_(i+1),j = r_(i-1),j+1 - (r_(i-1),0 / r_i,0) r_i,j+1
     /// ```
     ///
-    /// Every entry carries a bound of its error. A scale of s scales every entry by a power of
-    /// itself, so none is needed. Source: Routh (1877), as in Gantmacher, The Theory of Matrices
-    /// (1959), volume 2, chapter XV.
+    /// Every entry carries an error bound. Scaling s multiplies every entry by a power of the
+    /// scale, so no scaling is needed. Source: Routh (1877), as in Gantmacher, The Theory of
+    /// Matrices (1959), volume 2, chapter XV.
     pub(super) fn hurwitz(&self) -> Hurwitz {
         let known = |sign: f64| self.values.iter().zip(&self.errors).any(move |(v, e)| sign * v > *e);
         let vanishes = |(value, error): (&f64, &f64)| *value == 0.0 && *error == 0.0;
@@ -103,7 +104,7 @@ impl RoundedPolynomial {
             if top < -top_error {
                 return Hurwitz::No;
             }
-            // also what is not a number
+            // also true of NaN
             if !(top > top_error && top.is_finite()) {
                 return Hurwitz::Undecided;
             }
@@ -121,7 +122,7 @@ impl RoundedPolynomial {
     }
 }
 
-/// Replaces the upper row by the one below the lower.
+/// Replaces the upper row by the row that follows the lower one.
 fn eliminate(upper: &mut Vec<(f64, f64)>, lower: &[(f64, f64)], ratio: f64, ratio_error: f64) {
     let kept = upper.len() - 1;
     for index in 0..kept {

@@ -12,15 +12,15 @@ use crate::loop_shaping::DesignProblem;
 use crate::specification::Limit;
 use crate::verification::PlantPoint;
 
-/// How far beyond roots and design frequencies an unlimited band is sampled, as a factor.
+/// Factor beyond roots and design frequencies up to which an unlimited band is sampled.
 const BEYOND: f64 = 30.0;
-/// Beyond this factor the grid is coarse.
+/// Factor beyond which the grid is coarse.
 const DENSE: f64 = 5.0;
-/// How much coarser.
+/// Ratio of the coarse to the fine spacing.
 const COARSENESS: f64 = 4.0;
-/// A root with a damping ratio below this one makes a peak that the grid could miss.
+/// Damping ratio below which the peak of a root could be missed by the grid.
 const LIGHTLY_DAMPED: f64 = 0.2;
-/// Largest number of frequencies of peaks that are added.
+/// Largest number of peak frequencies that are added.
 const PEAKS_MAXIMUM: usize = 80;
 
 /// The frequencies at which these plants are evaluated: a logarithmic grid over all bands, the ends
@@ -28,17 +28,18 @@ const PEAKS_MAXIMUM: usize = 80;
 /// rad/s.
 ///
 /// A band from 0 begins a factor 30 below the slowest root of a plant or a limit and the least
-/// design frequency, one to infinity ends as far above the fastest; where every band ends, the grid
-/// goes on a factor 30 further, so that a search sees how near to instability the loop comes there.
-/// Between 5 times those and there, the grid is four times as coarse. A sampled loop ends at pi/T.
-/// Where peaks are crowded, some are left out. Where plants are known by their responses, the grid
-/// is limited to the range that all of them cover.
+/// design frequency, and one to infinity ends equally far above the fastest; if every band ends,
+/// the grid continues a factor 30 further, so that a search sees how close to instability the loop
+/// comes there. Beyond a factor 5, the grid is four times as coarse. A sampled loop ends at pi/T.
+/// Of crowded peaks some are omitted. If plants are given by their responses, the grid is limited
+/// to the range that all of them cover.
 ///
 /// # Errors
 /// A point that is not a plant of the family; a loop that cannot be formed.
 ///
 /// # Example
-/// The ends of the band, the design frequency, and the undamped pole of k/(s^2 + 4) are looked at.
+/// The samples include the ends of the band, the design frequency, and the undamped pole of
+/// k/(s^2 + 4).
 /// ```
 /// # use phea_dynamics::controller::Timing;
 /// # use phea_dynamics::linear::TransferFunction;
@@ -151,7 +152,7 @@ fn features(problem: &DesignProblem, plants: &[PlantPoint]) -> Result<(Vec<f64>,
             FamilyPlant::Rational(plant) => {
                 let paths = std::iter::once(&plant.command).chain(&plant.disturbance);
                 for coefficients in paths.flat_map(|path| [&path.numerator, &path.denominator]) {
-                    // a polynomial whose roots are not found shows no peak
+                    // a polynomial whose roots are not found contributes no peak
                     roots.extend(Polynomial::new(coefficients.clone()).roots().unwrap_or_default());
                 }
             }
@@ -172,7 +173,7 @@ fn features(problem: &DesignProblem, plants: &[PlantPoint]) -> Result<(Vec<f64>,
     Ok((sizes, peaks))
 }
 
-/// The frequency of a lightly damped root, and those where it has fallen by 3 dB and by 7.
+/// The frequency of a lightly damped root, and those where its peak has fallen by 3 dB and by 7 dB.
 fn around_root(root: Complex64) -> Vec<f64> {
     let (centre, width) = (root.im, root.re.abs());
     if centre <= 0.0 || width > LIGHTLY_DAMPED * centre {
@@ -181,7 +182,7 @@ fn around_root(root: Complex64) -> Vec<f64> {
     [-2.0, -1.0, 0.0, 1.0, 2.0].iter().map(|offset| centre + offset * width).collect()
 }
 
-/// Where frequencies are crowded, some are left out.
+/// Omits some frequencies where they are crowded.
 fn thin(frequencies: &mut Vec<f64>) {
     sort_numbers(frequencies);
     let mut apart = 1e-3;

@@ -11,28 +11,29 @@ use super::super::margins::{
 use super::super::structure::DECIBELS_PER_NEPER;
 use super::{Shaping, along};
 
-/// Rows of one linearisation.
+/// Largest number of rows of one linearisation.
 const ROWS_MAXIMUM: usize = 240;
-/// Columns whose worst margin is further above the worst of all give no rows, dB.
+/// Distance from the worst margin beyond which the worst margin of a column gives no rows, dB.
 const WINDOW_DB: f64 = 20.0;
-/// Relative difference of two squares, and difference of two margins in dB, that is rounding.
+/// Relative difference of two squares, and difference of two margins in dB, that counts as rounding
+/// error.
 const ROUNDING: f64 = 1e-9;
 const ROUNDING_DB: f64 = 1e-6;
 
 /// The worst of the samples at one G.
 #[derive(Clone, Debug)]
 pub(super) struct Looked {
-    /// Of each column and demand.
+    /// Excess for each column and requirement.
     excesses: Vec<ColumnExcess>,
     delays: DelayMargins,
     pub(super) worst_db: f64,
 }
 
-/// How far the worst plant of a column goes beyond a limit.
+/// Ratio of the worst plant of a column to a limit.
 #[derive(Clone, Copy, Debug)]
 struct ColumnExcess {
     column: usize,
-    /// Index of the demand in the column.
+    /// Index of the requirement in the column.
     number: usize,
     /// The square of the excess.
     squared: f64,
@@ -50,7 +51,7 @@ impl Shaping {
     pub(super) fn look(&mut self, forward: &[[Complex64; 2]]) -> Looked {
         let mut excesses = Vec::new();
         let mut worst_db = f64::INFINITY;
-        // of those whose rate is 1: most logarithms need not be taken
+        // for a rate of 1 most logarithms can be skipped
         let mut greatest = 0.0;
         for (index, (column, &[feedback, prefilter])) in
             self.samples.columns().iter().zip(forward).enumerate()
@@ -83,7 +84,7 @@ impl Shaping {
         Looked { excesses, delays, worst_db }
     }
 
-    /// The rows of the columns and demands that matter, the least margin first.
+    /// The rows of the relevant columns and requirements, the least margin first.
     pub(super) fn rows(
         &mut self,
         looked: &Looked,
@@ -120,11 +121,11 @@ impl Shaping {
         finite.take(ROWS_MAXIMUM).collect()
     }
 
-    /// The least margins over their rates, with their plants, by column and demand: at least as
-    /// many as there are rows.
+    /// The least margins over their rates, with their plants, by column and requirement: at least
+    /// as many as there are rows.
     fn least(&mut self, looked: &Looked, forward: &[[Complex64; 2]]) -> Vec<(f64, RowOf<'static>)> {
         let mut found = Vec::new();
-        // of those that were found, the least in order
+        // the least margins found so far, in order
         let mut least: Vec<f64> = Vec::with_capacity(ROWS_MAXIMUM + 1);
         for (worst, index, number) in near(looked) {
             if least.get(ROWS_MAXIMUM - 1).is_some_and(|last| *last < worst - ROUNDING_DB) {
@@ -148,7 +149,7 @@ impl Shaping {
     }
 }
 
-/// What a row is of.
+/// Origin of a row.
 #[derive(Clone, Copy, Debug)]
 enum RowOf<'a> {
     Plant { column: usize, number: usize, found: MarginCandidate },
@@ -156,7 +157,7 @@ enum RowOf<'a> {
 }
 
 impl RowOf<'_> {
-    /// Column and number of the demand, of a plant.
+    /// Column and number of the requirement, for a plant.
     fn place(&self) -> (usize, usize) {
         match *self {
             RowOf::Plant { column, number, .. } => (column, number),
@@ -165,10 +166,10 @@ impl RowOf<'_> {
     }
 }
 
-/// The least margins over their rates in dB, with column and demand, in order.
+/// The least margins over their rates in dB, with column and requirement, in order.
 fn near(looked: &Looked) -> Vec<(f64, usize, usize)> {
     let farthest_db = looked.worst_db + WINDOW_DB;
-    // the square of an excess with a rate of 1 that is certainly beyond
+    // the square of an excess with a rate of 1 that is certainly too far from the worst
     let beyond = portable::pow(10.0, -0.1 * farthest_db) * (1.0 - ROUNDING);
     let may_be = |excess: &&ColumnExcess| excess.rate != 1.0 || excess.squared >= beyond;
     let margins = looked.excesses.iter().filter(may_be);
@@ -186,7 +187,7 @@ fn near(looked: &Looked) -> Vec<(f64, usize, usize)> {
     near
 }
 
-/// A number for the margin of this plant, or pair, to this demand at this column.
+/// A number that identifies the margin of this plant, or pair, to this requirement at this column.
 fn sample_number(column: usize, demand: usize, plants: usize, found: &MarginCandidate) -> usize {
     let pair = found.plant * (plants + 1) + found.other.map_or(plants, |other| other);
     (column * Demand::PER_COLUMN + demand) * (plants + 1) * (plants + 1) + pair

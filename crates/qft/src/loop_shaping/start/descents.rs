@@ -1,5 +1,5 @@
-//! The descents of a search: each needs nothing of the others, but for ending where one before it
-//! has ended.
+//! The descents of a search, independent of each other, except that one ends where it joins the end
+//! of an earlier one.
 
 use phea_dynamics::watch::{Stopped, Watch, tell, within};
 
@@ -7,7 +7,7 @@ use super::{STAGE, STEPS_ROUGH, SearchOptions, StartSearch, is_distinct, standin
 use crate::loop_shaping::descent::{Descent, DescentOptions, DescentWork};
 use crate::loop_shaping::search::{Judgement, SearchProblem};
 
-/// Where a descent was after one of its steps.
+/// Position of a descent after one of its steps.
 struct PassedPoint {
     x: Vec<f64>,
     judgement: Option<Judgement>,
@@ -21,7 +21,7 @@ struct MergedEnds<'a> {
 }
 
 impl<P: SearchProblem + Clone + Sync> StartSearch<'_, P> {
-    /// A few steps of each.
+    /// Makes a few steps of each descent.
     pub(super) fn descend_roughly(
         &mut self,
         descents: &mut [Descent],
@@ -40,8 +40,9 @@ impl<P: SearchProblem + Clone + Sync> StartSearch<'_, P> {
         Ok(())
     }
 
-    /// Each to its end, or to that of one before it which it comes near to; as many at once as
-    /// there are workers, and cut afterwards where they would have joined another of them.
+    /// Continues each descent to its end, or to the end of an earlier one that it approaches; runs
+    /// one per worker at a time, and truncates them afterwards where they would have joined
+    /// another.
     pub(super) fn descend_to_the_end(
         &mut self,
         descents: &mut [Descent],
@@ -88,7 +89,7 @@ impl PassedPoint {
 }
 
 impl MergedEnds<'_> {
-    /// True where a descent has come near to an end that is no worse than what it has reached.
+    /// True if a descent has come near an end that is no worse than its present point.
     fn leads_to(&self, passed: &PassedPoint, end: &Descent) -> bool {
         let [own, others] =
             [passed.judgement, end.judgement()].map(|judgement| standing(self.options, judgement));
@@ -96,7 +97,7 @@ impl MergedEnds<'_> {
             && others.0.cmp(&own.0).then(others.1.total_cmp(&own.1)).is_le()
     }
 
-    /// Ends a descent where it first came near to one of these ends, if it did.
+    /// Truncates a descent where it first came near one of these ends, if it did.
     fn cut(&self, descent: &mut Descent, trail: &[PassedPoint], ended: &[Descent]) {
         let joined = trail.iter().find_map(|passed| {
             let end = ended.iter().find(|end| self.leads_to(passed, end))?;

@@ -5,16 +5,16 @@ use phea_dynamics::random::share;
 use super::JudgedPoint;
 use crate::loop_shaping::search::{Aim, SearchProblem};
 
-/// Weight of the difference that is added, and probability that a coordinate takes part.
+/// Weight of the difference that is added, and probability that a coordinate is included.
 const WEIGHT: f64 = 0.7;
 const CROSSOVER: f64 = 0.9;
-/// Number of members for each coordinate, and their least number.
+/// Number of members for each coordinate, and least number of members.
 const MEMBERS_PER_COORDINATE: usize = 8;
 const MEMBERS_MINIMUM: usize = 24;
-/// A member, and three others from which a trial point is formed.
+/// Number of members needed to form a trial point: a member, and three others.
 const MEMBERS_NEEDED: usize = 4;
 
-/// A population on its way from unstable points to stable ones, and from small worst margins to
+/// A population that evolves from unstable points to stable ones, and from small worst margins to
 /// larger ones.
 ///
 /// ```text
@@ -22,7 +22,7 @@ const MEMBERS_NEEDED: usize = 4;
 /// ```
 ///
 /// a, b and c are three other members. Source: Storn and Price (1997), variant rand/1/bin; a
-/// coordinate that would leave its bounds moves half the way to them.
+/// coordinate that would leave its bounds moves half of the way to them.
 #[derive(Clone, Debug)]
 pub(super) struct Evolution {
     population: Vec<JudgedPoint>,
@@ -31,7 +31,7 @@ pub(super) struct Evolution {
 }
 
 impl Evolution {
-    /// The best candidates, which are sorted, as a population.
+    /// The best candidates, sorted, as a population.
     pub(super) fn new(candidates: &[JudgedPoint], bounds: &[[f64; 2]]) -> Evolution {
         let size = (MEMBERS_PER_COORDINATE * bounds.len()).max(MEMBERS_MINIMUM);
         Evolution { population: candidates.iter().take(size).cloned().collect(), generation: 0, member: 0 }
@@ -41,17 +41,17 @@ impl Evolution {
         &self.population
     }
 
-    /// Generations that are complete.
+    /// Number of complete generations.
     pub(super) fn generation(&self) -> usize {
         self.generation
     }
 
-    /// Whether there are too few members to form trial points.
+    /// True if there are too few members to form trial points.
     pub(super) fn is_too_small(&self) -> bool {
         self.population.len() < MEMBERS_NEEDED
     }
 
-    /// One trial, judged.
+    /// Evaluates one trial point.
     pub(super) fn step(&mut self, problem: &mut dyn SearchProblem, random: &mut u64) {
         let x = self.trial(problem.bounds(), random);
         let judgement = problem.judge(&x);

@@ -3,10 +3,10 @@
 use phea_dynamics::portable;
 use phea_dynamics::random::share;
 
-/// Steps of the fixed-point iteration, which gains a digit in two or three.
+/// Number of fixed-point iterations, of which two or three gain a digit.
 const ITERATIONS: usize = 64;
 
-/// Additive recurrence from a random beginning: every point is the last one moved by steps that
+/// Additive recurrence from a random start: every point is the previous one moved by steps that
 /// fill the unit cube evenly.
 ///
 /// ```text
@@ -45,8 +45,8 @@ mod tests {
 
     use super::AdditiveRecurrence;
 
-    /// In one dimension the step is the golden section, with which any n points leave gaps of at
-    /// most (1 + golden)/n.
+    /// One dimension: the step is the golden section, with which any n points leave gaps of at most
+    /// (1 + golden)/n.
     #[test]
     fn one_dimension_is_filled_by_the_golden_section() {
         let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
@@ -63,8 +63,8 @@ mod tests {
         }
     }
 
-    /// In several dimensions every slab of a tenth holds nearly a tenth of the points, and all
-    /// points lie within the bounds.
+    /// Several dimensions: every slab of a tenth contains nearly a tenth of the points, and all
+    /// points are within the bounds.
     #[test]
     fn every_slab_has_its_share() {
         let bounds = [[-1.0, 3.0], [2.0, 2.5], [0.0, 1e3], [-7.0, -6.0], [1.0, 1.0]];

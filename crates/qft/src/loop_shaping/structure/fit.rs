@@ -1,5 +1,5 @@
-//! From a controller to a structure: the point at which a structure equals it, and the structure
-//! around it.
+//! Conversion of a controller to a structure: the point at which a structure equals it, and the
+//! structure around it.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::{Compensator, Element};
@@ -8,7 +8,7 @@ use phea_dynamics::portable;
 
 use super::{Structure, StructureFactor};
 
-/// Roots nearer to one another than this share of their magnitude are the same.
+/// Relative distance below which roots count as equal.
 const SAME: f64 = 1e-9;
 
 impl Structure {
@@ -16,8 +16,7 @@ impl Structure {
     /// bounds.
     ///
     /// A complex pair of roots or any two real ones go to a pair, a real root to a single factor:
-    /// the first assignment within the bounds is used, with the roots in the order of their
-    /// magnitude.
+    /// the first assignment within the bounds is used, in the order of the roots' magnitude.
     ///
     /// # Example
     /// ```
@@ -64,7 +63,7 @@ impl Structure {
         }
         let all: Vec<f64> = std::iter::once(gain).chain(numbers).map(portable::ln).collect();
         let ranges: Vec<[f64; 2]> = self.ranges().map(|range| range.map(portable::ln)).collect();
-        // the ends of the range belong to it
+        // the ends of the range are included
         let inside = |(x, [low, high]): (&f64, &[f64; 2])| low - SAME <= *x && *x <= high + SAME;
         all.iter().zip(&ranges).all(inside).then(|| {
             let clamped = all.iter().zip(&ranges).map(|(x, [low, high])| x.max(*low).min(*high));
@@ -73,8 +72,8 @@ impl Structure {
     }
 
     /// A structure with the poles and zeros of this controller, each number free within this factor
-    /// (above 1) either way, and the point at which it is the controller. Roots at the origin, on
-    /// the imaginary axis and in the right half plane stay as they are. `None` for a sampled
+    /// (above 1) up and down, and the point at which it equals the controller. Roots at the origin,
+    /// on the imaginary axis and in the right half plane remain fixed. `None` for a sampled
     /// controller, one with zero gain, and a factor that is not above 1.
     ///
     /// # Example
@@ -143,9 +142,9 @@ impl Structure {
     }
 }
 
-/// For each list of ranges a real root, or a pair of two of them, within them, such that all roots
-/// are used: the first choice that works, with the roots in the order of their magnitude. Of
-/// complex roots only the upper ones are given.
+/// Assigns to each list of ranges a real root, or a pair of roots, within them, such that all roots
+/// are used: the first choice that works, in the order of the roots' magnitude. Of complex roots
+/// only the upper ones are given.
 fn assigned(ranges: &[Vec<[f64; 2]>], roots: &[Complex64]) -> Option<Vec<Vec<f64>>> {
     let Some((own, others)) = ranges.split_first() else { return roots.is_empty().then(Vec::new) };
     let left = |taken: &[usize]| -> Vec<Complex64> {
@@ -170,8 +169,7 @@ fn assigned(ranges: &[Vec<[f64; 2]>], roots: &[Complex64]) -> Option<Vec<Vec<f64
 }
 
 /// Natural frequency, damping ratio and depth of a notch within the ranges of this part, and its
-/// roots taken from the zeros and poles: the deepest one whose pairs have the same natural
-/// frequency.
+/// roots taken from the zeros and poles: the deepest one whose pairs have one natural frequency.
 fn taken_notch(part: &StructureFactor, [zeros, poles]: &mut [Vec<Complex64>; 2]) -> Option<[f64; 3]> {
     let ranges: Vec<[f64; 2]> = part.ranges().collect();
     let mut best: Option<([f64; 3], [[usize; 2]; 2])> = None;
@@ -199,7 +197,7 @@ fn taken_notch(part: &StructureFactor, [zeros, poles]: &mut [Vec<Complex64>; 2])
     Some(numbers)
 }
 
-/// Every two roots that may be a pair, with their natural frequency and damping ratio.
+/// Every two roots that may form a pair, with their natural frequency and damping ratio.
 fn pairs(roots: &[Complex64]) -> Vec<([usize; 2], [f64; 2])> {
     let mut found = Vec::new();
     for (first, &one) in roots.iter().enumerate() {
@@ -238,7 +236,7 @@ fn part(power: f64, numbers: &[f64], free: impl Fn(f64) -> [f64; 2]) -> Option<S
     }
 }
 
-/// The roots that remain when those have been removed; `None` where one of them is missing.
+/// The roots that remain when those have been removed; `None` if one of them is missing.
 fn without(roots: &[Complex64], taken: &[Complex64]) -> Option<Vec<Complex64>> {
     let mut left = roots.to_vec();
     for root in taken {

@@ -1,4 +1,4 @@
-//! The response of a structure, and its slopes, at frequencies that are given once.
+//! The response of a structure, and its slopes, at fixed frequencies.
 
 use num_complex::Complex64;
 use phea_dynamics::controller::Timing;
@@ -7,7 +7,7 @@ use phea_dynamics::portable;
 
 use super::{Factor, NumberedFactor, Structure, StructureFactor};
 
-/// Step of x for slopes of a controller that is sampled at each x.
+/// Step of x for slopes of a controller sampled at each x.
 const DIFFERENCE: f64 = 1e-5;
 
 /// A structure in a loop, prepared for evaluation at its frequencies.
@@ -19,7 +19,7 @@ const DIFFERENCE: f64 = 1e-5;
 /// ```
 ///
 /// # Example
-/// k/(s + 1) at 1 rad/s, and how it moves with ln k and with ln of its corner:
+/// Controller k/(s + 1) at 1 rad/s, and its change with ln k and with ln of its corner:
 /// ```
 /// use phea_dynamics::controller::Timing;
 /// use phea_qft::loop_shaping::{StructureFactor, Structure};
@@ -44,15 +44,15 @@ pub struct StructureResponse {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Evaluation {
-    /// By the factors at points of the s plane, with the response of the fixed parts and the sign
-    /// there.
+    /// Evaluation of the factors at points of the s plane, with the response of the fixed parts and
+    /// the sign there.
     Factors(Vec<(Complex64, Complex64)>),
-    /// By sampling the controller.
+    /// Sampling of the controller.
     Sampling { sample_time_s: f64, discretization: Discretization },
 }
 
 impl Structure {
-    /// This structure in a loop with this timing at these frequencies, rad/s, up to pi/T.
+    /// Prepares this structure in a loop with this timing at these frequencies, rad/s, up to pi/T.
     ///
     /// # Errors
     /// A fixed element that is not a continuous transfer function; a sampled loop whose controller
@@ -106,7 +106,7 @@ impl Structure {
 }
 
 impl StructureResponse {
-    /// G at each frequency.
+    /// Response G at each frequency.
     ///
     /// # Errors
     /// A controller that cannot be sampled.
@@ -130,7 +130,7 @@ impl StructureResponse {
         }
     }
 
-    /// d ln G/dx at each frequency, for each x.
+    /// Slopes d ln G/dx at each frequency, for each x.
     ///
     /// # Errors
     /// A controller that cannot be sampled.
@@ -169,13 +169,14 @@ impl StructureResponse {
         (gain, parts.flat_map(|part| part.numbered(&mut numbers)).collect())
     }
 
-    /// 1 for ln k; for a factor of power m
+    /// Slopes of the factors: 1 for ln k; for a factor of power m
     ///
     /// ```text
     /// d ln q^m/d ln w = -m u q'(u)/q(u),      d ln q^m/d ln zeta = m 2 zeta u/q(u)
     /// ```
     ///
-    /// The zeros of a notch have its natural frequency, and its damping ratio times its depth.
+    /// The zeros of a notch have the natural frequency of its poles, and their damping ratio times
+    /// the depth.
     fn factor_slopes(&self, numbers: &[NumberedFactor], s: Complex64) -> Vec<Complex64> {
         let mut slopes = Vec::with_capacity(1 + 2 * numbers.len());
         slopes.push(Complex64::ONE);
@@ -204,7 +205,7 @@ impl StructureResponse {
 }
 
 impl Factor {
-    /// q(u) of u = s/w: u + 1, or u^2 + 2 zeta u + 1.
+    /// Polynomial q(u) of u = s/w: u + 1, or u^2 + 2 zeta u + 1.
     fn value(self, u: Complex64, damping: f64) -> Complex64 {
         if self.pair { u * u + 2.0 * damping * u + 1.0 } else { u + 1.0 }
     }

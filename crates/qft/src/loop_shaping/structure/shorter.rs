@@ -1,19 +1,19 @@
-//! A structure without factors that do next to nothing.
+//! A structure without factors that have almost no effect.
 
 use phea_dynamics::portable;
 
 use super::{Structure, StructureFactor};
 
 impl Structure {
-    /// The structure without real zeros and poles beyond a corner in rad/s, and its x, with the
-    /// same gain at low frequency; `None` where it has none of these.
+    /// The structure without real zeros and poles beyond a corner, rad/s, and its x, with equal
+    /// gain at low frequency; `None` if it has no such roots.
     ///
     /// ```text
     /// (s/z + 1)(s/z' + 1) -> s/z + 1    for z' beyond the corner,      z, z' = w (zeta -+ sqrt(zeta^2 - 1))
     /// ```
     ///
     /// # Example
-    /// A pair of zeros at 2 and 200 rad/s: beyond 100 rad/s the second one is left out.
+    /// A pair of zeros at 2 and 200 rad/s: beyond 100 rad/s the second one is omitted.
     /// ```
     /// use phea_dynamics::portable::ln;
     /// use phea_qft::loop_shaping::{Structure, StructureFactor};
@@ -53,10 +53,10 @@ impl Structure {
     }
 }
 
-/// What is left of a factor.
+/// Remainder of a factor.
 enum SlowRoots {
     All,
-    /// A single root, and where it lies.
+    /// A single root, and its frequency.
     One(StructureFactor, f64),
     None,
 }

@@ -4,11 +4,11 @@ use phea_dynamics::time_response::Settling;
 use super::step::reached;
 use super::{LowerWish, TimeDomainError, UpperWish};
 
-/// Values that differ by less than this share count as equal: a peak that touches the band stays in
-/// it, and a wish that is met to this accuracy is met.
+/// Relative difference below which values count as equal: a peak that touches the band stays in it,
+/// and a requirement met to this accuracy is met.
 pub(super) const TOLERANCE: f64 = 1e-9;
 
-/// What was wished.
+/// Values required.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wished {
     /// Largest overshoot, percent of the step.
@@ -22,40 +22,40 @@ pub struct Wished {
 /// Properties of the step response to a reference of one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reached {
-    /// By how much it exceeds one, percent; zero when it does not.
+    /// Amount by which it exceeds one, percent; zero if it does not.
     pub overshoot_percent: f64,
-    /// Whether and when it stays within the band around one.
+    /// Settling within the band around one, with its time.
     pub settling: Settling,
 }
 
-/// A limit of tracking compared with the wish it was made for.
+/// A limit of tracking compared with its requirement in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WishCheck {
-    /// What was wished.
+    /// Required values.
     pub wished: Wished,
     /// Properties of the response of the limit itself.
     pub reached: Reached,
 }
 
-/// Whether the response of a limit meets the wish.
+/// Comparison of the response of a limit with its requirement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WishOutcome {
-    /// To a billionth.
+    /// The requirement is met, to a billionth.
     Met,
-    /// Not so.
+    /// The requirement is not met.
     Missed {
-        /// Overshoot beyond the wish, percent of the step; zero where the wish is met.
+        /// Overshoot beyond the requirement, percent of the step; zero if it is met.
         overshoot_excess_percent: f64,
-        /// Settling time beyond the wish, s; zero where the wish is met, infinity when it never
+        /// Settling time beyond the requirement, s; zero if it is met, infinity if it never
         /// settles.
         settling_excess_s: f64,
     },
 }
 
-/// Compares any upper limit with a wish.
+/// Compares any upper limit with a requirement in time.
 ///
 /// # Errors
-/// [`TimeDomainError::OutOfRange`] for the wish; [`TimeDomainError::NotContinuous`],
+/// [`TimeDomainError::OutOfRange`] for the requirement; [`TimeDomainError::NotContinuous`],
 /// [`TimeDomainError::NotStable`], [`TimeDomainError::RingsTooLong`] or an improper function for
 /// the limit.
 ///
@@ -80,10 +80,10 @@ pub fn check_upper(function: &TransferFunction, wish: &UpperWish) -> Result<Wish
     Ok(WishCheck { wished, reached: reached(function, settling_band_percent)? })
 }
 
-/// Compares any lower limit with a wish, which allows no overshoot.
+/// Compares any lower limit with a requirement in time, which allows no overshoot.
 ///
 /// # Errors
-/// As [`check_upper`].
+/// Errors as for [`check_upper`].
 ///
 /// # Example
 /// A lag settles within 1 % after ln 100 time constants:
@@ -108,7 +108,7 @@ pub fn check_lower(function: &TransferFunction, wish: &LowerWish) -> Result<Wish
 }
 
 impl WishCheck {
-    /// Whether the wish is met, and by how much not.
+    /// Comparison with the requirement, with the excess if it is not met.
     pub fn outcome(&self) -> WishOutcome {
         let beyond = |reached: f64, wished: f64| {
             if reached <= wished * (1.0 + TOLERANCE) + TOLERANCE * 1e-3 { 0.0 } else { reached - wished }

@@ -7,44 +7,45 @@ use phea_dynamics::range::RequiredRange;
 use super::super::Limit;
 use super::{TimeDomainError, TimeDomainNumber};
 
-/// How far apart the limits of tracking are over frequency.
+/// Distance between the tracking limits over frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrackingSpread {
-    /// Whether the upper limit is above the lower one.
+    /// Order of the two limits.
     pub order: LimitOrder,
-    /// Frequency from which on upper/lower never falls again, rad/s; none when it falls at the end
+    /// Frequency from which on upper/lower never falls again, rad/s; `None` if it falls at the end
     /// of the band.
     ///
-    /// A loop that vanishes at high frequency leaves the spread of the plants as it is: there the
+    /// A loop that vanishes at high frequency leaves the spread of the plants unchanged: there the
     /// limits must differ by at least as much as the plants do.
     pub grows_from_rad_per_s: Option<f64>,
-    /// upper/lower at the end of the band, dB; may be infinite at infinite frequency.
+    /// Ratio upper/lower at the end of the band, dB; may be infinite at infinite frequency.
     pub at_end_db: f64,
 }
 
-/// Whether the upper limit is above the lower one.
+/// Order of the two limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LimitOrder {
-    /// Everywhere in the band, up to a billionth of a decibel.
+    /// The upper limit is above the lower one everywhere in the band, up to a billionth of a
+    /// decibel.
     Kept {
-        /// Least upper/lower, dB.
+        /// Least ratio upper/lower, dB.
         least_db: f64,
-        /// Where, rad/s.
+        /// Frequency of the least ratio, rad/s.
         frequency_rad_per_s: f64,
     },
-    /// It is not: no loop satisfies both limits there.
+    /// The limits cross: no loop satisfies both there.
     Crossed {
         /// The lowest frequency at which lower and upper limit meet, rad/s.
         from_rad_per_s: f64,
-        /// By how much the lower limit exceeds the upper one where that is worst, dB.
+        /// Largest excess of the lower limit over the upper one, dB.
         excess_db: f64,
-        /// Where it is worst, rad/s.
+        /// Frequency of the largest excess, rad/s.
         frequency_rad_per_s: f64,
     },
 }
 
-/// Compares two limits of tracking over a band `[from, to]` in rad/s (`to` may be infinite), where
-/// both apply: a table demands nothing beyond its ends.
+/// Compares two tracking limits over a band `[from, to]`, rad/s (`to` may be infinite), where both
+/// apply: a table sets no limit beyond its ends.
 ///
 /// ```text
 /// spread(w) = 20 log10(B_U(w)/B_L(w))
@@ -52,14 +53,14 @@ pub enum LimitOrder {
 ///
 /// The squared ratio is a rational function of x = w^2, times a power of x between the points of
 /// tables; between the roots of its derivative it rises or falls throughout, so those roots and the
-/// ends of the pieces determine everything.
+/// ends of the pieces determine the result.
 ///
 /// # Errors
 /// [`TimeDomainError::OutOfRange`] for the band, [`TimeDomainError::NeverTogether`],
-/// [`TimeDomainError::NotContinuous`], and where the roots cannot be found.
+/// [`TimeDomainError::NotContinuous`], and roots that cannot be found.
 ///
 /// # Example
-/// Two lags part by 20 dB, from the corner of the slow one to that of the fast one:
+/// Two lags diverge by 20 dB, from the corner of the slow one to that of the fast one:
 /// ```
 /// use num_complex::Complex64;
 /// use phea_dynamics::linear::TransferFunction;
@@ -96,7 +97,7 @@ pub fn tracking_spread(
     Ok(TrackingSpread { order: order(&ratio, &spread), grows_from_rad_per_s: grows_from, at_end_db })
 }
 
-/// The part of the band in which no table has ended.
+/// The part of the band that all tables cover.
 fn common_band(lower: &Limit, upper: &Limit, [from, to]: [f64; 2]) -> Result<[f64; 2], TimeDomainError> {
     if !(from >= 0.0 && from.is_finite() && to >= from) {
         let (what, expected) = (TimeDomainNumber::Band, RequiredRange::IncreasingFromZero);
@@ -124,7 +125,7 @@ fn pieces(lower: &Limit, upper: &Limit, [from, to]: [f64; 2]) -> Vec<f64> {
     sorted_distinct(points.filter(|w| from < *w && *w < to).chain([from, to]).collect())
 }
 
-/// Differences below this are rounding, dB.
+/// Difference that counts as rounding error, dB.
 const ROUNDING_DB: f64 = 1e-9;
 
 fn order(ratio: &SquaredRatio<'_>, spread: &[(f64, f64)]) -> LimitOrder {
@@ -139,8 +140,8 @@ fn order(ratio: &SquaredRatio<'_>, spread: &[(f64, f64)]) -> LimitOrder {
     LimitOrder::Crossed { from_rad_per_s, excess_db: -least.1, frequency_rad_per_s: least.0 }
 }
 
-/// Where the limits meet, between a frequency where they are apart and one, perhaps infinite, where
-/// they have crossed.
+/// Frequency at which the limits meet, between one where they are apart and one, perhaps infinite,
+/// where they have crossed.
 fn crossing(ratio: &SquaredRatio<'_>, apart: f64, crossed: f64) -> f64 {
     let (mut apart, mut crossed) = (apart, crossed);
     loop {
@@ -152,7 +153,7 @@ fn crossing(ratio: &SquaredRatio<'_>, apart: f64, crossed: f64) -> f64 {
     }
 }
 
-/// B_U^2/B_L^2: a quotient of polynomials in x = w^2, times the quotient of tables.
+/// The ratio B_U^2/B_L^2: a quotient of polynomials in x = w^2, times the quotient of tables.
 struct SquaredRatio<'a> {
     above: Polynomial,
     below: Polynomial,
@@ -182,7 +183,7 @@ impl<'a> SquaredRatio<'a> {
         10.0 * log10(ratio) + 20.0 * log10(self.tables(frequency))
     }
 
-    /// The quotient of the tables; one where there are none.
+    /// The quotient of the tables; one without tables.
     fn tables(&self, frequency: f64) -> f64 {
         let value = |limit: &Limit| match limit {
             Limit::Table(_) => limit.magnitude(frequency).unwrap_or(f64::NAN),
@@ -191,9 +192,9 @@ impl<'a> SquaredRatio<'a> {
         value(self.upper) / value(self.lower)
     }
 
-    /// Frequencies at which the ratio may be at rest within a piece, rad/s, increasing.
+    /// Frequencies at which the ratio may be stationary within a piece, rad/s, increasing.
     ///
-    /// With the ratio x^m A/B the slope over ln x vanishes with x (A' B - A B') + m A B.
+    /// For the ratio x^m A/B, the slope over ln x vanishes with x (A' B - A B') + m A B.
     fn extremes(&self, start: f64, end: f64) -> Result<Vec<f64>, TimeDomainError> {
         let (above, below) = (&self.above, &self.below);
         let turn = above.derivative().product(below).sum(&above.product(&below.derivative()).scaled(-1.0));
@@ -207,7 +208,7 @@ impl<'a> SquaredRatio<'a> {
         if slope.is_zero() {
             return Ok(Vec::new());
         }
-        // a surplus point does no harm: roots that are real up to rounding count
+        // a surplus point does no harm: roots that are real up to rounding are included
         let real = slope.roots()?.into_iter().filter(|root| root.re > 0.0 && root.im.abs() <= 1e-6 * root.re);
         let mut frequencies: Vec<f64> = real.map(|root| root.re.sqrt()).collect();
         sort_numbers(&mut frequencies);

@@ -12,11 +12,12 @@ use super::check::{Reached, TOLERANCE};
 const EXTREME_TOLERANCE: f64 = 1e-8;
 
 /// Overshoot and settling time of the unit step response of any stable continuous function,
-/// measured against one.
+/// relative to one.
 ///
-/// Samples are spaced by the fastest mode still alive, a tenth of a radian; the peak, and the
-/// extremes near the edge of the band, are refined on the exact response, and so is the time at
-/// which it enters the band for good. A deviation that equals the band up to rounding is inside.
+/// Samples are spaced by a tenth of a radian of the fastest mode that has not decayed; the peak,
+/// and the extremes near the edge of the band, are refined on the exact response, as is the time at
+/// which the response finally enters the band. A deviation that equals the band up to rounding is
+/// inside.
 pub(super) fn reached(function: &TransferFunction, band_percent: f64) -> Result<Reached, TimeDomainError> {
     if function.domain() != TimeDomain::Continuous {
         return Err(TimeDomainError::NotContinuous);
@@ -30,7 +31,7 @@ struct Response {
     function: TransferFunction,
     dead_time_s: f64,
     band: f64,
-    /// Time and value, from the step on.
+    /// Time and value, from the step onwards.
     samples: Vec<(f64, f64)>,
 }
 
@@ -45,12 +46,12 @@ impl Response {
     }
 
     fn value(&self, time_s: f64) -> f64 {
-        // the function had a value for the samples, so it has one for every time
+        // the function had a value at the samples, so it has one at every time
         step_response(&self.function, &[time_s]).map_or(f64::NAN, |values| values.iter().sum())
     }
 
-    /// By how much the response exceeds one; a rounding error of the response does not count as
-    /// overshoot.
+    /// Overshoot: the excess of the response over one; a rounding error of the response does not
+    /// count.
     fn overshoot(&self) -> Result<f64, TimeDomainError> {
         const ROUNDING: f64 = 1e-12;
         let highest =
@@ -113,7 +114,7 @@ impl Response {
     }
 }
 
-/// Times from zero until every mode has shrunk far below the band.
+/// Times from zero until every mode has decayed far below the band.
 fn sample_times(poles: &[Complex64], band: f64) -> Result<Vec<f64>, TimeDomainError> {
     const STEP_RAD: f64 = 0.1;
     const LONGEST: f64 = 300_000.0;

@@ -9,26 +9,27 @@ use phea_dynamics::time_response::{SecondOrder, step_response};
 use super::check::{TOLERANCE, check_lower, check_upper};
 use super::{ExtraRoot, LowerWish, TimeDomainError, TimeDomainNumber, TrackingLimit, Translation, UpperWish};
 
-/// The upper limit of tracking for a wish.
+/// The upper tracking limit for a requirement in time.
 ///
 /// ```text
 /// B_U(s) = w_n^2/(s^2 + 2 xi w_n s + w_n^2) (s + z)/z                       thesis (6.28)
 /// ```
 ///
-/// Exact: with sigma = xi w_n and w_d = w_n sqrt(1 - xi^2) the first extreme of the response is at
+/// The exact translation uses sigma = xi w_n and w_d = w_n sqrt(1 - xi^2), for which the first
+/// extreme of the response is at
 ///
 /// ```text
 /// t_1 = (pi - atan2(w_d, z - sigma))/w_d,   overshoot = exp(-sigma t_1) sqrt(1 - 2 sigma/z + (w_n/z)^2)
 /// ```
 ///
-/// which gives xi for each z/w_n (above one where z is below w_n); w_n follows by bisection on
-/// whether the response stays in the band from the settling time on. Where the settling time jumps
-/// because an extreme leaves the band, the faster side is used.
+/// which gives xi for each z/w_n (above one if z is below w_n); w_n follows by bisection on the
+/// condition that the response stays in the band from the settling time on. If the settling time
+/// jumps because an extreme leaves the band, the faster side is used.
 ///
 /// # Errors
 /// [`TimeDomainError::OutOfRange`], [`TimeDomainError::RuleBand`], and
-/// [`TimeDomainError::ExtraRootTooSlow`] when the slow decay behind a fixed zero keeps the response
-/// out of the band.
+/// [`TimeDomainError::ExtraRootTooSlow`] if the slow decay due to a fixed zero prevents the
+/// response from settling.
 ///
 /// # Example
 /// ```
@@ -67,18 +68,19 @@ pub fn tracking_upper(
     Ok(limit(function, &model, zero, check))
 }
 
-/// The lower limit of tracking for a wish: critically damped, with or without an extra pole.
+/// The lower tracking limit for a requirement in time: critically damped, with or without an extra
+/// pole.
 ///
 /// ```text
 /// B_L(s) = w_n^2/(s + w_n)^2 p/(s + p)                                      thesis (6.29)
 /// ```
 ///
-/// Exact: the response rises monotonically, so w_n follows by bisection on its value at the
-/// settling time.
+/// The exact translation: the response rises monotonically, so that w_n follows by bisection on its
+/// value at the settling time.
 ///
 /// # Errors
 /// [`TimeDomainError::OutOfRange`], [`TimeDomainError::RuleBand`], and
-/// [`TimeDomainError::ExtraRootTooSlow`] when a fixed pole alone takes longer: p t_s must exceed
+/// [`TimeDomainError::ExtraRootTooSlow`] if the fixed pole itself takes longer: p t_s must exceed
 /// ln(100/band).
 ///
 /// # Example
@@ -153,13 +155,13 @@ fn with_pole(model: &SecondOrder, pole: Option<f64>) -> Result<TransferFunction,
     Ok(function.series(&lag)?)
 }
 
-/// |1 - y(t)| of the unit step response.
+/// Deviation |1 - y(t)| of the unit step response.
 fn deviation(function: &TransferFunction, time_s: f64) -> Result<f64, TimeDomainError> {
     let value = step_response(function, &[time_s])?.iter().sum::<f64>();
     Ok((1.0 - value).abs())
 }
 
-/// Whether the response of the model with its zero stays in the band from the settling time on.
+/// True if the response of the model with its zero stays in the band from the settling time on.
 fn upper_settles(
     wish: &UpperWish,
     extra_zero: ExtraRoot,
@@ -171,7 +173,7 @@ fn upper_settles(
     if deviation(&function, wish.settling_time_s)? > band {
         return Ok(false);
     }
-    // in the band now: it stays there if the next extreme does
+    // the response is in the band now: it stays there if the next extreme does
     let (ratio, share) = (model.damping_ratio(), extra_zero.share(natural));
     let time = natural * wish.settling_time_s;
     let next = first_extreme(ratio, share).and_then(|first| {
@@ -182,15 +184,16 @@ fn upper_settles(
             false => (time <= first).then_some(first),
         }
     });
-    // half the tolerance of the check, so that the check accepts a result whose extreme just fits
+    // half the tolerance of the check, so that the check accepts a result whose extreme is just
+    // inside the band
     Ok(next.is_none_or(|next| extreme(ratio, share, next) <= band * (1.0 + 0.5 * TOLERANCE)))
 }
 
-/// The first time, in units of 1/w_n, at which the response with zero z = w_n/share is at rest;
-/// `None` where it only rises.
+/// The first time, in units of 1/w_n, at which the response with zero z = w_n/share is stationary;
+/// `None` if it only rises.
 ///
 /// The slope is proportional to exp(-xi t) ((1 - xi share) S + share C), with C = cos, S =
-/// sin/sqrt(1 - xi^2) of sqrt(1 - xi^2) t, or their hyperbolic twins.
+/// sin/sqrt(1 - xi^2) of sqrt(1 - xi^2) t, or their hyperbolic counterparts.
 fn first_extreme(ratio: f64, share: f64) -> Option<f64> {
     let (rise, square) = (ratio * share - 1.0, (1.0 - ratio) * (1.0 + ratio));
     if square > 0.0 {
@@ -208,15 +211,15 @@ fn first_extreme(ratio: f64, share: f64) -> Option<f64> {
     Some((log1p(tangent) - log1p(-tangent)) / (2.0 * spread))
 }
 
-/// How far the response is from its final value when it is at rest at this time (in units of
-/// 1/w_n).
+/// Deviation of the response from its final value at a stationary time (in units of 1/w_n).
 fn extreme(ratio: f64, share: f64, time: f64) -> f64 {
     exp(-ratio * time) * (1.0 - 2.0 * ratio * share + share * share).max(0.0).sqrt()
 }
 
 /// The damping ratio with which the response with zero z = w_n/share overshoots by this ratio.
 fn damping_ratio(overshoot: f64, share: f64) -> f64 {
-    // beyond this there is no overshoot: critically damped, or the slow pole meets the zero
+    // above this ratio there is no overshoot: critically damped, or the slow pole coincides with
+    // the zero
     let most = if share <= 1.0 { 1.0 } else { (share + 1.0 / share) / 2.0 };
     let overshoots = |ratio: f64| first_extreme(ratio, share).map_or(0.0, |time| extreme(ratio, share, time));
     if overshoot == 0.0 {
@@ -232,8 +235,8 @@ fn damping_ratio(overshoot: f64, share: f64) -> f64 {
     }
 }
 
-/// The natural frequency from which on the response has settled by the wished time, by doubling and
-/// bisection.
+/// The natural frequency from which on the response has settled by the required time, by doubling
+/// and bisection.
 fn least_natural_frequency<F: Fn(f64) -> Result<bool, TimeDomainError>>(
     settling_time_s: f64,
     extra_root: ExtraRoot,
@@ -274,7 +277,7 @@ impl ExtraRoot {
         }
     }
 
-    /// z or p in rad/s for this natural frequency in rad/s.
+    /// Root z or p for this natural frequency, both in rad/s.
     fn place(self, natural: f64) -> Option<f64> {
         match self {
             ExtraRoot::None => None,
@@ -283,7 +286,7 @@ impl ExtraRoot {
         }
     }
 
-    /// w_n/z; zero without a zero.
+    /// Ratio w_n/z; zero without a zero.
     fn share(self, natural: f64) -> f64 {
         match self {
             ExtraRoot::None => 0.0,

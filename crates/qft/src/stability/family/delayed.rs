@@ -1,5 +1,5 @@
 //! The delay margin of a family in a sampled loop. The delay that a plant tolerates is found by
-//! sampling it anew; which plants it is found for, by estimates.
+//! resampling it; the plants for which this is done are selected by estimates.
 
 use phea_dynamics::order::sort_by_number;
 use phea_dynamics::watch::{Stopped, Watch, part, tell};
@@ -14,22 +14,22 @@ use crate::stability::characteristic::FeedbackPath;
 use crate::stability::{CriticalDelay, DelayMargin, StabilityStatus, of_member, resampled};
 use crate::verdict::PlantPoint;
 
-/// Fraction of the margin by which the loop is delayed where plants are ranked again: the estimate
-/// of what remains is off by little, and the plants that tolerate least are still stable.
+/// Fraction of the margin by which the loop is delayed for another ranking of plants: the estimate
+/// of the remainder is then nearly exact, and the plants that tolerate least are still stable.
 const NEARLY: f64 = 0.9;
-/// Plants that are ranked again.
+/// Number of plants that are ranked again.
 const RANKED: usize = 8 * STARTS;
-/// Passes of ranking and searching.
+/// Number of passes of ranking and searching.
 const ROUNDS: usize = 4;
 /// Relative gain below which a pass has found no other plant.
 const GAIN: f64 = 1e-6;
 
 impl StabilityAudit<'_> {
-    /// Replaces the delay margin by the least that the worst plants tolerate when they are sampled
-    /// anew with every delay.
+    /// Replaces the delay margin by the least that the worst plants tolerate when they are
+    /// resampled with every delay.
     ///
     /// Without a delay the estimates may rank the plants wrongly, by a few percent: a delay between
-    /// two samples changes |L| too. So the plants are ranked again in the loop that is delayed by
+    /// two samples also changes |L|. Therefore the plants are ranked again in the loop delayed by
     /// most of the margin so far, and searches start from the worst of them there, until they find
     /// no plant that tolerates less.
     pub(super) fn resample(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
@@ -51,7 +51,7 @@ impl StabilityAudit<'_> {
         Ok(())
     }
 
-    /// The least that these plants tolerate, sampled anew with every delay.
+    /// The least delay margin of these plants, resampled with every delay.
     fn least(&self, plants: Vec<Vec<f64>>) -> Option<DelayMargin> {
         let JudgedFamily { family, compensation, path, .. } = &self.around;
         let (Family::Uncertain(family), Ok(path)) = (family, path) else { return None };
@@ -68,8 +68,8 @@ impl StabilityAudit<'_> {
         least
     }
 
-    /// The plants that tolerate least in the loop that is delayed by most of this margin; over a
-    /// box, those at which searches from them end.
+    /// The plants that tolerate least in the loop delayed by most of this margin; over a box, those
+    /// at which searches from them end.
     fn worst_near(&self, margin: &DelayMargin, watch: Watch<'_>) -> Result<Vec<Vec<f64>>, Stopped> {
         let JudgedFamily { family, compensation, path, .. } = &self.around;
         let (Family::Uncertain(family), Ok(path)) = (family, path) else { return Ok(vec![]) };
@@ -86,7 +86,7 @@ impl StabilityAudit<'_> {
         self.kept.each(starts, (STAGE, watch), end)
     }
 
-    /// The plant of a margin, and those that tolerate least by another measure, apart from each
+    /// The plant of a margin, and those that tolerate least by another measure, distinct from each
     /// other.
     fn starts_near(
         &self,
@@ -116,8 +116,8 @@ impl StabilityAudit<'_> {
     }
 }
 
-/// Minus the delay that a plant still tolerates in a loop, by the estimate; infinite where the loop
-/// is unstable.
+/// Minus the delay that a plant still tolerates in a loop, by the estimate; infinite if the loop is
+/// unstable.
 fn sensitivity(
     family: &UncertainFamily,
     compensation: &Compensation,

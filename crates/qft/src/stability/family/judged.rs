@@ -1,5 +1,5 @@
-//! The loop around one plant of a family, and the search between plants: neither needs what was
-//! found of others.
+//! The loop around one plant of a family, and the search between plants; both independent of
+//! results for other plants.
 
 use phea_dynamics::linear::LinearError;
 
@@ -22,11 +22,11 @@ pub(super) struct JudgedFamily<'a> {
     first: Option<PlantPoint>,
 }
 
-/// A climb over the box for one measure after the other, each from where the one before ended.
+/// A climb over the box for one measure after the other, each from the end of the previous one.
 pub(super) struct StabilitySearch<'s> {
     pub(super) searched: &'s [Badness],
     pub(super) first_step: f64,
-    /// Where it begins.
+    /// Fractions of the box at which it begins.
     pub(super) shares: Vec<f64>,
 }
 
@@ -81,7 +81,7 @@ impl<'a> JudgedFamily<'a> {
 }
 
 impl StabilitySearch<'_> {
-    /// The plant where it ends, whether its delay was searched for last, and its stability; `None`
+    /// The plant where it ends, true if the last measure was its delay, and its stability; `None`
     /// without a box.
     pub(super) fn searched(
         self,

@@ -1,22 +1,22 @@
-//! Plants next to a jump within a box, as that of a valve's gain where its spool passes null. They
-//! are members; a search from the worse side of it alone would not cross it.
+//! Plants next to a jump within a box, such as that of a valve's gain where its spool passes null.
+//! They are members; a search from the worse side would not cross the jump.
 
 use super::StabilityAudit;
 use crate::family::UncertainFamily;
 use crate::stability::badness::Badness;
 use crate::verdict::PlantPoint;
 
-/// Shares within which two plants are next to each other.
+/// Difference of fractions below which two plants are adjacent.
 const NEXT: f64 = 1e-5;
-/// Relative difference of a quantity that is a jump where plants are next to each other.
+/// Relative difference of a quantity between adjacent plants that counts as a jump.
 const JUMP: f64 = 1e-4;
-/// First step of a search that starts next to a jump, as a share of the box: a longer one would
+/// First step of a search that starts next to a jump, as a fraction of the box: a longer one would
 /// cross it.
 pub(super) const STEP: f64 = 0.01;
 
 impl StabilityAudit<'_> {
-    /// The worst plant that has a worse one next to it across a jump, and the worst of all that
-    /// have a plant across a jump, as shares of the box; empty where there is no jump.
+    /// The worst plant with a worse one adjacent to it across a jump, and the worst of all plants
+    /// next to a jump, as fractions of the box; empty if there is no jump.
     pub(super) fn sides(&self, family: &UncertainFamily, badness: Badness) -> Vec<Vec<f64>> {
         let shares = |plant: &PlantPoint| match plant {
             PlantPoint::Parameters(values) => Some(family.shares(values)),

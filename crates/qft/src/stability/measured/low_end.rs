@@ -5,8 +5,8 @@
 //! ln|L| = a - m ln w          fitted over at least a factor of two in frequency
 //! ```
 //!
-//! The sign of k is that which makes `off` small, so m and m + 2 fit the same response: only the
-//! slope, or a statement, tells them apart, and a wrong one changes the count by one pole.
+//! The sign of k is chosen to make `off` small, so that m and m + 2 fit one response: only the
+//! slope, or a statement, distinguishes them, and a wrong choice changes the count by one pole.
 
 use num_complex::Complex64;
 use phea_dynamics::portable;
@@ -14,18 +14,18 @@ use phea_dynamics::portable;
 use super::{LARGE_GAIN, LoopPoint, SMALL_GAIN, TURN_MAXIMUM};
 use crate::stability::Irresolution;
 
-/// Points from which the slope is determined reach at least this factor above the first.
+/// Factor above the first point that the points used for the slope must cover.
 const REACH: f64 = 2.0;
-/// The least number of them: two for the line, two for its scatter.
+/// Least number of these points: two for the line, two for its scatter.
 const POINTS_MINIMUM: usize = 4;
 /// Largest distance of the slope, with its uncertainty, from a whole number.
 const SLOPE_TOLERANCE: f64 = 0.35;
-/// Distance of a slope from the stated number of integrators that contradicts them.
+/// Distance of a slope from the stated number of integrators that contradicts it.
 const CONTRADICTION: f64 = 0.75;
 /// Probability that the slope is not within its uncertainty.
 const OUTSIDE: f64 = 0.05;
 
-/// d ln|L|/d ln w at the lowest frequencies.
+/// Slope d ln|L|/d ln w at the lowest frequencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Slope {
     slope: f64,
@@ -34,13 +34,13 @@ struct Slope {
     scatter: f64,
 }
 
-/// What the loop does below its first point.
+/// Behaviour of the loop below its first point.
 pub(super) struct LowEnd<'a> {
-    /// L from its first frequency on.
+    /// Open loop L from its first frequency on.
     pub(super) points: &'a [LoopPoint],
-    /// Poles less zeros of L at the origin, where they are stated.
+    /// Number of poles less zeros of L at the origin, if stated.
     pub(super) integrators: Option<f64>,
-    /// Whether the response is known, and not measured: two neighbours show the slope.
+    /// True if the response is a model, not a measurement: two neighbours determine the slope.
     pub(super) is_known: bool,
 }
 
@@ -79,7 +79,7 @@ impl LowEnd<'_> {
         if off.abs() + open > TURN_MAXIMUM { unknown } else { Ok(off - integrators * quarter) }
     }
 
-    /// The stated integrators, or those that the slope shows beyond its scatter.
+    /// The stated integrators, or those that the slope indicates beyond its scatter.
     fn integrators(&self) -> Option<f64> {
         self.integrators.or_else(|| {
             let Slope { slope, uncertainty, .. } = self.slope()?;
@@ -88,8 +88,8 @@ impl LowEnd<'_> {
         })
     }
 
-    /// The slope over a factor of two at least, with the interval that the scatter about the fitted
-    /// line leaves.
+    /// The slope over at least a factor of two, with its confidence interval from the scatter about
+    /// the fitted line.
     ///
     /// ```text
     /// |slope - fitted| <= sqrt(2 F(2, m)) s/sqrt(sum (x - mean)^2)        m = points - 2,  2 F(2, m) = m (0.05^(-2/m) - 1)
@@ -126,7 +126,7 @@ impl LowEnd<'_> {
     }
 }
 
-/// The angle that a disc around a point takes from the origin, rad.
+/// The angle that a disc around a point subtends at the origin, rad.
 pub(super) fn opening(centre: Complex64, radius: f64) -> f64 {
     let share = radius / portable::magnitude(centre);
     if share < 1.0 { portable::asin(share) } else { std::f64::consts::PI }

@@ -1,4 +1,4 @@
-//! What is done in each stage of an audit.
+//! Stages of an audit.
 
 use phea_dynamics::minimum;
 use phea_dynamics::order::sort_by_number;
@@ -19,7 +19,7 @@ use crate::kept_plants::KeptPlants;
 
 /// Number of cases of each specification whose frequencies are examined for the whole family.
 const FREQUENCIES: usize = 8;
-/// Searches for each worker that are done at once where one may make others needless.
+/// Number of simultaneous searches per worker if one may make others unnecessary.
 const FOR_EACH_WORKER: usize = 2;
 /// Least relative distance of these frequencies.
 const FREQUENCY_DISTANCE: f64 = 1e-3;
@@ -51,7 +51,7 @@ impl SpecificationAudit<'_> {
         Ok(())
     }
 
-    /// Polishes the peaks of each criterion, the highest first, as long as they can become its
+    /// Refines the peaks of each criterion, the highest first, as long as they can become its
     /// worst.
     pub(super) fn polish(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         for (number, (part, cases)) in self.parts.iter().zip(&mut self.cases).enumerate() {
@@ -88,7 +88,7 @@ impl SpecificationAudit<'_> {
         Ok(())
     }
 
-    /// Examines the whole family where each specification is worst; for a spread, polishes the
+    /// Examines the whole family where each specification is worst; for a spread, refines the
     /// margin of the family there.
     pub(super) fn look_at_worst(&mut self, watch: Watch<'_>) -> Result<(), Stopped> {
         for (number, part) in self.parts.clone().into_iter().enumerate() {
@@ -120,7 +120,7 @@ impl SpecificationAudit<'_> {
         }
     }
 
-    /// The worst local minima of the margin of the spread, each polished over the whole family.
+    /// The worst local minima of the margin of the spread, each refined over the whole family.
     fn polished_spread(&mut self, number: usize, part: SpecificationCriteria) -> Vec<FoundMargin> {
         let envelope = finding::envelope(part, &self.scan);
         let mut cases = Vec::new();
@@ -142,7 +142,7 @@ impl SpecificationAudit<'_> {
         cases
     }
 
-    /// Searches the box from the worst cases of each specification, as far as is worth the effort.
+    /// Searches the box from the worst cases of each specification, as far as the effort permits.
     pub(super) fn search(&mut self, effort: AuditEffort, watch: Watch<'_>) -> Result<(), Stopped> {
         let Family::Uncertain(family) = self.problem.family else { return Ok(()) };
         if effort == AuditEffort::KnownPlants {
@@ -157,7 +157,7 @@ impl SpecificationAudit<'_> {
             let until = (all - left.len()) as f64 / all as f64;
             let found = self.searched(family, &now, &mut part(&mut *watch, STAGE, [share, until]))?;
             for ((number, task), (outcome, responses, tried)) in now.iter().zip(found) {
-                // what another search has found meanwhile may make this one needless
+                // results of another search may make this one unnecessary
                 if self.is_skipped(effort, *number) {
                     self.skipped += 1;
                     continue;
@@ -171,8 +171,8 @@ impl SpecificationAudit<'_> {
         Ok(())
     }
 
-    /// The next searches that are done at once, with the number of those that are skipped before:
-    /// all of them, or where a search may make others needless a few for each worker.
+    /// The next simultaneous searches, with the number of those skipped before: all of them, or a
+    /// few per worker if a search may make others unnecessary.
     fn next_searches(
         &self,
         effort: AuditEffort,
@@ -198,8 +198,8 @@ impl SpecificationAudit<'_> {
         (skipped, now)
     }
 
-    /// Where searches end, each with its responses and with how many plants it tried, and of how
-    /// many of them all factors were needed.
+    /// Ends of searches, each with its number of responses, and the numbers of plants evaluated and
+    /// of plants whose factors were all needed.
     fn searched(
         &self,
         family: &UncertainFamily,
@@ -217,7 +217,7 @@ impl SpecificationAudit<'_> {
         self.evaluator.kept.each(tasks, (STAGE, watch), search)
     }
 
-    /// True where a violation of the specification is known that needs no search for a worse one.
+    /// True if a violation of the specification is known that needs no search for a worse one.
     fn is_skipped(&self, effort: AuditEffort, number: usize) -> bool {
         match effort {
             AuditEffort::UntilBelow(least_db) => self.worst_known_db(number) < least_db,
@@ -225,7 +225,7 @@ impl SpecificationAudit<'_> {
         }
     }
 
-    /// The least margin of a specification that is known, dB.
+    /// The least known margin of a specification, dB.
     fn worst_known_db(&self, number: usize) -> f64 {
         let envelope = self.parts.get(number).map(|part| finding::envelope(*part, &self.scan));
         let of_plants = envelope.iter().flatten().map(|point| point.margin_db);
@@ -233,7 +233,7 @@ impl SpecificationAudit<'_> {
         of_plants.chain(cases).fold(f64::INFINITY, f64::min)
     }
 
-    /// Where searches start, each with the specification that it serves.
+    /// Starts of searches, each with its specification.
     fn starts(&self, family: &UncertainFamily) -> Vec<(usize, SearchTask)> {
         if family.extent() == Extent::Members || family.coordinates().is_empty() {
             return Vec::new();
@@ -252,7 +252,7 @@ impl SpecificationAudit<'_> {
         starts
     }
 
-    /// Takes what a search for a specification has found.
+    /// Records the result of a search for a specification.
     fn take(
         &mut self,
         family: &UncertainFamily,

@@ -1,9 +1,10 @@
-//! Resonances at a given frequency: plants between those of the grid, in an interval of a share
+//! Resonances at a given frequency: plants between those of the grid, in an interval of a fraction
 //! that a search steps over.
 //!
 //! On a line through the box the characteristic value of a lightly damped plant turns by half a
-//! turn where its resonance passes the given frequency. Intervals over which it turns too far are
-//! halved; from the resonance, a share follows its minimum as the frequency does in other searches.
+//! turn as its resonance passes the given frequency. Intervals over which it turns too far are
+//! halved; from the resonance, a fraction follows its minimum, as the frequency does in other
+//! searches.
 
 use num_complex::Complex64;
 use phea_dynamics::minimum;
@@ -13,11 +14,11 @@ use crate::verification::scan::{HALVINGS, turns};
 
 /// Initial number of intervals of a line.
 const INTERVALS: usize = 16;
-/// Points next to its ends, where a minimum may begin.
+/// Distance of the points next to its ends, where a minimum may begin.
 const BESIDE_END: f64 = 1e-4;
-/// First step of a share that follows its minimum.
+/// First step of a fraction that follows its minimum.
 const STEP: f64 = 0.01;
-/// Accuracy of the share: a resonance may be narrow.
+/// Accuracy of the fraction: a resonance may be narrow.
 const TOLERANCE: f64 = 1e-7;
 
 /// A plant on a line.
@@ -29,8 +30,8 @@ struct LinePlant {
 }
 
 impl MarginDescent<'_> {
-    /// The worst of a plain search and of those from the resonances on the lines through its start
-    /// and its end.
+    /// The worst result of a plain search and of searches from the resonances on the lines through
+    /// its start and its end.
     pub(super) fn with_resonances(&self, start: SearchPoint) -> SearchPoint {
         let mut best = self.descended(start.clone());
         if start.frequency == 0.0 || start.frequency == f64::INFINITY {
@@ -51,8 +52,8 @@ impl MarginDescent<'_> {
         best
     }
 
-    /// With one plant on a line through where it is `from`, the others as they are in `best`: the
-    /// worst resonance on it, if any.
+    /// The worst resonance, if any, with one plant on a line through its position in `from` and the
+    /// others as in `best`.
     fn resonant(
         &self,
         from: &SearchPoint,
@@ -66,7 +67,7 @@ impl MarginDescent<'_> {
         Some(self.between(place, along, [low, high], TOLERANCE))
     }
 
-    /// The shares of the worst local minimum inside a line, and of its neighbours.
+    /// The fractions of the worst local minimum inside a line, and of its neighbours.
     fn inner_minimum(&self, place: &SearchPoint, along: SearchCoordinate) -> Option<[f64; 3]> {
         let samples = self.line(place, along);
         let minima = samples.windows(3).filter_map(|triple| match triple {
@@ -80,7 +81,7 @@ impl MarginDescent<'_> {
         minima.min_by(|left, right| left.0.total_cmp(&right.0)).map(|minimum| minimum.1)
     }
 
-    /// Plants on a line, so near to each other that no resonance is hidden between them.
+    /// Plants on a line, so close to each other that no resonance is hidden between them.
     fn line(&self, place: &SearchPoint, along: SearchCoordinate) -> Vec<LinePlant> {
         let mut found: Vec<LinePlant> = Vec::new();
         let inner = (1..INTERVALS).map(|index| index as f64 / INTERVALS as f64);
@@ -110,7 +111,7 @@ impl MarginDescent<'_> {
         Some(LinePlant { share, margin_db, vanishing })
     }
 
-    /// The follower brought to its minimum.
+    /// The point with the follower at its minimum.
     pub(super) fn followed(&self, place: SearchPoint, follower: SearchCoordinate) -> SearchPoint {
         let alone = MarginDescent { follower: None, ..*self };
         let start = (place.share(follower.block, follower.coordinate), place.margin_db);
