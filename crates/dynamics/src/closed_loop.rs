@@ -76,12 +76,12 @@ impl ClosedLoop {
         }
     }
 
-    /// Whether G is a factor: a = 1.
+    /// True if G is a factor: a = 1.
     pub fn has_feedback(self) -> bool {
         matches!(self, ClosedLoop::RobustStability | ClosedLoop::ControlEffort | ClosedLoop::Tracking)
     }
 
-    /// Whether F is a factor: f = 1.
+    /// True if F is a factor: f = 1.
     pub fn has_prefilter(self) -> bool {
         self == ClosedLoop::Tracking
     }

@@ -35,7 +35,7 @@ pub struct Timing {
     pub delay_s: f64,
     /// How continuous elements become sampled ones.
     pub discretization: Discretization,
-    /// Whether the prefilter acts on the reference before it is sampled, in continuous time.
+    /// True if the prefilter acts on the reference before it is sampled, in continuous time.
     pub continuous_prefilter: bool,
     /// Gain of the feed-forward of a disturbance's rate, sampled and delayed as the command is: K
     /// in U = G (F R - Y) + K H_v s D. Zero without feed-forward.

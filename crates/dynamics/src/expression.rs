@@ -98,7 +98,7 @@ impl Expression {
         Expression { parameters: self.parameters.clone(), nodes, results }
     }
 
-    /// Whether any result is computed from the parameter with this index.
+    /// True if any result is computed from the parameter with this index.
     ///
     /// # Example
     /// ```

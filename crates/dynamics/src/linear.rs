@@ -54,7 +54,7 @@ pub use state_space::StateSpace;
 pub(crate) use structure::irreducible_blocks;
 pub use transfer_function::TransferFunction;
 
-/// Whether a system lives in continuous time (its variable is s) or in samples (its variable is z).
+/// True if a system lives in continuous time (its variable is s) or in samples (its variable is z).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TimeDomain {
     /// Continuous time: the imaginary axis is s = jw.

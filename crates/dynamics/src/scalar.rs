@@ -62,7 +62,7 @@ pub trait Scalar:
     fn ln(self) -> Self;
     /// Magnitude |x|; its derivative at zero is taken as zero.
     fn abs(self) -> Self;
-    /// Whether `self < other`.
+    /// True if `self < other`.
     fn less_than(self, other: Self) -> Self::Mask;
     /// `if_true` where the mask holds, `if_false` elsewhere. Both are evaluated.
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;

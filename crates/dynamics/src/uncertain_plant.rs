@@ -192,7 +192,7 @@ impl UncertainPlant {
         &self.parameters
     }
 
-    /// Whether it has polynomials.
+    /// True if it has polynomials.
     pub fn is_rational(&self) -> bool {
         matches!(self.equations, PlantEquations::Rational(_))
     }

@@ -87,7 +87,7 @@ pub struct CurvePanel {
     pub range: CurveRange,
     /// Values of x that are marked, with a word in this panel.
     pub marked: Vec<(f64, String)>,
-    /// Whether zero is marked, as for residuals.
+    /// True if zero is marked, as for residuals.
     pub zero_line: bool,
     /// Where a response has to settle.
     pub settling_band: Option<SettlingBand>,

@@ -28,7 +28,7 @@ pub struct MagnitudeMark {
     pub magnitude: f64,
     /// Such as `19.2 dB over at 1304 rad/s`.
     pub text: String,
-    /// Whether it violates the limit.
+    /// True if it violates the limit.
     pub is_violation: bool,
 }
 

@@ -33,7 +33,7 @@ pub struct PoleSweep {
     pub unit: DisplayUnit,
     /// The unit of K_H.
     pub stiffness_unit: DisplayUnit,
-    /// Whether its axis is logarithmic.
+    /// True if its axis is logarithmic.
     pub by_ratio: bool,
     /// In order.
     pub points: Vec<PoleSweepPoint>,

@@ -153,7 +153,7 @@ pub struct Schematic {
     pub rods: Rods,
     /// Stages of a telescopic piston after the first; [`STAGES`] of them are drawn.
     pub further_stages: usize,
-    /// Whether chamber B faces the load; otherwise chamber A does.
+    /// True if chamber B faces the load; otherwise chamber A does.
     pub load_beside_b: bool,
     /// Word above the cylinder, such as `50/22 mm, stroke 500 mm`.
     pub cylinder: String,

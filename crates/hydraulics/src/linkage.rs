@@ -73,7 +73,7 @@ pub struct FourBar {
     pub coupler: f64,
     /// o
     pub output_link: f64,
-    /// Whether coupler and fixed link cross.
+    /// True if coupler and fixed link cross.
     pub crossed: bool,
 }
 

@@ -187,12 +187,12 @@ impl Machine {
         Ok(machine)
     }
 
-    /// Whether its inputs hold a force from outside.
+    /// True if its inputs hold a force from outside.
     pub fn has_external_force(&self) -> bool {
         self.external_force
     }
 
-    /// Whether accumulators at its chambers are adjusted: by a valve, or by gas that is added and
+    /// True if accumulators at its chambers are adjusted: by a valve, or by gas that is added and
     /// taken as it runs.
     pub fn has_adjustment(&self) -> bool {
         self.layout.is_adjusted()
@@ -213,37 +213,37 @@ impl Machine {
         &self.lines
     }
 
-    /// Whether its inputs hold the setting of its accumulators.
+    /// True if its inputs hold the setting of its accumulators.
     pub fn has_moving_setting(&self) -> bool {
         self.moving_setting
     }
 
-    /// Whether a spring or a transmission lies between force sensor and load.
+    /// True if a spring or a transmission lies between force sensor and load.
     pub fn has_series_element(&self) -> bool {
         self.series.is_some()
     }
 
-    /// Whether it is a transmission.
+    /// True if it is a transmission.
     pub fn has_transmission(&self) -> bool {
         matches!(self.series, Some(MovingSeries::Oil(_)))
     }
 
-    /// Whether the load turns behind a linkage.
+    /// True if the load turns behind a linkage.
     pub fn has_linkage(&self) -> bool {
         self.linkage.is_some()
     }
 
-    /// Whether the gas at chambers A and B has a pressure of its own, behind a neck or a valve.
+    /// True if the gas at chambers A and B has a pressure of its own, behind a neck or a valve.
     pub fn has_gas_pressure(&self) -> [bool; 2] {
         self.layout.behind()
     }
 
-    /// Whether the gas at chambers A and B exchanges heat.
+    /// True if the gas at chambers A and B exchanges heat.
     pub fn has_heated_gas(&self) -> [bool; 2] {
         self.thermal_time_constants.map(|time| time.is_some())
     }
 
-    /// Whether anything stops the piston at the ends of its stroke.
+    /// True if anything stops the piston at the ends of its stroke.
     pub fn has_end_stops(&self) -> bool {
         self.cylinder.end_stops.is_some()
     }

@@ -107,9 +107,9 @@ pub enum OperatingPointError {
     LoadOutOfReach {
         /// The load asked for.
         load: f64,
-        /// Whether it is a force in N, or else a load pressure in Pa.
+        /// True if it is a force in N, or else a load pressure in Pa.
         is_force: bool,
-        /// Whether the piston moves.
+        /// True if the piston moves.
         moves: bool,
         /// The least that can be held.
         minimum: f64,

@@ -63,7 +63,7 @@ phea_dynamics::parameters! {
 }
 
 impl<S: Copy> PowerUnit<S> {
-    /// Whether the supply pressure is a state.
+    /// True if the supply pressure is a state.
     pub fn yields(&self) -> bool {
         matches!(self, PowerUnit::PumpLimited(_))
     }

@@ -98,7 +98,7 @@ impl<S: Scalar> ActuatorStroke<S> {
 }
 
 impl ActuatorStroke {
-    /// Whether it has this position; without a stroke every finite one.
+    /// True if it has this position; without a stroke every finite one.
     pub fn contains(&self, position: f64) -> bool {
         match self {
             ActuatorStroke::Limited(stroke) => (0.0..=*stroke).contains(&position),

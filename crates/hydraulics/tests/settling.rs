@@ -138,7 +138,7 @@ fn settled_points_are_those_of_bisection() {
     assert!(found > 9_500, "{found}");
 }
 
-/// Whether the force at standstill rises with the command all over its range: with unequal areas
+/// True if the force at standstill rises with the command all over its range: with unequal areas
 /// and edges much leakage undoes that, and one load has several commands.
 fn rises(actuator: &Actuator) -> bool {
     let balance = Balance::at(actuator.components(), 0.25);

@@ -84,7 +84,7 @@ impl Draw {
         low * pow(high / low, share(&mut self.state))
     }
 
-    /// Whether the rig has a part that this share of the rigs has.
+    /// True if the rig has a part that this share of the rigs has.
     fn part(&mut self, name: &'static str, likely: f64) -> bool {
         let has = share(&mut self.state) < likely;
         self.parts.extend(has.then_some(name));

@@ -116,7 +116,7 @@ pub struct FedMotion {
 pub struct Lanewise(Box<Commanded<Lanes>>);
 
 impl Lanewise {
-    /// Whether this processor has the vector instructions that lanes need; [`one_by_one`] gives the
+    /// True if this processor has the vector instructions that lanes need; [`one_by_one`] gives the
     /// same bits without them.
     pub fn is_available() -> bool {
         can_drive::<Lanes>()
@@ -147,7 +147,7 @@ impl Lanewise {
     /// Simulates machines until none are left.
     ///
     /// # Errors
-    /// As [`one_by_one`].
+    /// Errors of [`one_by_one`].
     pub fn in_lanes<'a>(
         &mut self,
         fleet: &mut dyn Fleet<'a>,

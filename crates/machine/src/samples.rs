@@ -17,7 +17,7 @@ pub struct ControllerSample {
     pub integral_v: f64,
     /// The measurement that the computer read, N.
     pub measurement_n: f64,
-    /// Whether its limit held the command.
+    /// True if its limit held the command.
     pub limited: bool,
 }
 

@@ -13,9 +13,9 @@ pub struct Alternative {
     pub name: String,
     /// What it sets, in file order: the path, as `--set` takes it, and the value in TOML.
     pub set: Vec<(String, String)>,
-    /// Whether its hose is sized by `[sizing]` before anything is designed.
+    /// True if its hose is sized by `[sizing]` before anything is designed.
     pub size: bool,
-    /// Whether the ranges of `[uncertainty]` move with the parameters of the linear model that it
+    /// True if the ranges of `[uncertainty]` move with the parameters of the linear model that it
     /// changes.
     pub recentre: bool,
 }

@@ -110,7 +110,7 @@ pub struct FlowMeter {
     pub noise: f64,
     /// Pa, its drop at the highest flow.
     pub pressure_drop: f64,
-    /// Whether it indicates the direction.
+    /// True if it indicates the direction.
     pub signed: bool,
 }
 

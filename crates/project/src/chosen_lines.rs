@@ -5,7 +5,7 @@ use crate::{DeclaredLine, LineMotion, Load, Project};
 /// The model that was chosen for the lines without a stated one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChosenLines {
-    /// Whether they have waves; otherwise they are lumped.
+    /// True if they have waves; otherwise they are lumped.
     pub with_waves: bool,
     /// Where the slower of them is a quarter of a wave long, rad/s.
     pub quarter_wave_rad_per_s: f64,
@@ -68,7 +68,7 @@ impl Project {
         lines.filter(|line| line.leaves_model_open())
     }
 
-    /// Whether its load is a mass that nothing holds, whose plant is not computed behind lines with
+    /// True if its load is a mass that nothing holds, whose plant is not computed behind lines with
     /// waves.
     pub fn has_free_load(&self) -> bool {
         let Some(actuator) = &self.actuator else { return false };

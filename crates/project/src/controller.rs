@@ -164,7 +164,7 @@ impl DeclaredController {
         }
     }
 
-    /// Whether it states a transfer function, and not only its timing: without one it is to be
+    /// True if it states a transfer function, and not only its timing: without one it is to be
     /// designed.
     pub fn has_law(&self) -> bool {
         !self.transfer.as_elements().is_empty()
@@ -213,7 +213,7 @@ pub struct Prefilter {
     pub transfer: Transfer,
     /// s; absent: continuous.
     pub sample_time: Option<f64>,
-    /// Whether it acts in continuous time although the controller is sampled.
+    /// True if it acts in continuous time although the controller is sampled.
     pub continuous: bool,
 }
 

@@ -7,7 +7,7 @@ use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet}
 /// One finding in a file or setting.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// Whether it refuses the file.
+    /// True if it refuses the file.
     pub severity: Severity,
     /// What is wrong, in one sentence.
     pub message: String,
@@ -25,7 +25,7 @@ pub struct Diagnostic {
     pub help: Option<String>,
 }
 
-/// Whether a finding rejects the file.
+/// True if a finding rejects the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// The file is refused.

@@ -117,7 +117,7 @@ impl Formula {
     /// Reads a formula in `s` in which `z` is a parameter, as it may be where nothing is sampled.
     ///
     /// # Errors
-    /// As [`Formula::parse`].
+    /// Errors of [`Formula::parse`].
     ///
     /// # Example
     /// ```

@@ -41,7 +41,7 @@ impl StaticTest {
         }
     }
 
-    /// Whether the leakage is measured, and the flow between the ports.
+    /// True if the leakage is measured, and the flow between the ports.
     pub fn measures_flow(self) -> [bool; 2] {
         [self == StaticTest::Leakage, self == StaticTest::Metering]
     }

@@ -115,9 +115,9 @@ pub(crate) struct InputUnit {
     /// Key of several.
     pub(crate) values: &'static str,
     pub(crate) dimension: &'static Dimension,
-    /// Whether a step may have published values.
+    /// True if a step may have published values.
     published: bool,
-    /// Whether it acts on the load.
+    /// True if it acts on the load.
     on_load: bool,
 }
 

@@ -15,10 +15,10 @@ pub struct Key {
     /// The value of an absent key; `None` where the key is required or its absence has a meaning of
     /// its own.
     pub default: Option<f64>,
-    /// Whether its numbers measure the motion of the rig or what drives it, so that a motor has
+    /// True if its numbers measure the motion of the rig or what drives it, so that a motor has
     /// another dimension in its place: a torque for a force, an angle for a length.
     pub of_motion: bool,
-    /// Whether they measure the motion of the load or what drives it, which may turn where the rig
+    /// True if they measure the motion of the load or what drives it, which may turn where the rig
     /// does not: behind a linkage.
     pub of_load: bool,
     /// What it means, in one sentence.
@@ -48,11 +48,11 @@ pub struct AcceptedRange {
     pub minimum: f64,
     /// The highest number.
     pub maximum: f64,
-    /// Whether the lowest number itself is excluded.
+    /// True if the lowest number itself is excluded.
     pub above_minimum: bool,
-    /// Whether the highest number itself is excluded.
+    /// True if the highest number itself is excluded.
     pub below_maximum: bool,
-    /// Whether `inf` is accepted.
+    /// True if `inf` is accepted.
     pub infinity: bool,
 }
 
@@ -66,7 +66,7 @@ impl AcceptedRange {
         infinity: false,
     };
 
-    /// Whether the number is accepted; never true for NaN.
+    /// True if the number is accepted; never true for NaN.
     pub fn contains(&self, value: f64) -> bool {
         if value == f64::INFINITY {
             return self.infinity;

@@ -41,7 +41,7 @@ pub struct LinearParameter {
 }
 
 impl LinearParameter {
-    /// Whether it follows from the number at a path.
+    /// True if it follows from the number at a path.
     pub fn follows_from(&self, path: &str) -> bool {
         let of_one = ["line.a.", "line.b."].into_iter().find_map(|side| path.strip_prefix(side));
         self.depends_on.iter().any(|known| match of_one {

@@ -20,7 +20,7 @@ pub(crate) struct Listing {
     pub(crate) keys: Vec<KeyEntry>,
     /// The keys of the outermost table.
     pub(crate) outermost: Vec<&'static str>,
-    /// Whether keys belong to a variant or to one of several ways, which needs them where it is
+    /// True if keys belong to a variant or to one of several ways, which needs them where it is
     /// chosen.
     of_variant: bool,
     /// Every number that exists, by its path.
@@ -42,7 +42,7 @@ pub struct KeyEntry {
     pub key: Key,
     /// What it takes: a quantity, a text, one of several words, ...
     pub takes: String,
-    /// Whether its absence is an error.
+    /// True if its absence is an error.
     pub required: bool,
 }
 

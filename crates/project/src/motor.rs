@@ -94,7 +94,7 @@ impl DeclaredActuator {
         self.motor.as_ref().map_or(Some(self.cylinder.stroke), |motor| motor.stroke)
     }
 
-    /// Whether a position in m or rad lies beyond the end of the stroke.
+    /// True if a position in m or rad lies beyond the end of the stroke.
     pub(crate) fn is_beyond(&self, position: f64) -> bool {
         self.stroke().is_some_and(|stroke| stroke > 0.0 && position > stroke)
     }

@@ -23,11 +23,11 @@ pub(crate) struct Reader<'a> {
     frames: Vec<Frame<'a>>,
     /// Index of the text of the project itself; others are settings.
     project_text: usize,
-    /// Whether absent keys are allowed, as in the catalogue.
+    /// True if absent keys are allowed, as in the catalogue.
     partial: bool,
-    /// Whether something was absent that a project needs.
+    /// True if something was absent that a project needs.
     pub(crate) incomplete: bool,
-    /// Whether the parts of an actuator are read.
+    /// True if the parts of an actuator are read.
     pub(crate) parts: bool,
     /// How the rig moves.
     motion: Motions,
@@ -64,7 +64,7 @@ struct Frame<'a> {
     lacking: Vec<(&'static str, RawFinding)>,
     /// The choice of the variant being read, in words.
     chosen: Option<String>,
-    /// Whether it names an entry that the catalogue does not have, so that keys that seem to be
+    /// True if it names an entry that the catalogue does not have, so that keys that seem to be
     /// missing may not be.
     lost: bool,
     /// While the keys of another variant are examined: those that count as absent, since they are
@@ -249,8 +249,7 @@ impl<'a> Reader<'a> {
         Some(hit)
     }
 
-    /// Whether a number may only seem to be absent: a value or the kind of its table is not
-    /// known.
+    /// True if a number may only seem to be absent: a value or the kind of its table is not known.
     fn seems_absent(&self, name: &str) -> bool {
         let root = |path: &str| path.split(['.', '[']).next().unwrap_or("").to_string();
         self.refused.iter().chain(&self.unclear).any(|known| root(known) == root(name))
@@ -291,7 +290,7 @@ impl<'a> Reader<'a> {
         self.provenance.push(Provenance { path, origin });
     }
 
-    /// Whether the present table is only searched for keys of variants that were not chosen.
+    /// True if the present table is only searched for keys of variants that were not chosen.
     fn looks_elsewhere(&self) -> bool {
         self.frames.last().is_some_and(|frame| frame.passed_over.is_some())
     }
@@ -320,7 +319,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whether absent keys are accepted, which is remembered: an entry of the catalogue that is not
+    /// True if absent keys are accepted, which is remembered: an entry of the catalogue that is not
     /// there might have had them.
     fn takes_absent(&mut self) -> bool {
         self.incomplete = true;

@@ -171,7 +171,7 @@ impl Variants for MotionShape {
 }
 
 impl Scenario {
-    /// Whether it runs open loop.
+    /// True if it runs open loop.
     pub fn is_open_loop(&self) -> bool {
         !self.command.is_empty()
     }

@@ -41,7 +41,7 @@ pub struct RawFinding {
     message: String,
     expected: Option<String>,
     help: Option<String>,
-    /// Whether it can be the consequence of a syntax error elsewhere.
+    /// True if it can be the consequence of a syntax error elsewhere.
     consequence: bool,
     syntax: bool,
 }
@@ -163,12 +163,12 @@ impl Findings {
         if self.errors > 0 { Err(Box::new(self.report())) } else { Ok(read) }
     }
 
-    /// Whether an error was found.
+    /// True if an error was found.
     pub fn has_errors(&self) -> bool {
         self.found.iter().any(|found| found.severity == Severity::Error)
     }
 
-    /// Whether something within a place was already rejected.
+    /// True if something within a place was already rejected.
     pub(crate) fn has_error_within(&self, place: Place) -> bool {
         let within = |inner: &Place| {
             inner.text == place.text && inner.start >= place.start && inner.end <= place.end && place.end > 0

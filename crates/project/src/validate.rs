@@ -131,12 +131,12 @@ impl Check<'_, '_> {
         }
     }
 
-    /// Whether a path was written in the project or set.
+    /// True if a path was written in the project or set.
     fn declared(&self, path: &str) -> bool {
         self.reader.places.contains_key(path)
     }
 
-    /// Whether the value of a path was already rejected, so that nothing follows from it.
+    /// True if the value of a path was already rejected, so that nothing follows from it.
     fn refused(&self, path: &str) -> bool {
         self.reader.places.get(path).is_some_and(|place| self.reader.findings.has_error_within(*place))
     }
@@ -149,7 +149,7 @@ impl Check<'_, '_> {
         self.push_error(path, RawFinding::error(self.place(path), message).help(help));
     }
 
-    /// Whether a path is in a table whose kind is misspelt or missing, or has one in it, so that
+    /// True if a path is in a table whose kind is misspelt or missing, or has one in it, so that
     /// nothing follows from its keys.
     fn is_unclear(&self, path: &str) -> bool {
         let within = |inner: &str, outer: &str| {
@@ -164,7 +164,7 @@ impl Check<'_, '_> {
         }
     }
 
-    /// Whether the first table of a path is present at all.
+    /// True if the first table of a path is present at all.
     fn has_table(&self, path: &str) -> bool {
         self.reader.root_entry(path.split(['.', '[']).next().unwrap_or(path)).is_some()
     }

@@ -16,13 +16,13 @@ pub fn word_of<T: PartialEq>(words: &[(&'static str, T)], value: &T) -> &'static
 
 /// A choice with keys of its own for each of its variants.
 pub(crate) trait Variants: Clone {
-    /// Whether a key of another variant is an error, and not a warning.
+    /// True if a key of another variant is an error, and not a warning.
     const STRICT: bool = false;
     /// Every variant, before it is read.
     fn all(&self) -> Vec<Self>;
     /// The word of the choice in the file.
     fn word(&self) -> &'static str;
-    /// Whether its word may be omitted.
+    /// True if its word may be omitted.
     fn goes_without_saying(&self) -> bool {
         false
     }
@@ -32,7 +32,7 @@ pub(crate) trait Variants: Clone {
 
 /// The operations on the description of a table.
 pub(crate) trait Visitor: Sized {
-    /// Whether keys are listed that a reader reads only together with others.
+    /// True if keys are listed that a reader reads only together with others.
     fn names_everything(&self) -> bool {
         false
     }

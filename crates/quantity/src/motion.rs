@@ -49,7 +49,7 @@ static UNITS_OF_MOTION: [(DisplayUnit, DisplayUnit); 7] = [
 ];
 
 impl MotionKind {
-    /// Whether it turns.
+    /// True if it turns.
     pub fn is_rotary(self) -> bool {
         self == MotionKind::Rotary
     }

@@ -53,7 +53,7 @@ impl Disc {
         self.radius
     }
 
-    /// Whether it contains a point.
+    /// True if it contains a point.
     pub fn contains(self, point: Complex64) -> bool {
         portable::magnitude(point - self.centre) <= self.radius
     }

@@ -79,7 +79,7 @@ pub enum Element {
 pub struct Stage {
     /// The element.
     pub element: Element,
-    /// Whether it acts.
+    /// True if it acts.
     pub enabled: bool,
 }
 

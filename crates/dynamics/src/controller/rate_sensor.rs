@@ -105,7 +105,7 @@ impl RateFilter {
 }
 
 impl RateSensor {
-    /// Whether H_v is 1.
+    /// True if H_v is 1.
     pub fn is_direct(&self) -> bool {
         *self == RateSensor::default()
     }

@@ -56,7 +56,7 @@ pub struct ControllerOutput {
     /// Part of the command that the integral part of G holds, the error of this sample not yet in
     /// it; zero where nothing integrates.
     pub integral: f64,
-    /// Whether the limit was reached.
+    /// True if the limit was reached.
     pub limited: bool,
     /// The reference after the prefilter.
     pub filtered_reference: f64,

@@ -63,7 +63,7 @@ impl Section {
     /// left out.
     ///
     /// # Errors
-    /// Those of [`Polynomial::roots`], and [`LinearError::SampleTime`].
+    /// Errors of [`Polynomial::roots`], and [`LinearError::SampleTime`].
     pub fn transfer_function(&self, sample_time_s: f64) -> Result<TransferFunction, LinearError> {
         let [a1, a2] = self.denominator;
         let [b0, b1, b2] = self.numerator;

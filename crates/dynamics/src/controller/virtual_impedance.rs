@@ -25,7 +25,7 @@ pub struct VirtualImpedance {
 }
 
 impl VirtualImpedance {
-    /// Whether Z_v is zero.
+    /// True if Z_v is zero.
     pub fn is_zero(&self) -> bool {
         self.mass == 0.0 && self.damping == 0.0 && self.stiffness == 0.0
     }

@@ -30,14 +30,14 @@ pub struct ImaginaryPole {
     pub multiplicity: usize,
     /// Residue of a simple pole (at infinity: the factor of s); passive when real and positive.
     pub residue: Option<Complex64>,
-    /// Whether the pole is simple with a positive real residue.
+    /// True if the pole is simple with a positive real residue.
     pub passive: bool,
 }
 
 /// The three conditions of passivity of an impedance, each with its numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassivityReport {
-    /// Whether all three conditions hold.
+    /// True if all three conditions hold.
     pub passive: bool,
     /// Condition 1 fails by these poles.
     pub right_half_plane_poles: Vec<Complex64>,
@@ -51,7 +51,7 @@ pub struct PassivityReport {
 /// magnitude.
 const ON_AXIS: f64 = 1e-12;
 
-/// Whether a driving-point impedance Z(s) is passive (Colgate 1988; Hogan and Buerger 2005; thesis
+/// True if a driving-point impedance Z(s) is passive (Colgate 1988; Hogan and Buerger 2005; thesis
 /// section 2.2).
 ///
 /// ```text

@@ -36,7 +36,7 @@ impl TransferFunction {
         start + factors - frequency_rad_per_s * self.dead_time_s()
     }
 
-    /// Whether the factor of this root is negative at zero frequency.
+    /// True if the factor of this root is negative at zero frequency.
     fn reverses_sign(&self, root: Complex64) -> bool {
         let boundary = match self.domain() {
             TimeDomain::Continuous => 0.0,

@@ -188,7 +188,7 @@ pub(super) fn of_two_by_two(a: f64, b: f64, c: f64, d: f64) -> [Complex64; 2] {
     }
 }
 
-/// Whether rounding the entries could make the matrix singular: its Skeel condition number, which
+/// True if rounding the entries could make the matrix singular: its Skeel condition number, which
 /// no scaling of rows (or, transposed, of columns) changes, reaches the inverse of the working
 /// precision.
 fn is_singular(matrix: &DMatrix<f64>) -> bool {

@@ -72,7 +72,7 @@ fn reduce(a: &mut DMatrix<f64>) {
     }
 }
 
-/// Whether the entry below the diagonal in this row is negligible against its neighbours.
+/// True if the entry below the diagonal in this row is negligible against its neighbours.
 fn is_apart(h: &DMatrix<f64>, row: usize, norm: f64) -> bool {
     let beside = h[(row - 1, row - 1)].abs() + h[(row, row)].abs();
     h[(row, row - 1)].abs() <= f64::EPSILON * if beside == 0.0 { norm } else { beside }

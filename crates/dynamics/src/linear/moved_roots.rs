@@ -11,7 +11,7 @@ const LIGHT_DAMPING: f64 = 0.3;
 /// place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovedRoot {
-    /// Whether it is a zero and not a pole.
+    /// True if it is a zero and not a pole.
     pub is_zero: bool,
     /// The root in rad/s, of a pair the one in the upper half plane.
     pub root: Complex64,
@@ -52,7 +52,7 @@ impl TransferFunction {
     /// the image that the method gives it.
     ///
     /// # Errors
-    /// As [`TransferFunction::discretized`].
+    /// Errors of [`TransferFunction::discretized`].
     ///
     /// # Example
     /// Tustin's rule takes the frequency w to 2/T atan(w T/2); one that is exact there keeps it.

@@ -69,7 +69,7 @@ impl Polynomial {
         self.coefficients.len() - 1
     }
 
-    /// Whether the polynomial is zero everywhere.
+    /// True if the polynomial is zero everywhere.
     pub fn is_zero(&self) -> bool {
         self.coefficients == [0.0]
     }

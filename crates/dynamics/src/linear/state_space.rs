@@ -139,7 +139,7 @@ impl StateSpace {
         eigenvalues(&self.a)
     }
 
-    /// Whether every pole lies strictly inside the stable region.
+    /// True if every pole lies strictly inside the stable region.
     ///
     /// # Errors
     /// [`LinearError::EigenvaluesNotConverged`].

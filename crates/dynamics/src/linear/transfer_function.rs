@@ -162,7 +162,7 @@ impl TransferFunction {
         Polynomial::expanded(1.0, &self.poles)
     }
 
-    /// Whether the system has no more zeros than poles.
+    /// True if the system has no more zeros than poles.
     pub(crate) fn is_proper(&self) -> bool {
         self.zeros.len() <= self.poles.len()
     }
@@ -252,7 +252,7 @@ impl TransferFunction {
         }
     }
 
-    /// Whether every pole lies strictly inside the stable region.
+    /// True if every pole lies strictly inside the stable region.
     pub fn is_stable(&self) -> bool {
         self.poles.iter().all(|&pole| is_stable_pole(pole, self.domain))
     }
@@ -330,7 +330,7 @@ fn divide(value: &mut Complex64, factor: Complex64, infinite: &mut bool) {
     }
 }
 
-/// Whether a pole lies in the open left half plane, or strictly inside the unit circle.
+/// True if a pole lies in the open left half plane, or strictly inside the unit circle.
 pub(crate) fn is_stable_pole(pole: Complex64, domain: TimeDomain) -> bool {
     match domain {
         TimeDomain::Continuous => pole.re < 0.0,

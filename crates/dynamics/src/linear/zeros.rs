@@ -94,7 +94,7 @@ fn test_points(poles: &[Complex64]) -> Vec<Complex64> {
     points
 }
 
-/// Whether the response is nowhere more than the rounding of its parts.
+/// True if the response is nowhere more than the rounding of its parts.
 fn is_zero_everywhere(system: &StateSpace, poles: &[Complex64]) -> bool {
     test_points(poles).into_iter().all(|s| {
         response(system, s).is_none_or(|(value, size)| magnitude(value) <= 16.0 * f64::EPSILON * size)
@@ -130,7 +130,7 @@ fn matched_gain(system: &StateSpace, zeros: &[Complex64], poles: &[Complex64]) -
     (gain.is_finite() && gain != 0.0).then_some(gain)
 }
 
-/// Whether the response at s = 0 is no more than the rounding of its parts.
+/// True if the response at s = 0 is no more than the rounding of its parts.
 fn vanishes_at_origin(system: &StateSpace) -> bool {
     let at_origin = response(system, Complex64::new(0.0, 0.0));
     at_origin.is_some_and(|(value, size)| magnitude(value) <= 16.0 * f64::EPSILON * size)

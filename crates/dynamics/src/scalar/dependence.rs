@@ -32,7 +32,7 @@ impl Dependence {
         Dependence(bits)
     }
 
-    /// Whether it depends on the variable with this index.
+    /// True if it depends on the variable with this index.
     pub fn includes(&self, index: usize) -> bool {
         self.0.get(index / 64).is_some_and(|word| word >> (index % 64) & 1 == 1)
     }

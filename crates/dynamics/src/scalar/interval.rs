@@ -48,7 +48,7 @@ impl Interval {
         self.high
     }
 
-    /// Whether it holds negative and positive numbers.
+    /// True if it holds negative and positive numbers.
     pub fn has_both_signs(self) -> bool {
         self.low < 0.0 && self.high > 0.0
     }

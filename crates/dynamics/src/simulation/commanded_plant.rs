@@ -106,7 +106,7 @@ impl<P> CommandedPlant<P> {
     /// This plant with its command held constant, and the reference filtered by this prefilter.
     ///
     /// # Errors
-    /// As [`CommandedPlant::in_loop`].
+    /// Errors of [`CommandedPlant::in_loop`].
     pub fn on_hold(plant: P, prefilter: &TransferFunction) -> Result<Self, LinearError> {
         Ok(CommandedPlant { plant, law: None, prefilter: Realization::new(prefilter)? })
     }

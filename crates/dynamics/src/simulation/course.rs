@@ -50,7 +50,7 @@ pub trait Observer {
     /// Indices of the states it needs, in the order in which it needs them.
     fn wanted(&self) -> &[usize];
 
-    /// Whether it needs the row with this index, counted from zero.
+    /// True if it needs the row with this index, counted from zero.
     fn wants_row(&self, _row: u64) -> bool {
         true
     }
@@ -59,12 +59,12 @@ pub trait Observer {
     /// with time zero. At a break it sees the inputs as they are from then on.
     fn observe(&mut self, time_s: f64, states: &[f64], inputs: &[f64]);
 
-    /// Whether it needs the inputs; if not, the list of inputs is empty.
+    /// True if it needs the inputs; if not, the list of inputs is empty.
     fn wants_inputs(&self) -> bool {
         true
     }
 
-    /// Whether it needs the steps in addition to the rows.
+    /// True if it needs the steps in addition to the rows.
     fn attention(&self) -> Attention {
         Attention::Rows
     }
@@ -188,7 +188,7 @@ pub struct Event {
     pub time_s: f64,
     /// Which indicator.
     pub indicator: usize,
-    /// Whether it became positive.
+    /// True if it became positive.
     pub rising: bool,
 }
 
@@ -261,13 +261,13 @@ impl Amplification {
         mode.filter(|mode| mode.may_show_errors(tolerance)).or(Amplification::larger([mode, motion]))
     }
 
-    /// Whether rounding may have grown to a thousandth of the scales of the states: no tolerance
+    /// True if rounding may have grown to a thousandth of the scales of the states: no tolerance
     /// determines the result then.
     pub fn may_show_rounding(&self) -> bool {
         self.may_show_errors(f64::EPSILON)
     }
 
-    /// Whether errors as large as the tolerance may have grown to a thousandth of the scales of the
+    /// True if errors as large as the tolerance may have grown to a thousandth of the scales of the
     /// states.
     pub fn may_show_errors(&self, tolerance: f64) -> bool {
         self.logarithm >= portable::ln(VISIBLE / tolerance)

@@ -37,7 +37,7 @@ struct Drive<'a, S, O> {
     settings: SimulationSettings,
     slots: Vec<Option<Slot<'a, O>>>,
     state: Vec<S>,
-    /// Whether a state or its input differs from the last point of linearisation.
+    /// True if a state or its input differs from the last point of linearisation.
     fresh: bool,
     step: S,
     inputs: StepInputs<S>,
@@ -51,7 +51,7 @@ struct Drive<'a, S, O> {
 struct ErrorBetween<S> {
     /// States over the step, those that were asked for.
     extensions: Vec<Option<Extension<S>>>,
-    /// Whether the step was taken with known matrices.
+    /// True if the step was taken with known matrices.
     propagated: bool,
     /// Those an observer wants, in its lane.
     wanted: Vec<Extension<f64>>,

@@ -141,7 +141,7 @@ pub(super) struct GrowthWatch {
     memory: Option<[usize; 3]>,
     /// What the method that makes the steps takes from an amplitude.
     lost: AmplitudeLost,
-    /// Whether waves come back late.
+    /// True if waves come back late.
     delayed: bool,
     /// Modes that oscillate or grow.
     modes: Vec<Mode>,
@@ -269,7 +269,7 @@ impl GrowthWatch {
         self.growth + 0.5 * (self.damping - damping)
     }
 
-    /// Whether the modes at the last look show those under this damping of friction.
+    /// True if the modes at the last look show those under this damping of friction.
     fn is_known_at(&self, damping: f64) -> bool {
         let [growth, decay] = LEFT.map(|left| left * self.growth);
         let now = self.growth_at(damping);
@@ -282,7 +282,7 @@ impl GrowthWatch {
         }
     }
 
-    /// Whether friction's damping has moved so far from another value that a step of this length by
+    /// True if friction's damping has moved so far from another value that a step of this length by
     /// matrices found there is off: of the growth that the change makes, a step by such matrices
     /// misses a part that rises with the angle it turns.
     pub(super) fn has_left<S: Lane>(

@@ -29,7 +29,7 @@ pub(super) struct StepInputs<S> {
     pub(super) stages: [Vec<S>; 6],
     /// Per second, at the start.
     pub(super) slopes: Vec<S>,
-    /// Whether any slope differs from zero.
+    /// True if any slope differs from zero.
     pub(super) moving: bool,
 }
 
@@ -106,7 +106,7 @@ impl<S: Lane> Stepper<S> {
         }
     }
 
-    /// Whether a step may be further off than the error at its end shows. Never for the explicit
+    /// True if a step may be further off than the error at its end shows. Never for the explicit
     /// method, whose steps are too short for that.
     ///
     /// Where a state is bound stiffly, what lies between the ends is. And a step that was shortened

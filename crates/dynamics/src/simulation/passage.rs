@@ -33,7 +33,7 @@ pub(super) struct Passage<'a> {
     pub(super) course: &'a InputSchedule,
     /// The inputs of the course up to the next break.
     segments: Vec<InputSegment>,
-    /// Whether no input moves before the next break.
+    /// True if no input moves before the next break.
     pub(super) still: bool,
     pub(super) time_s: f64,
     /// The next step, if nothing breaks before.
@@ -42,7 +42,7 @@ pub(super) struct Passage<'a> {
     longest_s: f64,
     /// The mode that grows and asks for the shortest step, if any does.
     pub(super) growing: Option<GrowingMode>,
-    /// Whether the step being tried is shorter for it.
+    /// True if the step being tried is shorter for it.
     held_back: bool,
     /// Where the step being tried ends, if at a break or a kink.
     target_s: Option<f64>,
@@ -64,7 +64,7 @@ pub(super) struct Passage<'a> {
     pub(super) row: u64,
     /// How closely it is followed.
     pub(super) attention: Attention,
-    /// Whether the last step was refused.
+    /// True if the last step was refused.
     pub(super) rejected: bool,
     /// Error of the last step.
     before: f64,
@@ -185,7 +185,7 @@ impl<'a> Passage<'a> {
         self.row as f64 * self.course.output_step_s
     }
 
-    /// Whether a state between the ends of the step being tried is shown or sent.
+    /// True if a state between the ends of the step being tried is shown or sent.
     pub(super) fn looked_into(&self) -> bool {
         let past = self.next_row_s() <= later(self.time_s);
         let next_row_s = (self.row + u64::from(past)) as f64 * self.course.output_step_s;
@@ -296,7 +296,7 @@ impl<'a> Passage<'a> {
         taken
     }
 
-    /// Whether a step that failed by this error is to end at a kink at this part of it: once for a
+    /// True if a step that failed by this error is to end at a kink at this part of it: once for a
     /// step that is taken, so that what fails for another reason becomes shorter.
     fn may_end_at(&self, part: f64, error: f64) -> bool {
         let within = (KINK_WITHIN..1.0 - KINK_WITHIN).contains(&part);
@@ -331,7 +331,7 @@ impl<'a> Passage<'a> {
         }
     }
 
-    /// Whether the sampler acts now.
+    /// True if the sampler acts now.
     pub(super) fn samples_now(&self, sample_time_s: f64) -> bool {
         later(self.time_s) >= self.sample as f64 * sample_time_s
     }
@@ -363,7 +363,7 @@ impl<'a> Passage<'a> {
         self.still = false;
     }
 
-    /// Whether no input has moved or will move before the next break, and this was so before.
+    /// True if no input has moved or will move before the next break, and this was so before.
     pub(super) fn stands_still(&mut self) -> bool {
         let was = self.still;
         let at_rest =

@@ -12,7 +12,7 @@ pub(super) struct JacobianPattern {
     pub(super) colours: Vec<usize>,
     /// How many colours.
     pub(super) colour_count: usize,
-    /// Whether the rate depends on an input.
+    /// True if the rate depends on an input.
     pub(super) driven: Vec<bool>,
 }
 

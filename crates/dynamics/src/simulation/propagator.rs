@@ -64,7 +64,7 @@ impl<S: Lane> Propagator<S> {
         }
     }
 
-    /// Whether a lane has matrices for this step.
+    /// True if a lane has matrices for this step.
     pub(super) fn knows(&self, lane: usize, step_s: f64) -> bool {
         (self.step_s[lane] - step_s).abs() <= SAME * step_s
     }
@@ -75,7 +75,7 @@ impl<S: Lane> Propagator<S> {
         self.age[lane] = LEAST_AGE;
     }
 
-    /// Whether a lane's matrices may be found again.
+    /// True if a lane's matrices may be found again.
     pub(super) fn may_learn(&mut self, lane: usize) -> bool {
         self.age[lane] = self.age[lane].saturating_add(1);
         self.age[lane] > LEAST_AGE

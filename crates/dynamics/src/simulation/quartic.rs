@@ -99,7 +99,7 @@ impl Quartic {
         others.iter().fold([first; 2], |[low, high], value| [low.min(*value), high.max(*value)])
     }
 
-    /// Whether it only rises or only falls, as far as this shows at little cost.
+    /// True if it only rises or only falls, as far as this shows at little cost.
     #[inline]
     pub fn is_plainly_monotone(&self) -> bool {
         let [b0, b1, b2, b3, b4] = self.hull();

@@ -283,7 +283,7 @@ impl<S: Lane> Rosenbrock<S> {
         S::select(S::from(0.0).less_than(kept), error, S::from(f64::INFINITY))
     }
 
-    /// Whether a state of this lane would come to rest within a small part of the step, if the
+    /// True if a state of this lane would come to rest within a small part of the step, if the
     /// others stood still.
     pub(super) fn binds_stiffly(&self, lane: usize, step_s: f64) -> bool {
         self.fastest.lane(lane) * step_s < -STIFF

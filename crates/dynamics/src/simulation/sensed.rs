@@ -203,13 +203,13 @@ impl<P> Sensed<P> {
         self.rate.as_ref().map_or(0, |rate| rate.filter.states)
     }
 
-    /// Whether the sensor has dead time.
+    /// True if the sensor has dead time.
     #[inline(always)]
     fn is_late(&self) -> bool {
         self.delay_s > 0.0
     }
 
-    /// Whether the sensor of the rate has dead time.
+    /// True if the sensor of the rate has dead time.
     #[inline(always)]
     fn is_rate_late(&self) -> bool {
         self.rate.as_ref().is_some_and(|rate| rate.delay_s > 0.0)

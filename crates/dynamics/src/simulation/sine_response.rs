@@ -41,7 +41,7 @@ pub struct SineResponse {
     /// Root of the sum of squares of the harmonics from the second to the twentieth, over the
     /// fundamental.
     pub distortion: f64,
-    /// Whether it settled within its windows.
+    /// True if it settled within its windows.
     pub settled: bool,
     /// Difference of the last two windows, over the fundamental.
     pub change: f64,

@@ -12,7 +12,7 @@ pub(super) struct Slot<'a, O> {
     pub(super) observer: O,
     /// Steps since its modes were asked for.
     pub(super) unwatched: u64,
-    /// Whether its last step was taken with known matrices.
+    /// True if its last step was taken with known matrices.
     pub(super) propagated: bool,
     /// A state or input at one time, for sampler and observer.
     pub(super) states: Vec<f64>,
@@ -23,7 +23,7 @@ pub(super) struct Slot<'a, O> {
 const UNWATCHED: (u64, f64) = (64, 0.06);
 
 impl<O: Observer> Slot<'_, O> {
-    /// Whether its modes are to be asked for, though it goes by known matrices.
+    /// True if its modes are to be asked for, though it goes by known matrices.
     pub(super) fn is_due(&self) -> bool {
         let (steps, time_s) = UNWATCHED;
         self.unwatched >= steps || self.unwatched as f64 * self.passage.step_s >= time_s
@@ -37,7 +37,7 @@ impl<O: Observer> Slot<'_, O> {
         self.observer.follow(&Stretch { passage: &self.passage, states: quartics });
     }
 
-    /// Whether the observer wants to know the step more exactly.
+    /// True if the observer wants to know the step more exactly.
     pub(super) fn looks_closer(&self, wanted: &[Extension<f64>], quartics: &mut Vec<Quartic>) -> bool {
         quartics.clear();
         quartics.extend(wanted.iter().map(Quartic::of));

@@ -20,7 +20,7 @@ impl Stretch<'_> {
         self.passage.end_s()
     }
 
-    /// Whether no input moves within it.
+    /// True if no input moves within it.
     pub fn is_still(&self) -> bool {
         self.passage.still
     }

@@ -34,7 +34,7 @@ pub trait Queue<'a, E> {
     fn goes_on(&mut self, lane: usize, time_s: f64) -> bool;
 }
 
-/// Whether a machine in its lane can be driven by its task.
+/// True if a machine in its lane can be driven by its task.
 pub(super) fn check<S: Lane, O: Observer>(
     system: &dyn Kernel<S>,
     task: &Task<'_, O>,

@@ -71,7 +71,7 @@ impl<'a, E, O: Observer> Queue<'a, E> for Single<'a, '_, O> {
 /// it returns false, the simulation stops.
 ///
 /// # Errors
-/// As [`simulate`].
+/// Errors of [`simulate`].
 ///
 /// # Example
 /// The largest force of a spring of 8 N/m whose end is drawn out at 2 m/s for 3 s, without its

@@ -45,7 +45,7 @@ impl WithSimd for Nothing {
     fn with_simd<V: pulp::Simd>(self, _: V) {}
 }
 
-/// Whether this processor can drive machines side by side; where it cannot, [`super::drive`]
+/// True if this processor can drive machines side by side; where it cannot, [`super::drive`]
 /// refuses lanes.
 ///
 /// # Example

@@ -21,7 +21,7 @@ pub struct Blocks {
     pub(super) lines: Vec<[Vec<Complex64>; 2]>,
     /// As how many independent blocks they count.
     independent: f64,
-    /// Whether all blocks are the response to the same input.
+    /// True if all blocks are the response to the same input.
     pub(super) is_repeated: bool,
 }
 

@@ -11,7 +11,7 @@ use crate::order::sorted_distinct;
 /// Response at these times to a unit step at time zero, from rest.
 ///
 /// # Errors
-/// As [`forced_response`].
+/// Errors of [`forced_response`].
 ///
 /// # Example
 /// ```

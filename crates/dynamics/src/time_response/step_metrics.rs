@@ -27,7 +27,7 @@ impl StepBaseline {
     }
 }
 
-/// Whether the response stays in the band, and from when.
+/// True if the response stays in the band, and from when.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Settling {
     /// It enters the band for good.
@@ -64,7 +64,7 @@ pub struct StepMetrics {
     pub peak_time_s: f64,
     /// How far the peak exceeds the final value, percent of the step; zero when it does not.
     pub overshoot_percent: f64,
-    /// Whether and when the response stays within the band.
+    /// True if and when the response stays within the band.
     pub settling: Settling,
     /// The band of the settling time: plus or minus this percentage of the step.
     pub settling_band_percent: f64,

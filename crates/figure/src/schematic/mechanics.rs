@@ -132,7 +132,7 @@ struct EnvironmentPlace {
     words: f64,
 }
 
-/// Whether what is drawn has a lever to its right.
+/// True if what is drawn has a lever to its right.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum BesideLever {
     Yes,

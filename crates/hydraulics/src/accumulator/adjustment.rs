@@ -46,7 +46,7 @@ pub struct GasValve<S = f64> {
     pub transition_pressure: S,
     /// What the oil between valve and gas yields: it remains where the gas fills its shell.
     pub compliance: S,
-    /// Whether it is shut at rest, so that the gas takes no part in small motions.
+    /// True if it is shut at rest, so that the gas takes no part in small motions.
     pub shut: bool,
 }
 

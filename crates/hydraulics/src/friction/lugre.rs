@@ -21,7 +21,7 @@ pub struct LuGre<S = f64> {
     pub bristle_damping: S,
 }
 
-/// Whether a LuGre model can only take energy from the motion.
+/// True if a LuGre model can only take energy from the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LuGrePassivity {
     /// It is passive; the viscous friction exceeds the requirement by this, in N s/m.

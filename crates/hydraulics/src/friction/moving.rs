@@ -61,7 +61,7 @@ phea_dynamics::parameters! {
 }
 
 impl<S: Copy> MovingFriction<S> {
-    /// Whether its bristles are a state.
+    /// True if its bristles are a state.
     pub(crate) fn has_bristles(&self) -> bool {
         self.bristle_stiffness().is_some()
     }

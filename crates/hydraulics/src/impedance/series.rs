@@ -79,7 +79,7 @@ fn sharing_poles(plant: &LinearPlant, model: LinearModel) -> Result<LinearModel,
 /// ```
 ///
 /// # Errors
-/// As [`closed_loop_impedance`].
+/// Errors of [`closed_loop_impedance`].
 pub fn closed_loop_port(
     plant: &LinearPlant,
     controller: &TransferFunction,

@@ -56,7 +56,7 @@ impl BlockedLine {
     /// A line filled with a fluid at a mean gauge pressure in Pa.
     ///
     /// # Errors
-    /// As [`DynamicLine::new`].
+    /// Errors of [`DynamicLine::new`].
     pub fn new(
         line: &Line,
         fluid: &Fluid,

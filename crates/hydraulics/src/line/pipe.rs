@@ -26,7 +26,7 @@ pub enum PipeWall<S = f64> {
         poisson_ratio: S,
         /// How the pipe is held along its axis.
         anchoring: Anchoring,
-        /// Whether the stress varies over the wall (exact for any thickness) or is taken as even
+        /// True if the stress varies over the wall (exact for any thickness) or is taken as even
         /// (D/e above 25).
         thick: bool,
     },

@@ -82,7 +82,7 @@ phea_dynamics::parameters! {
 }
 
 impl<S: Copy> LoadModel<S> {
-    /// Whether the load's position and velocity are states.
+    /// True if the load's position and velocity are states.
     pub fn moves(&self) -> bool {
         !matches!(self, LoadModel::Prescribed)
     }

@@ -28,10 +28,10 @@ pub struct MachineOptions {
     pub velocity_gain: f64,
     /// phi of the pressure signal p_A - phi p_B that a controller may feed back.
     pub pressure_ratio: f64,
-    /// Whether a force from outside acts on the load, as an input of the machine; it needs a load
+    /// True if a force from outside acts on the load, as an input of the machine; it needs a load
     /// that has a mass.
     pub external_force: bool,
-    /// Whether the setting of accumulators that are adjusted moves, as an input of the machine: by
+    /// True if the setting of accumulators that are adjusted moves, as an input of the machine: by
     /// how much it has moved from rest, and at which rate. Without it they stand at their setting
     /// at rest.
     pub moving_setting: bool,

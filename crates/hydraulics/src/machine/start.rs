@@ -109,7 +109,7 @@ impl Machine {
     /// one that they hold.
     ///
     /// # Errors
-    /// As [`Machine::start`]; no balance near the operating point.
+    /// Errors of [`Machine::start`]; no balance near the operating point.
     pub fn rest(&self, point: &OperatingPoint) -> Result<InitialCondition, MachineError> {
         self.settled(point, Kept::Spool)
     }
@@ -118,7 +118,7 @@ impl Machine {
     /// that moves to where it is held.
     ///
     /// # Errors
-    /// As [`Machine::rest`].
+    /// Errors of [`Machine::rest`].
     pub fn rest_under_load(&self, point: &OperatingPoint) -> Result<InitialCondition, MachineError> {
         self.settled(point, Kept::Force(point.hydraulic_force))
     }

@@ -62,11 +62,11 @@ pub(super) struct Layout {
     valves: [bool; 2],
     /// Accumulators at the chambers whose gas is added and taken.
     moved: [bool; 2],
-    /// Whether the setting of accumulators is an input.
+    /// True if the setting of accumulators is an input.
     setting: bool,
     /// Accumulators at the chambers whose gas exchanges heat.
     heat: [bool; 2],
-    /// Whether a force from outside is an input.
+    /// True if a force from outside is an input.
     external_force: bool,
     /// States of the gas, which follow those of [`MachineState`].
     gas: usize,
@@ -208,32 +208,32 @@ impl Layout {
         [0, 1].map(|place| inputs.get(first + place).copied().unwrap_or(T::from(f64::NAN)))
     }
 
-    /// Whether accumulators at the chambers are adjusted.
+    /// True if accumulators at the chambers are adjusted.
     #[inline(always)]
     pub(super) fn is_adjusted(&self) -> bool {
         self.valves != [false; 2] || self.moved != [false; 2]
     }
 
-    /// Whether the gas at each chamber has a pressure of its own.
+    /// True if the gas at each chamber has a pressure of its own.
     #[inline(always)]
     pub(super) fn behind(&self) -> [bool; 2] {
         [self.necks[0] || self.valves[0], self.necks[1] || self.valves[1]]
     }
 
-    /// Whether gas at a chamber has states of its own, or is adjusted.
+    /// True if gas at a chamber has states of its own, or is adjusted.
     #[inline(always)]
     pub(super) fn has_gas(&self) -> bool {
         self.gas != 0 || self.moved != [false; 2]
     }
 
-    /// Whether the gas at each chamber has states of its own, or is adjusted.
+    /// True if the gas at each chamber has states of its own, or is adjusted.
     #[inline(always)]
     pub(super) fn gas_at(&self) -> [bool; 2] {
         let [behind_a, behind_b] = self.behind();
         [behind_a || self.heat[0] || self.moved[0], behind_b || self.heat[1] || self.moved[1]]
     }
 
-    /// Whether lines have states of their own.
+    /// True if lines have states of their own.
     #[inline(always)]
     pub(super) fn has_lines(&self) -> bool {
         self.lines != [0, 0]

@@ -144,7 +144,7 @@ impl<S: Scalar> Balance<S> {
         STEPS[usize::from(self.leaks())]
     }
 
-    /// Whether anything flows from chamber to chamber or to the tank.
+    /// True if anything flows from chamber to chamber or to the tank.
     pub(super) fn leaks(&self) -> bool {
         self.across.is_some() || self.outward.is_some()
     }
@@ -358,7 +358,7 @@ impl Balance {
 }
 
 impl Balance {
-    /// Whether the pressures are unique whatever is known: so they are without a flow from chamber
+    /// True if the pressures are unique whatever is known: so they are without a flow from chamber
     /// to chamber, with equal areas, at a stated command, and under a stated load pressure. Under a
     /// force, such a flow with unequal areas may leave several.
     ///

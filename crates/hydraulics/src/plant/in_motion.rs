@@ -55,7 +55,7 @@ use crate::line::{DynamicLine, Segments, TransferMatrix};
 pub struct PlantInMotion {
     plant: LinearPlant,
     sides: [ChamberSide; 2],
-    /// Whether both lines are the same.
+    /// True if both lines are the same.
     alike: bool,
     /// Delay of the load's velocity that is fed forward, s: of its sensor and of the loop.
     lateness: f64,
@@ -418,7 +418,7 @@ impl PlantInMotion {
         }
     }
 
-    /// Whether nothing in it except what is fed forward and back supplies energy, so that without
+    /// True if nothing in it except what is fed forward and back supplies energy, so that without
     /// these none of its poles lies in the right half plane: its lines are passive, and so are
     /// valve, leakage, friction and load where none of their coefficients is negative.
     pub fn is_passive(&self) -> bool {

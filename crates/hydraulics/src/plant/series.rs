@@ -107,7 +107,7 @@ impl<S: Scalar> LinearSeries<S> {
         }
     }
 
-    /// Whether it is a spring alone, which makes the force sensor softer and nothing else.
+    /// True if it is a spring alone, which makes the force sensor softer and nothing else.
     pub fn is_spring_alone(&self) -> bool {
         let LinearElement::Spring(spring) = &self.element else { return false };
         spring.damping.is_none() && spring.mass.is_none()

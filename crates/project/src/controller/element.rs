@@ -14,7 +14,7 @@ use phea_quantity::{ANGULAR_FREQUENCY, RATIO, TIME};
 pub struct DeclaredElement {
     /// Which element.
     pub kind: ElementKind,
-    /// Whether it acts; a disabled element stays in the list.
+    /// True if it acts; a disabled element stays in the list.
     pub enabled: bool,
 }
 
@@ -232,7 +232,7 @@ impl DeclaredElement {
         DeclaredElement { kind, enabled: true }
     }
 
-    /// Whether it is written in `z`.
+    /// True if it is written in `z`.
     pub fn is_sampled(&self) -> bool {
         matches!(&self.kind, ElementKind::General(ratio) if ratio.is_sampled())
     }

@@ -31,7 +31,7 @@ pub enum ImpedanceForm {
 }
 
 impl DeclaredImpedance {
-    /// Whether the load feels nothing of it.
+    /// True if the load feels nothing of it.
     pub fn is_zero(&self) -> bool {
         self.stiffness == 0.0 && self.damping == 0.0 && self.mass == 0.0
     }

@@ -18,7 +18,7 @@ pub struct RationalFunction {
     pub zeros: Vec<[f64; 2]>,
     /// Real and imaginary parts, 1/s.
     pub poles: Vec<[f64; 2]>,
-    /// Whether gain, zeros and poles are in s (absent) or in z.
+    /// True if gain, zeros and poles are in s (absent) or in z.
     pub domain: Option<Variable>,
 }
 
@@ -26,12 +26,12 @@ pub struct RationalFunction {
 static DOMAINS: [(&str, Option<Variable>); 2] = [("s", Some(Variable::S)), ("z", Some(Variable::Z))];
 
 impl RationalFunction {
-    /// Whether it is stated in either form.
+    /// True if it is stated in either form.
     pub(crate) fn is_stated(&self) -> bool {
         (self.numerator.is_some() && self.denominator.is_some()) || self.gain.is_some()
     }
 
-    /// Whether it is written in `z`.
+    /// True if it is written in `z`.
     pub fn is_sampled(&self) -> bool {
         let formulas = [&self.numerator, &self.denominator];
         self.domain == Some(Variable::Z)

@@ -122,12 +122,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whether one of these keys is present, or none is needed.
+    /// True if one of these keys is present, or none is needed.
     pub(super) fn takes_absent_of(&mut self, keys: &[&'static str]) -> bool {
         keys.iter().any(|name| self.is_there(name)) || self.takes_absent()
     }
 
-    /// Whether a key of the present table has a value, from itself or what it inherits.
+    /// True if a key of the present table has a value, from itself or what it inherits.
     pub(super) fn is_there(&self, name: &str) -> bool {
         let layers = self.frames.last().map(|frame| frame.layers.as_slice()).unwrap_or_default();
         layers.iter().any(|layer| !layer.hidden.contains(&name) && layer.node.get(name).is_some())

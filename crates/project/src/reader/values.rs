@@ -134,14 +134,14 @@ impl Reader<'_> {
         }
     }
 
-    /// Whether the loop has a computer in it, so that `z` has a meaning of its own.
+    /// True if the loop has a computer in it, so that `z` has a meaning of its own.
     fn is_sampled(&self) -> bool {
         let sampled =
             |table| self.root_entry(table).is_some_and(|entry| entry.node.get("sample_time").is_some());
         sampled("controller") || sampled("prefilter")
     }
 
-    /// Whether a text is meant as a formula rather than as a number with a unit.
+    /// True if a text is meant as a formula rather than as a number with a unit.
     pub(super) fn reads_as_formula(&self, key: Key, text: &str) -> bool {
         let key = key.in_motion(self.motion);
         if quantity::parse(text, key.dimension).is_ok() {

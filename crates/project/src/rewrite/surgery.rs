@@ -45,7 +45,7 @@ struct Surgery<'a> {
     inserted: bool,
     /// Path of the present table.
     section: Vec<String>,
-    /// Whether the text states any key that is removed.
+    /// True if the text states any key that is removed.
     removes: bool,
     /// Where the comment lines begin that the present statement follows.
     comments: Option<usize>,
@@ -111,7 +111,7 @@ impl Surgery<'_> {
         }
     }
 
-    /// Whether a key or table is replaced.
+    /// True if a key or table is replaced.
     fn is_replaced(&self, path: &[String]) -> bool {
         matches!(path, [table, key, ..] if table == self.table && self.keys.contains(&key.as_str()))
     }

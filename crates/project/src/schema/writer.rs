@@ -19,7 +19,7 @@ pub(super) struct SchemaWriter {
     tables: Vec<SchemaTable>,
     /// The form in which values that have several are described now.
     form: Option<ValueForm>,
-    /// Whether the present table has such a value.
+    /// True if the present table has such a value.
     has_forms: bool,
     /// How the rig moves, where the keys that are described belong to one motion.
     motion: Option<MotionKind>,

@@ -39,7 +39,7 @@ fn supply(actuator: &DeclaredActuator, check: &mut Check<'_, '_>) {
     }
 }
 
-/// Whether the supply's pressure is above the precharge of this gas; otherwise an error with what
+/// True if the supply's pressure is above the precharge of this gas; otherwise an error with what
 /// follows from it.
 fn is_reached(
     gas: &DeclaredAccumulator,

@@ -60,7 +60,7 @@ pub(super) fn of_a_motor(formula: &str) -> Cow<'_, str> {
     if out == formula { Cow::Borrowed(formula) } else { Cow::Owned(out) }
 }
 
-/// Whether a character goes on with the symbol next to it.
+/// True if a character goes on with the symbol next to it.
 fn is_of_symbol(letter: char) -> bool {
     letter.is_alphanumeric() || matches!(letter, '_' | '{' | '}' | '\'')
 }

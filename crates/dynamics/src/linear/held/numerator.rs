@@ -32,7 +32,7 @@ impl Held {
     /// `None` where factors that agree with the response were not found.
     ///
     /// # Errors
-    /// Those of [`roots::guessed`].
+    /// Errors of [`roots::guessed`].
     pub(in super::super) fn factors(
         &self,
         poles: &[Complex64],
@@ -53,7 +53,7 @@ impl Held {
         Ok(agree.then_some((gain, zeros)))
     }
 
-    /// Whether a gain and zeros agree with the response along the unit circle.
+    /// True if a gain and zeros agree with the response along the unit circle.
     pub(in super::super) fn agrees_with(&self, gain: f64, zeros: &[Complex64], poles: &[Complex64]) -> bool {
         let samples = self.interpolated().map(|(_, samples)| samples).unwrap_or_default();
         let mut samples = samples.into_iter().chain(self.beside_slow_poles(poles)).peekable();

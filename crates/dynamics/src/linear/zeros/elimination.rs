@@ -47,7 +47,7 @@ impl Traced {
         Traced { value: -self.value, scale: self.scale }
     }
 
-    /// Whether roundings of the inputs by this many units explain the number.
+    /// True if roundings of the inputs by this many units explain the number.
     fn is_zero(self, roundings: f64) -> bool {
         self.size() <= roundings * f64::EPSILON * self.scale
     }

@@ -28,7 +28,7 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
         self.look_at(system, with_late, |_, kink| kink)
     }
 
-    /// Whether the error at its end lets the step of a lane pass, made by the method that knows
+    /// True if the error at its end lets the step of a lane pass, made by the method that knows
     /// more of it.
     fn passes(&self, lane: usize, error: S) -> bool {
         let by_method = self.slots[lane].as_ref().is_some_and(|slot| !slot.propagated);

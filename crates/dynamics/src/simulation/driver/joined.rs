@@ -128,7 +128,7 @@ impl<S: Lane, O: Observer> Drive<'_, S, O> {
         all
     }
 
-    /// Whether the observer of a lane wants to know the step with known matrices more exactly.
+    /// True if the observer of a lane wants to know the step with known matrices more exactly.
     fn looks_closer(&mut self, lane: usize) -> bool {
         let asks = |slot: &Slot<'_, O>| slot.propagated && slot.passage.attention == Attention::Steps;
         if !self.slots[lane].as_ref().is_some_and(asks) {

@@ -246,7 +246,7 @@ impl RespondingPlant for PlantInMotion {
 }
 
 impl PlantInMotion {
-    /// Whether 1 less the feedback cannot have turned around zero between these two points: a delay
+    /// True if 1 less the feedback cannot have turned around zero between these two points: a delay
     /// turns it in proportion to the frequency, which counts where the feedback is large.
     fn is_near(&self, [here, next]: [(f64, Complex64); 2]) -> bool {
         let turned = (next.0 - here.0) * self.lateness.max(self.feedback_delay_s);
