@@ -39,7 +39,7 @@ pub enum ClosedLoop {
     Tracking,
 }
 
-/// The factor A that the plant contributes to a closed loop in addition to S.
+/// Factor A that the plant contributes to a closed loop in addition to S.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlantPath {
     /// P H

@@ -1,6 +1,6 @@
-//! Systems without a fluid: the scalar every model equation is written over, recorded expressions,
-//! linear systems, their frequency and time responses, controllers, the closed loops around a
-//! plant, and the uncertain plant that robust design works on.
+//! Systems without a fluid: the scalar type of all model equations, recorded expressions, linear
+//! systems, their frequency and time responses, controllers, the closed loops around a plant, and
+//! the uncertain plant for robust design.
 //!
 //! ```text
 //! parameters -> Expression -> UncertainPlant -> PlantMember                    the family
