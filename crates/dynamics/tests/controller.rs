@@ -1,4 +1,4 @@
-//! The sampled controller against what it must do: follow its transfer function, and come off its
+//! Requirements of the sampled controller: it follows its transfer function, and recovers from its
 //! limit.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
@@ -31,8 +31,8 @@ fn measured_response(sampled: &SampledController, period: usize, settle: usize) 
     amplitude
 }
 
-/// The difference equations, run, agree with the sampled transfer function: independent of how
-/// sections were made.
+/// Response of the difference equations compared with the sampled transfer function, independent of
+/// the construction of the sections.
 #[test]
 fn the_running_controller_has_the_response_of_its_transfer_function() {
     let shaped = vec![
@@ -80,7 +80,8 @@ fn an_improper_compensator_cannot_run() {
     assert!(controller(vec![Element::General(advance)], Discretization::Tustin).sampled(0.01).is_err());
 }
 
-/// Samples an integrating controller needs to come off its limit after the error has changed sign.
+/// Samples that an integrating controller needs to leave its limit after the error has changed
+/// sign.
 fn samples_to_unwind(anti_windup: AntiWindup) -> usize {
     let elements = vec![Element::ProportionalIntegral { proportional_gain: 0.1, integral_gain: 1.0 }];
     let limited =

@@ -183,7 +183,7 @@ fn degenerate_polynomials() {
 
 #[test]
 fn random_coefficients_over_twenty_decades() {
-    // an answer is one whose residual is at the rounding level of the coefficients
+    // a result whose residual is at the rounding level of the coefficients
     let mut seeded = Seeded(7);
     for _ in 0..2000 {
         let degree = (seeded.next() * 14.0).floor() as usize;
@@ -219,8 +219,8 @@ fn algebra() {
     assert_eq!(p.product(&q).evaluate(Complex64::new(0.0, 2.0)), Complex64::new(-8.0, 0.0));
 }
 
-/// Roots from points near them are those from nowhere, wherever they are found: of random
-/// polynomials with an integrator or none, whose coefficients change by up to a tenth.
+/// Roots from nearby points equal roots from unknown starts, if they are found: for random
+/// polynomials with or without an integrator, whose coefficients change by up to a tenth.
 #[test]
 fn roots_from_near_are_those_from_nowhere() {
     let mut seeded = Seeded(11);
