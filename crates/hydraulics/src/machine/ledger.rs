@@ -9,7 +9,7 @@ use super::{Machine, Motion};
 use crate::series::MovingSeries;
 use instant::Instant;
 
-/// Names of the accounts of oil, in the order of [`Ledger::oil`]. Accounts of parts that a machine
+/// Names of the oil accounts, in the order of [`Ledger::oil`]. Accounts of parts that a machine
 /// lacks are zero.
 pub const OIL_ACCOUNTS: [&str; 11] = [
     "chamber_a",
@@ -25,7 +25,7 @@ pub const OIL_ACCOUNTS: [&str; 11] = [
     "rig",
 ];
 
-/// Names of the accounts of energy, in the order of [`Ledger::energy`]. Accounts of parts that a
+/// Names of the energy accounts, in the order of [`Ledger::energy`]. Accounts of parts that a
 /// machine lacks are zero.
 pub const ENERGY_ACCOUNTS: [&str; 22] = [
     "chamber_a",
@@ -52,7 +52,7 @@ pub const ENERGY_ACCOUNTS: [&str; 22] = [
     "rig",
 ];
 
-/// The content of a component, its inflow and its losses.
+/// Content of a component, its inflow and its losses.
 ///
 /// ```text
 /// d(stored)/dt = inflow - lost
@@ -62,8 +62,8 @@ pub const ENERGY_ACCOUNTS: [&str; 22] = [
 /// definition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Account<T> {
-    /// The content of the component: J, or m3 of oil, which is counted at zero gauge pressure
-    /// except for the volumes of lines and gas.
+    /// Content of the component: J, or m3 of oil, which is counted at zero gauge pressure except
+    /// for the volumes of lines and gas.
     pub stored: T,
     /// Inflow through its ports, in W or m3/s.
     pub inflow: T,
@@ -207,7 +207,7 @@ impl<S: Scalar> Machine<S> {
             load,
         ];
         // Only the flows across the rig's border: flow work and compression energy of the oil, the
-        // work of the external force, and that on the ground.
+        // work of the external force, and the work on the ground.
         let carried = side_a.compression() * into_a
             + side_b.compression() * into_b
             + supply.line.compression() * supply.line_flow();
@@ -222,7 +222,7 @@ impl<S: Scalar> Machine<S> {
         [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, rig]
     }
 
-    /// A valve between the chambers: heat of its restrictor, and what its capacity holds.
+    /// Valve between the chambers: heat of its restrictor, and content of its capacity.
     fn cross_port_account<T: Scalar + From<S>>(&self, now: &Instant<T>) -> Account<T> {
         let (flow, [side_a, side_b]) = (now.flows.cross_port, &now.sides);
         let drop = side_a.pressure - side_b.pressure;
@@ -269,7 +269,7 @@ impl<S: Scalar> Machine<S> {
         ]
     }
 
-    /// Power that the load hands on to its ground, in W.
+    /// Power from the load to its ground, W.
     fn on_ground<T: Scalar + From<S>>(&self, now: &Instant<T>) -> T {
         if self.load.moves() {
             let [_, to_ground, _] = self.load.convert(&mut constant::<S, T>).powers(&now.load, &now.ground);
