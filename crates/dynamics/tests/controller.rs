@@ -67,7 +67,7 @@ fn a_sampled_compensator_is_taken_as_it_is_and_refused_at_another_sample_time() 
     let controller = controller(vec![Element::General(function)], Discretization::Tustin);
     let sampled = controller.sampled(0.01).unwrap();
     let mut state = sampled.at_rest();
-    // ORIGIN: analytic, 0.5/(z - 0.5) answers a step with 0, 1/2, 3/4, 7/8
+    // ORIGIN: analytic, 0.5/(z - 0.5) responds to a step with 0, 1/2, 3/4, 7/8
     let answers = [1.0; 4].map(|reference| sampled.step(&mut state, reference, 0.0).command);
     assert_eq!(answers, [0.0, 0.5, 0.75, 0.875]);
     assert!(controller.sampled(0.02).is_err());

@@ -83,7 +83,7 @@ fn random_sets_over_nine_decades() {
         let count = 2 + (seeded.next() * 5.0).floor() as usize;
         let mut truth = Vec::new();
         for slot in 0..count {
-            // slots are disjoint in magnitude, so that conditioning comes from the spread alone
+            // slots are disjoint in magnitude, so that conditioning comes only from the spread
             let size = pow(10.0, -3.0 + 9.0 * (slot as f64 + 0.7 * seeded.next()) / count as f64);
             if seeded.next() < 0.5 {
                 truth.push(real(if seeded.next() < 0.8 { -size } else { size }));

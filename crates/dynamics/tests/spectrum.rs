@@ -209,7 +209,7 @@ fn discs_of_segments_hold_the_truth_in_95_of_100_cases() {
     assert!((179..=198).contains(&held), "{held} of 200");
 }
 
-/// Without any relation the squared coherence exceeds its threshold in one case out of twenty.
+/// Squared coherence of unrelated signals exceeds its threshold in one case out of twenty.
 #[test]
 fn signals_without_relation_are_coherent_in_5_of_100_cases() {
     let blocks = segments([&noise(21, 256 * 200), &noise(22, 256 * 200)], STEP, 256 * 20).unwrap();

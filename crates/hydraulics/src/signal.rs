@@ -1,12 +1,12 @@
-//! The signals of a rig under control: the columns of a simulation's table, and what recordings of
-//! a rig are compared with.
+//! Signals of a rig under control: the columns of a simulation's table, and the quantities compared
+//! with recordings of a rig.
 
 use phea_quantity::{
     ANGLE, ANGULAR_VELOCITY, Dimension, FLOW, FORCE, LENGTH, POWER, PRESSURE, RATIO, TEMPERATURE, TIME,
     TORQUE, VELOCITY, VOLTAGE,
 };
 
-/// The part of a rig that has a signal; a rig without that part lacks the signal.
+/// Part of a rig that has a signal; a rig without that part lacks the signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SignalPart {
     /// Every rig.
@@ -25,18 +25,18 @@ pub enum SignalPart {
     GasPressure(usize),
     /// Gas that exchanges heat, at chamber A or B.
     HeatedGas(usize),
-    /// Such gas with a wall whose temperature is stated.
+    /// Heat-exchanging gas with a wall whose temperature is stated.
     GasTemperature(usize),
-    /// A force from outside on a load that slides.
+    /// External force on a load that slides.
     ExternalForce,
-    /// A torque from outside on a load that turns behind a linkage.
+    /// External torque on a load that turns behind a linkage.
     ExternalTorque,
 }
 
 /// Declares the signals: one row each, in the order of a table's columns.
 macro_rules! signals {
     ($($(#[$attribute:meta])* $signal:ident = $name:literal, $dimension:ident, $part:expr;)*) => {
-        /// A signal of a rig with its controller. Forces, positions and velocities are positive
+        /// Signal of a rig with its controller. Forces, positions and velocities are positive
         /// towards the B end, flows are positive from the valve into the line, pressures are gauge.
         /// A rig with a motor has torques in N m in place of forces, and angles in rad in place of
         /// positions.
@@ -57,21 +57,21 @@ macro_rules! signals {
             /// All signals in the order of a table's columns.
             pub const ALL: &[Signal] = &[$(Signal::$signal),*];
 
-            /// The name of its column, which ends in its SI unit.
+            /// Name of its column, which ends in its SI unit.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Signal::$signal => $name,)*
                 }
             }
 
-            /// Its dimension.
+            /// Dimension of the signal.
             pub const fn dimension(self) -> &'static Dimension {
                 match self {
                     $(Signal::$signal => &$dimension,)*
                 }
             }
 
-            /// The part of the rig that it belongs to.
+            /// Part of the rig to which it belongs.
             pub const fn part(self) -> SignalPart {
                 match self {
                     $(Signal::$signal => $part,)*
@@ -89,7 +89,7 @@ signals! {
     Reference = "reference_n", FORCE, SignalPart::Rig;
     /// Force of the rod on the load; with a series element the force that its sensor measures.
     Force = "force_n", FORCE, SignalPart::Rig;
-    /// Command that the controller puts out, or the command of an open loop.
+    /// Output command of the controller, or the command of an open loop.
     Control = "control_v", VOLTAGE, SignalPart::Rig;
     /// Position of the spool.
     Spool = "spool_v", VOLTAGE, SignalPart::Rig;
@@ -161,24 +161,25 @@ signals! {
     GasTemperatureA = "gas_temperature_a_degC", TEMPERATURE, SignalPart::GasTemperature(0);
     /// Temperature of the gas at chamber B.
     GasTemperatureB = "gas_temperature_b_degC", TEMPERATURE, SignalPart::GasTemperature(1);
-    /// Command as it reaches the valve, after the delay of the loop.
+    /// Command on arrival at the valve, after the delay of the loop.
     Command = "command_v", VOLTAGE, SignalPart::Rig;
-    /// Command that the controller would put out without its limit.
+    /// Command of the controller without its limit.
     UnlimitedControl = "unlimited_control_v", VOLTAGE, SignalPart::Rig;
-    /// Part of the command that the controller's integral part holds.
+    /// Part of the command held by the controller's integral part.
     Integral = "integral_v", VOLTAGE, SignalPart::Rig;
-    /// Force as the controller measures it, after the sensor, with what a virtual impedance adds.
+    /// Force measured by the controller, after the sensor, including the force of a virtual
+    /// impedance.
     Measurement = "measurement_n", FORCE, SignalPart::Rig;
     /// Force that a virtual impedance adds before the sensor: the reference yields by it.
     VirtualForce = "virtual_force_n", FORCE, SignalPart::VirtualImpedance;
-    /// Force from outside on the load.
+    /// External force on the load.
     ExternalForce = "external_force_n", FORCE, SignalPart::ExternalForce;
-    /// Torque from outside on a load that turns behind a linkage.
+    /// External torque on a load that turns behind a linkage.
     ExternalTorque = "external_torque_n_m", TORQUE, SignalPart::ExternalTorque;
 }
 
 impl Signal {
-    /// The signal with this name.
+    /// Signal with this name.
     pub fn named(name: &str) -> Option<Signal> {
         Signal::ALL.iter().copied().find(|signal| signal.name() == name)
     }

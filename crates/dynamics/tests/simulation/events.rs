@@ -102,7 +102,7 @@ fn at_and_between_breaks() {
     assert_eq!(times, [(0.7, true), (1.1, false)]);
 }
 
-/// Without a change of sign no event is reported; an indicator that is positive from the start has
+/// No event is reported without a change of sign; an indicator that is positive from the start has
 /// not become positive.
 #[test]
 fn nothing_happens() {

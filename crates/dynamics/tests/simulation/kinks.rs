@@ -59,7 +59,7 @@ impl Law for Marked {
     }
 }
 
-/// With a listed kink no step errs by more than a few tolerances, for any position of the kink,
+/// No step with a listed kink errs by more than a few tolerances, for any position of the kink,
 /// including first attempts.
 #[test]
 fn a_known_kink_is_met_by_every_step() {

@@ -211,7 +211,7 @@ fn neighbours_make_no_difference() {
     neighbours(&cases(), 1);
 }
 
-/// Without waves and with few rows, samples are connected by precomputed matrices.
+/// Samples are connected by precomputed matrices if there are no waves and few rows.
 #[test]
 fn neighbours_make_no_difference_from_sample_to_sample() {
     let mut cases = cases();
@@ -223,8 +223,8 @@ fn neighbours_make_no_difference_from_sample_to_sample() {
     neighbours(&cases, 0);
 }
 
-/// With commands that jump at every sample, precomputed matrices are sometimes rejected, while
-/// neighbours repeat steps.
+/// Precomputed matrices are sometimes rejected if commands jump at every sample, while neighbours
+/// repeat steps.
 #[test]
 fn neighbours_make_no_difference_where_commands_jump() {
     let mut cases = cases();

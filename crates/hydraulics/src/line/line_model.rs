@@ -24,12 +24,12 @@ pub enum LineModel {
         /// Relaxation time of a creeping wall, s; hoses only.
         relaxation_time: Option<f64>,
     },
-    /// Single wave in each direction.
+    /// Wave model with one wave in each direction.
     TransmissionLine {
         /// Fraction of the compliance at each end, normally [`super::END_SHARE`].
         end_share: f64,
     },
-    /// Two waves in each direction. Hoses only.
+    /// Wave model with two waves in each direction. Hoses only.
     TwoWave {
         /// Fraction of the compliance at each end, normally [`super::END_SHARE`].
         end_share: f64,

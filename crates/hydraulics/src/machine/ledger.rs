@@ -90,8 +90,8 @@ fn total<T: Scalar>(accounts: &[Account<T>], of: fn(&Account<T>) -> T) -> T {
 }
 
 impl<S: Scalar> Machine<S> {
-    /// The accounts of oil and energy; `None` where waves travel along a line: their content in
-    /// transit is not part of states and inputs.
+    /// Accounts of oil and energy; `None` if waves travel along a line: their content in transit is
+    /// not part of states and inputs.
     ///
     /// ```text
     ///               oil                        energy
@@ -99,23 +99,22 @@ impl<S: Scalar> Machine<S> {
     /// line          sum C p                    sum C p^2/2 + I q^2/2        enters as q and q p
     /// accumulator   V_0 - V_gas                gas at gauge pressure        enters as q and q p
     ///   with heat   V_0 - V_gas                internal energy less p_atm V   enters as q and q p, leaves as heat to the wall
-    ///   adjusted    V_0 - V_gas                what the oil can get back    enters as q and q p, and by the power of its adjustment
+    ///   adjusted    V_0 - V_gas                oil's recoverable energy       enters as q and q p, and by the power of its adjustment
     /// neck          C p                        I q^2/2 + C p^2/2            enters as q and q p
-    ///   a valve     C p                        C p^2/2                      likewise: what it throttles is lost there
+    ///   a valve     C p                        C p^2/2                      likewise: its throttling loss is lost there
     /// ```
     ///
     /// rho is the density over that at zero gauge pressure and w the energy of compression per
     /// volume: exp(p/beta) and beta (exp(p/beta) - 1 - p/beta) with a constant modulus; with
-    /// entrained air integrals over the pressure, of which rho alone has a closed form, and which
-    /// are taken by a fixed rule of Gauss and Legendre. Without air a side's volume is its
-    /// compliance times the modulus of its chamber, so that a hose counts as the oil that would
-    /// yield as much; with air it is the fluid's own, and the oil that yielding walls take is
-    /// added.
+    /// entrained air, integrals over the pressure, of which only rho has a closed form, evaluated
+    /// by a fixed Gauss-Legendre rule. Without air a side's volume is its compliance times the
+    /// modulus of its chamber, so that a hose counts as the oil of equal compliance; with air it is
+    /// the volume of the fluid, and the oil taken up by yielding walls is added.
     ///
     /// Edges, lines and gas pass on volumes: the difference between the densities at which such an
     /// element receives and delivers oil is lost to the rig's account of oil, q times the
-    /// difference of both densities, at most p_S/beta of the flow where no air is. A constant
-    /// supply has no content, and the density of side A.
+    /// difference of both densities, at most p_S/beta of the flow without air. A constant supply
+    /// has no content, and the density of side A.
     pub fn ledger<T: Scalar + From<S>>(&self, state: &[T], inputs: &[T]) -> Option<Ledger<T>> {
         let instant = self.instant(state, inputs)?;
         Some(Ledger { oil: self.oil(&instant), energy: self.energy(&instant) })

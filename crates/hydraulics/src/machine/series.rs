@@ -11,7 +11,7 @@ use crate::series::{ForceFrom, MovingSeries, OilColumn, SeriesSpring};
 /// that of the spring.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum SeriesStates {
-    /// Without a spring.
+    /// No spring.
     #[default]
     Absent,
     /// Spring with neither damper nor mass: no additional states.

@@ -36,8 +36,8 @@ pub struct InitialCondition {
     /// Initial position in m and velocity in m/s of the load's ground, in rad and rad/s behind a
     /// linkage: where a prescribed motion starts.
     pub inputs: [f64; 2],
-    /// External force on the load before the start, zero, N; `None` for a machine without that
-    /// input.
+    /// External force on the load before the start, which is zero, N; `None` for a machine without
+    /// that input.
     pub external_force: Option<f64>,
     /// Change of the setting of the accumulators before the start, at rest; `None` for a machine
     /// without that input.

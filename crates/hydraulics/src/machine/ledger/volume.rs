@@ -206,7 +206,7 @@ mod tests {
         })
     }
 
-    /// Without a wall the integral of the volumes of liquid and gas is elementary.
+    /// Rigid wall: the integral of the volumes of liquid and gas is elementary.
     #[test]
     fn energy_of_the_mixture_is_that_of_its_liquid_and_its_gas() {
         let atmosphere = ATMOSPHERIC_PRESSURE_ABSOLUTE;
@@ -226,7 +226,7 @@ mod tests {
         }
     }
 
-    /// Without air the mixture has the constant modulus of liquid and wall in series.
+    /// Mixture without air: it has the constant modulus of liquid and wall in series.
     #[test]
     fn a_mixture_without_air_has_a_constant_modulus() {
         let wall = 1.0 / 3e8;
