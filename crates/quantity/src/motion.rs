@@ -1,9 +1,9 @@
-//! Whether a rig moves along a line or turns: the one place that knows what this makes of
-//! dimensions, units and names for programs.
+//! Linear or rotary motion of a rig: the one place that defines its effect on dimensions, units and
+//! names for programs.
 //!
-//! The equations of both are the same: with its displacement in place of the areas, a motor's angle
-//! is its position, its torque its force and its inertia its mass. Programs and equations therefore
-//! use one set of names inside; what is read and written asks here.
+//! The equations of both are identical: with its displacement in place of the areas, a motor's
+//! angle is its position, its torque its force and its inertia its mass. Programs and equations
+//! therefore use one set of names inside; input and output are translated here.
 
 mod formulae;
 mod names;
@@ -13,7 +13,7 @@ use std::borrow::Cow;
 use crate::dimension::*;
 use crate::display_unit::DisplayUnit;
 
-/// The motion of a rig.
+/// Motion of a rig.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MotionKind {
     /// A cylinder: positions in m, forces in N.
@@ -23,7 +23,7 @@ pub enum MotionKind {
     Rotary,
 }
 
-/// Quantities of linear motion and those of rotary motion in their place.
+/// Quantities of linear motion, and their rotary counterparts.
 static DIMENSIONS_OF_MOTION: [(&Dimension, &Dimension); 9] = [
     (&FORCE, &TORQUE),
     (&LENGTH, &ANGLE),
@@ -49,12 +49,12 @@ static UNITS_OF_MOTION: [(DisplayUnit, DisplayUnit); 7] = [
 ];
 
 impl MotionKind {
-    /// True if it turns.
+    /// True if the rig turns.
     pub fn is_rotary(self) -> bool {
         self == MotionKind::Rotary
     }
 
-    /// The dimension of a quantity of the motion, stated as that of linear motion.
+    /// Dimension of a quantity of the motion, given that of linear motion.
     ///
     /// # Example
     /// ```
@@ -69,7 +69,7 @@ impl MotionKind {
         pair.map_or(of, |(_, rotary)| rotary)
     }
 
-    /// The unit in which a quantity of the motion is shown, stated as that of linear motion.
+    /// Display unit of a quantity of the motion, given that of linear motion.
     ///
     /// # Example
     /// ```
@@ -83,7 +83,7 @@ impl MotionKind {
         pair.map_or(of, |(_, rotary)| *rotary)
     }
 
-    /// An SI unit of a quantity of the motion, stated as that of linear motion.
+    /// SI unit of a quantity of the motion, given that of linear motion.
     ///
     /// # Example
     /// ```
@@ -95,8 +95,8 @@ impl MotionKind {
         if self.is_rotary() { names::symbol(of) } else { of }
     }
 
-    /// The name of a quantity for programs, stated as that of linear motion: a key of JSON, a
-    /// column of a table.
+    /// Name of a quantity for programs, given that of linear motion: a key of JSON, a column of a
+    /// table.
     ///
     /// # Example
     /// ```
@@ -110,7 +110,7 @@ impl MotionKind {
         if self.is_rotary() { names::name(of) } else { Cow::Borrowed(of) }
     }
 
-    /// A formula or a symbol, stated as that of linear motion.
+    /// Formula or symbol, given that of linear motion.
     ///
     /// # Example
     /// ```

@@ -1,9 +1,9 @@
-//! Symbols and equations of a cylinder, and those of a motor in their place.
+//! Symbols and equations of a cylinder, and their counterparts for a motor.
 
 use std::borrow::Cow;
 
-/// Symbols and what they make together, each as it stands between characters of other kinds; the
-/// longer before those that they begin with. A motor has one displacement for both areas.
+/// Symbols and their combinations, each delimited by characters of other kinds; a longer one
+/// precedes its own beginnings. A motor has one displacement for both areas.
 static OF_A_MOTOR: [(&str, &str); 30] = [
     ("A_u (A_A K_{qA}/C_A + A_B K_{qB}/C_B)", "D^2 (K_{qA}/C_A + K_{qB}/C_B)"),
     ("A_u^2/K_c = A_A^2/K_{cA} + A_B^2/K_{cB}", "1/K_c = 1/K_{cA} + 1/K_{cB}"),
@@ -37,7 +37,7 @@ static OF_A_MOTOR: [(&str, &str); 30] = [
     ("M", "J"),
 ];
 
-/// The same formula in the symbols of a motor.
+/// Formula in the symbols of a motor.
 pub(super) fn of_a_motor(formula: &str) -> Cow<'_, str> {
     let (mut out, mut at) = (String::with_capacity(formula.len()), 0);
     while let Some(rest) = formula.get(at..).filter(|rest| !rest.is_empty()) {
@@ -60,7 +60,7 @@ pub(super) fn of_a_motor(formula: &str) -> Cow<'_, str> {
     if out == formula { Cow::Borrowed(formula) } else { Cow::Owned(out) }
 }
 
-/// True if a character goes on with the symbol next to it.
+/// True if a character belongs to the adjacent symbol.
 fn is_of_symbol(letter: char) -> bool {
     letter.is_alphanumeric() || matches!(letter, '_' | '{' | '}' | '\'')
 }

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-/// SI units of linear motion, and those of rotary motion in their place.
+/// SI units of linear motion, and their rotary counterparts.
 static SYMBOLS: [(&str, &str); 10] = [
     ("N", "N.m"),
     ("m", "rad"),
@@ -16,7 +16,7 @@ static SYMBOLS: [(&str, &str); 10] = [
     ("m2", "m3/rad"),
 ];
 
-/// Endings of names that state a unit, the longer before those that they end in.
+/// Endings of names that state a unit; a longer one precedes its own endings.
 static ENDINGS: [(&str, &str); 8] = [
     ("_v_per_n", "_v_per_n_m"),
     ("_n_s_per_m", "_n_m_s_per_rad"),
@@ -32,8 +32,8 @@ static ENDINGS: [(&str, &str); 8] = [
 static WORDS: [(&str, &str); 4] =
     [("force", "torque"), ("position", "angle"), ("distance", "angle"), ("mass", "inertia")];
 
-/// Beginnings of the names of lengths, speeds and masses that are those of oil, hoses, pipes and
-/// housings, whatever the rig does.
+/// Beginnings of the names of lengths, speeds and masses that belong to oil, hoses, pipes and
+/// housings, for either motion.
 static OF_OIL: [&str; 12] = [
     "actuator_length",
     "bore",
@@ -54,7 +54,7 @@ pub(super) fn symbol(of: &'static str) -> &'static str {
 }
 
 pub(super) fn name(of: &str) -> Cow<'_, str> {
-    // a reason follows the name of what it explains
+    // a reason follows the name of the value that it explains
     let (bare, reason) = of.strip_suffix("_reason").map_or((of, ""), |bare| (bare, "_reason"));
     let is_of_oil = OF_OIL.iter().any(|beginning| of.starts_with(beginning));
     let ending = ENDINGS.iter().filter(|_| !is_of_oil).find_map(|(linear, rotary)| {
