@@ -1,4 +1,4 @@
-//! Poles over a number that is swept: how fast, how damped, and the stiffness that makes them so.
+//! Poles over a swept number: their frequency, damping, and the stiffness behind them.
 
 use num_complex::Complex64;
 use phea_dynamics::portable::magnitude;
@@ -11,31 +11,31 @@ use super::series::series_stroke;
 use super::{Figure, Words};
 use phea_quantity::DisplayUnit;
 
-/// What is known at one value.
+/// Results at one value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PoleSweepPoint {
-    /// SI.
+    /// Value, SI.
     pub value: f64,
-    /// rad/s.
+    /// Poles, rad/s.
     pub poles: Vec<Complex64>,
-    /// Least and greatest over the stroke, N/m.
+    /// Least and greatest stiffness over the stroke, N/m.
     pub stiffness_n_per_m: [f64; 2],
-    /// Bandwidth of the closed loop, rad/s, where there is one.
+    /// Bandwidth of the closed loop, rad/s, if there is one.
     pub bandwidth_rad_per_s: Option<f64>,
 }
 
 /// Poles, damping and stiffness over a number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoleSweep {
-    /// What is swept.
+    /// Swept quantity.
     pub quantity: String,
-    /// Its unit.
+    /// Unit of the quantity.
     pub unit: DisplayUnit,
-    /// The unit of K_H.
+    /// Unit of K_H.
     pub stiffness_unit: DisplayUnit,
     /// True if its axis is logarithmic.
     pub by_ratio: bool,
-    /// In order.
+    /// Points, in order.
     pub points: Vec<PoleSweepPoint>,
 }
 
@@ -57,7 +57,7 @@ impl PoleSweep {
         words.with_plot(x, panels, self.legend())
     }
 
-    /// Of each value, the pairs of the upper half plane.
+    /// Pairs of the upper half plane for each value.
     fn each(&self) -> impl Iterator<Item = (f64, Complex64)> {
         self.points.iter().flat_map(|point| {
             let upper = point.poles.iter().filter(|pole| pole.im >= 0.0);
@@ -92,7 +92,7 @@ impl PoleSweep {
         let ratios: Vec<(f64, f64)> =
             of_pair.map(|(value, pole)| (value, -pole.re / magnitude(pole))).collect();
         let values = ratios.iter().map(|point| point.1);
-        // a ringing pair and a well damped one lie decades apart; a pair that grows has no
+        // an oscillating pair and a well damped one differ by decades; a growing pair has no
         // logarithm
         let y = match ratios.iter().all(|point| point.1 > 0.0) {
             true => Axis::fit_logarithmic("Damping ratio ζ", values),
