@@ -99,7 +99,7 @@ impl<S: Scalar> Machine<S> {
     /// line          sum C p                    sum C p^2/2 + I q^2/2        enters as q and q p
     /// accumulator   V_0 - V_gas                gas at gauge pressure        enters as q and q p
     ///   with heat   V_0 - V_gas                internal energy less p_atm V   enters as q and q p, leaves as heat to the wall
-    ///   adjusted    V_0 - V_gas                oil's recoverable energy       enters as q and q p, and by the power of its adjustment
+    ///   adjusted    V_0 - V_gas                oil's recoverable energy     enters as q and q p, and by the power of its adjustment
     /// neck          C p                        I q^2/2 + C p^2/2            enters as q and q p
     ///   a valve     C p                        C p^2/2                      likewise: its throttling loss is lost there
     /// ```
