@@ -1,4 +1,4 @@
-//! The closed loops around a plant whose magnitudes specifications limit.
+//! Closed loops around a plant, whose magnitudes specifications limit.
 
 use num_complex::Complex64;
 

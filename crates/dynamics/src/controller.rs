@@ -37,13 +37,13 @@ pub struct Timing {
     pub discretization: Discretization,
     /// True if the prefilter acts on the reference before it is sampled, in continuous time.
     pub continuous_prefilter: bool,
-    /// Gain of the feed-forward of a disturbance's rate, sampled and delayed as the command is: K
-    /// in U = G (F R - Y) + K H_v s D. Zero without feed-forward.
+    /// Gain of the feed-forward of a disturbance's rate, sampled and delayed like the command: K in
+    /// U = G (F R - Y) + K H_v s D. Zero without feed-forward.
     pub rate_feed_forward: f64,
-    /// H_v: filter and dead time of the sensor of that rate, before the samples.
+    /// Sensor H_v of that rate, its filter and dead time, before the sampler.
     pub rate_sensor: RateSensor,
-    /// H of a second signal that is fed back, sampled and delayed as the command is: U = G (F R -
-    /// Y) - H P. A continuous loop has it in its plant.
+    /// Transfer function H of a second signal that is fed back, sampled and delayed like the
+    /// command: U = G (F R - Y) - H P. In a continuous loop it is part of the plant.
     pub inner_feedback: InnerFeedback,
 }
 
@@ -58,7 +58,7 @@ impl Timing {
     }
 }
 
-/// The behaviour of the integral part while the command is limited.
+/// Behaviour of the integral part while the command is limited.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AntiWindup {
     /// The integral part continues to integrate.

@@ -112,8 +112,8 @@ pub fn loss(residual: f64, beyond: f64) -> f64 {
 /// Number of rounds in which the likeliest scale is found.
 const SCALE_ROUNDS: usize = 30;
 
-/// The contribution of residuals to the negative logarithm of a likelihood, at their likeliest
-/// scale s, which is at least `least`. A constant is left out.
+/// Contribution of residuals to the negative logarithm of a likelihood, at their likeliest scale s,
+/// which is at least `least`. A constant is omitted.
 ///
 /// ```text
 /// n ln s + sum rho(r/s)        s^2 = sum psi(r/s) r s/n

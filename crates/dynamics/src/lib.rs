@@ -13,8 +13,8 @@
 //! recorded signals -> Blocks -> SpectralPoint                                  measured frequency responses
 //! ```
 //!
-//! SI units inside, angles in radians, frequencies in rad/s, polynomials with the highest power
-//! first.
+//! Quantities are in SI units, angles in radians, frequencies in rad/s, polynomials with the
+//! highest power first.
 
 pub mod analytic;
 pub mod closed_loop;

@@ -72,7 +72,7 @@ const MAXIMUM_DELAY_STATES: f64 = 200.0;
 /// Error for a linear system that cannot be built or computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LinearError {
-    /// A number of the input is infinite or not a number.
+    /// A number of the input that is infinite or NaN.
     #[error("{what} is not a finite number")]
     NotFinite {
         /// Name of the number.

@@ -1,4 +1,4 @@
-//! Transcendental functions with the same bits on every machine.
+//! Transcendental functions that are bit-identical on every machine.
 //!
 //! The platform's mathematical library differs between operating systems and versions; `libm` is
 //! one implementation in Rust, used both natively and in WebAssembly. The lint

@@ -72,8 +72,8 @@ mod tests {
         assert!(mean(3).abs() < 4.0 * error && (mean(4) - 3.0).abs() < 10.0 * error);
     }
 
-    /// The first numbers of SplitMix64 from seed 1234567, as its reference implementation prints
-    /// them.
+    /// The first numbers of SplitMix64 from seed 1234567, as printed by its reference
+    /// implementation.
     #[test]
     fn the_generator_is_the_published_one() {
         // ORIGIN: paper, Steele, Lea and Flood (2014): outputs of the reference implementation for

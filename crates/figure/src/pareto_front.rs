@@ -33,7 +33,7 @@ pub struct ParetoPoint {
 /// Alternative.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParetoCurve {
-    /// Its name.
+    /// Name of the alternative.
     pub name: String,
     /// Points in the order of the swept number.
     pub points: Vec<ParetoPoint>,

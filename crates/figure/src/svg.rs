@@ -20,7 +20,7 @@ pub enum SvgDestination {
 /// Names for readers and screen readers.
 #[derive(Clone, Copy, Debug)]
 pub struct SvgNames<'a> {
-    /// Identifier, unique on a page; letters, digits and hyphens survive.
+    /// Identifier, unique on a page; only letters, digits and hyphens are kept.
     pub identifier: &'a str,
     /// Short title.
     pub title: &'a str,

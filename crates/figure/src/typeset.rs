@@ -34,7 +34,7 @@ const LOWERED: f64 = 0.2;
 /// Height of a piece of text relative to its line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
-    /// On the line.
+    /// Ordinary text on the line.
     Line,
     /// Below.
     Subscript,

@@ -36,8 +36,7 @@ pub struct Cylinder<S = f64> {
     /// Laminar leakage of each chamber to the tank per pressure above tank pressure, m3/(s Pa), as
     /// of a motor through its case; if absent, nothing leaks to the tank.
     pub external_leakage: Option<S>,
-    /// Contact at both ends of the stroke. If absent, reaching an end is reported, but nothing
-    /// stops the piston.
+    /// Contact at both ends of the stroke. If absent, the ends are only reported.
     pub end_stops: Option<Contact<S>>,
 }
 

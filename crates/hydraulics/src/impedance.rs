@@ -23,7 +23,8 @@ use crate::linear::LinearModel;
 /// Load path without the zero at the origin that makes Z finite there.
 ///
 /// # Example
-/// A slow load feels the damper A_u^2/K_c of the valve's leakage, and the viscous friction.
+/// The impedance to a slow load is the damper A_u^2/K_c of the valve's leakage plus the viscous
+/// friction:
 /// ```
 /// use phea_hydraulics::impedance::open_loop_impedance;
 /// use phea_hydraulics::linear::linear_model;

@@ -1,9 +1,9 @@
 //! Rig of Ledezma (2019) as a reference problem: one set of numbers for examples, tests and
 //! benches.
 //!
-//! Table A.1 for the components, Table 5.1 for the valve's edges, section 6.4.1 for the hose. What
-//! the thesis does not print (fluid modulus, density, viscosity, friction beyond f_v, the
-//! transition pressure) is chosen here: 1.45 GPa reproduces its tables.
+//! Table A.1 for the components, Table 5.1 for the valve's edges, section 6.4.1 for the hose.
+//! Values missing in the thesis (fluid modulus, density, viscosity, friction beyond f_v, the
+//! transition pressure) are chosen here: 1.45 GPa reproduces its tables.
 
 use crate::actuator::Components;
 use crate::contact::Contact;

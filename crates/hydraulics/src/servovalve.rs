@@ -120,8 +120,8 @@ pub struct Servovalve<S = f64> {
     pub transition_pressure: S,
 }
 
-/// Leakage of an edge of an ideal valve, m3/(s Pa^0.5): a part in 10^7 of that of ordinary edges.
-/// The spool that holds a load is then 1e-9 of its travel from null, which rounding resolves.
+/// Leakage of an edge of an ideal valve, m3/(s Pa^0.5): 10^-7 of that of ordinary edges. The spool
+/// that holds a load is then 1e-9 of its travel from null, which rounding resolves.
 const VANISHING: f64 = 1e-16;
 
 /// Pressures at the valve's supply and tank ports, Pa gauge.

@@ -24,7 +24,7 @@ pub struct DigitalMemory {
 /// Initial state of a sampled controller.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Waking {
-    /// At rest.
+    /// State of rest.
     AtRest,
     /// State that holds a command while its inputs are constant.
     Holding {

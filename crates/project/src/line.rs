@@ -44,14 +44,14 @@ pub enum Component {
     Hose {
         /// Name of the catalogue's hose, if it is from there.
         name: Option<String>,
-        /// Its data, from the catalogue or stated here.
+        /// Data of the hose, from the catalogue or stated here.
         properties: HoseProperties,
         /// Length of this one line, m.
         length: f64,
     },
     /// Pipe.
     Pipe {
-        /// Its dimensions and wall.
+        /// Dimensions and wall.
         pipe: DeclaredPipe,
         /// Length of this one line, m.
         length: f64,

@@ -38,7 +38,7 @@ pub struct KeptNumber {
 pub enum KeptReason {
     /// The recordings do not determine it.
     NotIdentifiable,
-    /// Its interval contains zero.
+    /// The confidence interval contains zero.
     MayVanish,
 }
 

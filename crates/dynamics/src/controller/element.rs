@@ -48,7 +48,7 @@ pub enum Element {
     Notch {
         /// w
         natural_frequency: f64,
-        /// zeta_z, the depth is zeta_z/zeta_p
+        /// Damping ratio zeta_z; the depth is zeta_z/zeta_p.
         zero_damping_ratio: f64,
         /// zeta_p
         pole_damping_ratio: f64,
@@ -217,7 +217,7 @@ mod tests {
         element.transfer_function().unwrap().at_frequency(frequency)
     }
 
-    /// Each element against its formula at s = j w.
+    /// Elements agree with their formulas at s = j w.
     #[test]
     fn elements_are_their_formulas() {
         let w = 7.0;

@@ -15,7 +15,7 @@ use crate::portable::{ln, magnitude};
 /// `factor`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainMargin {
-    /// Phase crossover frequency in rad/s; zero or infinity where the response ends on the negative
+    /// Phase crossover frequency in rad/s; zero or infinity if the response ends on the negative
     /// axis.
     pub frequency_rad_per_s: f64,
     /// Factor 1/|L|. Above one, the gain may grow to this multiple; below one, it may fall to it.

@@ -42,7 +42,7 @@ const ROUNDING: f64 = 1e-15;
 /// eigenvector of H follows from the covariance.
 ///
 /// # Example
-/// The mean of n numbers is known to their deviation over the root of n.
+/// The standard deviation of the mean of n numbers is their deviation over the root of n.
 /// ```
 /// use phea_dynamics::least_squares::{Linearised, uncertainty};
 /// let residuals = vec![-1.0, 1.0, -1.0, 1.0, 1.0, -1.0, 1.0, -1.0];

@@ -1,4 +1,4 @@
-//! From continuous time to samples.
+//! Discretisation of continuous systems.
 
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
@@ -237,7 +237,7 @@ fn held_with_fraction(
             domain,
         );
     }
-    // the previous input acts until the fraction has passed, the present one for the rest
+    // the previous input acts until the fraction has passed, the current one for the rest
     let early = ExactStep::new(system.a(), system.b(), fraction_s);
     let rest_s = sample_time_s - fraction_s;
     let other = (rest_s != fraction_s).then(|| ExactStep::new(system.a(), system.b(), rest_s));

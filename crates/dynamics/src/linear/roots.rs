@@ -111,7 +111,7 @@ pub(crate) fn near(polynomial: &Polynomial, guesses: &[Complex64]) -> Option<Vec
 }
 
 /// Moves the roots of the closed upper half plane, and their mirror images with them, until each is
-/// at the rounding level of its residual or moves no more; a real root stays real, and a pair must
+/// at the rounding level of its residual or stops moving; a real root stays real, and a pair must
 /// stay one.
 fn settle<F: Fn(Complex64) -> LocalValue>(upper: &mut [Complex64], evaluate: F) -> Option<()> {
     let mut done = vec![false; upper.len()];
@@ -157,7 +157,7 @@ fn repulsion(upper: &[Complex64], index: usize) -> Complex64 {
     sum
 }
 
-/// Moves all roots until each is at the rounding level of its residual or moves no more.
+/// Moves all roots until each is at the rounding level of its residual or stops moving.
 fn sweep<F: Fn(Complex64) -> LocalValue>(roots: &mut [Complex64], evaluate: F) -> Option<()> {
     let mut done = vec![false; roots.len()];
     for _ in 0..MAXIMUM_SWEEPS {

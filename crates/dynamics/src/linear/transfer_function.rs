@@ -1,4 +1,4 @@
-//! Transfer functions kept as gain, zeros, poles and dead time.
+//! Transfer functions stored as gain, zeros, poles and dead time.
 
 use num_complex::Complex64;
 

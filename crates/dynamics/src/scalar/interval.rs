@@ -61,7 +61,8 @@ impl Interval {
         Interval { low: least, ..square }
     }
 
-    /// The lesser of a number of each; if the choice is not decided, tighter than both sides.
+    /// Minimum of one number from each interval; if the choice is not decided, tighter than both
+    /// sides.
     ///
     /// # Example
     /// ```
@@ -74,7 +75,7 @@ impl Interval {
         Interval { low: self.low.min(other.low), high: self.high.min(other.high) }
     }
 
-    /// The greater of a number of each.
+    /// Maximum of one number from each interval.
     pub fn greatest(self, other: Interval) -> Interval {
         Interval { low: self.low.max(other.low), high: self.high.max(other.high) }
     }

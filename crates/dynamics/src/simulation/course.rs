@@ -159,7 +159,7 @@ pub enum Status {
         /// Simulated time of the end, s.
         time_s: f64,
     },
-    /// A rate or an input was not a finite number.
+    /// A rate or an input was not finite.
     NotFinite {
         /// Simulated time of the end, s.
         time_s: f64,
@@ -225,7 +225,7 @@ pub struct Amplification {
     pub from_s: f64,
     /// Simulated time at which the growth was largest, s.
     pub until_s: f64,
-    /// Magnitude of the eigenvalue at that time, in rad/s; zero where no single mode grows.
+    /// Magnitude of the eigenvalue at that time, in rad/s; zero if no single mode grows.
     pub frequency_rad_per_s: f64,
     /// Cause of the growth.
     pub cause: GrowthCause,

@@ -17,7 +17,7 @@ pub enum Method {
     /// L-stable, linearly implicit, of order 5: for stiff systems. Rodas5P, Steinebach (2023).
     #[default]
     Rosenbrock,
-    /// Explicit, of order 5: an independent check where no mode is much faster than the motion of
+    /// Explicit, of order 5: an independent check if no mode is much faster than the motion of
     /// interest. Dormand and Prince (1980).
     DormandPrince,
 }

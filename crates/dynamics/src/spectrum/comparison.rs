@@ -36,7 +36,7 @@ impl ResponsePair {
     /// ```
     ///
     /// With lambda_i the part of sigma_i^2 in the true variance of the difference, and variances
-    /// that rest on q_1 and q_2 complex degrees of freedom, the probability of a distance above `c
+    /// with q_1 and q_2 complex degrees of freedom, the probability of a distance above `c
     /// (sigma_1^2 + sigma_2^2)` is the product of (1 + c lambda_i/q_i)^(-q_i). Its logarithm is
     /// convex in lambda, so that it is largest where one of them is 1: the probability is p where
     /// the noise of the estimate with the smaller q dominates, and less otherwise. The bound of the

@@ -14,7 +14,7 @@ pub struct SpectralPoint {
     pub coherence: f64,
     /// Standard deviation sigma of the response: the mean of |estimate - truth|^2 is sigma^2.
     pub deviation: f64,
-    /// Radius of the disc around the response that holds the truth with 95 % confidence.
+    /// Radius of the disc around the response that contains the true response with 95 % confidence.
     pub radius: f64,
     /// Complex degrees of freedom q of the deviation: the radius is that of F(2, 2 q).
     pub freedom: f64,
@@ -25,8 +25,8 @@ pub struct SpectralPoint {
 /// Probability outside the disc.
 pub(super) const OUTSIDE: f64 = 0.05;
 
-/// Radius of the disc that holds the truth with 95 % confidence, from the standard deviation of an
-/// estimate that rests on this many independent blocks.
+/// Radius of the disc that contains the true response with 95 % confidence, from the standard
+/// deviation of an estimate that is based on this many independent blocks.
 ///
 /// ```text
 /// r^2 = F(2, 2 n - 2) sigma^2        F(2, m) = (m/2) (0.05^(-2/m) - 1)

@@ -196,7 +196,7 @@ impl LineBand {
         self.lines - UNKNOWNS as f64
     }
 
-    /// True where two halves leave significantly less of either signal unexplained.
+    /// True if two halves leave significantly less of either signal unexplained.
     fn is_worse_than(&self, lower: &LineBand, upper: &LineBand) -> bool {
         let freedom = lower.freedom() + upper.freedom();
         let rests = self.rest.iter().zip(&lower.rest).zip(&upper.rest).zip(&self.squares);

@@ -241,8 +241,7 @@ impl Tip {
     }
 }
 
-/// Follows the links: first the edges that begin somewhere, then those that return to their
-/// beginning.
+/// Follows the links: first the open edges, then the closed ones.
 fn chained(ends: &[(f64, f64)], mut links: Vec<Option<Link>>) -> Vec<Boundary> {
     let mut is_reached = vec![false; ends.len()];
     for link in links.iter().flatten() {

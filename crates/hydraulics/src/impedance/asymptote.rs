@@ -57,8 +57,8 @@ pub fn compliance_hidden_above(hydraulic_stiffness: f64, moving_mass: f64) -> f6
     (hydraulic_stiffness / moving_mass).sqrt()
 }
 
-/// Asymptotes of the driving-point impedance, lowest frequency first; without a controller the open
-/// loop's.
+/// Asymptotes of the driving-point impedance, lowest frequency first; without a controller, those
+/// of the open loop.
 ///
 /// ```text
 /// low frequency   open loop             (A^2 + f_v K_c)/K_c                          a damper

@@ -58,8 +58,7 @@ pub const ENERGY_ACCOUNTS: [&str; 22] = [
 /// d(stored)/dt = inflow - lost
 /// ```
 ///
-/// Each of the three has its own formula, so that the sum over time is a check and not a
-/// definition.
+/// The three have separate formulas, so that the sum over time is a check and not a definition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Account<T> {
     /// Content of the component: J, or m3 of oil, which is counted at zero gauge pressure except

@@ -24,8 +24,9 @@ pub(super) const STICKING_STIFFNESS: f64 = 20.0;
 /// After a reversal far from null, y does not change while the command covers the threshold, and
 /// finally lags by the whole width (ISO 10770-1 on hysteresis and threshold).
 ///
-/// Measured on the valve of the thesis (section 5.2.1): null at 0.078 V rising and -0.05 V falling,
-/// so that the bias is 0.014 V and the width 0.128 V. The source does not state the threshold.
+/// Values measured on the valve of the thesis (section 5.2.1): null at 0.078 V rising and -0.05 V
+/// falling, so that the bias is 0.014 V and the width 0.128 V. The source does not state the
+/// threshold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpoolImperfection<S = f64> {
     /// Spool position U_0 at which the valve is at null, V.

@@ -105,8 +105,8 @@ pub(super) fn course(
     }
 }
 
-/// True if a setting leaves the range from 0 to 1. Signals with only steps and ramps have their
-/// extremes at a beginning or an end; for others a simulation reports it.
+/// Warns about a setting that leaves the range from 0 to 1. Signals with only steps and ramps have
+/// their extremes at a beginning or an end; for others a simulation reports it.
 fn leaves_its_way(signals: &[InputSignal], rest: f64, place: &str, check: &mut Check<'_, '_>) {
     let courses: Option<Vec<PartCourse>> = signals.iter().map(PartCourse::of).collect();
     let Some(courses) = courses else { return };

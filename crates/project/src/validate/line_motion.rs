@@ -50,7 +50,7 @@ fn fits(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
     }
 }
 
-/// Rejects creep of a wall that is as stiff at rest as in motion.
+/// Warns about creep of a wall that is as stiff at rest as in motion.
 fn creeps(line: &DeclaredLine, path: &str, check: &mut Check<'_, '_>) {
     let stiffening = line.dynamic_stiffening.map_or(1.0, |stiffening| stiffening.nominal);
     if line.motion.relaxation_time().is_some() && line.hose().is_some() && stiffening == 1.0 {
