@@ -5,7 +5,7 @@ use num_complex::Complex64;
 /// A closed loop, with S = 1/(1+L) and L = P G H.
 ///
 /// ```text
-/// X = A G^a F^f S,    A one of P H, 1, P, Pd, and a and f 0 or 1
+/// X = A G^a F^f S,    A one of P H, 1, P, Pd, a and f 0 or 1
 /// ```
 ///
 /// # Example

@@ -9,7 +9,7 @@
 //! System + InputSchedule + SimulationSettings -> simulate -> Trajectory, Outcome
 //! Plant -> Sensed -> CommandedPlant -> System                                  the closed loop
 //! f, ends, start -> x, f(x)                                                    the minimum of one variable
-//! residuals, derivatives -> Minimum -> Uncertainty                             what data determine
+//! residuals, derivatives -> Minimum -> Uncertainty                             variables determined by data
 //! recorded signals -> Blocks -> SpectralPoint                                  measured frequency responses
 //! ```
 //!

@@ -45,7 +45,7 @@ fn mixed(number: u64) -> u64 {
 /// Next number of a normal distribution with mean zero and standard deviation one.
 ///
 /// ```text
-/// n = sqrt(-2 ln(1 - s_1)) cos(2 pi s_2)           s_1, s_2 shares
+/// n = sqrt(-2 ln(1 - s_1)) cos(2 pi s_2)           s_1, s_2 uniform in [0, 1)
 /// ```
 ///
 /// Source: Box and Muller (1958).

@@ -131,7 +131,7 @@ pub trait System<S: Scalar> {
 /// Plant that a controller commands.
 ///
 /// ```text
-/// dy/dt = f(y, u, w),        F = h(y, w)          u the command, w other inputs, F what the controller measures
+/// dy/dt = f(y, u, w),        F = h(y, w)          u the command, w other inputs, F the measurement of the controller
 /// ```
 ///
 /// Unlike a [`System`] with one more input, its measurement, waves and indicators do not depend on

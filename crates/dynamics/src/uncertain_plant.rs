@@ -98,7 +98,7 @@ pub enum PlantMember {
 ///
 /// ```text
 /// P(s, p) = (n_0(p) s^k + ... + n_k(p)) / (d_0(p) s^m + ... + d_m(p)) e^(-s T(p)),     p in the box
-/// P(jw, p) = what a [`RespondingPlant`] says                                           p in the box
+/// P(jw, p) = response of a [`RespondingPlant`]                                           p in the box
 /// ```
 ///
 /// # Example

@@ -1,7 +1,7 @@
 //! Driving-point impedance: the resistance to a load that moves the actuator.
 //!
 //! ```text
-//! Z(s) = -F_e/(s X_L)                          passive: Re Z(jw) >= 0 (thesis 2.2, with the sign that makes it so)
+//! Z(s) = -F_e/(s X_L)                          passive: Re Z(jw) >= 0 (thesis 2.2, with this sign)
 //! open loop      Z = K_S (b_4 s^4 + ... + b_0)/D(s)                        second half of thesis (6.7)
 //! closed loop    Z = K_S (b_4 s^4 + ... + b_0)/(D(s) + G(s) c_0)           second half of thesis (6.8)
 //! ```

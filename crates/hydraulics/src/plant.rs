@@ -5,9 +5,9 @@
 //! D F_h = N_u U_sp - N_v s X                                             chambers: ChamberDynamics
 //! (M s^2 + f_v s + k_A) X = F_h - F_e, F_e = K_S (X - X_L)               piston and force sensor, thesis (6.6)
 //! X_L = X_0,   or   (m s^2 + c s + k) X_L = F_e + (c s + k) X_0          load: LinearLoad
-//! U_C -> U_C + K_x (1 + e) H_v s X_L - H (p_A - phi p_B)                 what is fed forward of the load's velocity, and back of
+//! U_C -> U_C + K_x (1 + e) H_v s X_L - H (p_A - phi p_B)                 feed-forward of the load's velocity, feedback of
 //!                                                                        the pressures: PressureFeedback
-//! F_e -> F_e + Z_v X_L                                                   what a virtual impedance adds to the output
+//! F_e -> F_e + Z_v X_L                                                   contribution of a virtual impedance to the output
 //! ```
 //!
 //! These are the equations of [`crate::machine`] differentiated, with friction as one slope f_v.
@@ -254,7 +254,7 @@ impl<S: Scalar> LinearPlant<S> {
     /// load see [`LinearSeries`]. With a virtual impedance the output is y:
     ///
     /// ```text
-    /// y/U_C = F_e/U_C + Z_v X_L/U_C,     y/X_0 = F_e/X_0 + Z_v X_L/X_0         X_L = X_0 where its motion is prescribed
+    /// y/U_C = F_e/U_C + Z_v X_L/U_C,     y/X_0 = F_e/X_0 + Z_v X_L/X_0         X_L = X_0 if its motion is prescribed
     /// ```
     ///
     /// # Example

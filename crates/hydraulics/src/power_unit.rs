@@ -8,7 +8,7 @@ use crate::parameter::{ParameterError, Problems};
 /// Source of the supply pressure. Units: m3/s, Pa, m3.
 ///
 /// ```text
-/// constant        p_S as stated, whatever the valve takes
+/// constant        p_S as stated, for any flow of the valve
 /// pump limited    C_S(p_S) dp_S/dt = q_pump - q_relief - q_supply
 ///                 q_relief = (q_pump/dp_o) (p_S - p_relief)+
 ///                 C_S = V/beta + C_acc,    C_acc = (V_0/(n P)) (P_0/P)^(1/n) above the precharge, 0 below

@@ -3,8 +3,8 @@
 //! ```text
 //! K_H = A_A^2/C_A(x) + A_B^2/C_B(x)                                    thesis (6.1)
 //! uniform:    C_A = (A_A x + V_A0 + V_line)/beta_e                     thesis (6.3): one modulus for line and chamber
-//! by_volume:  C_A = (A_A x + V_A0)/beta_0 + C_line                     each volume with the modulus of what encloses it
-//! C_line:     hose epsilon L/r_beta + (A_ho + E(p)) L/beta_0, else V_line/beta_e          what its sheet says
+//! by_volume:  C_A = (A_A x + V_A0)/beta_0 + C_line                     each volume with the modulus of its enclosure
+//! C_line:     hose epsilon L/r_beta + (A_ho + E(p)) L/beta_0, else V_line/beta_e          from its data sheet
 //! ```
 //!
 //! and likewise C_B with L - x. A chamber of steel does not become softer when a hose is connected,

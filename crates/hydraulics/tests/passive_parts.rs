@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! lost(t) = integral of effort times flow - (stored(t) - stored(0))
-//! it grows all the time, and stays zero where nothing is lost
+//! it never decreases, and stays zero without losses
 //! ```
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may fail the test")]

@@ -40,8 +40,8 @@ pub enum Waking {
 /// Sampled controller in operation.
 ///
 /// ```text
-/// m = AD(y + n)                                    y the sensor's, n white noise, AD rounds and ends at its range
-/// v = q round((v_m + n_v)/q)                       v_m the velocity sensor's, n_v white noise, q its resolution
+/// m = AD(y + n)                                    y the sensor output, n white noise, AD rounds and ends at its range
+/// v = q round((v_m + n_v)/q)                       v_m the velocity sensor output, n_v white noise, q its resolution
 /// p = p_m + n_p                                    p_m the pressure signal, n_p white noise
 /// u = DA(limit(G (F r - m) + k v - H p))           k v the feed-forward, H p the pressure feedback, DA rounds
 /// ```

@@ -123,8 +123,8 @@ pub fn at_rest(
 /// Machine whose command is held by a controller in steady state.
 ///
 /// ```text
-/// 0 = F(1) r - m                             where the controller integrates
-/// 0 = G(1) (F(1) r - m) - H(1) p - u         where it does not
+/// 0 = F(1) r - m                             if the controller integrates
+/// 0 = G(1) (F(1) r - m) - H(1) p - u         if it does not
 /// ```
 ///
 /// Its last state is the command u.

@@ -12,7 +12,7 @@ pub const DIRECTION: Key = key("direction", &RATIO, "Standard deviations along a
 /// Numbers that move together by a standard normal variable z, independent of the other directions.
 ///
 /// ```text
-/// number = what the project states + sum over directions of change z        |z| <= deviations
+/// number = stated value + sum over directions of change z        |z| <= deviations
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UncertaintyDirection {

@@ -3,14 +3,14 @@
 //! ```text
 //! bytes -> tree -> setting (--set) -> reader <- catalogue: values of named parts
 //!                                     |
-//!                             Project::visit_system, visit_wishes: each key beside its field
+//!                             Project::visit_system, visit_wishes: each key next to its field
 //!                                     |
 //!                                     -> validate: the conditions between keys -> Loaded, or a Refusal
 //!
-//! Project   -> printer -> text                   the same visits, written
-//!           -> listing -> keys, numbers by path  what `--set` and campaigns may change
+//! Project   -> printer -> text                   these visits, written
+//!           -> listing -> keys, numbers by path  numbers that `--set` and campaigns may change
 //!           -> schema                            for editors
-//! bytes, controller -> rewrite -> bytes          everything else as it was
+//! bytes, controller -> rewrite -> bytes          all other text unchanged
 //! ```
 //!
 //! Internally, all numbers are SI. Keys are a contract: other tools read them.

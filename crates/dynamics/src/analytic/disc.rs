@@ -11,7 +11,7 @@ use crate::portable;
 /// ```text
 /// (a, r) + (b, q) = (a + b, r + q)
 /// (a, r)(b, q) = (a b, |a| q + |b| r + r q)
-/// 1/(a, r) = (conj a, r)/(|a|^2 - r^2)                 |a| > r; the whole plane otherwise
+/// 1/(a, r) = (conj a, r)/(|a|^2 - r^2)                 |a| > r; otherwise the whole plane
 /// exp (a, r) = (e^a, |e^a| (e^r - 1))
 /// ```
 ///

@@ -16,7 +16,7 @@ const SINGULAR: f64 = 1e-13;
 /// integrates.
 ///
 /// ```text
-/// G = c_1/(s - p) + ... + c_m/(s - p)^m + what does not integrate          p = 0; sampled, z in place of s and p = 1
+/// G = c_1/(s - p) + ... + c_m/(s - p)^m + remainder without integration          p = 0; sampled, z in place of s and p = 1
 /// w (A - p)^m = 0,    w (A - p)^(k - 1) B = c_k,    k = 1 ... m
 /// ```
 ///

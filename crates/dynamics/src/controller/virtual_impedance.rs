@@ -7,7 +7,7 @@ use crate::linear::{LinearError, Polynomial, TransferFunction};
 /// Virtual impedance: the force by which the reference yields to the position of a load.
 ///
 /// ```text
-/// Z_v(s) = (M_v s^2 + B_v s + K_v)/(tau s + 1)^n        n = 2 with a mass, 1 with a damper, 0 with a spring alone
+/// Z_v(s) = (M_v s^2 + B_v s + K_v)/(tau s + 1)^n        n = 2 with a mass, 1 with a damper, 0 with only a spring
 /// u = G (F r - y),    y = H (F_e + Z_v (x_L - x_0))
 /// ```
 ///

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! x(k+1) = Phi x(k) + G_1 u(k-1) + G_0 u(k),   y = C x + D u              G_1 only with a fraction of a sample of dead time
-//! numerator:  N(z) = z^f P(z) det(z I - Phi),  f = 1 with that fraction, else 0
+//! numerator:  N(z) = z^f P(z) det(z I - Phi),  f = 1 with that fraction, otherwise 0
 //! ```
 //!
 //! Phi is block triangular, its blocks the poles one by one, so that P(z) is a substitution from

@@ -14,7 +14,7 @@ const LARGE: f64 = 1e6;
 ///
 /// ```text
 /// e -> R(h J) e                         over a step: Rosenbrock::carry
-/// e -> e + s,  s_i = +-scale_i          where it has not grown
+/// e -> e + s,  s_i = +-scale_i          if it has not grown
 /// growth = |e|/|e_1|,  |e| the root mean square of e_i/scale_i
 /// ```
 ///

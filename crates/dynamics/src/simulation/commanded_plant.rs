@@ -246,7 +246,7 @@ impl<P> CommandedPlant<P> {
     /// Part of the command that the integral part of G holds; zero if nothing integrates.
     ///
     /// ```text
-    /// G = c_1/s + ... + c_m/s^m + what does not integrate          of a simple pole c_1 times the integral of F r - y
+    /// G = c_1/s + ... + c_m/s^m + remainder without integration          for a simple pole, c_1 times the integral of F r - y
     /// ```
     ///
     /// # Example

@@ -209,7 +209,7 @@ const VISIBLE: f64 = 1e-3;
 /// Mode that grew freely, without being suppressed by the method.
 ///
 /// ```text
-/// factor = exp(integral of Re(lambda) over the time from its begin to its end)
+/// factor = exp(integral of Re(lambda) over the time from its beginning to its end)
 /// ```
 ///
 /// lambda is the least stable of the fast eigenvalues of the Jacobian along the trajectory, or of

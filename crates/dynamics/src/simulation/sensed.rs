@@ -9,8 +9,8 @@ use crate::scalar::Scalar;
 /// Plant whose measurement passes through the dynamics of a sensor and its dead time.
 ///
 /// ```text
-/// dx/dt = A x + B y,    m(t) = C x(t - d) + D y(t - d)         y what the plant gives, m what the controller sees
-/// y = F + Z_v (x_L - x_0)                                       with a virtual impedance: F what the plant measures
+/// dx/dt = A x + B y,    m(t) = C x(t - d) + D y(t - d)         y the output of the plant, m the measurement of the controller
+/// y = F + Z_v (x_L - x_0)                                       with a virtual impedance: F the measurement of the plant
 /// ```
 ///
 /// States are those of the plant, those of the sensor, those of the sensor of the rate that a

@@ -5,7 +5,7 @@ use super::Lane;
 /// Square matrix column by column, each column in groups of four rows, the last padded with zeros.
 ///
 /// ```text
-/// A x = sum over j of a_j x_j          a_j the columns: four sums at once, where a row by row each sum waits for itself
+/// A x = sum over j of a_j x_j          a_j the columns: four sums in parallel; row by row, each sum would depend on itself
 /// ```
 #[derive(Clone, Debug)]
 pub(super) struct Square<S> {

@@ -42,7 +42,7 @@ type MatrixRows<S> = [[[S; 4]; SMALL / 4]; SMALL];
 /// Inverse of a small matrix.
 ///
 /// ```text
-/// W^-T = L^-T D^-1 U^-T         row by row: what each entry of a right-hand side adds to the solution
+/// W^-T = L^-T D^-1 U^-T         row by row: contribution of each entry of a right-hand side to the solution
 /// ```
 ///
 /// Its product with a vector is a sum of vectors, whereas a substitution needs each state before it

@@ -133,7 +133,7 @@ impl Blocks {
     /// Response at each line except that of the mean.
     ///
     /// ```text
-    /// same input in all blocks:  G = sum Y / sum U        otherwise:  G = sum U* Y / sum |U|^2   (H1)
+    /// one input in all blocks:   G = sum Y / sum U        otherwise:  G = sum U* Y / sum |U|^2   (H1)
     /// sigma^2 = sum |Y - G U|^2/(n - 1) / sum |U|^2       sigma^2 = m/(m - 1) K/n_d sum |U|^2 |Y - G U|^2/(sum |U|^2)^2
     /// m = n_d/K (sum |U|^2)^2/sum |U|^4
     /// gamma^2 = |sum U* Y|^2/(sum |U|^2 sum |Y|^2)

@@ -179,7 +179,7 @@ fn saturating(anti_windup: AntiWindup, tolerance: f64) -> Simulated {
 /// ```text
 /// wanted = K_p e + i,    i' = K_i e                          none
 /// i' = K_i (e + (u - wanted)/K_p)                            back calculation
-/// i' = 0 where |wanted| > limit and wanted e > 0              clamping
+/// i' = 0 if |wanted| > limit and wanted e > 0              clamping
 /// ```
 fn by_short_steps(anti_windup: AntiWindup) -> Vec<f64> {
     let step = 1e-5;

@@ -2,8 +2,8 @@
 //! opens between chamber and gas.
 //!
 //! ```text
-//! V_0(u) = V_0 + V_1 u,   p_0(u) = p_0 + p_1 u             u: by how much the setting has moved from rest
-//! q = dV_oil/dt = C dp/dt + (dV_oil/du) du/dt               at a pressure that is held, V_oil grows with the setting
+//! V_0(u) = V_0 + V_1 u,   p_0(u) = p_0 + p_1 u             u: change of the setting from rest
+//! q = dV_oil/dt = C dp/dt + (dV_oil/du) du/dt               V_oil changes with the setting at constant pressure
 //! q = (s + u) K root(p - p_g)                               the valve, s: its opening at rest, from 0 to 1
 //! ```
 
@@ -185,7 +185,7 @@ impl<S: Scalar> MovedGas<S> {
     /// oil moves, W.
     ///
     /// ```text
-    /// W(V_oil, V_0, p_0): integral of p dV_oil, from the bladder on its shell on
+    /// W(V_oil, V_0, p_0): integral of p dV_oil, from the bladder on its shell
     /// dW/dt = p q + (W - p V_oil)/V_0 dV_0/dt + (W + p_atm V_oil)/P_0 dp_0/dt
     /// ```
     ///

@@ -64,7 +64,7 @@ impl<S: Scalar> RelaxingGas<S> {
     ///
     /// ```text
     /// V = V_0/g(r),   r = P/(P_0 theta);   g(r) = r,   or 1 + d w^2 while the bladder lifts,   d = 1/100
-    /// C = C_T/(1 + (gamma - 1) k),   C_T = V_0 w/(P_0 theta g^2),   k = w r^2/g^2;   w and k are 1 where it has lifted
+    /// C = C_T/(1 + (gamma - 1) k),   C_T = V_0 w/(P_0 theta g^2),   k = w r^2/g^2;   w and k are 1 after it has lifted
     /// q = C (dp/dt + P (theta - 1)/(theta tau))
     /// ```
     pub fn at(&self, pressure: S, warming: S) -> HeatedGas<S> {
@@ -97,7 +97,7 @@ impl<S: Scalar> RelaxingGas<S> {
     /// Relaxation for small motions at a pressure in Pa gauge, at the temperature of the wall.
     ///
     /// ```text
-    /// q/p = s C_T (1 + tau s)/(1 + G tau s),    G = 1 + (gamma - 1) k: gamma where the bladder has lifted
+    /// q/p = s C_T (1 + tau s)/(1 + G tau s),    G = 1 + (gamma - 1) k: gamma after the bladder has lifted
     /// ```
     pub fn relaxation(&self, pressure: S) -> GasRelaxation<S> {
         let at_rest = self.gas.compliance(pressure);

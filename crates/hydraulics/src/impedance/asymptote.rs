@@ -66,7 +66,7 @@ pub fn compliance_hidden_above(hydraulic_stiffness: f64, moving_mass: f64) -> f6
 ///                 G -> K_i/s            (A^2 + f_v K_c)/(A K_qU K_i) s               a mass, about A/(K_qU K_i)
 ///                 G -> K/s^n            (A^2 + f_v K_c)/(A K_qU K) s^n
 /// plateau         K_eq/s                up to sqrt(K_H/M): the piston follows the load
-/// limit           K_S/s                 above sqrt((K_H + K_S)/M): the piston stands still
+/// limit           K_S/s                 above sqrt((K_H + K_S)/M): the piston is at rest
 /// ```
 ///
 /// The thesis (6.2.2) takes the plateau for the limit. An asymptote that is nowhere the nearest is
@@ -108,7 +108,7 @@ pub fn impedance_asymptotes(
 /// loop.
 ///
 /// ```text
-/// low frequency   N b + Z               and of a mass Z = M s:  N b up to N b/(M + N m), then (M + N m) s
+/// low frequency   N b + Z               and for a mass Z = M s:  N b up to N b/(M + N m), then (M + N m) s
 /// limit           k_N+1/s               above sqrt((k_N + k_N+1)/m) of its last plug
 /// ```
 pub fn through_oil(asymptotes: Vec<Asymptote>, column: &OilColumn) -> Vec<Asymptote> {

@@ -74,7 +74,7 @@ fn sharing_poles(plant: &LinearPlant, model: LinearModel) -> Result<LinearModel,
 /// motion:
 ///
 /// ```text
-/// Z -> Z + (Z_v/s) G F_L/U_C/(1 + G F_s/U_C)                  about Z_v/s where the loop has much gain
+/// Z -> Z + (Z_v/s) G F_L/U_C/(1 + G F_s/U_C)                  about Z_v/s if the loop gain is high
 /// ```
 ///
 /// # Errors

@@ -9,7 +9,7 @@ use crate::fluid::{ATMOSPHERIC_PRESSURE_ABSOLUTE, EntrainedAir, Fluid, bulk_modu
 ///
 /// ```text
 /// C_end(p) dp/dt = q_end        q_end from DynamicLine, p the pressure at the blocked end
-/// C_end(p) = C_end + V (1/beta(p) - 1/beta(p_m))          a lumped line whose fluid has air in it
+/// C_end(p) = C_end + V (1/beta(p) - 1/beta(p_m))          a lumped line whose fluid contains air
 /// ```
 ///
 /// As in the machine, air makes a lumped line softer at low pressure, and a line with inertance or

@@ -9,9 +9,9 @@ use super::attenuation::{CORNERS, GREATEST_DISSIPATION, TERMS, attenuation_weigh
 /// volumes.
 ///
 /// ```text
-/// at each end, with p its pressure, q the flow into the line there, c_i the waves that arrive:
+/// at each end, with pressure p, flow q into the line, and arriving waves c_i:
 ///     p = R_0/2 Q + sum over i of [c_i + Z_i (q + sum_k (a_ik/b_k) Y_ik)]          thesis (4.36), (4.37)
-///     h_i = c_i + 2 Z_i (q + sum_k (a_ik/b_k) Y_ik)              what leaves; thesis (4.39) to (4.42)
+///     h_i = c_i + 2 Z_i (q + sum_k (a_ik/b_k) Y_ik)              leaving wave; thesis (4.39) to (4.42)
 ///     sent off: (1 - sum_k a_ik) h_i + sum_k a_ik X_ik            arrives at the other end T_i later; thesis (4.43)
 ///     dY_ik/dt = (b_k/T_i)(q - Y_ik),    dX_ik/dt = (b_k/T_i)(h_i - X_ik),    Q = Y_11         thesis (4.44)
 /// ```

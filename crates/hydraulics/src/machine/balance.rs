@@ -32,7 +32,7 @@ impl Machine {
     ///
     /// ```text
     /// q_A(U, p_A + R_A Q_A, p_S) = Q_A = A_A v + q_i        q_B(...) = Q_B = -A_B v - q_i
-    /// p_S as stated, or q_pump - q_relief = q_supply        U as it is, or A_A p_A - A_B p_B = F
+    /// p_S as stated, or q_pump - q_relief = q_supply        U as given, or A_A p_A - A_B p_B = F
     /// ```
     ///
     /// R is the steady resistance of a line, and the areas are those at a position in m.

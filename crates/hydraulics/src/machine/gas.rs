@@ -163,10 +163,10 @@ impl<S: Scalar> Machine<S> {
     /// its own or is adjusted.
     ///
     /// ```text
-    /// (C_oil + C) dp/dt = into - q                     gas at its chamber; q: at a pressure that is held
+    /// (C_oil + C) dp/dt = into - q                     gas at its chamber; q: at constant pressure
     /// C_oil dp/dt = into - q_n                         gas behind a neck or a valve
     /// (C + C_n) dp_g/dt = q_n - q                      which gives the rate of its state s: Bladder
-    /// I dq_n/dt = p - p_g - drop(q_n)                  of a neck
+    /// I dq_n/dt = p - p_g - drop(q_n)                  for a neck
     /// ```
     fn gas_rates<T: Scalar + From<S>>(
         &self,

@@ -17,10 +17,10 @@ impl<S: Scalar> Machine<S> {
     /// ```text
     /// spool       U of its edges; dU/dt of its memories; limit - |dU/dt|
     /// friction    v, of bristles and of the smoothed curve
-    /// contacts    d and 1 + c d' of end stops and wall; the way left of a series spring
+    /// contacts    d and 1 + c d' of end stops and wall; the remaining travel of a series spring
     /// stages      x at both ends of each transition
-    /// gas         p where the bladder begins to lift and where it has lifted
-    /// supply      p where the relief valve opens
+    /// gas         p at which the bladder begins to lift, and at which it has lifted
+    /// supply      p at which the relief valve opens
     /// ```
     pub(super) fn write_kinks<T: Scalar + From<S>>(
         &self,

@@ -104,7 +104,7 @@ impl<S: Scalar> Machine<S> {
     /// Separate function, so that machines without a series element do not contain its code.
     ///
     /// ```text
-    /// spring alone   K_S d_S = F_el(d),  d' (1 + F_el'(d)/K_S) = v - v_L
+    /// only a spring  K_S d_S = F_el(d),  d' (1 + F_el'(d)/K_S) = v - v_L
     /// damper         c d' + ... = K_S d_S - F_f(d),   d_S' = v - v_L - d'
     /// mass           m dv_m/dt = K_S d_S - F_L,   d' = v_m - v_L,   d_S' = v - v_m
     /// ```

@@ -151,7 +151,7 @@ impl<S: Scalar> Machine<S> {
     /// friction, end stops and acceleration:
     ///
     /// ```text
-    /// F_H = A_A p_A - A_B p_B = F_e + F_fr - F_stops + M dv/dt      all positive towards the B end but F_fr      thesis (4.29)
+    /// F_H = A_A p_A - A_B p_B = F_e + F_fr - F_stops + M dv/dt      all positive towards the B end except F_fr      thesis (4.29)
     /// ```
     ///
     /// # Example

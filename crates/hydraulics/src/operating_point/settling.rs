@@ -362,7 +362,7 @@ impl Balance {
     /// force, such a flow with unequal areas may leave several.
     ///
     /// ```text
-    /// dF/dU ~ A_A K_qA K_cB + A_B K_qB K_cA + G (A_A - A_B) (K_qA - K_qB)              may change its sign with much leakage
+    /// dF/dU ~ A_A K_qA K_cB + A_B K_qB K_cA + G (A_A - A_B) (K_qA - K_qB)              may change its sign with large leakage
     /// ```
     pub fn is_unique(&self, steady: Steady) -> bool {
         let by_force = matches!(steady, Steady::Moving { load: SteadyLoad::Force(_), .. });

@@ -26,7 +26,7 @@ impl<S: Scalar> Balance<S> {
     /// `tare_drop` in Pa is the drop at which the tare flow is stated.
     ///
     /// ```text
-    /// p_S = p_idle - dp_o q_S(p_S)/q_pump         down to p_idle - dp_o, where the relief valve is shut
+    /// p_S = p_idle - dp_o q_S(p_S)/q_pump         down to p_idle - dp_o, at which the relief valve is shut
     /// ```
     ///
     /// If the valve draws more than the pump delivers, the result is the pressure at which the

@@ -20,7 +20,7 @@ use crate::line::{DynamicLine, Segments, TransferMatrix};
 /// ```text
 /// q_valve = K_q U_sp - K_c p_port                                              valve
 /// p_port = a p + b q,   q_valve = c p + d q                                    line: TransferMatrix
-/// q = C s p + A s X + G (p - p_other) + G_e p                                  chamber behind it, which leaks to the tank
+/// q = C s p + A s X + G (p - p_other) + G_e p                                  chamber behind the line, with leakage to the tank
 /// so each chamber of LinearPlant has   K_q/(d + K_c b)   for K_q   and   C s + G_e + (c + K_c a)/(d + K_c b)   for C s + K_c + G_e
 /// ```
 ///

@@ -293,7 +293,7 @@ impl LinearSeries {
     /// v_m = Y F_s,   Y = 1/(m s + Z),   1/Z = s/T + Y_L                  F_L = Z Y F_s
     /// without m   Y = s/T + Y_L: spring and damper yield with the sensor, Im (s/T) >= 0, and F_L = F_s
     /// with m      |Z| <= |T/s|/(1 - |T/s| |Y_L|) = Z_0,   |Y| <= 1/(w m - Z_0)
-    /// oil         the same from plug to plug, |m s + b| >= w m; its first spring yields with the sensor
+    /// oil         likewise from plug to plug, |m s + b| >= w m; its first spring yields with the sensor
     /// ```
     pub(super) fn beyond_sensor(&self, w: f64, [yielding, speed]: [f64; 2]) -> Option<BeyondSensor> {
         let (passed, yielding) = match &self.element {

@@ -13,7 +13,7 @@ use crate::servovalve::{SpoolDirection, supply_coefficients};
 /// ```text
 /// (C_S s + G_S) p_S = -q_S,    q_S = K_qS U + s_A (p_S - p_A) + s_B (p_S - p_B)     at the valve's ports
 /// q_A = ... + s_A p_S,    q_B = ... + s_B p_S                                       into the chambers
-/// G_S = q_pump/dp_o where the relief valve is open, 0 where it is shut; with it the slope of the tare flow
+/// G_S = q_pump/dp_o if the relief valve is open, 0 if it is shut; plus the slope of the tare flow
 /// ```
 ///
 /// These are [`crate::machine::PowerUnit`] differentiated. If s_A equals s_B and the chambers are

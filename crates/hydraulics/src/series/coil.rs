@@ -43,7 +43,7 @@ const CLEARANCE: f64 = 0.15;
 /// Pair of coil springs with a stiffness k in N/m that holds a force F in N to either side.
 ///
 /// ```text
-/// each spring   k/2, preloaded by F/2 so that neither goes slack: from 0 to F over 2 F/k
+/// each spring   k/2, preloaded by F/2 so that neither becomes slack: from 0 to F over 2 F/k
 /// Wahl          tau = K_w 8 F C/(pi d^2),    K_w = (4 C - 1)/(4 C - 4) + 0.615/C
 /// coils         k/2 = G d/(8 C^3 n)
 /// length        2 ((n + 2) d + 0.15 (2 F/k) + F/k)

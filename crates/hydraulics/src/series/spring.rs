@@ -9,7 +9,7 @@ use crate::parameter::{ParameterError, ParameterRequirement, Problems};
 /// ```text
 /// F_f(d) = k d (1 + b (d/t)^2)                        spring; b is zero for a linear one
 /// F_L = F_f(d) + c d' + F_ends(d, d')                 on the load, F_ends of Contact beyond the travel t
-/// m dv_m/dt = K_S (x - x_m) - F_L,   d = x_m - x_L    without a mass both forces are the same
+/// m dv_m/dt = K_S (x - x_m) - F_L,   d = x_m - x_L    without a mass both forces are equal
 /// ```
 ///
 /// Source: Pratt and Williamson (1995), "Series elastic actuators", IROS, for the arrangement.

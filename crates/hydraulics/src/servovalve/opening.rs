@@ -23,7 +23,7 @@ pub enum OpeningLaw<S = f64> {
 ///
 /// ```text
 /// s+ = u - l+            s- = -u - l-                      the travel of an edge beyond its lap
-/// a  = (s + sqrt(s^2 + (r l)^2))/2,    r = 1/500           the edge is rounded over a share of its lap
+/// a  = (s + sqrt(s^2 + (r l)^2))/2,    r = 1/500           the edge is rounded over a fraction of its lap
 /// u+ = a/(1 + c a)                                         c the saturation
 /// ```
 ///

@@ -141,7 +141,7 @@ impl LocalFunction<f64, 4, 4> for KnownPorts {
 /// Newton step of the pressures, moved together, towards a balance of the flows into the ports, Pa.
 ///
 /// ```text
-/// (q_4 + q_6 - q_3 - q_5)/(q_4' + q_6' + q_3' + q_5')              primes for the slope over the own drop
+/// (q_4 + q_6 - q_3 - q_5)/(q_4' + q_6' + q_3' + q_5')              primes denote the slope over the edge's own drop
 /// ```
 fn imbalance<S: Scalar>(edges: [S; 4], supply: &Supply<S>, transition: S, [a, b]: [S; 2]) -> S {
     let drops =

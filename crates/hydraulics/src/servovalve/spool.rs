@@ -13,10 +13,10 @@ pub(super) const STICKING_STIFFNESS: f64 = 20.0;
 /// ```text
 /// u = U_C within -U_n and U_n                    the amplifier saturates
 /// dU/dt = r within -R and R                      the first stage delivers no more than the rate limit R
-/// dr/dt = w_nv^2 (u - U - f) - 2 xi_v w_nv r     thesis (4.1) where nothing limits: r = dU/dt
+/// dr/dt = w_nv^2 (u - U - f) - 2 xi_v w_nv r     thesis (4.1) without a limit: r = dU/dt
 /// df/dt = 20 (dU/dt - |dU/dt| f/h_f)             friction of the spool, h_f half the threshold
 /// dz/dt = 1/2 (dU/dt - |dU/dt| z/h_z)            lag of the torque motor's iron, h_z half of width less threshold
-/// y = U - U_0 - z                                where the edges are, U_0 the null bias
+/// y = U - U_0 - z                                position of the edges, U_0 the null bias
 /// ```
 ///
 /// Both memories are of Dahl (1976), "Solid friction damping of mechanical vibrations", AIAA

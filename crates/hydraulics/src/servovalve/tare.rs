@@ -6,7 +6,7 @@ use crate::orifice::regular_root;
 /// Tare flow at a supply in m3/s, from the data sheet's value at its own pressure drop in Pa.
 ///
 /// ```text
-/// q(p_S) = q_tare sqrt((p_S - p_T)/p_ref)          with the regular root of the edges: it returns with reversed pressures
+/// q(p_S) = q_tare sqrt((p_S - p_T)/p_ref)          with the regular root of the edges: it reverses with the pressures
 /// ```
 ///
 /// The first stage is two fixed orifices and two nozzles in turbulent flow (Merritt 1967, chapter

@@ -40,7 +40,7 @@ impl TestStand {
     ///
     /// ```text
     /// q_P = q_v3 + q_v5 + q_tare + q_relief(p_S)        q_relief = q_P (p_S - p_stated + dp_o)/dp_o, not below 0
-    /// q_port = K_m root(p_A - p_B)                       in place of p_A = p_B where the meter takes pressure
+    /// q_port = K_m root(p_A - p_B)                       in place of p_A = p_B if the meter has a pressure drop
     /// ```
     ///
     /// # Example

@@ -16,7 +16,7 @@ const MOST_GROWN: f64 = 0.5;
 /// Growth of the least stable mode along a run.
 ///
 /// ```text
-/// between two evaluations the mean of both growths, or nothing where one grows and the other decays
+/// between two evaluations the mean of both growths, or zero if one grows and the other decays
 /// ```
 ///
 /// A mode that grows only for an instant, as friction causes at one velocity, is not counted.

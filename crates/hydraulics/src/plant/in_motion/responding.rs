@@ -96,7 +96,7 @@ impl RespondingPlant for PlantInMotion {
     /// ```text
     /// f_v |v|^2 <= (K_qA^2/K_cA + K_qB^2/K_cB)/4 |U_sp|^2
     /// F_e = K_e (x_C - x_L) = v/(s/K_e + Y_L)                     Y_L: velocity of the load over its force
-    /// |P(jw)| <= |v/U_sp| w_n^2/(w^2 - w_n^2) / (w/K_e - w/(M_L w^2 - K_L))       each factor falls from where it is positive
+    /// |P(jw)| <= |v/U_sp| w_n^2/(w^2 - w_n^2) / (w/K_e - w/(M_L w^2 - K_L))       each factor falls from the frequency on at which it is positive
     /// ```
     ///
     /// A limited supply is a third port, `power_per_volt`. The feed-forward of a load that can move
