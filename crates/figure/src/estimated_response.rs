@@ -87,7 +87,7 @@ impl EstimatedResponse {
         words.with_plot(x, panels, legend)
     }
 
-    /// Band around each value, between the edges for the ratio of the radius to the magnitude.
+    /// Band around each value, from the ratio of the radius to the magnitude.
     fn band(&self, values: &[f64], of: impl Fn(f64) -> [f64; 2]) -> Vec<[f64; 2]> {
         let sizes = self.estimate.response.iter().map(|value| magnitude(*value));
         let shares = sizes.zip(&self.radii).map(|(size, radius)| radius / size);

@@ -85,7 +85,8 @@ impl<S: Scalar> Edges<S> {
     /// ```
     ///
     /// Without any leakage every pressure of a chamber is an equilibrium. The limit has a unique
-    /// one; under a load p_A + p_B = p_S + p_T also holds for edges with equal flow coefficients.
+    /// one; under a load, its pressures also satisfy p_A + p_B = p_S + p_T if the edges have equal
+    /// flow coefficients.
     pub fn vanishing() -> Edges<S> {
         Edges::equal(S::from(VANISHING))
     }

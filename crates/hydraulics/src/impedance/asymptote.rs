@@ -69,9 +69,9 @@ pub fn compliance_hidden_above(hydraulic_stiffness: f64, moving_mass: f64) -> f6
 /// limit           K_S/s                 above sqrt((K_H + K_S)/M): the piston is at rest
 /// ```
 ///
-/// The thesis (6.2.2) takes the plateau for the limit. An asymptote that is nowhere the nearest is
-/// omitted: the first without leakage or feedback, the plateau where the piston's mass comes before
-/// the spring.
+/// The thesis (6.2.2) treats the plateau as the limit. An asymptote that is nowhere the nearest is
+/// omitted: the first without leakage or feedback, the plateau if the piston's mass dominates
+/// before the spring.
 pub fn impedance_asymptotes(
     parameters: &LinearParameters,
     controller: Option<&TransferFunction>,

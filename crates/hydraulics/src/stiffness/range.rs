@@ -32,7 +32,7 @@ impl ChamberCompliance<f64> {
     ///
     /// K_H is convex in x, so the greatest value is at an end, and the least at the root if that is
     /// inside the stroke, otherwise at an end. A telescopic piston is searched on a grid, which
-    /// finds the least and the greatest to a hundred thousandth. With neither dead volume nor line
+    /// finds the least and the greatest to one part in 100,000. With neither dead volume nor line
     /// the stiffness at the ends is infinite.
     ///
     /// # Example
