@@ -239,8 +239,8 @@ fn sizing_equations_undo_each_other() {
 fn hydraulic_mode_dominates_more_the_softer_it_is() {
     let modes = |stiffness| dominance(&linear_model(&table_6_1(stiffness)).unwrap().command);
     let (stiff, soft) = (modes(1.5e7), modes(1.5e5));
-    // ORIGIN: analytic, over (6.12) the fraction of the slow pole -a is 1/((1 - a e_1/e_0 + ...)(1
-    // - ...)): within 1 % of 1
+    // ORIGIN: analytic, over (6.12) the fraction of the slow pole -a is
+    // 1/((1 - a e_1/e_0 + ...)(1 - ...)): within 1 % of 1
     assert!((stiff[0].step_share - 1.0).abs() < 1e-2 && (soft[0].step_share - 1.0).abs() < 1e-4);
     for index in [1, 2] {
         assert!(stiff[index].step_share < 1e-2);
