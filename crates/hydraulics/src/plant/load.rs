@@ -92,8 +92,8 @@ impl<S: Scalar> LinearLoad<S> {
 }
 
 impl LinearLoad {
-    /// Stiffness in N/m that holds the load against a force of the rod at rest, behind a linkage (k
-    /// + k_g)/r^2; `None` if there is no such stiffness: a prescribed motion, a free mass, an
+    /// Stiffness in N/m that holds the load against a force of the rod at rest, behind a linkage
+    /// (k + k_g)/r^2; `None` if there is no such stiffness: a prescribed motion, a free mass, an
     /// unstable linkage.
     ///
     /// # Example
